@@ -1,0 +1,114 @@
+//! State of the moving spheres: a structure of arrays.
+
+use glam::DVec3;
+
+/// Moving spheres: the grains first, then the spheres of an elastic wall, if there is one.
+///
+/// Positions have z in \[0, L); `turns` counts how often a sphere went round the tube, so that z + turns L is its
+/// unfolded position. All arrays have the same length.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Bodies {
+    /// Number of grains: the first so many entries of each array.
+    pub grains: usize,
+    /// Centres \[d\].
+    pub position: Vec<DVec3>,
+    /// Times round the tube.
+    pub turns: Vec<i32>,
+    /// Velocities \[d/t\].
+    pub velocity: Vec<DVec3>,
+    /// Accelerations at the end of the last step \[d/t^2\].
+    pub acceleration: Vec<DVec3>,
+    /// Angular velocities \[1/t\].
+    pub angular_velocity: Vec<DVec3>,
+    /// Angular accelerations at the end of the last step \[1/t^2\].
+    pub angular_acceleration: Vec<DVec3>,
+    /// Diameters \[d\].
+    pub diameter: Vec<f64>,
+    /// Masses \[m\].
+    pub mass: Vec<f64>,
+    /// Moments of inertia \[m d^2\]; infinite for a sphere that does not rotate.
+    pub inertia: Vec<f64>,
+}
+
+impl Bodies {
+    /// Spheres at rest at the given places, with the given diameters and masses d^3 (in units of the mass of a sphere
+    /// of diameter 1) and moments of inertia m d^2/10.
+    #[must_use]
+    pub fn grains_at_rest(position: Vec<DVec3>, diameter: Vec<f64>) -> Self {
+        let number = position.len();
+        let mass: Vec<f64> = diameter.iter().map(|d| d * d * d).collect();
+        let inertia = mass.iter().zip(&diameter).map(|(m, d)| m * d * d / 10.0).collect();
+        Self {
+            grains: number,
+            position,
+            turns: vec![0; number],
+            velocity: vec![DVec3::ZERO; number],
+            acceleration: vec![DVec3::ZERO; number],
+            angular_velocity: vec![DVec3::ZERO; number],
+            angular_acceleration: vec![DVec3::ZERO; number],
+            diameter,
+            mass,
+            inertia,
+        }
+    }
+
+    /// Appends a sphere of an elastic wall, at rest; it does not rotate.
+    pub fn push_wall_sphere(&mut self, position: DVec3, diameter: f64, mass: f64) {
+        self.position.push(position);
+        self.turns.push(0);
+        self.velocity.push(DVec3::ZERO);
+        self.acceleration.push(DVec3::ZERO);
+        self.angular_velocity.push(DVec3::ZERO);
+        self.angular_acceleration.push(DVec3::ZERO);
+        self.diameter.push(diameter);
+        self.mass.push(mass);
+        self.inertia.push(f64::INFINITY);
+    }
+
+    /// Number of moving spheres, grains and wall.
+    #[must_use]
+    pub fn number(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Kinetic energy of translation of the spheres of a range, sum m v^2/2 \[m d^2/t^2\].
+    #[must_use]
+    pub fn kinetic_energy(&self, range: core::ops::Range<usize>) -> f64 {
+        range
+            .map(|i| 0.5 * self.mass[i] * self.velocity[i].length_squared())
+            .sum()
+    }
+
+    /// Kinetic energy of rotation of the grains, sum I omega^2/2 \[m d^2/t^2\].
+    #[must_use]
+    pub fn rotational_energy(&self) -> f64 {
+        (0..self.grains)
+            .map(|i| 0.5 * self.inertia[i] * self.angular_velocity[i].length_squared())
+            .sum()
+    }
+
+    /// Unfolded axial position z + turns L of a sphere \[d\].
+    #[must_use]
+    pub fn unfolded(&self, index: usize, length: f64) -> f64 {
+        self.position[index].z + f64::from(self.turns[index]) * length
+    }
+
+    /// Brings every z back into \[0, L), counting turns.
+    pub(crate) fn fold(&mut self, length: f64) {
+        for (position, turns) in self.position.iter_mut().zip(&mut self.turns) {
+            while position.z >= length {
+                position.z -= length;
+                *turns += 1;
+            }
+            while position.z < 0.0 {
+                position.z += length;
+                *turns -= 1;
+                // A tiny negative z plus L may round to L itself.
+                if position.z >= length {
+                    position.z = 0.0;
+                    *turns += 1;
+                }
+            }
+        }
+    }
+}

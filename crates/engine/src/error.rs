@@ -1,0 +1,53 @@
+//! What can go wrong in a simulation.
+
+/// Errors of the engine.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EngineError {
+    /// A grain moved further than its contacts can follow: the step is too long or the forces too strong.
+    #[error(
+        "diverged at step {step} (t = {time}): grain {grain} moved {displacement} in one step, more than the {limit} \
+         that keeps contacts from being passed over"
+    )]
+    Diverged {
+        /// Step at whose end it was found.
+        step: u64,
+        /// Time at the end of that step \[t\].
+        time: f64,
+        /// Number of the grain.
+        grain: usize,
+        /// How far it moved in that step \[d\]; not finite where its position is lost.
+        displacement: f64,
+        /// The bound \[d\].
+        limit: f64,
+    },
+    /// The grains do not fit into the tube.
+    #[error(
+        "{grains} grains do not fit: after relaxation their mean overlap is {mean_overlap:.3} d (at most {limit} d is \
+         allowed)"
+    )]
+    DoesNotFit {
+        /// Number of grains.
+        grains: usize,
+        /// Mean overlap of the contacts after relaxation \[d\].
+        mean_overlap: f64,
+        /// Largest mean overlap that counts as fitting \[d\].
+        limit: f64,
+    },
+    /// A snapshot does not belong to this simulation.
+    #[error("the snapshot does not fit this simulation: {reason}")]
+    SnapshotMismatch {
+        /// What differs.
+        reason: String,
+    },
+    /// A parameter outside its range.
+    #[error("{parameter} = {value} is not possible: {allowed}")]
+    InvalidParameter {
+        /// Name in the vocabulary of the configuration.
+        parameter: &'static str,
+        /// The value given.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
+}

@@ -1,0 +1,199 @@
+//! Random sequential insertion.
+
+use core::f64::consts::TAU;
+
+use glam::DVec3;
+use rand_chacha::ChaCha8Rng;
+
+use super::{InitialState, Packing, uniform};
+use crate::neighbours::periodic;
+use crate::wall::{PrescribedWall, Wall};
+
+/// Tries for each grain before insertion counts as stalled.
+const TRIES: usize = 200;
+
+/// Volume fraction, in the sense of N/(6 a^2 L), to which the bellies are filled in a jammed start.
+const BELLY_FRACTION: f64 = 0.3;
+
+/// Where centres may be put.
+pub(super) struct Region<'a> {
+    wall: &'a Wall,
+    length: f64,
+    /// Part of each wavelength around the belly that is filled, in (0, 1].
+    filled: f64,
+    /// Position of a belly's middle \[d\].
+    belly: f64,
+}
+
+impl<'a> Region<'a> {
+    pub(super) fn new(packing: &Packing, wall: &'a Wall) -> Self {
+        let length = wall.lattice().length();
+        let (filled, belly) = match (packing.state, wall) {
+            (InitialState::Jammed, Wall::Prescribed(prescribed)) => {
+                let radius = prescribed.wave().mean_radius;
+                let fraction = packing.number as f64 / (6.0 * radius * radius * length);
+                ((fraction / BELLY_FRACTION).min(1.0), widest(prescribed))
+            }
+            // An elastic wall has no bellies before it is driven.
+            _ => (1.0, 0.0),
+        };
+        Self {
+            wall,
+            length,
+            filled,
+            belly,
+        }
+    }
+
+    /// Radius within which centres of spheres of this diameter are clear of the wall at z.
+    fn clear_radius(&self, z: f64, diameter: f64) -> f64 {
+        let lattice = self.wall.lattice();
+        let radius = match self.wall {
+            Wall::Prescribed(wall) => wall.wave().radius(z, wall.cycles()),
+            Wall::Elastic(wall) => wall.parameters().mean_radius,
+        };
+        (radius - 0.5 * (diameter + lattice.sphere_diameter)).max(0.0)
+    }
+
+    /// A random place, uniform in the volume that is clear of the wall (a narrow core where nothing is).
+    fn place(&self, diameter: f64, random: &mut ChaCha8Rng) -> DVec3 {
+        let lattice = self.wall.lattice();
+        let widest = self.clear_radius(self.belly, diameter).max(
+            // An elastic tube has the same radius everywhere.
+            self.clear_radius(0.0, diameter),
+        );
+        for _ in 0..TRIES {
+            let wave = (uniform(random) * f64::from(lattice.waves)).floor();
+            let along = (uniform(random) - 0.5) * self.filled * lattice.wavelength;
+            let z = (self.belly + wave * lattice.wavelength + along).rem_euclid(self.length);
+            let clear = self.clear_radius(z, diameter);
+            let accepted = uniform(random) * widest * widest < clear * clear;
+            let (from_axis, angle) = (clear * uniform(random).sqrt(), TAU * uniform(random));
+            if accepted {
+                return DVec3::new(
+                    from_axis * libm::cos(angle),
+                    from_axis * libm::sin(angle),
+                    if z < self.length { z } else { 0.0 },
+                );
+            }
+        }
+        // The tube is nowhere wide enough: a jittered place near the axis, for the relaxation to mend.
+        let core = 0.1 * diameter;
+        DVec3::new(
+            core * (uniform(random) - 0.5),
+            core * (uniform(random) - 0.5),
+            (uniform(random) * self.length).min(self.length * (1.0 - f64::EPSILON)),
+        )
+    }
+}
+
+/// Axial position of the middle of the belly, to a thousandth of a wavelength.
+fn widest(wall: &PrescribedWall) -> f64 {
+    let wavelength = wall.lattice().wavelength;
+    let radius = |step: u32| wall.wave().radius(f64::from(step) * wavelength / 1000.0, wall.cycles());
+    let best = (0..1000).fold(0, |best, step| if radius(step) > radius(best) { step } else { best });
+    f64::from(best) * wavelength / 1000.0
+}
+
+/// Places of all grains.
+pub(super) struct Inserted {
+    pub(super) position: Vec<DVec3>,
+    /// How many were placed without overlap.
+    pub(super) without_overlap: usize,
+}
+
+/// Inserts grain by grain: at a random place without overlap, or, where none is found, at a random place.
+pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8Rng) -> Inserted {
+    let largest = diameter.iter().copied().fold(0.0, f64::max);
+    let mut bins = Bins::new(region, largest.max(1e-6));
+    let mut position: Vec<DVec3> = Vec::with_capacity(diameter.len());
+    let mut without_overlap = 0;
+    let mut stalled = 0_usize;
+    for (grain, &size) in diameter.iter().enumerate() {
+        // Once many grains in a row have stalled the tube is full: do not try as long for each of the others.
+        let tries = if stalled > 20 { 1 } else { TRIES };
+        let mut place = region.place(size, random);
+        let mut free = bins.is_free(place, size, &position, diameter);
+        for _ in 1..tries {
+            if free {
+                break;
+            }
+            place = region.place(size, random);
+            free = bins.is_free(place, size, &position, diameter);
+        }
+        if free {
+            without_overlap += 1;
+        } else {
+            stalled += 1;
+        }
+        bins.add(place, grain);
+        position.push(place);
+    }
+    Inserted {
+        position,
+        without_overlap,
+    }
+}
+
+/// Grains by cells of a rectangular grid.
+struct Bins {
+    across: i64,
+    along: i64,
+    half_width: f64,
+    width: f64,
+    depth: f64,
+    length: f64,
+    members: Vec<Vec<u32>>,
+}
+
+impl Bins {
+    fn new(region: &Region<'_>, largest_diameter: f64) -> Self {
+        let half_width = region.wall.usual_radius();
+        let across = (2.0 * half_width / largest_diameter).floor().clamp(1.0, 64.0);
+        let along = (region.length / largest_diameter).floor().clamp(1.0, 1e6);
+        Self {
+            across: across as i64,
+            along: along as i64,
+            half_width,
+            width: 2.0 * half_width / across,
+            depth: region.length / along,
+            length: region.length,
+            members: vec![Vec::new(); (across * across * along) as usize],
+        }
+    }
+
+    fn cell(&self, place: DVec3) -> [i64; 3] {
+        let across = |x: f64| (((x + self.half_width) / self.width) as i64).clamp(0, self.across - 1);
+        let along = ((place.z / self.depth) as i64).clamp(0, self.along - 1);
+        [across(place.x), across(place.y), along]
+    }
+
+    fn index(&self, [x, y, z]: [i64; 3]) -> usize {
+        ((z * self.across + y) * self.across + x) as usize
+    }
+
+    fn add(&mut self, place: DVec3, grain: usize) {
+        let index = self.index(self.cell(place));
+        self.members[index].push(grain as u32);
+    }
+
+    fn is_free(&self, place: DVec3, size: f64, position: &[DVec3], diameter: &[f64]) -> bool {
+        let [x, y, z] = self.cell(place);
+        for dz in -1..=1 {
+            for ny in (y - 1).max(0)..=(y + 1).min(self.across - 1) {
+                for nx in (x - 1).max(0)..=(x + 1).min(self.across - 1) {
+                    let cell = self.index([nx, ny, (z + dz).rem_euclid(self.along)]);
+                    for &other in &self.members[cell] {
+                        let other = other as usize;
+                        let reach = 0.5 * (size + diameter[other]);
+                        let separation = periodic(place - position[other], self.length);
+                        if separation.length_squared() < reach * reach {
+                            return false;
+                        }
+                    }
+                }
+            }
+        }
+        true
+    }
+}

@@ -1,0 +1,131 @@
+//! Initial states: grains at rest in the tube, or gathered in its bellies and moving with the wave.
+
+mod insertion;
+mod relaxation;
+
+use glam::DVec3;
+use peristalsis_physics::contact::Normal;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+use crate::bodies::Bodies;
+use crate::error::EngineError;
+use crate::wall::Wall;
+
+/// Largest mean overlap of touching grains, in units of the largest diameter, that still counts as fitting.
+pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
+
+/// How a run starts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialState {
+    /// Anywhere in the tube as it stands at t = 0, at rest: J = 0.
+    #[default]
+    Rest,
+    /// Gathered in the bellies of the tube, moving with the wave: J = Jmax.
+    Jammed,
+}
+
+/// What is to be packed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Packing {
+    /// Number of grains.
+    pub number: usize,
+    /// Least diameter \[d\].
+    pub diameter_min: f64,
+    /// Largest diameter \[d\]; diameters are uniform between the two.
+    pub diameter_max: f64,
+    /// Where the grains are.
+    pub state: InitialState,
+    /// Velocity of all grains along z \[d/t\].
+    pub axial_velocity: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+/// How the packing came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PackingReport {
+    /// Grains that random insertion placed without overlap; the others were grown into place.
+    pub inserted: usize,
+    /// Iterations of the relaxation; 0 where insertion placed all.
+    pub iterations: usize,
+    /// Mean overlap of the contacts left \[d\].
+    pub mean_overlap: f64,
+    /// Largest overlap \[d\].
+    pub largest_overlap: f64,
+    /// Elastic energy stored \[m d^2/t^2\].
+    pub stored_energy: f64,
+}
+
+/// Purposes of random numbers: each has its own stream, so that one never shifts another.
+enum Stream {
+    Diameters = 1,
+    Positions = 2,
+}
+
+/// Random numbers of a purpose.
+fn random(seed: u64, stream: Stream) -> ChaCha8Rng {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    random.set_stream(stream as u64);
+    random
+}
+
+/// Uniform in [0, 1), from the upper 53 bits.
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
+
+/// Packs grains into the tube as it stands at t = 0; an elastic wall stands in its reference tube, and its spheres are
+/// appended to the grains.
+///
+/// Random sequential insertion without overlap; where it stalls, the rest is put at random places and all grains grow to
+/// their size while the elastic energy is minimised. Velocities are set afterwards. The same seed gives the same state.
+///
+/// # Errors
+/// [`EngineError::DoesNotFit`] where the mean overlap stays above [`LARGEST_MEAN_OVERLAP`] largest diameters.
+pub fn pack(
+    packing: &Packing,
+    wall: &Wall,
+    normal: Normal,
+) -> Result<(Bodies, PackingReport), EngineError> {
+    let mut diameters = random(packing.seed, Stream::Diameters);
+    let spread = packing.diameter_max - packing.diameter_min;
+    let diameter: Vec<f64> = (0..packing.number)
+        .map(|_| packing.diameter_min + spread * uniform(&mut diameters))
+        .collect();
+    let region = insertion::Region::new(packing, wall);
+    let insertion::Inserted {
+        position,
+        without_overlap,
+    } = insertion::insert(&diameter, &region, &mut random(packing.seed, Stream::Positions));
+
+    let mut bodies = Bodies::grains_at_rest(position, diameter);
+    if let Wall::Elastic(elastic) = wall {
+        for sphere in 0..elastic.lattice().spheres() {
+            bodies.push_wall_sphere(
+                elastic.reference(sphere),
+                elastic.lattice().sphere_diameter,
+                elastic.parameters().sphere_mass,
+            );
+        }
+    }
+    let mut report = PackingReport {
+        inserted: without_overlap,
+        ..PackingReport::default()
+    };
+    if without_overlap < packing.number {
+        let relaxed = match normal {
+            Normal::Linear(law) => relaxation::grow(&law, &mut bodies, wall)?,
+            Normal::Hertz(law) => relaxation::grow(&law, &mut bodies, wall)?,
+        };
+        report = PackingReport {
+            inserted: without_overlap,
+            ..relaxed
+        };
+    }
+    for velocity in &mut bodies.velocity[..packing.number] {
+        *velocity = DVec3::new(0.0, 0.0, packing.axial_velocity);
+    }
+    Ok((bodies, report))
+}

@@ -1,0 +1,151 @@
+//! The energy ledger: where energy comes from and where it goes.
+
+use peristalsis_physics::contact::ContactForce;
+
+/// What one evaluation of the forces adds up, at one instant.
+///
+/// Energies in m d^2/t^2, powers in m d^2/t^3; "lost" terms are amounts of the step that led here.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Tally {
+    /// Elastic energy of all contacts.
+    pub contact_energy: f64,
+    /// Elastic energy of the springs of the wall's network.
+    pub network_energy: f64,
+    /// Energy of the tethers and of the constant force that keep an elastic wall in place.
+    pub keep_energy: f64,
+    /// Power of the prescribed wall on the grains, sum f . V.
+    pub wall_power: f64,
+    /// Power of the travelling force on an elastic wall.
+    pub drive_power: f64,
+    /// Power of what removes the mean force of an elastic wall.
+    pub keep_power: f64,
+    /// Power lost along the normals of contacts, never negative.
+    pub normal_dissipation: f64,
+    /// Power lost to drag on an elastic wall.
+    pub drag_dissipation: f64,
+    /// Power lost in the dashpots of the wall's network.
+    pub network_dissipation: f64,
+    /// Energy lost to tangential damping in this step.
+    pub tangential_lost: f64,
+    /// Energy lost to sliding in this step.
+    pub sliding_lost: f64,
+    /// Energy of tangential springs forgotten in this step because their contacts ended.
+    pub history_reset: f64,
+    /// Axial force of the wall on the grains, along +z \[m d/t^2\].
+    pub wall_axial_force: f64,
+    /// Contacts between grains.
+    pub grain_contacts: u64,
+    /// Contacts of grains with the wall.
+    pub wall_contacts: u64,
+    /// Contacts of grains that slide.
+    pub sliding_contacts: u64,
+    /// Largest overlap of a contact of a grain \[d\].
+    pub largest_overlap: f64,
+    /// Sum of the overlaps of all contacts of grains \[d\].
+    pub total_overlap: f64,
+}
+
+impl Tally {
+    /// Adds what a contact of a grain answered.
+    #[inline(always)]
+    pub(crate) fn add_contact(&mut self, answer: &ContactForce, overlap: f64) {
+        self.contact_energy += answer.energy;
+        self.normal_dissipation += answer.normal_dissipation;
+        self.tangential_lost += answer.tangential.damped;
+        self.sliding_lost += answer.tangential.slid;
+        self.sliding_contacts += u64::from(answer.tangential.sliding);
+        self.largest_overlap = self.largest_overlap.max(overlap);
+        self.total_overlap += overlap;
+    }
+
+    /// Elastic energy of contacts, network and tethers.
+    #[must_use]
+    pub fn potential_energy(&self) -> f64 {
+        self.contact_energy + self.network_energy + self.keep_energy
+    }
+
+    /// Power that enters from outside.
+    #[must_use]
+    pub fn input_power(&self) -> f64 {
+        self.wall_power + self.drive_power + self.keep_power
+    }
+}
+
+/// Energies accumulated since the start of the run, by the trapezoidal rule over the steps.
+///
+/// kinetic + potential = initial + wall + drive + keep - normal - tangential - sliding - drag - network - reset, up to
+/// the integrator's error: [`Ledger::residual`]. All in m d^2/t^2.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Ledger {
+    /// Kinetic and potential energy at the start.
+    pub initial_energy: f64,
+    /// Work of the prescribed wall on the grains.
+    pub wall_work: f64,
+    /// Work of the travelling force on an elastic wall.
+    pub drive_work: f64,
+    /// Work of what removes the mean force of an elastic wall.
+    pub keep_work: f64,
+    /// Integral of |power that enters|: the scale of the residual.
+    pub gross_work: f64,
+    /// Lost along the normals of contacts.
+    pub normal_dissipated: f64,
+    /// Lost to tangential damping.
+    pub tangential_dissipated: f64,
+    /// Lost to sliding.
+    pub sliding_dissipated: f64,
+    /// Lost to drag on the wall.
+    pub drag_dissipated: f64,
+    /// Lost in the dashpots of the wall's network.
+    pub network_dissipated: f64,
+    /// Tangential spring energy forgotten at the end of contacts.
+    pub history_reset: f64,
+}
+
+impl Ledger {
+    /// Adds one step from the tally at its beginning to the tally at its end.
+    pub(crate) fn add_step(&mut self, before: &Tally, after: &Tally, time_step: f64) {
+        let half = 0.5 * time_step;
+        self.wall_work += half * (before.wall_power + after.wall_power);
+        self.drive_work += half * (before.drive_power + after.drive_power);
+        self.keep_work += half * (before.keep_power + after.keep_power);
+        self.gross_work += half * (before.input_power().abs() + after.input_power().abs());
+        self.normal_dissipated += half * (before.normal_dissipation + after.normal_dissipation);
+        self.drag_dissipated += half * (before.drag_dissipation + after.drag_dissipation);
+        self.network_dissipated += half * (before.network_dissipation + after.network_dissipation);
+        self.tangential_dissipated += after.tangential_lost;
+        self.sliding_dissipated += after.sliding_lost;
+        self.history_reset += after.history_reset;
+    }
+
+    /// Work that entered.
+    #[must_use]
+    pub fn input(&self) -> f64 {
+        self.wall_work + self.drive_work + self.keep_work
+    }
+
+    /// Energy that was lost.
+    #[must_use]
+    pub fn dissipated(&self) -> f64 {
+        self.normal_dissipated
+            + self.tangential_dissipated
+            + self.sliding_dissipated
+            + self.drag_dissipated
+            + self.network_dissipated
+            + self.history_reset
+    }
+
+    /// Energy that the ledger cannot account for, for kinetic plus potential energy `energy` now.
+    #[must_use]
+    pub fn residual(&self, energy: f64) -> f64 {
+        energy - self.initial_energy - self.input() + self.dissipated()
+    }
+
+    /// |residual| over the integral of |power that enters|; over the initial energy where nothing entered; 0 where that
+    /// is 0 too and nothing is missing.
+    #[must_use]
+    pub fn relative_residual(&self, energy: f64) -> f64 {
+        let residual = self.residual(energy).abs();
+        let scale = if self.gross_work > 0.0 { self.gross_work } else { self.initial_energy };
+        if residual == 0.0 { 0.0 } else { residual / scale }
+    }
+}

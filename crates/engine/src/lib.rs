@@ -1,0 +1,23 @@
+//! The engine: state, neighbours, walls in motion, integrators and the kernels that bring grains forward in time.
+//!
+//! [`Simulation`] is the whole of it: made from [`Bodies`], a [`Wall`] and [`Parameters`], advanced by
+//! [`Simulation::advance`], saved by [`Simulation::snapshot`]. [`initial`] makes the states that runs start from.
+
+pub mod bodies;
+pub mod error;
+mod forces;
+pub mod initial;
+pub mod integrate;
+pub mod ledger;
+pub mod neighbours;
+pub mod simulation;
+pub mod snapshot;
+pub mod wall;
+
+pub use bodies::Bodies;
+pub use error::EngineError;
+pub use integrate::Integrator;
+pub use ledger::{Ledger, Tally};
+pub use simulation::{Parameters, Simulation};
+pub use snapshot::Snapshot;
+pub use wall::Wall;

@@ -1,0 +1,317 @@
+//! A simulation: spheres, wall, laws and clock, advanced step by step.
+
+use peristalsis_physics::contact::{
+    ContactLaw, ContactModel, CundallStrack, Frictionless, Normal, NormalLaw, TangentialHistory,
+    TangentialLaw,
+};
+
+use crate::bodies::Bodies;
+use crate::error::EngineError;
+use crate::forces::{Contacts, evaluate};
+use crate::integrate::{Integrator, Past};
+use crate::ledger::{Ledger, Tally};
+use crate::snapshot::Snapshot;
+use crate::wall::Wall;
+use crate::wall::memory::WallMemory;
+
+/// How a simulation is computed.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Parameters {
+    /// The contact law.
+    pub contact: ContactModel,
+    /// The integrator of the motion.
+    pub integrator: Integrator,
+    /// Length of a step \[t\].
+    pub time_step: f64,
+    /// Skin of the neighbour list \[d\]; results do not depend on it.
+    pub skin: f64,
+}
+
+/// Grains in a peristaltic tube, advanced in time.
+#[derive(Clone, Debug)]
+pub struct Simulation {
+    system: System,
+    memory: Memory,
+}
+
+/// Everything but the memory of contacts, whose type depends on the law.
+#[derive(Clone, Debug)]
+struct System {
+    bodies: Bodies,
+    wall: Wall,
+    parameters: Parameters,
+    past: Past,
+    tally: Tally,
+    ledger: Ledger,
+    step: u64,
+    limit: f64,
+}
+
+/// A law in the plane of contact together with what its contacts remember, so that they cannot disagree.
+#[derive(Clone, Debug)]
+enum Memory {
+    Smooth(Contacts<()>),
+    Frictional(CundallStrack, Contacts<TangentialHistory>),
+}
+
+impl Simulation {
+    /// A simulation that starts at time 0 with the given spheres.
+    #[must_use]
+    pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
+        let mut simulation = Self::assemble(bodies, wall, parameters);
+        let Self { system, memory } = &mut simulation;
+        memory.with_law(parameters.contact.normal, StartForces { system });
+        system.ledger.initial_energy = system.energy();
+        simulation
+    }
+
+    fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
+        bodies.fold(wall.lattice().length());
+        wall.move_to(0.0);
+        let least_diameter = bodies.diameter.iter().copied().fold(f64::INFINITY, f64::min);
+        Self {
+            system: System {
+                bodies,
+                wall,
+                parameters,
+                past: Past::default(),
+                tally: Tally::default(),
+                ledger: Ledger::default(),
+                step: 0,
+                limit: 0.5 * least_diameter,
+            },
+            memory: match parameters.contact.friction {
+                None => Memory::Smooth(Contacts::none()),
+                Some(law) => Memory::Frictional(law, Contacts::none()),
+            },
+        }
+    }
+
+    /// Advances by `steps` steps.
+    ///
+    /// # Errors
+    /// [`EngineError::Diverged`] where a sphere moves by more than half the smallest diameter in one step, or its
+    /// position is no longer finite; the state is then that of the step that failed.
+    pub fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
+        let Self { system, memory } = self;
+        memory.with_law(system.parameters.contact.normal, Advance { system, steps })
+    }
+
+    /// The spheres.
+    #[must_use]
+    pub fn bodies(&self) -> &Bodies {
+        &self.system.bodies
+    }
+
+    /// The wall as it is now.
+    #[must_use]
+    pub fn wall(&self) -> &Wall {
+        &self.system.wall
+    }
+
+    /// How the simulation is computed.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.system.parameters
+    }
+
+    /// Sums over the contacts at the end of the last step.
+    #[must_use]
+    pub fn tally(&self) -> &Tally {
+        &self.system.tally
+    }
+
+    /// Energies accumulated since the start.
+    #[must_use]
+    pub fn ledger(&self) -> &Ledger {
+        &self.system.ledger
+    }
+
+    /// Steps done since the start.
+    #[must_use]
+    pub fn step(&self) -> u64 {
+        self.system.step
+    }
+
+    /// Time since the start \[t\].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.system.time()
+    }
+
+    /// Kinetic plus potential energy of grains and elastic wall \[m d^2/t^2\].
+    #[must_use]
+    pub fn energy(&self) -> f64 {
+        self.system.energy()
+    }
+
+    /// Energy that the ledger cannot account for over the integral of |power that enters|.
+    #[must_use]
+    pub fn energy_residual(&self) -> f64 {
+        self.system.ledger.relative_residual(self.system.energy())
+    }
+
+    /// Everything that a restart needs to go on with the same bits.
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot {
+        let (pair_histories, wall_histories) = match &self.memory {
+            Memory::Smooth(_) => (Vec::new(), Vec::new()),
+            Memory::Frictional(_, contacts) => (
+                contacts
+                    .pairs
+                    .iter()
+                    .filter(|entry| *entry.2 != TangentialHistory::default())
+                    .map(|(i, j, history)| (i, j, *history))
+                    .collect(),
+                contacts
+                    .wall
+                    .iter()
+                    .map(|(grain, sphere, history)| (grain, sphere, *history))
+                    .collect(),
+            ),
+        };
+        Snapshot {
+            step: self.system.step,
+            bodies: self.system.bodies.clone(),
+            past: self.system.past.clone(),
+            tally: self.system.tally,
+            ledger: self.system.ledger,
+            pair_histories,
+            wall_histories,
+        }
+    }
+
+    /// Goes on from a snapshot of a simulation with this wall and these parameters.
+    ///
+    /// # Errors
+    /// [`EngineError::SnapshotMismatch`] where the snapshot cannot belong to such a simulation.
+    pub fn restore(
+        snapshot: Snapshot,
+        wall: Wall,
+        parameters: Parameters,
+    ) -> Result<Self, EngineError> {
+        snapshot.check(&wall, &parameters)?;
+        let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
+        let Self { system, memory } = &mut simulation;
+        system.past = snapshot.past;
+        system.tally = snapshot.tally;
+        system.ledger = snapshot.ledger;
+        system.step = snapshot.step;
+        system.wall.move_to(system.time());
+        if let Memory::Frictional(_, contacts) = memory {
+            contacts.refresh(&system.bodies, &system.wall, parameters.skin);
+            for (i, j, history) in snapshot.pair_histories {
+                if !contacts.pairs.set_history(i, j, history) {
+                    return Err(EngineError::SnapshotMismatch {
+                        reason: format!("it remembers a contact of spheres {i} and {j}, which are far apart"),
+                    });
+                }
+            }
+            contacts.wall =
+                WallMemory::from_entries(system.bodies.grains, &snapshot.wall_histories);
+        }
+        Ok(simulation)
+    }
+}
+
+impl System {
+    fn time(&self) -> f64 {
+        self.step as f64 * self.parameters.time_step
+    }
+
+    fn energy(&self) -> f64 {
+        self.bodies.kinetic_energy(0..self.bodies.number())
+            + self.bodies.rotational_energy()
+            + self.tally.potential_energy()
+    }
+}
+
+/// Work to be done with the laws known at compile time.
+trait WithLaw {
+    type Answer;
+    fn run<N: NormalLaw, T: TangentialLaw>(
+        self,
+        law: &ContactLaw<N, T>,
+        contacts: &mut Contacts<T::History>,
+    ) -> Self::Answer;
+}
+
+impl Memory {
+    /// The one place where names of laws become types.
+    fn with_law<W: WithLaw>(&mut self, normal: Normal, work: W) -> W::Answer {
+        match (normal, self) {
+            (Normal::Linear(normal), Self::Smooth(contacts)) => {
+                work.run(&ContactLaw { normal, tangential: Frictionless }, contacts)
+            }
+            (Normal::Hertz(normal), Self::Smooth(contacts)) => {
+                work.run(&ContactLaw { normal, tangential: Frictionless }, contacts)
+            }
+            (Normal::Linear(normal), Self::Frictional(tangential, contacts)) => {
+                work.run(&ContactLaw { normal, tangential: *tangential }, contacts)
+            }
+            (Normal::Hertz(normal), Self::Frictional(tangential, contacts)) => {
+                work.run(&ContactLaw { normal, tangential: *tangential }, contacts)
+            }
+        }
+    }
+}
+
+/// Forces at the start, so that the first step knows its accelerations.
+struct StartForces<'a> {
+    system: &'a mut System,
+}
+
+impl WithLaw for StartForces<'_> {
+    type Answer = ();
+
+    fn run<N: NormalLaw, T: TangentialLaw>(
+        self,
+        law: &ContactLaw<N, T>,
+        contacts: &mut Contacts<T::History>,
+    ) {
+        let System { bodies, wall, parameters, tally, .. } = self.system;
+        contacts.refresh(bodies, wall, parameters.skin);
+        *tally = evaluate(law, bodies, wall, contacts, 0.0);
+    }
+}
+
+struct Advance<'a> {
+    system: &'a mut System,
+    steps: u64,
+}
+
+impl WithLaw for Advance<'_> {
+    type Answer = Result<(), EngineError>;
+
+    fn run<N: NormalLaw, T: TangentialLaw>(
+        self,
+        law: &ContactLaw<N, T>,
+        contacts: &mut Contacts<T::History>,
+    ) -> Self::Answer {
+        let system = self.system;
+        let Parameters { integrator, time_step, skin, .. } = system.parameters;
+        let length = system.wall.lattice().length();
+        for _ in 0..self.steps {
+            let System { bodies, wall, past, tally, ledger, step, limit, .. } = system;
+            *step += 1;
+            let time = *step as f64 * time_step;
+            integrator
+                .before_forces(bodies, past, time_step, *limit)
+                .map_err(|runaway| EngineError::Diverged {
+                    step: *step,
+                    time,
+                    grain: runaway.body,
+                    displacement: runaway.displacement,
+                    limit: *limit,
+                })?;
+            bodies.fold(length);
+            wall.move_to(time);
+            contacts.refresh(bodies, wall, skin);
+            let after = evaluate(law, bodies, wall, contacts, time_step);
+            integrator.after_forces(bodies, past, time_step);
+            ledger.add_step(tally, &after, time_step);
+            *tally = after;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,91 @@
+//! The whole state of a simulation at one step.
+
+use peristalsis_physics::contact::TangentialHistory;
+
+use crate::bodies::Bodies;
+use crate::error::EngineError;
+use crate::integrate::Past;
+use crate::ledger::{Ledger, Tally};
+use crate::simulation::Parameters;
+use crate::wall::Wall;
+
+/// What a restart needs: spheres, the integrator's past, what contacts remember, the ledger.
+///
+/// Wall and parameters belong to the configuration and are given again on restart. The neighbour list is not part of the
+/// state, for no result depends on it.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Snapshot {
+    /// Steps done.
+    pub step: u64,
+    /// The spheres.
+    pub bodies: Bodies,
+    /// What the integrator remembers.
+    pub past: Past,
+    /// Sums over the contacts at the last step.
+    pub tally: Tally,
+    /// Energies accumulated.
+    pub ledger: Ledger,
+    /// (sphere i, sphere j, history) of contacts between moving spheres, i < j.
+    pub pair_histories: Vec<(u32, u32, TangentialHistory)>,
+    /// (grain, wall sphere, history) of contacts with a prescribed wall, in order of the grains.
+    pub wall_histories: Vec<(u32, u32, TangentialHistory)>,
+}
+
+impl Snapshot {
+    /// Whether the snapshot can belong to a simulation with this wall and these parameters.
+    pub(crate) fn check(&self, wall: &Wall, parameters: &Parameters) -> Result<(), EngineError> {
+        let mismatch = |reason: String| Err(EngineError::SnapshotMismatch { reason });
+        let bodies = &self.bodies;
+        let number = bodies.number();
+        let lengths = [
+            bodies.turns.len(),
+            bodies.velocity.len(),
+            bodies.acceleration.len(),
+            bodies.angular_velocity.len(),
+            bodies.angular_acceleration.len(),
+            bodies.diameter.len(),
+            bodies.mass.len(),
+            bodies.inertia.len(),
+        ];
+        if lengths.iter().any(|&length| length != number) || bodies.grains > number {
+            return mismatch("its arrays differ in length".to_owned());
+        }
+        let wall_spheres = match wall {
+            Wall::Prescribed(_) => 0,
+            Wall::Elastic(wall) => wall.lattice().spheres(),
+        };
+        if number - bodies.grains != wall_spheres {
+            return mismatch(format!(
+                "it holds {} wall spheres, the wall has {wall_spheres}",
+                number - bodies.grains
+            ));
+        }
+        let finite = bodies
+            .position
+            .iter()
+            .chain(&bodies.velocity)
+            .all(|vector| vector.is_finite());
+        if !finite {
+            return mismatch("it holds positions or velocities that are not finite".to_owned());
+        }
+        let past = &self.past;
+        if [&past.velocity, &past.acceleration, &past.angular_velocity, &past.angular_acceleration]
+            .iter()
+            .any(|vector| !vector.is_empty() && vector.len() != number)
+        {
+            return mismatch("the integrator's past differs in length".to_owned());
+        }
+        let smooth = parameters.contact.friction.is_none();
+        if smooth && !(self.pair_histories.is_empty() && self.wall_histories.is_empty()) {
+            return mismatch("it remembers frictional contacts, the grains are smooth".to_owned());
+        }
+        let known = |i: u32| (i as usize) < number;
+        if self.pair_histories.iter().any(|&(i, j, _)| i >= j || !known(j))
+            || self.wall_histories.windows(2).any(|pair| pair[0].0 > pair[1].0)
+            || self.wall_histories.iter().any(|&(grain, _, _)| grain as usize >= bodies.grains)
+        {
+            return mismatch("it remembers contacts of spheres that do not exist".to_owned());
+        }
+        Ok(())
+    }
+}

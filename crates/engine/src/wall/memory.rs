@@ -1,0 +1,84 @@
+//! What grains remember of their contacts with a prescribed wall.
+
+/// Histories of contacts with wall spheres, grain by grain.
+///
+/// The spheres of a prescribed wall are in no list, so each force evaluation writes down which of them a grain touches,
+/// and looks the histories up in what the last one wrote.
+#[derive(Clone, Debug, Default)]
+pub struct WallMemory<H> {
+    start: Vec<u32>,
+    entries: Vec<(u32, H)>,
+    next_start: Vec<u32>,
+    next_entries: Vec<(u32, H)>,
+}
+
+impl<H: Copy + Default> WallMemory<H> {
+    /// Begins an evaluation.
+    pub(crate) fn begin(&mut self) {
+        self.next_start.clear();
+        self.next_entries.clear();
+        self.next_start.push(0);
+    }
+
+    /// Takes the history of a contact of grain `grain` with wall sphere `sphere` out; a fresh one where there was none.
+    pub(crate) fn take(&mut self, grain: usize, sphere: u32) -> H {
+        let range = self.range(grain);
+        self.entries[range]
+            .iter_mut()
+            .find(|entry| entry.0 == sphere)
+            .map_or_else(H::default, |entry| core::mem::take(&mut entry.1))
+    }
+
+    /// Writes down the history of a contact of the grain at hand.
+    pub(crate) fn put(&mut self, sphere: u32, history: H) {
+        self.next_entries.push((sphere, history));
+    }
+
+    /// Ends the grain at hand; what was not taken out belongs to contacts that have ended.
+    pub(crate) fn end_grain(&mut self, grain: usize) -> impl Iterator<Item = &H> {
+        self.next_start.push(self.next_entries.len() as u32);
+        let range = self.range(grain);
+        self.entries[range].iter().map(|entry| &entry.1)
+    }
+
+    /// Ends the evaluation.
+    pub(crate) fn end(&mut self) {
+        core::mem::swap(&mut self.start, &mut self.next_start);
+        core::mem::swap(&mut self.entries, &mut self.next_entries);
+    }
+
+    fn range(&self, grain: usize) -> core::ops::Range<usize> {
+        if grain + 1 < self.start.len() {
+            self.start[grain] as usize..self.start[grain + 1] as usize
+        } else {
+            0..0
+        }
+    }
+
+    /// All histories: (grain, wall sphere, history).
+    pub fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
+        (0..self.start.len().saturating_sub(1)).flat_map(move |grain| {
+            self.entries[self.range(grain)]
+                .iter()
+                .map(move |(sphere, history)| (grain as u32, *sphere, history))
+        })
+    }
+
+    /// Memory that holds the given histories, in order of the grains.
+    pub(crate) fn from_entries(grains: usize, histories: &[(u32, u32, H)]) -> Self {
+        let mut start = Vec::with_capacity(grains + 1);
+        start.push(0);
+        let mut at = 0;
+        for grain in 0..grains as u32 {
+            while at < histories.len() && histories[at].0 == grain {
+                at += 1;
+            }
+            start.push(at as u32);
+        }
+        Self {
+            start,
+            entries: histories.iter().map(|&(_, sphere, history)| (sphere, history)).collect(),
+            ..Self::default()
+        }
+    }
+}

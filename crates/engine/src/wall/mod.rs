@@ -1,0 +1,74 @@
+//! The wall in motion: prescribed, or elastic.
+
+pub mod elastic;
+pub mod memory;
+pub mod prescribed;
+
+pub use elastic::{DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce};
+pub use prescribed::PrescribedWall;
+
+use peristalsis_physics::wall::Lattice;
+
+/// The wall of a simulation.
+#[derive(Clone, Debug)]
+pub enum Wall {
+    /// Spheres that move as prescribed (strain control); found by arithmetic, never stored.
+    Prescribed(PrescribedWall),
+    /// Mobile spheres joined by springs (stress control); they are the last of the [`crate::Bodies`].
+    Elastic(ElasticWall),
+}
+
+impl Wall {
+    /// Brings a prescribed wall, or the force on an elastic one, to `time`.
+    pub(crate) fn move_to(&mut self, time: f64) {
+        match self {
+            Self::Prescribed(wall) => wall.move_to(time),
+            Self::Elastic(wall) => wall.move_to(time),
+        }
+    }
+
+    /// The lattice of the wall's spheres.
+    #[must_use]
+    pub fn lattice(&self) -> &Lattice {
+        match self {
+            Self::Prescribed(wall) => wall.lattice(),
+            Self::Elastic(wall) => wall.lattice(),
+        }
+    }
+
+    /// Wavelengths that the wave has run since the start, the integral of c/lambda.
+    #[must_use]
+    pub fn cycles(&self) -> f64 {
+        match self {
+            Self::Prescribed(wall) => wall.cycles(),
+            Self::Elastic(wall) => wall.cycles(),
+        }
+    }
+
+    /// +1 where the wave runs towards +z, -1 towards -z.
+    #[must_use]
+    pub fn heading(&self) -> f64 {
+        match self {
+            Self::Prescribed(wall) => wall.wave().heading,
+            Self::Elastic(wall) => wall.parameters().heading,
+        }
+    }
+
+    /// c/lambda at `time` \[1/t\].
+    #[must_use]
+    pub fn frequency(&self, time: f64) -> f64 {
+        match self {
+            Self::Prescribed(wall) => wall.frequency(time),
+            Self::Elastic(wall) => wall.parameters().frequency.value(time),
+        }
+    }
+
+    /// Largest radius that the tube is expected to have, to the centres \[d\].
+    #[must_use]
+    pub fn usual_radius(&self) -> f64 {
+        match self {
+            Self::Prescribed(wall) => wall.wave().mean_radius + wall.wave().amplitude.abs(),
+            Self::Elastic(wall) => 2.0 * wall.parameters().mean_radius,
+        }
+    }
+}

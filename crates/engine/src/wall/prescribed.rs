@@ -1,0 +1,260 @@
+//! A wall whose spheres move as prescribed: strain control.
+
+use glam::DVec3;
+use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
+use peristalsis_physics::wall::lattice::approximate_half_steps;
+use peristalsis_physics::wall::{Lattice, RadiusWave, Schedule, Waveform};
+
+use super::memory::WallMemory;
+use crate::bodies::Bodies;
+use crate::ledger::Tally;
+
+/// Staggered rings whose radius follows a travelling wave.
+///
+/// No sphere of it is stored: the rings within reach of a grain follow from its z, the nearest sphere of a ring from its
+/// angle, and from there the search goes outward while spheres touch, for the distance to the spheres of a ring grows
+/// with the angle.
+#[derive(Clone, Debug)]
+pub struct PrescribedWall {
+    lattice: Lattice,
+    mean_radius: f64,
+    waveform: Waveform,
+    heading: f64,
+    amplitude: Schedule,
+    frequency: Schedule,
+    /// cos and sin of every angle that a wall sphere can have, by half steps.
+    directions: Vec<(f64, f64)>,
+    /// Radius and radial velocity of the rings of one wavelength now.
+    rings: Vec<(f64, f64)>,
+    wave: RadiusWave,
+    cycles: f64,
+}
+
+impl PrescribedWall {
+    /// The wall at time 0.
+    ///
+    /// `mean_radius` a \[d\], `amplitude` b(t) \[d\], `frequency` c(t)/lambda \[1/t\], `heading` +1 for a wave towards +z,
+    /// -1 towards -z.
+    #[must_use]
+    pub fn new(
+        lattice: Lattice,
+        mean_radius: f64,
+        waveform: Waveform,
+        heading: f64,
+        amplitude: Schedule,
+        frequency: Schedule,
+    ) -> Self {
+        let directions = (0..2 * lattice.spheres_per_ring)
+            .map(|half_steps| {
+                let angle = f64::from(half_steps) * core::f64::consts::PI
+                    / f64::from(lattice.spheres_per_ring);
+                (libm::cos(angle), libm::sin(angle))
+            })
+            .collect();
+        let wave = RadiusWave {
+            mean_radius,
+            amplitude: amplitude.value(0.0),
+            wavelength: lattice.wavelength,
+            waveform,
+            heading,
+        };
+        let mut wall = Self {
+            lattice,
+            mean_radius,
+            waveform,
+            heading,
+            amplitude,
+            frequency,
+            directions,
+            rings: vec![(0.0, 0.0); lattice.rings_per_wave as usize],
+            wave,
+            cycles: 0.0,
+        };
+        wall.move_to(0.0);
+        wall
+    }
+
+    /// Moves the wall to where it is at `time`.
+    pub fn move_to(&mut self, time: f64) {
+        self.cycles = self.frequency.integral(time);
+        self.wave = RadiusWave {
+            mean_radius: self.mean_radius,
+            amplitude: self.amplitude.value(time),
+            wavelength: self.lattice.wavelength,
+            waveform: self.waveform,
+            heading: self.heading,
+        };
+        let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
+        for (ring, entry) in self.rings.iter_mut().enumerate() {
+            let z = self.lattice.axial_position(ring as u32);
+            *entry = (
+                self.wave.radius(z, self.cycles),
+                self.wave.radial_velocity(z, self.cycles, frequency, amplitude_rate),
+            );
+        }
+    }
+
+    /// The lattice.
+    #[must_use]
+    pub fn lattice(&self) -> &Lattice {
+        &self.lattice
+    }
+
+    /// The wave as it is now.
+    #[must_use]
+    pub fn wave(&self) -> &RadiusWave {
+        &self.wave
+    }
+
+    /// Wavelengths that the wave has run since the start, c t/lambda.
+    #[must_use]
+    pub fn cycles(&self) -> f64 {
+        self.cycles
+    }
+
+    /// c/lambda at `time` \[1/t\].
+    #[must_use]
+    pub fn frequency(&self, time: f64) -> f64 {
+        self.frequency.value(time)
+    }
+
+    /// Replaces a schedule of the amplitude from now on.
+    pub fn set_amplitude(&mut self, amplitude: Schedule) {
+        self.amplitude = amplitude;
+    }
+
+    /// Centre of a wall sphere now \[d\].
+    #[must_use]
+    pub fn sphere_position(&self, index: usize) -> DVec3 {
+        let sphere = self.lattice.sphere(index);
+        let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
+        let (radius, _) = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
+        DVec3::new(radius * cos, radius * sin, self.lattice.axial_position(sphere.ring))
+    }
+
+    /// Calls `touch` for each wall sphere that overlaps a sphere of diameter `diameter` at `centre`, with the number of
+    /// the wall sphere, the separation (centre minus wall sphere, length below the reach) and the wall's velocity.
+    #[inline(always)]
+    pub(crate) fn for_each_touching<F: FnMut(u32, DVec3, DVec3)>(
+        &self,
+        centre: DVec3,
+        diameter: f64,
+        mut touch: F,
+    ) {
+        let reach = 0.5 * (diameter + self.lattice.sphere_diameter);
+        let axis_distance_squared = centre.x * centre.x + centre.y * centre.y;
+        let axis_distance = axis_distance_squared.sqrt();
+        let narrowest = self.wave.mean_radius - self.wave.amplitude.abs();
+        if axis_distance + reach <= narrowest {
+            return;
+        }
+        let spacing = self.lattice.spacing();
+        let per_ring = self.lattice.spheres_per_ring as i64;
+        let rings = i64::from(self.lattice.rings());
+        let mut half_steps = None;
+        let first = ((centre.z - reach) / spacing).ceil() as i64;
+        let last = ((centre.z + reach) / spacing).floor() as i64;
+        for unfolded_ring in first..=last {
+            let dz = centre.z - unfolded_ring as f64 * spacing;
+            let room = reach * reach - dz * dz;
+            let ring = unfolded_ring.rem_euclid(rings);
+            let (radius, radial_velocity) = self.rings[(ring as usize) % self.rings.len()];
+            let gap = radius - axis_distance;
+            if gap * gap >= room {
+                continue;
+            }
+            let parity = ring & 1;
+            let hint = *half_steps
+                .get_or_insert_with(|| approximate_half_steps(centre.x, centre.y, per_ring as f64));
+            let nearest = ((hint - parity as f64) * 0.5).round() as i64;
+            // |separation|^2 = rho^2 + R^2 - 2 R (x cos + y sin) + dz^2 < reach^2
+            let threshold = (axis_distance_squared + radius * radius - room) / (2.0 * radius);
+            let mut try_place = |place: i64| -> bool {
+                let place = place.rem_euclid(per_ring);
+                let (cos, sin) = self.directions[(2 * place + parity) as usize];
+                let touches = centre.x * cos + centre.y * sin > threshold;
+                if touches {
+                    let separation =
+                        DVec3::new(centre.x - radius * cos, centre.y - radius * sin, dz);
+                    let velocity = DVec3::new(radial_velocity * cos, radial_velocity * sin, 0.0);
+                    touch((ring * per_ring + place) as u32, separation, velocity);
+                }
+                touches
+            };
+            try_place(nearest);
+            let mut steps = 1;
+            while steps < per_ring && try_place(nearest + steps) {
+                steps += 1;
+            }
+            let mut steps_back = 1;
+            while steps + steps_back <= per_ring - 1 && try_place(nearest - steps_back) {
+                steps_back += 1;
+            }
+        }
+    }
+
+    /// Adds the forces and torques of the wall on the grains.
+    pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
+        &self,
+        law: &ContactLaw<N, T>,
+        bodies: &mut Bodies,
+        memory: &mut WallMemory<T::History>,
+        time_step: f64,
+        tally: &mut Tally,
+    ) {
+        if T::ROTATES {
+            memory.begin();
+        }
+        let wall_diameter = self.lattice.sphere_diameter;
+        for grain in 0..bodies.grains {
+            let (centre, velocity) = (bodies.position[grain], bodies.velocity[grain]);
+            let diameter = bodies.diameter[grain];
+            let angular_velocity = bodies.angular_velocity[grain];
+            let mut force = bodies.acceleration[grain];
+            let mut torque = bodies.angular_acceleration[grain];
+            let reach = 0.5 * (diameter + wall_diameter);
+            let reduced_radius = diameter * wall_diameter / (2.0 * (diameter + wall_diameter));
+            self.for_each_touching(centre, diameter, |sphere, separation, wall_velocity| {
+                let distance = separation.length();
+                let overlap = reach - distance;
+                // Rounding may leave a sphere at the very edge of reach; coincident centres have no normal.
+                if overlap <= 0.0 || distance == 0.0 {
+                    return;
+                }
+                let arm = 0.5 * (diameter - overlap);
+                let contact = Contact {
+                    overlap,
+                    distance,
+                    normal: separation / distance,
+                    relative_velocity: velocity - wall_velocity,
+                    reduced_radius,
+                    spin: if T::ROTATES { arm * angular_velocity } else { DVec3::ZERO },
+                };
+                let mut history = T::History::default();
+                if T::ROTATES {
+                    history = memory.take(grain, sphere);
+                }
+                let answer = law.force(&contact, &mut history, time_step);
+                if T::ROTATES {
+                    memory.put(sphere, history);
+                    torque += arm * answer.twist;
+                }
+                force += answer.force;
+                tally.add_contact(&answer, overlap);
+                tally.wall_contacts += 1;
+                tally.wall_power += answer.force.dot(wall_velocity);
+                tally.wall_axial_force += answer.force.z;
+            });
+            bodies.acceleration[grain] = force;
+            if T::ROTATES {
+                bodies.angular_acceleration[grain] = torque;
+                for ended in memory.end_grain(grain) {
+                    tally.history_reset += law.tangential.stored_energy(ended);
+                }
+            }
+        }
+        if T::ROTATES {
+            memory.end();
+        }
+    }
+}

@@ -1,0 +1,182 @@
+//! Contact mechanics: the force that two touching spheres exert on each other.
+//!
+//! A contact law is a pair: a [`NormalLaw`] (one file each: [`linear`], [`hertz`]) and a [`TangentialLaw`]
+//! ([`tangential`]). Both are stateless parameter structs; the memory of a contact is the [`TangentialLaw::History`]
+//! of the law that needs it, so that law and history cannot disagree. [`ContactLaw::force`] is the only place where
+//! the two are put together; every kernel calls it.
+
+pub mod hertz;
+pub mod linear;
+pub mod tangential;
+
+use glam::DVec3;
+
+pub use hertz::{DissipationForm, ViscoelasticHertz};
+pub use linear::LinearSpringDashpot;
+pub use tangential::{CundallStrack, Frictionless, Sliding, TangentialHistory};
+
+/// Two touching spheres i ("this") and j ("the partner"), as a contact law sees them.
+///
+/// Lengths in d, velocities in d/t; `normal` points from the partner to this sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Contact {
+    /// xi = (d_i + d_j)/2 - |r_i - r_j| > 0.
+    pub overlap: f64,
+    /// |r_i - r_j|.
+    pub distance: f64,
+    /// n = (r_i - r_j)/|r_i - r_j|.
+    pub normal: DVec3,
+    /// v_i - v_j of the centres.
+    pub relative_velocity: DVec3,
+    /// R_ij = d_i d_j/(2 (d_i + d_j)).
+    pub reduced_radius: f64,
+    /// l_i omega_i + l_j omega_j with the lever arms l = (d - xi)/2; zero where nothing rotates.
+    pub spin: DVec3,
+}
+
+impl Contact {
+    /// v_n = (v_i - v_j) . n, positive when parting.
+    #[inline(always)]
+    #[must_use]
+    pub fn normal_velocity(&self) -> f64 {
+        self.relative_velocity.dot(self.normal)
+    }
+}
+
+/// What a normal law answers: the force along n and its bookkeeping.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct NormalForce {
+    /// f_n, the force on this sphere along n; positive repels.
+    pub force: f64,
+    /// The part of f_n that derives from `energy`.
+    pub elastic_force: f64,
+    /// Stored elastic energy of the contact.
+    pub energy: f64,
+}
+
+/// What a tangential law answers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TangentialForce {
+    /// f_t on this sphere, perpendicular to n.
+    pub force: DVec3,
+    /// Elastic energy stored in the tangential spring, k_t u^2/2.
+    pub energy: f64,
+    /// Energy lost in this step to tangential damping.
+    pub damped: f64,
+    /// Energy lost in this step to sliding.
+    pub slid: f64,
+    /// Whether the contact slides.
+    pub sliding: bool,
+}
+
+/// A force along the line of centres.
+pub trait NormalLaw: Copy {
+    /// Force at overlap xi > 0, normal velocity v_n (positive when parting) and reduced radius R_ij.
+    fn force(&self, overlap: f64, normal_velocity: f64, reduced_radius: f64) -> NormalForce;
+
+    /// The same law without dissipation.
+    #[must_use]
+    fn undamped(&self) -> Self;
+
+    /// Slope d f_n/d xi of the elastic force at overlap xi and reduced radius R_ij: what limits the time step.
+    fn stiffness(&self, overlap: f64, reduced_radius: f64) -> f64;
+}
+
+/// A force in the plane of contact.
+pub trait TangentialLaw: Copy {
+    /// What a contact remembers from one step to the next.
+    type History: Copy + Default + PartialEq + core::fmt::Debug;
+
+    /// Whether this law turns grains: `false` lets a kernel skip everything about rotation.
+    const ROTATES: bool;
+
+    /// Force after a step of length `time_step` that led to `contact`, for normal force `normal_force`; brings
+    /// `history` from the step's beginning to its end. A `time_step` of zero evaluates without moving the history.
+    fn force(
+        &self,
+        contact: &Contact,
+        normal_force: f64,
+        history: &mut Self::History,
+        time_step: f64,
+    ) -> TangentialForce;
+
+    /// Energy held by a history: what is lost when a contact ends.
+    fn stored_energy(&self, history: &Self::History) -> f64;
+}
+
+/// A normal and a tangential law together.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactLaw<N, T> {
+    /// Force along the line of centres.
+    pub normal: N,
+    /// Force in the plane of contact.
+    pub tangential: T,
+}
+
+/// The whole answer of a contact law.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactForce {
+    /// Force on this sphere; the partner feels the opposite.
+    pub force: DVec3,
+    /// -n x f_t: times the lever arm l_i it is the torque on this sphere, times l_j the torque on the partner.
+    pub twist: DVec3,
+    /// Elastic energy of normal and tangential springs.
+    pub energy: f64,
+    /// Rate of energy loss along the normal, (f_elastic - f_n) v_n.
+    pub normal_dissipation: f64,
+    /// Tangential part, with its losses of this step.
+    pub tangential: TangentialForce,
+}
+
+impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
+    /// Force of one contact.
+    ///
+    /// f = f_n n + f_t. The tangential law sees max(f_n, 0): a contact that pulls (possible with the unclipped linear
+    /// law) has no friction.
+    #[inline(always)]
+    pub fn force(&self, contact: &Contact, history: &mut T::History, time_step: f64) -> ContactForce {
+        let normal_velocity = contact.normal_velocity();
+        let normal = self
+            .normal
+            .force(contact.overlap, normal_velocity, contact.reduced_radius);
+        let normal_dissipation = (normal.elastic_force - normal.force) * normal_velocity;
+        if T::ROTATES {
+            let tangential = self
+                .tangential
+                .force(contact, normal.force.max(0.0), history, time_step);
+            ContactForce {
+                force: normal.force * contact.normal + tangential.force,
+                twist: -contact.normal.cross(tangential.force),
+                energy: normal.energy + tangential.energy,
+                normal_dissipation,
+                tangential,
+            }
+        } else {
+            ContactForce {
+                force: normal.force * contact.normal,
+                energy: normal.energy,
+                normal_dissipation,
+                ..ContactForce::default()
+            }
+        }
+    }
+}
+
+/// The normal law of a simulation, chosen by name.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Normal {
+    /// Linear spring and dashpot.
+    Linear(LinearSpringDashpot),
+    /// Hertz spring with viscoelastic dissipation.
+    Hertz(ViscoelasticHertz),
+}
+
+/// The contact model of a simulation: which laws, with which parameters.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct ContactModel {
+    /// Force along the line of centres.
+    pub normal: Normal,
+    /// Force in the plane of contact; `None`: grains are smooth and do not rotate.
+    pub friction: Option<CundallStrack>,
+}

@@ -1,0 +1,160 @@
+//! Friction of two spheres: none, or a spring in the plane of contact that slides (Cundall & Strack).
+
+use glam::DVec3;
+
+use super::{Contact, TangentialForce, TangentialLaw};
+
+/// Smooth grains: no force in the plane of contact, no memory, no rotation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Frictionless;
+
+impl TangentialLaw for Frictionless {
+    type History = ();
+    const ROTATES: bool = false;
+
+    #[inline(always)]
+    fn force(&self, _: &Contact, _: f64, (): &mut (), _: f64) -> TangentialForce {
+        TangentialForce::default()
+    }
+
+    #[inline(always)]
+    fn stored_energy(&self, (): &()) -> f64 {
+        0.0
+    }
+}
+
+/// What becomes of the tangential displacement u while a contact slides.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sliding {
+    /// |u| is cut to mu_k f_n/k_t: the spring holds what sliding friction can hold, so that the energy lost is never
+    /// negative.
+    #[default]
+    Spring,
+    /// u = -(f_t + eta_t v_t)/k_t, the usual choice: spring and dashpot together balance the sliding force. It can
+    /// create spring energy at the onset of sliding.
+    Balance,
+    /// u grows on while the contact slides, as the source's words can be read.
+    Literal,
+}
+
+/// Tangential spring and dashpot that slides at the Coulomb limit.
+///
+/// f~ = -k_t u - eta_t v_t;  f_t = f~ if |f~| < mu_s f_n, else mu_k f_n f~/|f~|
+///
+/// u is the tangential displacement since the contact began \[d\]: du/dt = v_t - (u . dn/dt) n, which keeps it in the
+/// plane of contact. v_t = v_ij - (v_ij . n) n + n x (l_i omega_i + l_j omega_j) \[d/t\]. After Cundall & Strack,
+/// Geotechnique 29, 47 (1979).
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct CundallStrack {
+    /// k_t \[m/t^2\]
+    pub tangential_stiffness: f64,
+    /// eta_t \[m/t\]
+    pub tangential_damping: f64,
+    /// mu_s
+    pub static_friction: f64,
+    /// mu_k, at most mu_s
+    pub kinetic_friction: f64,
+    /// What u does while the contact slides.
+    pub sliding: Sliding,
+}
+
+/// Memory of a frictional contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct TangentialHistory {
+    /// u \[d\]
+    pub displacement: DVec3,
+    /// du/dt at the end of the last step \[d/t\]; zero at the first.
+    pub rate: DVec3,
+    /// -f_t . v_t at the end of the last step: the power that the contact takes out of the tangential motion.
+    pub power: f64,
+}
+
+impl TangentialLaw for CundallStrack {
+    type History = TangentialHistory;
+    const ROTATES: bool = true;
+
+    /// The displacement is brought forward by the trapezoidal rule, so that the order is 2 while a contact persists,
+    /// whatever the integrator of the motion.
+    #[inline(always)]
+    fn force(
+        &self,
+        contact: &Contact,
+        normal_force: f64,
+        history: &mut TangentialHistory,
+        time_step: f64,
+    ) -> TangentialForce {
+        let normal = contact.normal;
+        let lateral_velocity = contact.relative_velocity - contact.normal_velocity() * normal;
+        let slip_velocity = lateral_velocity + normal.cross(contact.spin);
+        let normal_rate = lateral_velocity / contact.distance;
+
+        let energy_before = self.stored_energy(history);
+        let predicted = history.displacement + time_step * history.rate;
+        let rate = slip_velocity - predicted.dot(normal_rate) * normal;
+        let mut displacement = history.displacement + 0.5 * time_step * (history.rate + rate);
+        displacement -= displacement.dot(normal) * normal;
+
+        let trial = -self.tangential_stiffness * displacement - self.tangential_damping * slip_velocity;
+        let size = trial.length();
+        let sliding = size >= self.static_friction * normal_force;
+        let force = if !sliding {
+            trial
+        } else if size > 0.0 {
+            trial * (self.kinetic_friction * normal_force / size)
+        } else {
+            DVec3::ZERO
+        };
+        if sliding {
+            displacement = self.slid_displacement(displacement, force, slip_velocity, normal_force);
+        }
+
+        let power = -force.dot(slip_velocity);
+        let energy = 0.5 * self.tangential_stiffness * displacement.length_squared();
+        let lost = 0.5 * time_step * (history.power + power) - (energy - energy_before);
+        *history = TangentialHistory {
+            displacement,
+            rate,
+            power,
+        };
+        TangentialForce {
+            force,
+            energy,
+            damped: if sliding { 0.0 } else { lost },
+            slid: if sliding { lost } else { 0.0 },
+            sliding,
+        }
+    }
+
+    #[inline(always)]
+    fn stored_energy(&self, history: &TangentialHistory) -> f64 {
+        0.5 * self.tangential_stiffness * history.displacement.length_squared()
+    }
+}
+
+impl CundallStrack {
+    #[inline(always)]
+    fn slid_displacement(
+        &self,
+        displacement: DVec3,
+        force: DVec3,
+        slip_velocity: DVec3,
+        normal_force: f64,
+    ) -> DVec3 {
+        match self.sliding {
+            Sliding::Spring => {
+                let limit = self.kinetic_friction * normal_force / self.tangential_stiffness;
+                let length = displacement.length();
+                if length > limit {
+                    displacement * (limit / length)
+                } else {
+                    displacement
+                }
+            }
+            Sliding::Balance => {
+                -(force + self.tangential_damping * slip_velocity) / self.tangential_stiffness
+            }
+            Sliding::Literal => displacement,
+        }
+    }
+}

@@ -1,0 +1,9 @@
+//! The physics of grains in a peristaltic tube: contact laws, wall kinematics, drives and the Newtonian reference.
+//!
+//! Everything here is pure: no input or output, no threads, no random numbers, no allocation in a force. Parameter
+//! types are `Copy` and carry their units in their documentation. A contact law sees a [`contact::Contact`], never
+//! particles, so that grain-grain and grain-wall contacts, every integrator and every kernel share one formula.
+
+pub mod contact;
+pub mod newtonian;
+pub mod wall;

@@ -1,0 +1,143 @@
+//! The travelling wave of contraction that a strain-controlled wall follows.
+
+use core::f64::consts::TAU;
+
+/// Which way the wave runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// As the source writes it: towards -z under strain control, towards +z under stress control.
+    #[default]
+    Forward,
+    /// Turned round.
+    Backward,
+}
+
+/// Shape of one wavelength, a function of the phase with mean 0, least -1 and largest 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Waveform {
+    /// sin(2 pi phase)
+    #[default]
+    Sine,
+}
+
+impl Waveform {
+    /// Value at a phase in cycles.
+    #[must_use]
+    pub fn value(self, phase: f64) -> f64 {
+        match self {
+            Self::Sine => libm::sin(TAU * phase),
+        }
+    }
+
+    /// Derivative with respect to the phase in cycles.
+    #[must_use]
+    pub fn slope(self, phase: f64) -> f64 {
+        match self {
+            Self::Sine => TAU * libm::cos(TAU * phase),
+        }
+    }
+}
+
+/// Radius of a peristaltic tube and its velocity.
+///
+/// R(z, t) = a + b g(s z/lambda + c t/lambda), g the waveform, s = 1 for a wave towards -z and s = -1 for one towards
+/// +z
+///
+/// a, b, z, lambda \[d\], to the centres of the wall spheres; c t/lambda in cycles.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct RadiusWave {
+    /// a \[d\]
+    pub mean_radius: f64,
+    /// b \[d\]
+    pub amplitude: f64,
+    /// lambda \[d\]
+    pub wavelength: f64,
+    /// g
+    pub waveform: Waveform,
+    /// +1.0 where the wave runs towards +z, -1.0 where it runs towards -z.
+    pub heading: f64,
+}
+
+impl RadiusWave {
+    /// Phase in cycles at z, after the wave has gone `cycles` = c t/lambda wavelengths.
+    #[must_use]
+    pub fn phase(&self, z: f64, cycles: f64) -> f64 {
+        let phase = cycles - self.heading * z / self.wavelength;
+        phase - phase.floor()
+    }
+
+    /// R at z \[d\].
+    #[must_use]
+    pub fn radius(&self, z: f64, cycles: f64) -> f64 {
+        self.mean_radius + self.amplitude * self.waveform.value(self.phase(z, cycles))
+    }
+
+    /// dR/dt at z \[d/t\], for frequency c/lambda and rate of change db/dt of the amplitude.
+    #[must_use]
+    pub fn radial_velocity(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> f64 {
+        let phase = self.phase(z, cycles);
+        self.amplitude * frequency * self.waveform.slope(phase)
+            + amplitude_rate * self.waveform.value(phase)
+    }
+
+    /// Position in the frame of the wave, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
+    ///
+    /// A wave along +z is a function of z - ct; the position is (heading z - c t)/lambda folded to one wavelength.
+    #[must_use]
+    pub fn wave_frame_position(&self, z: f64, cycles: f64) -> f64 {
+        let position = self.heading * z / self.wavelength - cycles;
+        position - position.floor()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(heading: f64) -> RadiusWave {
+        RadiusWave {
+            mean_radius: 1.5,
+            amplitude: 0.25,
+            wavelength: 10.0,
+            waveform: Waveform::Sine,
+            heading,
+        }
+    }
+
+    #[test]
+    fn the_wave_of_the_source_runs_towards_negative_z() {
+        let wave = wave(-1.0);
+        let (epsdot, time, z) = (0.05, 3.7, 4.2);
+        let expected = 1.5 + 0.25 * (TAU * (epsdot * 10.0 * time + z) / 10.0).sin();
+        assert!((wave.radius(z, epsdot * time) - expected).abs() < 1e-14);
+        // What is at z now was at z + c dt before.
+        let dt = 0.3;
+        let before = wave.radius(z + epsdot * 10.0 * dt, epsdot * (time - dt));
+        assert!((before - expected).abs() < 1e-14);
+    }
+
+    #[test]
+    fn velocity_is_the_derivative_of_the_radius() {
+        for heading in [-1.0, 1.0] {
+            let wave = wave(heading);
+            let (frequency, z, cycles, dt) = (0.1, 2.3, 0.77, 1e-5);
+            let later = wave.radius(z, cycles + frequency * dt);
+            let earlier = wave.radius(z, cycles - frequency * dt);
+            let velocity = wave.radial_velocity(z, cycles, frequency, 0.0);
+            assert!((velocity - (later - earlier) / (2.0 * dt)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn turning_the_wave_round_mirrors_it() {
+        let (forward, backward) = (wave(-1.0), wave(1.0));
+        for (z, cycles) in [(0.3, 0.1), (7.7, 3.9), (-4.0, 12.25)] {
+            assert!((forward.radius(z, cycles) - backward.radius(-z, cycles)).abs() < 1e-14);
+            let one = forward.wave_frame_position(z, cycles);
+            let other = backward.wave_frame_position(-z, cycles);
+            assert!((one - other).abs() < 1e-12);
+        }
+    }
+}
