@@ -99,6 +99,8 @@ pub struct Ledger {
     pub network_dissipated: f64,
     /// Tangential spring energy forgotten at the end of contacts.
     pub history_reset: f64,
+    /// Largest overlap of a contact of a grain at any step \[d\].
+    pub largest_overlap: f64,
 }
 
 impl Ledger {
@@ -115,6 +117,7 @@ impl Ledger {
         self.tangential_dissipated += after.tangential_lost;
         self.sliding_dissipated += after.sliding_lost;
         self.history_reset += after.history_reset;
+        self.largest_overlap = self.largest_overlap.max(after.largest_overlap);
     }
 
     /// Work that entered.

@@ -43,8 +43,8 @@ pub enum Sliding {
 /// f~ = -k_t u - eta_t v_t;  f_t = f~ if |f~| < mu_s f_n, else mu_k f_n f~/|f~|
 ///
 /// u is the tangential displacement since the contact began \[d\]: du/dt = v_t - (u . dn/dt) n, which keeps it in the
-/// plane of contact. v_t = v_ij - (v_ij . n) n + n x (l_i omega_i + l_j omega_j) \[d/t\]. After Cundall & Strack,
-/// Geotechnique 29, 47 (1979).
+/// plane of contact; where f_n vanishes u is forgotten. v_t = v_ij - (v_ij . n) n + n x (l_i omega_i + l_j omega_j)
+/// \[d/t\]. After Cundall & Strack, Geotechnique 29, 47 (1979).
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct CundallStrack {
     /// k_t \[m/t^2\]
@@ -90,6 +90,12 @@ impl TangentialLaw for CundallStrack {
         let normal_rate = lateral_velocity / contact.distance;
 
         let energy_before = self.stored_energy(history);
+        if normal_force <= 0.0 {
+            // A contact that does not press forgets, whatever sliding does elsewhere.
+            let slid = energy_before + 0.5 * time_step * history.power;
+            *history = TangentialHistory::default();
+            return TangentialForce { slid, sliding: true, ..TangentialForce::default() };
+        }
         let predicted = history.displacement + time_step * history.rate;
         let rate = slip_velocity - predicted.dot(normal_rate) * normal;
         let mut displacement = history.displacement + 0.5 * time_step * (history.rate + rate);

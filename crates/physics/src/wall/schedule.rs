@@ -25,6 +25,14 @@ impl Schedule {
         (finite && ordered && !knots.is_empty()).then_some(Self { knots })
     }
 
+    /// The schedule of a linear function of this one: the same times, mapped values.
+    #[must_use]
+    pub fn map(&self, linear: impl Fn(f64) -> f64) -> Self {
+        Self {
+            knots: self.knots.iter().map(|&(time, value)| (time, linear(value))).collect(),
+        }
+    }
+
     /// The knots (time, value).
     #[must_use]
     pub fn knots(&self) -> &[(f64, f64)] {

@@ -1,0 +1,362 @@
+//! Moments across the replicas of an ensemble.
+
+use crate::error::{Error, checked, mean_of};
+use crate::transition::Transition;
+use serde::{Deserialize, Serialize};
+
+/// Fewest replicas: the variance must exist with one of them left out.
+const LEAST_REPLICAS: usize = 3;
+
+/// Mean and variance of independent values, with jackknife errors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Moments {
+    /// Mean.
+    pub mean: f64,
+    /// Standard error of the mean.
+    pub mean_error: f64,
+    /// Variance `<x^2> - <x>^2` of the distribution, estimated without bias (divisor n - 1).
+    pub variance: f64,
+    /// Standard error of the variance, by the jackknife.
+    pub variance_error: f64,
+}
+
+/// Largest variance over time of an ensemble.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SusceptibilityPeak {
+    /// Position of the peak in the series, from 0.
+    pub index: usize,
+    /// Standard error of the position, by the jackknife.
+    pub index_error: f64,
+    /// Height of the peak. Being the largest of many noisy values it lies above the true one, by about its error.
+    pub value: f64,
+    /// Standard error of the height, by the jackknife over replicas, the search for the peak included.
+    pub error: f64,
+}
+
+/// Mean and variance of the transition times of an ensemble.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TransitionTimeMoments {
+    /// Moments of the observed times: `<tau>` and `chi_tau = <tau^2> - <tau>^2`.
+    pub moments: Moments,
+    /// Runs with an observed transition.
+    pub observed: usize,
+    /// Runs that ended before. Unless this is 0, the moments are conditional on an early transition, hence too small.
+    pub censored: usize,
+}
+
+/// Variance of a sample with each of its values left out in turn, in order.
+///
+/// With `S = sum (x - <x>)^2` over all n values the rest has `S - n (x_i - <x>)^2/(n - 1)`, over n - 2.
+fn variances_without_one(sample: &[f64]) -> impl Iterator<Item = f64> {
+    let replicas = sample.len() as f64;
+    let mean = mean_of(sample);
+    let scatter: f64 = sample.iter().map(|x| (x - mean) * (x - mean)).sum();
+    sample.iter().map(move |x| {
+        let rest = scatter - (x - mean) * (x - mean) * replicas / (replicas - 1.0);
+        // Round-off must not leave a negative variance.
+        rest.max(0.0) / (replicas - 2.0)
+    })
+}
+
+/// Jackknife error of an estimator from its values with one replica left out: `sqrt((n - 1)/n sum (v_i - <v>)^2)`.
+fn jackknife_error(without_one: &[f64]) -> f64 {
+    let replicas = without_one.len() as f64;
+    let mean = mean_of(without_one);
+    let scatter: f64 = without_one.iter().map(|v| (v - mean) * (v - mean)).sum();
+    ((replicas - 1.0) / replicas * scatter).sqrt()
+}
+
+/// Mean and variance of independent values with their jackknife errors.
+///
+/// The jackknife error of the variance holds for any distribution with a fourth moment. For transition times with their
+/// long tails it needs some tens of values. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans
+/// (SIAM, 1982), chapter 3.
+///
+/// # Errors
+/// [`Error::TooFew`] below 3 values, [`Error::NonFinite`].
+///
+/// ```
+/// use peristalsis_analysis::moments;
+/// let found = moments(&[1.0, 2.0, 3.0])?;
+/// assert_eq!((found.mean, found.variance), (2.0, 1.0));
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn moments(sample: &[f64]) -> Result<Moments, Error> {
+    let mean = mean_of(checked(sample, LEAST_REPLICAS)?);
+    let replicas = sample.len() as f64;
+    let scatter: f64 = sample.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let variance = scatter / (replicas - 1.0);
+    let without_one: Vec<f64> = variances_without_one(sample).collect();
+    Ok(Moments {
+        mean,
+        mean_error: (variance / replicas).sqrt(),
+        variance,
+        variance_error: jackknife_error(&without_one),
+    })
+}
+
+/// Values of all replicas at each time, checked: one column per time.
+fn columns<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Vec<f64>>, Error> {
+    if replicas.len() < LEAST_REPLICAS {
+        return Err(Error::TooFew {
+            needed: LEAST_REPLICAS,
+            found: replicas.len(),
+        });
+    }
+    let times = replicas[0].as_ref().len();
+    for (replica, series) in replicas.iter().map(AsRef::as_ref).enumerate() {
+        if series.len() != times {
+            return Err(Error::LengthMismatch {
+                expected: times,
+                found: series.len(),
+            });
+        }
+        if let Some(index) = series.iter().position(|value| !value.is_finite()) {
+            return Err(Error::NonFiniteReplica {
+                replica,
+                index,
+                value: series[index],
+            });
+        }
+    }
+    if times == 0 {
+        return Err(Error::TooFew {
+            needed: 1,
+            found: 0,
+        });
+    }
+    Ok((0..times)
+        .map(|time| {
+            replicas
+                .iter()
+                .map(|series| series.as_ref()[time])
+                .collect()
+        })
+        .collect())
+}
+
+/// Mean `<j>(t)` and second moment `chi_J(t) = <j^2> - <j>^2` across replicas at equal times.
+///
+/// `replicas`: the series of every replica, j = J/Jmax at the same times, one series per replica. Errors as for
+/// [`moments`]. They are errors at each time by itself: values at nearby times share their replicas and scatter
+/// together.
+///
+/// # Errors
+/// [`Error::TooFew`] below 3 replicas or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
+pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>, Error> {
+    columns(replicas)?
+        .iter()
+        .map(|column| moments(column))
+        .collect()
+}
+
+/// Peak over time of the second moment chi_J(t), with errors by leaving out whole replicas.
+///
+/// The earliest time counts where several share the largest value. Arguments as for [`ensemble_moments`].
+///
+/// # Errors
+/// Those of [`ensemble_moments`].
+pub fn susceptibility_peak<S: AsRef<[f64]>>(replicas: &[S]) -> Result<SusceptibilityPeak, Error> {
+    let columns = columns(replicas)?;
+    let mut whole = Peak::NONE;
+    let mut without_one = vec![Peak::NONE; replicas.len()];
+    for (index, column) in columns.iter().enumerate() {
+        whole.raise(index, moments(column)?.variance);
+        for (peak, variance) in without_one.iter_mut().zip(variances_without_one(column)) {
+            peak.raise(index, variance);
+        }
+    }
+    let heights: Vec<f64> = without_one.iter().map(|peak| peak.value).collect();
+    let positions: Vec<f64> = without_one.iter().map(|peak| peak.index as f64).collect();
+    Ok(SusceptibilityPeak {
+        index: whole.index,
+        index_error: jackknife_error(&positions),
+        value: whole.value,
+        error: jackknife_error(&heights),
+    })
+}
+
+/// Largest value so far and where it stood.
+#[derive(Clone, Copy)]
+struct Peak {
+    index: usize,
+    value: f64,
+}
+
+impl Peak {
+    const NONE: Self = Self {
+        index: 0,
+        value: f64::NEG_INFINITY,
+    };
+
+    fn raise(&mut self, index: usize, value: f64) {
+        if value > self.value {
+            *self = Self { index, value };
+        }
+    }
+}
+
+/// Mean transition time and its variance `chi_tau = <tau^2> - <tau>^2` over the runs that had a transition.
+///
+/// Censored runs are counted and reported beside the moments, which leave them out: where there are any, the moments
+/// describe early transitions only.
+///
+/// # Errors
+/// [`Error::TooFew`] with fewer than 3 observed transitions, [`Error::NonFinite`].
+pub fn transition_time_moments(transitions: &[Transition]) -> Result<TransitionTimeMoments, Error> {
+    let times: Vec<f64> = transitions
+        .iter()
+        .filter_map(|transition| transition.observed())
+        .collect();
+    Ok(TransitionTimeMoments {
+        moments: moments(&times)?,
+        observed: times.len(),
+        censored: transitions.len() - times.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::white_noise;
+    use proptest::prelude::*;
+
+    #[test]
+    fn moments_of_three_numbers_by_hand() {
+        // 1, 2, 6: mean 3, scatter 4 + 1 + 9. Without one: variances of (2, 6), (1, 6), (1, 2): 8, 12.5, 0.5.
+        let found = moments(&[1.0, 2.0, 6.0]).unwrap();
+        assert_eq!((found.mean, found.variance), (3.0, 7.0));
+        assert!((found.mean_error - (7.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+        let scatter = 1.0_f64 + 5.5 * 5.5 + 6.5 * 6.5;
+        assert!((found.variance_error - (2.0 / 3.0 * scatter).sqrt()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn errors_of_mean_and_variance_cover_the_truth_in_two_cases_out_of_three() {
+        let (seeds, replicas) = (2000, 60);
+        let (mut mean_covered, mut variance_covered) = (0, 0);
+        for seed in 0..seeds {
+            let found = moments(&white_noise(seed, replicas)).unwrap();
+            mean_covered += u32::from(found.mean.abs() < found.mean_error);
+            variance_covered += u32::from((found.variance - 1.0).abs() < found.variance_error);
+        }
+        let share = |covered: u32| f64::from(covered) / seeds as f64;
+        assert!((0.65..0.71).contains(&share(mean_covered)));
+        assert!((0.62..0.71).contains(&share(variance_covered)));
+    }
+
+    #[test]
+    fn the_peak_is_where_the_replicas_differ_most() {
+        // Replica i jams at its own time near sample 50: x(t) = a_i exp(-((t - 50)/10)^2), variance of a_i = 1.
+        let replicas: Vec<Vec<f64>> = white_noise(11, 400)
+            .iter()
+            .map(|amplitude| {
+                (0..100)
+                    .map(|t| {
+                        let distance = (f64::from(t) - 50.0) / 10.0;
+                        0.3 + amplitude * libm::exp(-distance * distance)
+                    })
+                    .collect()
+            })
+            .collect();
+        let peak = susceptibility_peak(&replicas).unwrap();
+        assert_eq!((peak.index, peak.index_error), (50, 0.0));
+        // sqrt(2/399) for normal amplitudes.
+        assert!((peak.error - 0.0708).abs() < 0.02, "{peak:?}");
+        assert!((peak.value - 1.0).abs() < 3.0 * peak.error);
+        let series = ensemble_moments(&replicas).unwrap();
+        assert_eq!(series.len(), 100);
+        assert_eq!(series[50].variance, peak.value);
+        assert!((series[50].variance_error - peak.error).abs() < 1e-12);
+        // A standard deviation exp(-1) of the peak's at t = 40.
+        assert!((series[40].variance / peak.value - libm::exp(-2.0)).abs() < 1e-12);
+        assert!((series[0].mean - 0.3).abs() < 1e-8);
+    }
+
+    #[test]
+    fn an_uncertain_peak_has_an_uncertain_position() {
+        let replicas: Vec<Vec<f64>> = (0..12).map(|seed| white_noise(seed, 200)).collect();
+        let peak = susceptibility_peak(&replicas).unwrap();
+        assert!(peak.index_error > 5.0, "{peak:?}");
+        assert!(peak.value > 1.0);
+    }
+
+    #[test]
+    fn censored_runs_are_counted_beside_the_moments() {
+        let at = |time| Transition::At { time, period: 0 };
+        let runs = [
+            at(1.0),
+            Transition::Censored { time: 50.0 },
+            at(2.0),
+            at(6.0),
+        ];
+        let found = transition_time_moments(&runs).unwrap();
+        assert_eq!((found.observed, found.censored), (3, 1));
+        assert_eq!((found.moments.mean, found.moments.variance), (3.0, 7.0));
+        assert_eq!(
+            transition_time_moments(&runs[..3]),
+            Err(Error::TooFew {
+                needed: 3,
+                found: 2
+            })
+        );
+    }
+
+    #[test]
+    fn bad_ensembles_are_refused() {
+        let none: [Vec<f64>; 0] = [];
+        let few = Error::TooFew {
+            needed: 3,
+            found: 0,
+        };
+        assert_eq!(ensemble_moments(&none), Err(few));
+        assert_eq!(moments(&[]), Err(few));
+        let no_times = ensemble_moments(&[[0.0; 0]; 3]);
+        assert!(matches!(no_times, Err(Error::TooFew { needed: 1, .. })));
+        let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
+        assert_eq!(
+            uneven,
+            Err(Error::LengthMismatch {
+                expected: 3,
+                found: 2
+            })
+        );
+        let hole = susceptibility_peak(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
+        assert!(matches!(
+            hole,
+            Err(Error::NonFiniteReplica {
+                replica: 1,
+                index: 1,
+                ..
+            })
+        ));
+    }
+
+    proptest! {
+        #[test]
+        fn the_shortcut_equals_the_jackknife_done_by_leaving_out(
+            sample in prop::collection::vec(-5.0..5.0_f64, 4..30),
+        ) {
+            for (left_out, shortcut) in variances_without_one(&sample).enumerate() {
+                let mut rest = sample.clone();
+                rest.remove(left_out);
+                let direct = moments(&rest).unwrap().variance;
+                prop_assert!((shortcut - direct).abs() < 1e-10);
+            }
+        }
+
+        #[test]
+        fn shift_and_scale(
+            sample in prop::collection::vec(-5.0..5.0_f64, 3..30),
+            shift in -10.0..10.0_f64,
+            scale in 0.1..3.0_f64,
+        ) {
+            let plain = moments(&sample).unwrap();
+            let moved: Vec<f64> = sample.iter().map(|x| shift + scale * x).collect();
+            let moved = moments(&moved).unwrap();
+            prop_assert!((moved.mean - shift - scale * plain.mean).abs() < 1e-10);
+            prop_assert!((moved.variance - scale * scale * plain.variance).abs() < 1e-9);
+            prop_assert!((moved.variance_error - scale * scale * plain.variance_error).abs() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Estimators with error bars, on plain slices of numbers.
+//!
+//! Tables come in as columns and answers go out with their uncertainties: period averages and transition times with
+//! censoring, means of correlated series, moments across an ensemble. One estimator is one file. This crate knows
+//! nothing of grains, engines or file formats, and every sum is taken in the order of its input, so that an answer is
+//! the same on every machine.
+
+mod autocorrelation;
+mod blocks;
+mod ensemble;
+mod error;
+mod period;
+mod stationarity;
+mod transition;
+
+#[cfg(test)]
+mod synthetic;
+
+pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
+pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
+pub use ensemble::{
+    Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
+    susceptibility_peak, transition_time_moments,
+};
+pub use error::Error;
+pub use period::{PeriodMeans, period_means};
+pub use stationarity::{Stationarity, stationarity};
+pub use transition::{
+    CONFIRMATION_PERIODS, DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector,
+    transition_time,
+};

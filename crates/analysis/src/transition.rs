@@ -1,0 +1,413 @@
+//! Transition time between unjammed and jammed flow, with censoring.
+
+use crate::error::Error;
+use crate::period::PeriodMeans;
+use serde::{Deserialize, Serialize};
+
+/// Threshold of J/Jmax for a single run: midway between rest and jammed flow.
+pub const DEFAULT_THRESHOLD: f64 = 0.5;
+
+/// Period averages in a row that must lie beyond the threshold before a crossing counts.
+pub const CONFIRMATION_PERIODS: u32 = 3;
+
+/// The way in which the flow rate crosses the threshold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Direction {
+    /// From unjammed to jammed flow, in runs started from `rest`.
+    Upward,
+    /// From jammed to unjammed flow, in runs started from `jammed`.
+    Downward,
+}
+
+impl Direction {
+    /// J/Jmax of the initial state at t = 0: 0 at rest, 1 jammed.
+    pub fn initial_ratio(self) -> f64 {
+        match self {
+            Self::Upward => 0.0,
+            Self::Downward => 1.0,
+        }
+    }
+
+    fn is_beyond(self, ratio: f64, threshold: f64) -> bool {
+        match self {
+            Self::Upward => ratio > threshold,
+            Self::Downward => ratio < threshold,
+        }
+    }
+}
+
+/// Transition of one run, or the time up to which it was watched without one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Transition {
+    /// The flow changed its kind.
+    At {
+        /// Transition time tau, in the unit of the period duration.
+        time: f64,
+        /// First period whose average lies beyond the threshold, from 0.
+        period: u64,
+    },
+    /// The run ended before a transition was complete: a lower bound, which an estimator must use and not drop.
+    Censored {
+        /// End of the last whole period, in the unit of the period duration; 0 for a run without a whole period.
+        time: f64,
+    },
+}
+
+impl Transition {
+    /// Transition time tau, or `None` for a censored run.
+    pub fn observed(self) -> Option<f64> {
+        match self {
+            Self::At { time, .. } => Some(time),
+            Self::Censored { .. } => None,
+        }
+    }
+}
+
+/// A crossing under way: beyond the threshold for fewer than the periods that confirm it, or confirmed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Crossing {
+    time: f64,
+    period: u64,
+    confirmed_periods: u32,
+}
+
+/// Finds the transition of a run while it goes on, fed with one period average after another.
+///
+/// A *crossing* is a period k whose average m_k lies beyond the threshold (strictly above it for
+/// [`Direction::Upward`], strictly below it for [`Direction::Downward`]) while the average before does not. The
+/// transition is the first crossing with m_k, m_(k+1) and m_(k+2) all beyond the threshold; a crossing that falls back
+/// earlier is forgotten. With theta the threshold and T the period,
+///
+/// tau = t_(k-1) + (t_k - t_(k-1)) (theta - m_(k-1))/(m_k - m_(k-1)),   t_k = (k + 1/2) T
+///
+/// the straight line between the middles of the two periods. Before the first period stands the initial state, m = 0
+/// at rest or 1 jammed, at t = 0, so that a run that is beyond the threshold in its first period has 0 < tau < T/2.
+/// Until a crossing is confirmed the run counts as censored at the end of its last period, though the crossing, once
+/// confirmed, lies up to three periods before that time: see [`candidate`](Self::candidate).
+///
+/// ```
+/// use peristalsis_analysis::{DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector};
+/// let mut detector = TransitionDetector::new(Direction::Upward, DEFAULT_THRESHOLD, 10.0)?;
+/// for average in [0.1, 0.4, 0.8, 0.9] {
+///     detector.push(average)?;
+/// }
+/// assert_eq!(detector.outcome(), Transition::Censored { time: 40.0 });
+/// // A quarter of the way from the middle of period 1 to that of period 2.
+/// assert_eq!(detector.push(0.9)?, Transition::At { time: 17.5, period: 2 });
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TransitionDetector {
+    direction: Direction,
+    threshold: f64,
+    period_duration: f64,
+    periods: u64,
+    last_average: f64,
+    crossing: Option<Crossing>,
+}
+
+impl TransitionDetector {
+    /// A detector at the start of a run.
+    ///
+    /// `threshold` of J/Jmax, 0 < threshold < 1; `period_duration` T = lambda/c in the unit of the times to report (1
+    /// for times in periods).
+    ///
+    /// # Errors
+    /// [`Error::Threshold`], [`Error::PeriodDuration`].
+    pub fn new(direction: Direction, threshold: f64, period_duration: f64) -> Result<Self, Error> {
+        if !(threshold > 0.0 && threshold < 1.0) {
+            return Err(Error::Threshold { threshold });
+        }
+        if !(period_duration > 0.0 && period_duration.is_finite()) {
+            return Err(Error::PeriodDuration {
+                duration: period_duration,
+            });
+        }
+        Ok(Self {
+            direction,
+            threshold,
+            period_duration,
+            periods: 0,
+            last_average: direction.initial_ratio(),
+            crossing: None,
+        })
+    }
+
+    /// Takes the average of J/Jmax over the next period and returns the outcome so far.
+    ///
+    /// Once found, a transition does not change any more.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] with the number of the period; the detector is then as it was before.
+    pub fn push(&mut self, average: f64) -> Result<Transition, Error> {
+        if !average.is_finite() {
+            return Err(Error::NonFinite {
+                index: self.periods as usize,
+                value: average,
+            });
+        }
+        if !self.is_complete() {
+            self.crossing =
+                self.direction
+                    .is_beyond(average, self.threshold)
+                    .then(|| match self.crossing {
+                        Some(crossing) => Crossing {
+                            confirmed_periods: crossing.confirmed_periods + 1,
+                            ..crossing
+                        },
+                        None => Crossing {
+                            time: self.crossing_time(average),
+                            period: self.periods,
+                            confirmed_periods: 1,
+                        },
+                    });
+        }
+        self.last_average = average;
+        self.periods += 1;
+        Ok(self.outcome())
+    }
+
+    /// The transition, or the time up to which the run has been watched without one.
+    pub fn outcome(&self) -> Transition {
+        match self.crossing {
+            Some(Crossing { time, period, .. }) if self.is_complete() => {
+                Transition::At { time, period }
+            }
+            _ => Transition::Censored {
+                time: self.periods as f64 * self.period_duration,
+            },
+        }
+    }
+
+    /// Time of a crossing that the periods to come may yet confirm.
+    pub fn candidate(&self) -> Option<f64> {
+        self.crossing
+            .filter(|_| !self.is_complete())
+            .map(|crossing| crossing.time)
+    }
+
+    /// Whether the transition has been found, so that a run need not go on for its sake.
+    pub fn is_complete(&self) -> bool {
+        self.crossing
+            .is_some_and(|crossing| crossing.confirmed_periods >= CONFIRMATION_PERIODS)
+    }
+
+    /// Whole periods watched so far.
+    pub fn periods(&self) -> u64 {
+        self.periods
+    }
+
+    /// Time at which the straight line from the last average to this one meets the threshold.
+    fn crossing_time(&self, average: f64) -> f64 {
+        let middle = self.periods as f64 + 0.5;
+        let previous = if self.periods == 0 { 0.0 } else { middle - 1.0 };
+        let fraction = (self.threshold - self.last_average) / (average - self.last_average);
+        (previous + (middle - previous) * fraction) * self.period_duration
+    }
+}
+
+/// Transition time of a finished run from its period averages; [`TransitionDetector`] states the definition.
+///
+/// A run without a whole period is censored at time 0.
+///
+/// # Errors
+/// [`Error::LateStart`] if the averages do not begin with period 0, [`Error::NonFinite`] with the period at fault,
+/// [`Error::Threshold`], [`Error::PeriodDuration`].
+pub fn transition_time(
+    averages: &PeriodMeans,
+    direction: Direction,
+    threshold: f64,
+    period_duration: f64,
+) -> Result<Transition, Error> {
+    if averages.first_period != 0 {
+        return Err(Error::LateStart {
+            first: averages.first_period,
+        });
+    }
+    let mut detector = TransitionDetector::new(direction, threshold, period_duration)?;
+    for &average in &averages.means {
+        detector.push(average)?;
+    }
+    Ok(detector.outcome())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn from_start(means: &[f64]) -> PeriodMeans {
+        PeriodMeans {
+            first_period: 0,
+            means: means.to_vec(),
+        }
+    }
+
+    fn upward(means: &[f64]) -> Transition {
+        transition_time(&from_start(means), Direction::Upward, 0.5, 2.0).unwrap()
+    }
+
+    fn downward(means: &[f64]) -> Transition {
+        transition_time(&from_start(means), Direction::Downward, 0.5, 2.0).unwrap()
+    }
+
+    #[test]
+    fn a_step_is_crossed_halfway_between_the_middles_of_its_periods() {
+        // Middles at 1, 3, 5, ...: from 0 at t = 5 to 1 at t = 7.
+        let step = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        assert_eq!(
+            upward(&step),
+            Transition::At {
+                time: 6.0,
+                period: 3
+            }
+        );
+        let mirrored = step.map(|ratio| 1.0 - ratio);
+        assert_eq!(downward(&mirrored), upward(&step));
+    }
+
+    #[test]
+    fn the_first_period_is_joined_to_the_initial_state() {
+        // From 0 at t = 0 to 0.8 at t = 1.
+        let Transition::At { time, period } = upward(&[0.8, 0.9, 0.9]) else {
+            panic!("crosses at once");
+        };
+        assert!((time - 0.625).abs() < 1e-15);
+        assert_eq!(period, 0);
+        // From 1 at t = 0 to 0.25 at t = 1: two thirds of the way.
+        let time = downward(&[0.25, 0.1, 0.1]).observed().unwrap();
+        assert!((time - 2.0 / 3.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_flicker_shorter_than_three_periods_does_not_count() {
+        let flicker = [0.1, 0.9, 0.9, 0.1, 0.2, 0.6, 0.7, 0.8, 0.1];
+        let Transition::At { time, period } = upward(&flicker) else {
+            panic!("the second crossing is confirmed");
+        };
+        assert_eq!(period, 5);
+        // From 0.2 at t = 9 to 0.6 at t = 11.
+        assert!((time - 10.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_threshold_itself_is_not_beyond_the_threshold() {
+        assert_eq!(upward(&[0.5; 8]), Transition::Censored { time: 16.0 });
+        assert_eq!(downward(&[0.5; 8]), Transition::Censored { time: 16.0 });
+    }
+
+    #[test]
+    fn runs_that_end_early_are_censored_at_their_end() {
+        assert_eq!(upward(&[]), Transition::Censored { time: 0.0 });
+        assert_eq!(upward(&[0.1; 4]), Transition::Censored { time: 8.0 });
+        // A crossing with two of its three periods.
+        assert_eq!(upward(&[0.1, 0.9, 0.9]), Transition::Censored { time: 6.0 });
+        assert_eq!(upward(&[0.1, 0.9, 0.9]).observed(), None);
+    }
+
+    #[test]
+    fn a_crossing_under_way_is_a_candidate_until_it_is_confirmed_or_falls_back() {
+        let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 2.0).unwrap();
+        let mut candidates = Vec::new();
+        for average in [0.0, 1.0, 0.0, 1.0, 1.0, 1.0] {
+            detector.push(average).unwrap();
+            candidates.push(detector.candidate());
+        }
+        assert_eq!(
+            candidates,
+            [None, Some(2.0), None, Some(6.0), Some(6.0), None]
+        );
+        assert!(detector.is_complete());
+        assert_eq!(detector.periods(), 6);
+    }
+
+    #[test]
+    fn bad_input_is_refused_and_leaves_the_detector_as_it_was() {
+        let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 2.0).unwrap();
+        detector.push(0.3).unwrap();
+        let before = detector.clone();
+        let refused = detector.push(f64::NAN);
+        assert!(matches!(refused, Err(Error::NonFinite { index: 1, .. })));
+        assert_eq!(detector, before);
+        for threshold in [0.0, 1.0, f64::NAN] {
+            let refused = TransitionDetector::new(Direction::Upward, threshold, 2.0);
+            assert!(matches!(refused, Err(Error::Threshold { .. })));
+        }
+        for duration in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            let refused = TransitionDetector::new(Direction::Upward, 0.5, duration);
+            assert!(matches!(refused, Err(Error::PeriodDuration { .. })));
+        }
+        let late = PeriodMeans {
+            first_period: 2,
+            means: vec![0.9; 5],
+        };
+        assert_eq!(
+            transition_time(&late, Direction::Upward, 0.5, 2.0),
+            Err(Error::LateStart { first: 2 })
+        );
+    }
+
+    /// The definition read word for word: the first period from which three averages lie beyond, none before it.
+    fn by_definition(means: &[f64], direction: Direction, threshold: f64) -> Option<usize> {
+        let beyond = |ratio: &f64| match direction {
+            Direction::Upward => *ratio > threshold,
+            Direction::Downward => *ratio < threshold,
+        };
+        means.windows(3).position(|three| three.iter().all(beyond))
+    }
+
+    fn direction() -> impl Strategy<Value = Direction> {
+        prop_oneof![Just(Direction::Upward), Just(Direction::Downward)]
+    }
+
+    proptest! {
+        #[test]
+        fn the_detector_agrees_with_the_definition_and_survives_serialisation(
+            means in prop::collection::vec(-0.2..1.2_f64, 0..40),
+            direction in direction(),
+            threshold in 0.05..0.95_f64,
+            interruption in 0_usize..40,
+        ) {
+            let mut detector = TransitionDetector::new(direction, threshold, 3.0).unwrap();
+            for (k, &average) in means.iter().enumerate() {
+                if k == interruption {
+                    let bytes = postcard::to_stdvec(&detector).unwrap();
+                    detector = postcard::from_bytes(&bytes).unwrap();
+                }
+                detector.push(average).unwrap();
+            }
+            let batch = transition_time(&from_start(&means), direction, threshold, 3.0).unwrap();
+            prop_assert_eq!(detector.outcome(), batch);
+            match by_definition(&means, direction, threshold) {
+                None => prop_assert_eq!(
+                    batch,
+                    Transition::Censored { time: 3.0 * means.len() as f64 }
+                ),
+                Some(first) => {
+                    let Transition::At { time, period } = batch else {
+                        panic!("missed the transition at {first}");
+                    };
+                    prop_assert_eq!(period, first as u64);
+                    let middle = (first as f64 + 0.5) * 3.0;
+                    prop_assert!(time <= middle && time >= (middle - 3.0).max(0.0));
+                }
+            }
+        }
+
+        #[test]
+        fn upward_and_downward_mirror_each_other(
+            means in prop::collection::vec(0.0..1.0_f64, 0..40),
+        ) {
+            let mirrored: Vec<f64> = means.iter().map(|ratio| 1.0 - ratio).collect();
+            match (upward(&means), downward(&mirrored)) {
+                (Transition::At { time: a, period: k }, Transition::At { time: b, period: l }) => {
+                    prop_assert_eq!(k, l);
+                    prop_assert!((a - b).abs() < 1e-9);
+                }
+                (a, b) => prop_assert_eq!(a, b),
+            }
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Grains in a peristaltic tube, by the discrete element method.
+#[derive(Debug, Parser)]
+#[command(
+    name = "peristalsis",
+    version = concat!(env!("CARGO_PKG_VERSION")),
+    propagate_version = true,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130 interrupted."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Run one simulation and write its tables and figures.
+    Run(RunArguments),
+    /// Say what would run, and warn of what looks doubtful; runs nothing.
+    Check(CheckArguments),
+    /// List the presets, or print one.
+    Presets(PresetsArguments),
+    /// Print the JSON schema of the configuration.
+    Schema,
+    /// Print completions for a shell.
+    Completions(CompletionsArguments),
+}
+
+/// Where a configuration comes from.
+#[derive(Debug, Args)]
+pub(crate) struct ConfigurationArguments {
+    /// Configuration in TOML.
+    #[arg(value_name = "FILE")]
+    pub(crate) file: Option<PathBuf>,
+    /// Values to start from; a file's values go over them (see `peristalsis presets`).
+    #[arg(long, value_name = "NAME")]
+    pub(crate) preset: Option<String>,
+    /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    #[command(flatten)]
+    pub(crate) configuration: ConfigurationArguments,
+    /// Folder for the results; the default is a new one below runs/.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Go on with a run that was stopped, to the same bits as if it had not been.
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "preset", "overrides", "out"])]
+    pub(crate) resume: Option<PathBuf>,
+    /// Write the time series as CSV too.
+    #[arg(long)]
+    pub(crate) csv: bool,
+    /// Print the summary as JSON on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    #[command(flatten)]
+    pub(crate) configuration: ConfigurationArguments,
+    /// Print as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PresetsArguments {
+    /// Preset to print, as TOML.
+    #[arg(value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Print as JSON.
+    #[arg(long, conflicts_with = "name")]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArguments {
+    /// Shell to complete for.
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        super::Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,58 @@
+//! `peristalsis check`
+
+use std::process::ExitCode;
+
+use peristalsis_run::{Estimate, estimate};
+
+use crate::arguments::CheckArguments;
+use crate::commands::print;
+use crate::failure::Failure;
+use crate::progress::seconds;
+use crate::sources::configuration;
+
+/// Says what would run.
+pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
+    let configuration = configuration(&arguments.configuration)?;
+    let estimate = estimate(&configuration)?;
+    if arguments.json {
+        print(&format!("{:#}\n", serde_json::json!(estimate)))?;
+    } else {
+        print(&in_words(&estimate))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn in_words(estimate: &Estimate) -> String {
+    let mut lines = vec![
+        format!(
+            "grains            {} (volume fraction {:.4}, number density {:.4} d^-3)",
+            estimate.grains, estimate.volume_fraction, estimate.number_density
+        ),
+        format!(
+            "wall              {} spheres along {} d",
+            estimate.wall_spheres, estimate.length
+        ),
+        match (estimate.period, estimate.periods) {
+            (Some(period), Some(periods)) => format!(
+                "time              {} t: {periods} periods of {period} t",
+                estimate.duration
+            ),
+            _ => format!("time              {} t, the wave stands still", estimate.duration),
+        },
+        format!(
+            "steps             {} of {:.5} t (a contact lasts about {:.2} t)",
+            estimate.steps, estimate.time_step, estimate.contact_time
+        ),
+    ];
+    if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
+        lines.push(format!("Newtonian fluid   J/Jmax = {ratio:.4} in this tube"));
+    }
+    lines.push(format!(
+        "expected time     {}",
+        seconds(estimate.expected_seconds)
+    ));
+    for warning in &estimate.warnings {
+        lines.push(format!("warning: {}: {}", warning.key, warning.message));
+    }
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,177 @@
+//! `peristalsis run`
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use peristalsis_run::{Run, RunError, RunFolder, Status, Summary, Written, warnings};
+
+use crate::arguments::RunArguments;
+use crate::commands::print;
+use crate::failure::Failure;
+use crate::progress::{Display, seconds};
+use crate::sources::{configuration, name};
+use crate::stop::Stop;
+
+/// Time between two savings of the state.
+const SAVE_INTERVAL: Duration = Duration::from_secs(60);
+
+/// Runs one simulation.
+pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    let (folder, mut run) = match &arguments.resume {
+        Some(folder) => RunFolder::resume(folder)?,
+        None => begin(arguments)?,
+    };
+    let mut display = Display::new(arguments.quiet, run.configuration().run.samples);
+    let ending = advance(&mut run, &folder, &stop, &mut display);
+    display.finish();
+    let (status, message) = match &ending {
+        Ending::Complete => (Status::Complete, None),
+        Ending::Stopped(_) => (Status::Interrupted, None),
+        Ending::Failed(error) => (Status::Diverged, Some(error.to_string())),
+    };
+    let summary = Summary::of(&run, status, message);
+    let written = if arguments.csv {
+        Written::WithCsv
+    } else {
+        Written::Standard
+    };
+    folder.finish(&run, &summary, written)?;
+    if arguments.json {
+        print(&summary.to_json())?;
+    } else {
+        print(&in_words(&run, &summary))?;
+    }
+    match ending {
+        Ending::Complete => {
+            say(arguments, &format!("written to {}", folder.path().display()));
+            Ok(ExitCode::SUCCESS)
+        }
+        Ending::Stopped(code) => {
+            say(
+                arguments,
+                &format!(
+                    "stopped after {:.1} of {} periods; what there is is in {folder}\ngo on with: peristalsis run --resume {folder}",
+                    summary.periods,
+                    run.configuration()
+                        .run
+                        .periods
+                        .map_or_else(|| "no".to_owned(), |periods| periods.to_string()),
+                    folder = folder.path().display()
+                ),
+            );
+            Ok(ExitCode::from(code))
+        }
+        Ending::Failed(error) => {
+            say(
+                arguments,
+                &format!("what was measured, and the state, are in {}", folder.path().display()),
+            );
+            Err(error.into())
+        }
+    }
+}
+
+/// Reads the configuration, packs the grains, makes the folder.
+fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
+    let configuration = configuration(&arguments.configuration)?;
+    let path = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| new_folder(&name(&arguments.configuration)));
+    // Before the work of packing, and again when the folder is made.
+    RunFolder::check(&path)?;
+    for warning in warnings(&configuration) {
+        say(arguments, &format!("warning: {}: {}", warning.key, warning.message));
+    }
+    let run = Run::new(configuration)?;
+    let folder = RunFolder::create(&path, run.configuration())?;
+    Ok((folder, run))
+}
+
+/// The first free folder runs/NAME-K.
+fn new_folder(name: &str) -> PathBuf {
+    let runs = Path::new("runs");
+    (1_u32..)
+        .map(|number| runs.join(format!("{name}-{number}")))
+        .find(|folder| folder.symlink_metadata().is_err())
+        .expect("there are fewer folders than numbers")
+}
+
+/// How the advance of a run ended.
+enum Ending {
+    Complete,
+    /// By a signal, with its exit code.
+    Stopped(u8),
+    Failed(RunError),
+}
+
+fn advance(run: &mut Run, folder: &RunFolder, stop: &Stop, display: &mut Display) -> Ending {
+    let mut saved = Instant::now();
+    while !run.is_complete() {
+        if let Some(code) = stop.requested() {
+            return Ending::Stopped(code);
+        }
+        if let Err(error) = run.advance() {
+            return Ending::Failed(error);
+        }
+        display.update(&run.progress());
+        if saved.elapsed() > SAVE_INTERVAL {
+            // The run can go on without this state; the final save reports what is wrong with the disk.
+            if let Err(error) = folder.save_state(run) {
+                warn(&error.to_string());
+            }
+            saved = Instant::now();
+        }
+    }
+    Ending::Complete
+}
+
+/// Says something on standard error, unless asked to be quiet.
+fn say(arguments: &RunArguments, text: &str) {
+    if !arguments.quiet {
+        warn(text);
+    }
+}
+
+#[allow(clippy::print_stderr)]
+fn warn(text: &str) {
+    eprintln!("{text}");
+}
+
+fn in_words(run: &Run, summary: &Summary) -> String {
+    let configuration = run.configuration();
+    let transition = match summary.transition_time {
+        Some(time) => format!(
+            "transition at t = {time:.1} ({:.1} periods): J/Jmax crosses {}",
+            time * configuration.drive.strain_rate,
+            summary.transition_threshold
+        ),
+        None => format!("no transition within {:.1} periods", summary.periods),
+    };
+    let mut flow = format!(
+        "J/Jmax = {:.4} ± {:.4}, mean of the last {:.0} %",
+        summary.flow_rate_ratio,
+        summary.flow_rate_ratio_error,
+        100.0 * configuration.observe.late_fraction
+    );
+    if let Some(newtonian) = summary.newtonian_flow_rate_ratio {
+        flow.push_str(&format!(" (a Newtonian fluid: {newtonian:.4})"));
+    }
+    let mut text = format!(
+        "{transition}\n{flow}\n{} grains, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} steps in {}: \
+         {:.2} million grain-steps/s\n",
+        summary.grains,
+        summary.escaped,
+        summary.largest_overlap,
+        summary.energy_residual,
+        summary.steps,
+        seconds(summary.seconds),
+        summary.grain_steps_per_second / 1e6
+    );
+    if let Some(diagnosis) = &summary.wall_diagnosis {
+        text.push_str(&format!("the wall: {diagnosis}\n"));
+    }
+    text
+}

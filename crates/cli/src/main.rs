@@ -1,0 +1,32 @@
+//! `peristalsis`: grains in a peristaltic tube, from the command line.
+//!
+//! Parses, calls, reports: this is the only crate that prints or exits. Results go to standard output, everything else
+//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130 and 143 stopped by a signal.
+
+mod arguments;
+mod commands;
+mod failure;
+mod progress;
+mod sources;
+mod stop;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use arguments::{Arguments, Command};
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let outcome = match arguments.command {
+        Command::Run(arguments) => commands::run::run(&arguments),
+        Command::Check(arguments) => commands::check::check(&arguments),
+        Command::Presets(arguments) => commands::presets::presets(&arguments),
+        Command::Schema => commands::schema::schema(),
+        Command::Completions(arguments) => commands::completions::completions(&arguments),
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(failure) => failure.report(),
+    }
+}

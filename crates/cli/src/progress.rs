@@ -1,0 +1,121 @@
+//! Progress on standard error: a bar on a terminal, plain lines on a pipe.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use peristalsis_run::Progress;
+
+/// Where progress goes.
+pub(crate) enum Display {
+    /// Nowhere.
+    Silent,
+    /// A bar that is redrawn.
+    Bar(ProgressBar),
+    /// A line now and then.
+    Lines {
+        /// When the last line was printed.
+        last: Instant,
+        /// Tenth of the run that it was printed in.
+        tenth: u64,
+    },
+}
+
+/// Redraws in a second.
+const REFRESH_RATE: u8 = 10;
+/// Time after which a line is printed even within the same tenth.
+const LINE_INTERVAL: Duration = Duration::from_secs(30);
+
+impl Display {
+    pub(crate) fn new(quiet: bool, samples: u64) -> Self {
+        if quiet {
+            return Self::Silent;
+        }
+        if !std::io::stderr().is_terminal() {
+            return Self::Lines {
+                last: Instant::now(),
+                tenth: 0,
+            };
+        }
+        let target = ProgressDrawTarget::stderr_with_hz(REFRESH_RATE);
+        let bar = ProgressBar::with_draw_target(Some(samples), target);
+        let style = ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]")
+            .expect("the template is a constant with known fields");
+        bar.set_style(style.progress_chars("━╸─"));
+        Self::Bar(bar)
+    }
+
+    /// Shows how far the run is.
+    pub(crate) fn update(&mut self, progress: &Progress) {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => {
+                bar.set_position(progress.samples);
+                bar.set_message(found(progress));
+            }
+            Self::Lines { last, tenth } => {
+                let now = 10 * progress.samples / progress.samples_total.max(1);
+                if now > *tenth || last.elapsed() > LINE_INTERVAL {
+                    *tenth = now;
+                    *last = Instant::now();
+                    print_line(progress);
+                }
+            }
+        }
+    }
+
+    /// Takes the bar away.
+    pub(crate) fn finish(&self) {
+        if let Self::Bar(bar) = self {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// What was found so far, in a few words.
+fn found(progress: &Progress) -> String {
+    let mut text = format!("t/T {:.1}", progress.period);
+    if progress.flow_rate_ratio.is_finite() {
+        text.push_str(&format!("  J/Jmax {:+.3}", progress.flow_rate_ratio));
+    }
+    if let Some(time) = progress.transition_time {
+        text.push_str(&format!("  transition at t = {time:.1}"));
+    }
+    text
+}
+
+#[allow(clippy::print_stderr)]
+fn print_line(progress: &Progress) {
+    let done = progress.samples as f64 / progress.samples_total.max(1) as f64;
+    let left = progress.elapsed.as_secs_f64() * (1.0 - done) / done;
+    eprintln!("{:3.0} %  {}  {} left", 100.0 * done, found(progress), seconds(left));
+}
+
+/// A time span in words: "12 s", "3 min 20 s", "2 h 05 min".
+pub(crate) fn seconds(span: f64) -> String {
+    let whole = span.max(0.0).round() as u64;
+    match whole {
+        0 if span > 0.0 => "less than 1 s".to_owned(),
+        0..60 => format!("{whole} s"),
+        60..3600 => format!("{} min {:02} s", whole / 60, whole % 60),
+        _ => format!("{} h {:02} min", whole / 3600, whole % 3600 / 60),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::seconds;
+
+    #[test]
+    fn time_spans_read_well() {
+        for (span, text) in [
+            (0.0, "0 s"),
+            (0.3, "less than 1 s"),
+            (12.4, "12 s"),
+            (200.0, "3 min 20 s"),
+            (7500.0, "2 h 05 min"),
+        ] {
+            assert_eq!(seconds(span), text);
+        }
+    }
+}

@@ -1,0 +1,43 @@
+//! Stops on request: Ctrl-C and SIGTERM end a run cleanly, a second one at once.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+
+use crate::failure::Failure;
+
+/// Watches for signals that ask to stop.
+pub(crate) struct Stop {
+    signal: Arc<AtomicUsize>,
+}
+
+/// Added to a signal's number in an exit code, by convention of the shell.
+const SIGNAL_BASE: u8 = 128;
+
+impl Stop {
+    /// Begins to watch.
+    pub(crate) fn watch() -> Result<Self, Failure> {
+        let signal = Arc::new(AtomicUsize::new(0));
+        let asked = Arc::new(AtomicBool::new(false));
+        for number in [SIGINT, SIGTERM] {
+            let code = i32::from(SIGNAL_BASE) + number;
+            // In this order: the first signal finds `asked` false, sets it and is noted; a second one exits.
+            signal_hook::flag::register_conditional_shutdown(number, code, Arc::clone(&asked))
+                .and_then(|_| signal_hook::flag::register(number, Arc::clone(&asked)))
+                .and_then(|_| {
+                    signal_hook::flag::register_usize(number, Arc::clone(&signal), number as usize)
+                })
+                .map_err(Failure::Signals)?;
+        }
+        Ok(Self { signal })
+    }
+
+    /// The exit code of the signal that asked to stop, if one did.
+    pub(crate) fn requested(&self) -> Option<u8> {
+        match self.signal.load(Ordering::Relaxed) {
+            0 => None,
+            number => Some(SIGNAL_BASE + number as u8),
+        }
+    }
+}

@@ -1,0 +1,301 @@
+//! A TOML text as a tree whose every value remembers where it was written.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::Arc;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{Problem, ProblemKind, Problems};
+use crate::source::{Origin, Source, SourceKind};
+
+/// Keys of a table.
+pub(crate) type Table = BTreeMap<String, Entry>;
+
+/// A key with its value and both their places.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) key: Origin,
+    pub(crate) item: Item,
+}
+
+/// A value with its place.
+#[derive(Clone, Debug)]
+pub(crate) struct Item {
+    pub(crate) origin: Origin,
+    pub(crate) node: Node,
+}
+
+/// A value.
+#[derive(Clone, Debug)]
+pub(crate) enum Node {
+    Table(Table),
+    Array(Vec<Item>),
+    Text(String),
+    Integer(i64),
+    Float(f64),
+    Boolean(bool),
+    /// A whole number beyond 64 bits, a float beyond the range of f64, a date: no key takes one.
+    Other(&'static str),
+}
+
+impl Node {
+    /// The kind of value in words.
+    pub(crate) fn description(&self) -> &'static str {
+        match self {
+            Self::Table(_) => "a table",
+            Self::Array(_) => "a list",
+            Self::Text(_) => "a text",
+            Self::Integer(_) => "a whole number",
+            Self::Float(_) => "a number",
+            Self::Boolean(_) => "true or false",
+            Self::Other(description) => description,
+        }
+    }
+}
+
+/// Parses a whole source; what is not TOML becomes a problem and an empty table.
+pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
+    match DeTable::parse(&source.text) {
+        Ok(table) => convert_table(source, table.get_ref()),
+        Err(error) => {
+            let origin = Origin {
+                source: Arc::clone(source),
+                span: error.span().unwrap_or_default(),
+            };
+            let message = format!("this is not TOML: {}", error.message().replace('\n', ", "));
+            let problem = Problem::new(ProblemKind::Syntax, message)
+                .at(&origin, "here")
+                .help("one `key = value` a line, tables as `[drive]`, text in double quotes");
+            problems.push(Some(&origin), problem);
+            Table::new()
+        }
+    }
+}
+
+/// Parses one override, `key=value`: the value is TOML, or a bare word that stands for a text.
+pub(crate) fn parse_override(text: &str, problems: &mut Problems) -> Table {
+    let source = Source::new(SourceKind::Override, Source::override_name(text), text);
+    let whole = Origin {
+        source: Arc::clone(&source),
+        span: 0..text.len(),
+    };
+    let usage = "write key=value, for example drive.width=2.7 or initial.state=jammed";
+    let refuse = |problems: &mut Problems, message: String| {
+        let problem = Problem::new(ProblemKind::Syntax, message)
+            .at(&whole, "this override")
+            .help(usage);
+        problems.push(Some(&whole), problem);
+        Table::new()
+    };
+    let Some((key, value)) = text.split_once('=') else {
+        return refuse(problems, format!("an override needs a `=`: {text:?}"));
+    };
+    if text.contains(['\n', '\r']) || key.contains(['[', '#']) {
+        return refuse(
+            problems,
+            format!("an override is one key and one value: {text:?}"),
+        );
+    }
+    let word = value.trim();
+    let parsed = match DeTable::parse(text) {
+        Ok(table) => Ok(convert_table(&source, table.get_ref())),
+        Err(error) if is_bare_word(word) => {
+            // The key alone is TOML with an empty text for value, which the word then replaces.
+            let with_empty_text = format!("{key}=\"\"");
+            let start = key.len() + 1 + (value.len() - value.trim_start().len());
+            DeTable::parse(&with_empty_text)
+                .map(|table| {
+                    let mut table = convert_table(&source, table.get_ref());
+                    replace_leaf(&mut table, word, start..start + word.len());
+                    table
+                })
+                .map_err(|_| error)
+        }
+        Err(error) => Err(error),
+    };
+    match parsed {
+        Ok(table) => table,
+        Err(error) => {
+            let message = format!("this override is not `key=value`: {}", error.message());
+            refuse(problems, message.replace('\n', ", "))
+        }
+    }
+}
+
+/// Letters, digits, `_` and `-`, beginning with a letter: a name that needs no quotes on the command line.
+fn is_bare_word(word: &str) -> bool {
+    word.starts_with(|first: char| first.is_ascii_alphabetic())
+        && word
+            .chars()
+            .all(|letter| letter.is_ascii_alphanumeric() || "_-".contains(letter))
+}
+
+/// Replaces the value at the end of a chain of tables with one key each.
+fn replace_leaf(table: &mut Table, word: &str, span: Range<usize>) {
+    let Some(entry) = table.values_mut().next() else {
+        return;
+    };
+    if let Node::Table(inner) = &mut entry.item.node {
+        return replace_leaf(inner, word, span);
+    }
+    entry.item.node = Node::Text(word.to_owned());
+    entry.item.origin.span = span;
+}
+
+fn convert_table(source: &Arc<Source>, table: &DeTable<'_>) -> Table {
+    let entries = table.iter().map(|(key, value)| {
+        let entry = Entry {
+            key: Origin {
+                source: Arc::clone(source),
+                span: key.span(),
+            },
+            item: convert(source, value),
+        };
+        (key.get_ref().to_string(), entry)
+    });
+    entries.collect()
+}
+
+fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
+    let node = match value.get_ref() {
+        DeValue::String(text) => Node::Text(text.to_string()),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).map_or(
+            Node::Other("a whole number of more than 63 bits"),
+            Node::Integer,
+        ),
+        DeValue::Float(float) => match float.as_str().parse::<f64>() {
+            // A literal too large for f64 reads as infinite; no key takes either.
+            Ok(number) => Node::Float(number),
+            Err(_) => Node::Other("a number that cannot be read"),
+        },
+        DeValue::Boolean(boolean) => Node::Boolean(*boolean),
+        DeValue::Datetime(_) => Node::Other("a date"),
+        DeValue::Array(items) => {
+            Node::Array(items.iter().map(|item| convert(source, item)).collect())
+        }
+        DeValue::Table(table) => Node::Table(convert_table(source, table)),
+    };
+    Item {
+        origin: Origin {
+            source: Arc::clone(source),
+            span: value.span(),
+        },
+        node,
+    }
+}
+
+/// The entry at a dotted path.
+pub(crate) fn entry<'a>(table: &'a Table, path: &str) -> Option<&'a Entry> {
+    match path.split_once('.') {
+        None => table.get(path),
+        Some((first, rest)) => match &table.get(first)?.item.node {
+            Node::Table(inner) => entry(inner, rest),
+            _ => None,
+        },
+    }
+}
+
+/// Takes the entry at a dotted path out; tables left empty stay.
+pub(crate) fn remove(table: &mut Table, path: &str) -> Option<Entry> {
+    match path.split_once('.') {
+        None => table.remove(path),
+        Some((first, rest)) => match &mut table.get_mut(first)?.item.node {
+            Node::Table(inner) => remove(inner, rest),
+            _ => None,
+        },
+    }
+}
+
+/// The text at a dotted path, if it is one.
+pub(crate) fn text<'a>(table: &'a Table, path: &str) -> Option<&'a str> {
+    match &entry(table, path)?.item.node {
+        Node::Text(text) => Some(text),
+        _ => None,
+    }
+}
+
+/// The tree as a plain TOML table, for serde.
+pub(crate) fn to_toml(table: &Table) -> toml::Table {
+    table
+        .iter()
+        .map(|(key, entry)| (key.clone(), to_value(&entry.item.node)))
+        .collect()
+}
+
+fn to_value(node: &Node) -> toml::Value {
+    match node {
+        Node::Table(table) => toml::Value::Table(to_toml(table)),
+        Node::Array(items) => {
+            toml::Value::Array(items.iter().map(|item| to_value(&item.node)).collect())
+        }
+        Node::Text(text) => toml::Value::String(text.clone()),
+        Node::Integer(integer) => toml::Value::Integer(*integer),
+        Node::Float(number) => toml::Value::Float(*number),
+        Node::Boolean(boolean) => toml::Value::Boolean(*boolean),
+        // Refused before serde sees it.
+        Node::Other(description) => toml::Value::String((*description).to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn override_table(text: &str) -> Result<Table, String> {
+        let mut problems = Problems::default();
+        let table = parse_override(text, &mut problems);
+        problems
+            .check()
+            .map(|()| table)
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn overrides_read_toml_and_bare_words() {
+        let table = override_table("initial.state = jammed").unwrap();
+        let state = entry(&table, "initial.state").unwrap();
+        assert!(matches!(&state.item.node, Node::Text(text) if text == "jammed"));
+        assert_eq!(state.item.origin.text(), "jammed");
+        let table = override_table("drive.width=2.5").unwrap();
+        let width = entry(&table, "drive.width").unwrap();
+        assert!(matches!(width.item.node, Node::Float(2.5)));
+        assert_eq!(width.item.origin.text(), "2.5");
+        let table = override_table("wall.keep.balance=true").unwrap();
+        let balance = entry(&table, "wall.keep.balance").unwrap();
+        assert!(matches!(balance.item.node, Node::Boolean(true)));
+    }
+
+    #[test]
+    fn what_is_no_override_is_refused() {
+        for text in [
+            "drive.width",
+            "=3",
+            "[drive]\nwidth=3",
+            "#a=b",
+            "a=",
+            "a=1 2",
+            "a=b c",
+            "",
+        ] {
+            let message = override_table(text).unwrap_err();
+            assert!(message.contains("key=value"), "{text:?}: {message}");
+        }
+    }
+
+    #[test]
+    fn places_are_kept_through_tables_and_dots() {
+        let mut problems = Problems::default();
+        let text = "a.b = 1\n[c]\nd = [2, 3]\n";
+        let source = Source::new(SourceKind::File, "x.toml", text);
+        let table = parse(&source, &mut problems);
+        assert_eq!(entry(&table, "a.b").unwrap().item.origin.span, 6..7);
+        assert_eq!(entry(&table, "a.b").unwrap().key.text(), "b");
+        let list = &entry(&table, "c.d").unwrap().item;
+        let Node::Array(items) = &list.node else {
+            panic!("a list")
+        };
+        assert_eq!(items[1].origin.text(), "3");
+    }
+}

@@ -1,0 +1,194 @@
+//! What is wrong with a configuration: message, key, what is allowed, and where it was written.
+
+use std::fmt;
+use std::ops::Range;
+use std::sync::Arc;
+
+use crate::source::{Origin, Source, SourceKind, line_and_column};
+
+/// Everything that was found wrong with a configuration, in the order of the texts.
+///
+/// `Display` is complete in itself: one paragraph a problem, with source, line, column, message and help.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", paragraphs(problems))]
+pub struct ConfigurationError {
+    problems: Vec<Problem>,
+}
+
+impl ConfigurationError {
+    /// `problems` is not empty.
+    pub(crate) fn new(problems: Vec<Problem>) -> Self {
+        debug_assert!(!problems.is_empty(), "an error has at least one problem");
+        Self { problems }
+    }
+
+    /// The problems, at least one.
+    #[must_use]
+    pub fn problems(&self) -> &[Problem] {
+        &self.problems
+    }
+}
+
+fn paragraphs(problems: &[Problem]) -> String {
+    problems
+        .iter()
+        .map(ToString::to_string)
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// The kind of a [`Problem`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// A text is not TOML, or an override is not `key=value`.
+    Syntax,
+    /// A key that does not exist.
+    UnknownKey,
+    /// A value of the wrong type, or a name that is not one of those allowed.
+    WrongType,
+    /// A value outside the range of its key.
+    OutOfRange,
+    /// Keys that exclude one another.
+    Conflict,
+    /// A key that is needed and not given.
+    Missing,
+    /// Values that are possible alone but not together.
+    Inconsistent,
+    /// A preset that does not exist, or two that are named.
+    Preset,
+}
+
+/// One thing wrong with a configuration.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", paragraph(self))]
+pub struct Problem {
+    /// What sort of problem.
+    pub kind: ProblemKind,
+    /// What is wrong, in one sentence.
+    pub message: String,
+    /// Full name of the key, such as `drive.width`; of several the first.
+    pub key: Option<String>,
+    /// What is allowed, or how to mend it.
+    pub help: Option<String>,
+    /// Where it was written, the main place first; empty if nowhere (a missing key).
+    pub labels: Vec<Label>,
+}
+
+/// A place in a text that a problem has to do with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// Name of the file, `preset NAME`, or `--set KEY=VALUE`.
+    pub source_name: Arc<str>,
+    /// The whole text of the source.
+    pub source_text: Arc<str>,
+    /// Bytes of `source_text`; always within it and on character boundaries.
+    pub span: Range<usize>,
+    /// What to say of this place.
+    pub message: String,
+}
+
+impl Label {
+    pub(crate) fn new(origin: &Origin, message: impl Into<String>) -> Self {
+        let text = &origin.source.text;
+        let boundary = |mut byte: usize| {
+            byte = byte.min(text.len());
+            while !text.is_char_boundary(byte) {
+                byte -= 1;
+            }
+            byte
+        };
+        let (start, end) = (boundary(origin.span.start), boundary(origin.span.end));
+        Self {
+            source_name: Arc::clone(&origin.source.name),
+            source_text: Arc::clone(text),
+            span: start..end.max(start),
+            message: message.into(),
+        }
+    }
+
+    /// Line and column of the place, both from 1.
+    #[must_use]
+    pub fn line_and_column(&self) -> (usize, usize) {
+        line_and_column(&self.source_text, self.span.start)
+    }
+}
+
+impl fmt::Display for Label {
+    /// `name:line:column`, or the name alone for an override, which is its own text.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if *self.source_name == Source::override_name(&self.source_text) {
+            return formatter.write_str(&self.source_name);
+        }
+        let (line, column) = self.line_and_column();
+        write!(formatter, "{}:{line}:{column}", self.source_name)
+    }
+}
+
+fn paragraph(problem: &Problem) -> String {
+    let mut text = match problem.labels.first() {
+        Some(label) => format!("{label}: {}", problem.message),
+        None => problem.message.clone(),
+    };
+    for label in problem.labels.iter().skip(1) {
+        text.push_str(&format!("\n  {label}: {}", label.message));
+    }
+    if let Some(help) = &problem.help {
+        text.push_str(&format!("\n  help: {help}"));
+    }
+    text
+}
+
+impl Problem {
+    pub(crate) fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
+        Self {
+            kind,
+            message: message.into(),
+            key: None,
+            help: None,
+            labels: Vec::new(),
+        }
+    }
+
+    pub(crate) fn key(mut self, key: impl Into<String>) -> Self {
+        self.key = Some(key.into());
+        self
+    }
+
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(crate) fn at(mut self, origin: &Origin, message: impl Into<String>) -> Self {
+        self.labels.push(Label::new(origin, message));
+        self
+    }
+}
+
+/// Problems found so far, with their place in the order of the texts.
+#[derive(Debug, Default)]
+pub(crate) struct Problems {
+    found: Vec<((SourceKind, usize), Problem)>,
+}
+
+impl Problems {
+    /// Adds a problem at a place that orders it among the others.
+    pub(crate) fn push(&mut self, place: Option<&Origin>, problem: Problem) {
+        let order = place.map_or((SourceKind::Override, usize::MAX), |origin| {
+            (origin.source.kind, origin.span.start)
+        });
+        self.found.push((order, problem));
+    }
+
+    /// `Ok` without problems, else all of them as one error.
+    pub(crate) fn check(&mut self) -> Result<(), ConfigurationError> {
+        if self.found.is_empty() {
+            return Ok(());
+        }
+        let mut found = std::mem::take(&mut self.found);
+        found.sort_by_key(|(order, _)| *order);
+        Err(ConfigurationError::new(
+            found.into_iter().map(|(_, problem)| problem).collect(),
+        ))
+    }
+}

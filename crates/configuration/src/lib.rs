@@ -1,0 +1,53 @@
+//! What to run: TOML, presets and overrides in, one validated and resolved [`Configuration`] out.
+//!
+//! Three layers lie over one another: a preset, a file, `key=value` overrides. Each value remembers where it was
+//! written, so that every error names its key and points at source, line and column ([`ConfigurationError`]). Of
+//! alternatives (say width or amplitude) a layer gives one, which replaces the choice of the layers below; keys that a
+//! higher layer's choice has made meaningless (a width, once the tube is stress-controlled) are dropped.
+//!
+//! The keys are typed once, in `keys.rs`: their documentation, units, defaults and ranges become the JSON
+//! [`schema`], and the reader refuses what the schema refuses before it looks at what keys mean together.
+//!
+//! ```
+//! use peristalsis_configuration::{Configuration, Sources};
+//!
+//! let configuration = Configuration::from_sources(&Sources {
+//!     file: None,
+//!     preset: Some("frictionless"),
+//!     overrides: &["drive.width=2.7".into(), "initial.state=jammed".into()],
+//! })?;
+//! // rho = N/(6 a^2 L): N = round(6 * 0.15 * 1.5^2 * 100)
+//! assert_eq!(configuration.grains.number, 203);
+//! # Ok::<(), peristalsis_configuration::ConfigurationError>(())
+//! ```
+
+mod canonical;
+mod configuration;
+mod contract;
+pub mod defaults;
+mod document;
+mod entries;
+mod error;
+mod keys;
+mod layers;
+mod options;
+mod presets;
+mod resolve;
+mod schedule;
+mod schema;
+mod source;
+mod suggestion;
+
+pub use configuration::{
+    Configuration, Contact, Control, Drive, ElasticWall, Friction, Grains, Initial, NormalLaw,
+    Observe, Run, Tube, Wall, WallKeep,
+};
+pub use error::{ConfigurationError, Label, Problem, ProblemKind};
+pub use options::{
+    DissipationForm, DriveAngle, InitialState, Integrator, NetForce, Sliding, WaveDirection,
+    Waveform,
+};
+pub use presets::{PRESETS, Preset, preset};
+pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
+pub use schema::schema;
+pub use source::{SourceFile, Sources};

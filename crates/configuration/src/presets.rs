@@ -1,0 +1,37 @@
+//! The presets: complete configurations to start from.
+
+/// A configuration by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Name, as `--preset` and `preset = "..."` take it.
+    pub name: &'static str,
+    /// What it shows, in one sentence.
+    pub summary: &'static str,
+    /// TOML with comments.
+    pub text: &'static str,
+}
+
+/// All presets.
+pub const PRESETS: &[Preset] = &[
+    Preset {
+        name: "frictionless",
+        summary: "Frictionless grains in a prescribed wall with a coarse lattice: from rest, jams within the run.",
+        text: include_str!("../presets/frictionless.toml"),
+    },
+    Preset {
+        name: "frictionless-fine",
+        summary: "The same with a fine, nearly smooth lattice of wall spheres.",
+        text: include_str!("../presets/frictionless-fine.toml"),
+    },
+    Preset {
+        name: "frictional",
+        summary: "Frictional grains in an elastic wall driven by a travelling force: jammed flow that gives way.",
+        text: include_str!("../presets/frictional.toml"),
+    },
+];
+
+/// The preset of a name.
+#[must_use]
+pub fn preset(name: &str) -> Option<&'static Preset> {
+    PRESETS.iter().find(|preset| preset.name == name)
+}

@@ -1,0 +1,137 @@
+//! Parameters of the drive that follow time.
+
+use serde::Serialize;
+
+/// A parameter of the drive that may follow a schedule.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ScheduledParameter {
+    /// w \[d\], strain control.
+    Width,
+    /// f^P \[m d t^-2\], stress control.
+    ForceAmplitude,
+    /// c/lambda \[t^-1\].
+    StrainRate,
+}
+
+/// The course of one parameter of the drive in time; times in periods of the drive's own strain rate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Schedule {
+    /// What follows the schedule.
+    pub parameter: ScheduledParameter,
+    /// How.
+    pub form: ScheduleForm,
+    /// The parameter's own value, which holds before the first step.
+    pub(crate) before: f64,
+}
+
+/// Form of a [`Schedule`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScheduleForm {
+    /// `from` until `start`, then linear in time to `to` at `end`, `to` from there on.
+    Ramp {
+        /// First value.
+        from: f64,
+        /// Last value.
+        to: f64,
+        /// Begin, in periods, 0 or more.
+        start: f64,
+        /// End, in periods, after the begin.
+        end: f64,
+    },
+    /// Each value from its time on.
+    Steps {
+        /// (time in periods, value), times ascending, at least one.
+        steps: Vec<(f64, f64)>,
+    },
+}
+
+impl Schedule {
+    /// The course as knots (time in periods, value): linear between knots, constant before the first and after the last;
+    /// of two knots at one time the later holds from then on.
+    #[must_use]
+    pub fn knots(&self) -> Vec<(f64, f64)> {
+        match &self.form {
+            ScheduleForm::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => vec![(*start, *from), (*end, *to)],
+            ScheduleForm::Steps { steps } => {
+                let mut knots = Vec::with_capacity(2 * steps.len());
+                let mut last = self.before;
+                for &(time, value) in steps {
+                    knots.extend([(time, last), (time, value)]);
+                    last = value;
+                }
+                knots
+            }
+        }
+    }
+
+    /// Value at a time in periods.
+    #[must_use]
+    pub fn value(&self, periods: f64) -> f64 {
+        match &self.form {
+            ScheduleForm::Ramp {
+                from,
+                to,
+                start,
+                end,
+            } => {
+                let progress = ((periods - start) / (end - start)).clamp(0.0, 1.0);
+                from + (to - from) * progress
+            }
+            ScheduleForm::Steps { steps } => {
+                let passed = steps.partition_point(|(time, _)| *time <= periods);
+                passed
+                    .checked_sub(1)
+                    .map_or(self.before, |last| steps[last].1)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ramp_is_linear_between_its_ends() {
+        let form = ScheduleForm::Ramp {
+            from: 3.0,
+            to: 2.0,
+            start: 1.0,
+            end: 5.0,
+        };
+        let ramp = Schedule {
+            parameter: ScheduledParameter::Width,
+            form,
+            before: 2.5,
+        };
+        for (time, value) in [(0.0, 3.0), (1.0, 3.0), (3.0, 2.5), (5.0, 2.0), (9.0, 2.0)] {
+            assert_eq!(ramp.value(time), value, "at {time}");
+        }
+        assert_eq!(ramp.knots(), [(1.0, 3.0), (5.0, 2.0)]);
+    }
+
+    #[test]
+    fn steps_hold_from_their_time_on() {
+        let form = ScheduleForm::Steps {
+            steps: vec![(1.0, 3.0), (2.0, 4.0)],
+        };
+        let steps = Schedule {
+            parameter: ScheduledParameter::Width,
+            form,
+            before: 2.5,
+        };
+        for (time, value) in [(0.0, 2.5), (1.0, 3.0), (1.5, 3.0), (2.0, 4.0), (7.0, 4.0)] {
+            assert_eq!(steps.value(time), value, "at {time}");
+        }
+        assert_eq!(
+            steps.knots(),
+            [(1.0, 2.5), (1.0, 3.0), (2.0, 3.0), (2.0, 4.0)]
+        );
+    }
+}

@@ -1,0 +1,240 @@
+//! The JSON schema of a configuration, made from the keys and tidied for TOML.
+
+use std::sync::OnceLock;
+
+use schemars::generate::SchemaSettings;
+use serde_json::{Map, Value, json};
+
+use crate::keys::Keys;
+use crate::layers::ALTERNATIVES;
+use crate::presets::PRESETS;
+
+/// JSON schema (draft 2020-12) of a configuration file.
+///
+/// Every key has a description with its unit, its default, its range or its names; no other key is allowed. It says
+/// what a file may hold; what values must be together is the reader's to check.
+#[must_use]
+pub fn schema() -> Value {
+    cached().clone()
+}
+
+pub(crate) fn cached() -> &'static Value {
+    static SCHEMA: OnceLock<Value> = OnceLock::new();
+    SCHEMA.get_or_init(build)
+}
+
+fn build() -> Value {
+    let settings = SchemaSettings::draft2020_12().with(|settings| {
+        settings.inline_subschemas = true;
+    });
+    let mut schema = settings
+        .into_generator()
+        .into_root_schema_for::<Keys>()
+        .to_value();
+    tidy(&mut schema);
+    schema["title"] = json!("peristalsis configuration");
+    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    schema["properties"]["preset"] = json!({
+        "type": "string",
+        "enum": names,
+        "description": "Preset that this file builds on; the file's own keys replace the preset's.",
+    });
+    schema["properties"]["resolved"] = json!({
+        "type": "object",
+        "description": "Values derived from the keys, as a run's record states them. Read and ignored.",
+    });
+    for group in ALTERNATIVES {
+        exclude_one_another(&mut schema, group);
+    }
+    schema
+}
+
+/// Makes what schemars writes fit TOML: no null, text without line breaks, units in the description.
+fn tidy(schema: &mut Value) {
+    match schema {
+        Value::Array(items) => items.iter_mut().for_each(tidy),
+        Value::Object(object) => {
+            remove_null(object);
+            object.remove("format");
+            let unit = object
+                .get("x-unit")
+                .and_then(Value::as_str)
+                .map(str::to_owned);
+            if let Some(Value::String(description)) = object.get_mut("description") {
+                *description = description.replace('\n', " ");
+                match unit.as_deref() {
+                    None => {}
+                    Some("1") => description.push_str(" (A pure number.)"),
+                    Some(unit) => description.push_str(&format!(" (Unit: {unit}.)")),
+                }
+            }
+            // A key without a default has none, and that of a whole table is the sum of those of its keys.
+            if object
+                .get("default")
+                .is_some_and(|value| value.is_object() || value.is_null())
+            {
+                object.remove("default");
+            }
+            object.values_mut().for_each(tidy);
+        }
+        _ => {}
+    }
+}
+
+/// Removes the alternative null of an optional key: TOML has none.
+fn remove_null(object: &mut Map<String, Value>) {
+    if let Some(Value::Array(types)) = object.get_mut("type") {
+        types.retain(|kind| kind != "null");
+        if let [kind] = types.as_slice() {
+            let kind = kind.clone();
+            object.insert("type".into(), kind);
+        }
+    }
+    if let Some(Value::Array(names)) = object.get_mut("enum") {
+        names.retain(|name| !name.is_null());
+    }
+    let Some(Value::Array(mut branches)) = object.remove("anyOf") else {
+        return;
+    };
+    branches.retain(|branch| branch.get("type").is_none_or(|kind| kind != "null"));
+    if let [Value::Object(_)] = branches.as_slice() {
+        let Some(Value::Object(only)) = branches.pop() else {
+            return;
+        };
+        for (key, value) in only {
+            // The key's own description is nearer to the reader than its type's.
+            object.entry(key).or_insert(value);
+        }
+        // The branch may itself be a choice with a null in it.
+        remove_null(object);
+    } else {
+        object.insert("anyOf".into(), Value::Array(branches));
+    }
+}
+
+fn exclude_one_another(schema: &mut Value, group: &[&str]) {
+    let pairs = group.iter().enumerate().flat_map(|(index, one)| {
+        group[index + 1..]
+            .iter()
+            .map(move |other| (last_name(one), last_name(other)))
+    });
+    let refused: Vec<Value> = pairs
+        .map(|(one, other)| json!({"not": {"required": [one, other]}}))
+        .collect();
+    let table = group[0].split('.').next().unwrap_or_default();
+    let object = &mut schema["properties"][table];
+    match object.get_mut("allOf") {
+        Some(Value::Array(all)) => all.extend(refused),
+        _ => object["allOf"] = Value::Array(refused),
+    }
+}
+
+fn last_name(key: &str) -> &str {
+    key.rsplit('.').next().unwrap_or(key)
+}
+
+/// Full names of all keys and tables, from the schema.
+pub(crate) fn known_keys() -> &'static [String] {
+    static KEYS: OnceLock<Vec<String>> = OnceLock::new();
+    KEYS.get_or_init(|| {
+        let mut keys = Vec::new();
+        collect_keys(cached(), "", &mut keys);
+        keys
+    })
+}
+
+fn collect_keys(schema: &Value, path: &str, keys: &mut Vec<String>) {
+    if let Some(Value::Object(properties)) = schema.get("properties") {
+        for (name, inner) in properties {
+            let full = if path.is_empty() {
+                name.clone()
+            } else {
+                format!("{path}.{name}")
+            };
+            collect_keys(inner, &full, keys);
+            keys.push(full);
+        }
+    }
+    if let Some(Value::Array(branches)) = schema.get("anyOf") {
+        branches
+            .iter()
+            .for_each(|branch| collect_keys(branch, path, keys));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every leaf of the schema with its full name.
+    fn leaves(schema: &Value, path: &str, found: &mut Vec<(String, Value)>) {
+        let Some(Value::Object(properties)) = schema.get("properties") else {
+            return found.push((path.to_owned(), schema.clone()));
+        };
+        for (name, inner) in properties {
+            leaves(inner, &format!("{path}.{name}"), found);
+        }
+    }
+
+    #[test]
+    fn every_key_is_described_and_every_number_has_a_unit_and_a_range() {
+        let mut found = Vec::new();
+        leaves(cached(), "", &mut found);
+        assert!(found.len() > 50, "{} keys", found.len());
+        for (path, leaf) in found {
+            let description = leaf["description"].as_str().unwrap_or_default();
+            assert!(description.len() > 10, "{path}: {leaf}");
+            if leaf["type"] == "number" || leaf["type"] == "integer" {
+                assert!(leaf["x-unit"].is_string(), "{path}: {leaf}");
+                let bounded = leaf.get("minimum").or(leaf.get("exclusiveMinimum"));
+                assert!(bounded.is_some(), "{path}: {leaf}");
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_nullable_and_no_table_is_open() {
+        let text = cached().to_string();
+        assert!(!text.contains("null"), "{text}");
+        let schema = cached();
+        assert_eq!(schema["additionalProperties"], json!(false));
+        for table in [
+            "grains", "contact", "tube", "drive", "wall", "initial", "run", "observe",
+        ] {
+            assert_eq!(
+                schema["properties"][table]["additionalProperties"],
+                json!(false)
+            );
+        }
+    }
+
+    #[test]
+    fn names_defaults_and_known_keys() {
+        let schema = cached();
+        let sliding = &schema["properties"]["contact"]["properties"]["sliding"];
+        let names: Vec<&Value> = sliding["oneOf"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|one| &one["const"])
+            .collect();
+        assert_eq!(names, ["spring", "balance", "literal"]);
+        assert_eq!(sliding["default"], "spring");
+        let step = &schema["properties"]["run"]["properties"]["time_step"];
+        assert_eq!(step["default"], json!(0.05));
+        assert!(
+            step["description"]
+                .as_str()
+                .unwrap()
+                .ends_with("(Unit: t.)")
+        );
+        for key in [
+            "drive.width",
+            "wall.keep.net_force",
+            "drive.schedule.form",
+            "preset",
+        ] {
+            assert!(known_keys().iter().any(|known| known == key), "{key}");
+        }
+    }
+}

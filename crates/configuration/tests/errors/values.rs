@@ -1,0 +1,289 @@
+//! What is wrong with values together: widths, lattices, sizes, times, schedules.
+
+use peristalsis_configuration::ProblemKind;
+
+use crate::{FILE, expect, only_problem, problem_with, read};
+
+#[test]
+fn a_width_beyond_the_tube() {
+    let problem = problem_with("width = 2.75", "width = 3.0000001");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "drive.width",
+        13,
+        "2 tube.radius = 3",
+    );
+    assert!(read(&FILE.replace("width = 2.75", "width = 3.0"), &[]).is_ok());
+    assert!(read(&FILE.replace("width = 2.75", "width = 0"), &[]).is_ok());
+    let problem = problem_with("width = 2.75", "amplitude = 1.6");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "drive.amplitude",
+        13,
+        "tube.radius = 1.5",
+    );
+}
+
+#[test]
+fn an_odd_number_of_rings_names_its_neighbours() {
+    let problem = problem_with("rings_per_wave = 14", "rings_per_wave = 23");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "tube.rings_per_wave",
+        10,
+        "take 22 or 24",
+    );
+    let stress = FILE
+        .replace("control = \"strain\"", "control = \"stress\"")
+        .replace("width = 2.75", "force_amplitude = 0.004")
+        .replace("rings_per_wave = 14", "rings_per_wave = 23");
+    assert!(read(&stress, &[]).is_ok());
+    let problem = only_problem(read(&stress.replace("waves = 10", "waves = 3"), &[]));
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "tube.rings_per_wave",
+        10,
+        "waves = 2 or 4",
+    );
+    assert!(
+        problem
+            .help
+            .unwrap_or_default()
+            .contains("rings_per_wave = 22 or 24")
+    );
+    assert_eq!(problem.labels[1].line_and_column().0, 8);
+}
+
+#[test]
+fn numbers_of_grains_and_wall_spheres_beyond_reach() {
+    let problem = problem_with("volume_fraction = 0.15", "number = 900000000000");
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "grains.number",
+        2,
+        "at most 1e8",
+    );
+    let huge = FILE.replace("radius = 1.5", "radius = 1e5");
+    let problem = only_problem(read(&huge, &[]));
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "grains.volume_fraction",
+        2,
+        "100000000 grains",
+    );
+    let problem = only_problem(read(
+        &FILE
+            .replace("volume_fraction = 0.15", "number = 5")
+            .replace("spheres_per_ring = 12", "spheres_per_ring = 1000000")
+            .replace("rings_per_wave = 14", "rings_per_wave = 1000000"),
+        &[],
+    ));
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "tube.waves",
+        8,
+        "at most 1000000000",
+    );
+    let none = read(&FILE.replace("volume_fraction = 0.15", "number = 0"), &[]).unwrap();
+    assert_eq!(none.grains.number, 0);
+}
+
+#[test]
+fn friction_and_diameters_in_the_wrong_order() {
+    let problem = problem_with(
+        "law = \"linear\"",
+        "law = \"linear\"\nstatic_friction = 0.3\nkinetic_friction = 0.4",
+    );
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "contact.kinetic_friction",
+        6,
+        "to at most 0.3",
+    );
+    let problem = problem_with("volume_fraction = 0.15", "number = 9\ndiameter_min = 1.2");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "grains.diameter_min",
+        3,
+        "give both",
+    );
+    let hertz = "law = \"hertz\"\npoisson_ratio = 0.51";
+    let problem = problem_with("law = \"linear\"", hertz);
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "contact.poisson_ratio",
+        5,
+        "above -1, at most 0.5",
+    );
+}
+
+#[test]
+fn a_tube_that_closes_on_itself() {
+    let text = FILE
+        .replace("wavelength = 10.0", "wavelength = 2.0")
+        .replace("waves = 10", "waves = 1");
+    let problem = only_problem(read(&text, &[]));
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "tube.wavelength",
+        7,
+        "L above 2",
+    );
+    assert!(problem.message.contains("a tube that closes on itself"));
+}
+
+#[test]
+fn a_static_wave_needs_a_duration() {
+    let problem = problem_with("strain_rate = 0.05", "strain_rate = 0");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "run.periods",
+        16,
+        "run.duration",
+    );
+    let text = FILE.replace("strain_rate = 0.05", "wave_speed = 0");
+    let still = read(&text, &["run.duration=100"]).unwrap();
+    assert_eq!((still.run.periods, still.run.duration), (None, 100.0));
+    assert_eq!((still.run.samples, still.run.steps_per_sample), (200, 10));
+    let problem = only_problem(read(
+        &text,
+        &["run.duration=100", "drive.schedule={form='ramp',end=2}"],
+    ));
+    assert!(
+        problem.message.contains("a static wave has none"),
+        "{problem}"
+    );
+}
+
+#[test]
+fn runs_beyond_reach() {
+    let problem = problem_with("periods = 40", "periods = 1e9");
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "run.periods",
+        16,
+        "1e8 samples",
+    );
+    let problem = problem_with("periods = 40", "periods = 40\ntime_step = 1e-300");
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "run.periods",
+        16,
+        "run.time_step",
+    );
+    let problem = problem_with("strain_rate = 0.05", "strain_rate = 5e-324");
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "run.periods",
+        16,
+        "a shorter run",
+    );
+}
+
+#[test]
+fn schedules_are_checked_at_all_times() {
+    let cases = [
+        ("form = 'ramp', to = 3.5, end = 2", "width = 3.5 is above 3"),
+        (
+            "form = 'ramp', parameter = 'amplitude', from = 1.6, end = 2",
+            "amplitude = 1.6 is above",
+        ),
+        (
+            "form = 'ramp', start = 3, end = 3",
+            "not after its start at 3",
+        ),
+        ("form = 'ramp'", "needs its end"),
+        ("form = 'ramp', at = [1], end = 2", "not at and values"),
+        (
+            "form = 'steps', at = [0, 1], values = [2.5]",
+            "2 times in at, but 1 values",
+        ),
+        (
+            "form = 'steps', at = [1, 1], values = [2.5, 2.6]",
+            "do not ascend",
+        ),
+        (
+            "form = 'steps', at = [1], values = [9.0]",
+            "width = 9 is above 3",
+        ),
+        ("form = 'steps', at = [1]", "need both"),
+        (
+            "form = 'ramp', parameter = 'force_amplitude', end = 2",
+            "drive.control = \"stress\"",
+        ),
+    ];
+    for (table, message) in cases {
+        let schedule = format!("width = 2.75\nschedule = {{ {table} }}");
+        let problem = problem_with("width = 2.75", &schedule);
+        expect(
+            &problem,
+            ProblemKind::Inconsistent,
+            "drive.schedule",
+            14,
+            "for example",
+        );
+        assert!(problem.message.contains(message), "{problem}");
+    }
+    let twice = "width = 2.75\nschedule = [{ form = 'ramp', end = 2 }, { form = 'ramp', parameter = 'amplitude', end = 3 }]";
+    let problem = problem_with("width = 2.75", twice);
+    assert!(
+        problem.message.contains("two schedules for one parameter"),
+        "{problem}"
+    );
+    let problem = problem_with("width = 2.75", "width = 2.75\nschedule = \"steps\"");
+    expect(
+        &problem,
+        ProblemKind::WrongType,
+        "drive.schedule",
+        14,
+        "\"sudden\", \"ramp\"",
+    );
+    let problem = problem_with("width = 2.75", "width = 2.75\nschedule = { end = 2 }");
+    expect(
+        &problem,
+        ProblemKind::Missing,
+        "drive.schedule.form",
+        14,
+        "\"ramp\", \"steps\"",
+    );
+    let problem = problem_with("width = 2.75", "width = 2.75\nschedule = \"ramp\"");
+    expect(
+        &problem,
+        ProblemKind::Missing,
+        "drive.schedule",
+        14,
+        "drive.ramp_periods = 2",
+    );
+    let problem = problem_with("width = 2.75", "width = 2.75\nramp_periods = 2");
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "drive.ramp_periods",
+        14,
+        "schedule = \"ramp\"",
+    );
+    let items = "width = 2.75\nschedule = { form = 'steps', at = [-1.0], values = [2.5] }";
+    let problem = problem_with("width = 2.75", items);
+    expect(
+        &problem,
+        ProblemKind::OutOfRange,
+        "drive.schedule.at[0]",
+        14,
+        "0 or more",
+    );
+}

@@ -1,0 +1,333 @@
+//! An axis: which values it spans, where a value lies on it, and which ticks it bears.
+
+use crate::style::{MAJOR_TICK, MINOR_TICK};
+
+/// How values are spread along an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scale {
+    /// Equal steps for equal differences.
+    #[default]
+    Linear,
+    /// Equal steps for equal ratios; only positive values have a place.
+    Logarithmic,
+}
+
+/// A span of values with a scale.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Axis {
+    scale: Scale,
+    least: f64,
+    largest: f64,
+}
+
+/// A tick with its length and, on major ticks, its label in markup.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tick {
+    pub(crate) value: f64,
+    pub(crate) length: f64,
+    pub(crate) label: Option<String>,
+}
+
+/// Decades below which a logarithmic axis labels 2 and 5 too.
+const FEW_DECADES: f64 = 1.6;
+
+/// Slack for comparisons of numbers that rounding may have moved.
+const ROUNDING: f64 = 1e-9;
+
+impl Axis {
+    /// A linear axis from the least to the largest of a range, widened where they coincide.
+    pub(crate) fn linear((least, largest): (f64, f64)) -> Self {
+        let spread = if largest > least {
+            0.0
+        } else {
+            (least.abs() * 0.1).max(0.5)
+        };
+        Self {
+            scale: Scale::Linear,
+            least: least - spread,
+            largest: largest + spread,
+        }
+    }
+
+    /// An axis that spans a range with a free margin, a fraction of the range, at both ends.
+    ///
+    /// The range of a logarithmic axis must be positive.
+    pub(crate) fn with_margin(scale: Scale, range: (f64, f64), margin: f64) -> Self {
+        match scale {
+            Scale::Linear => {
+                let exact = Self::linear(range);
+                let free = margin * (exact.largest - exact.least);
+                Self {
+                    least: exact.least - free,
+                    largest: exact.largest + free,
+                    ..exact
+                }
+            }
+            Scale::Logarithmic => {
+                let decades = libm::log10(range.1 / range.0);
+                let free = libm::pow(10.0, if decades > 0.0 { margin * decades } else { 0.5 });
+                Self {
+                    scale,
+                    least: range.0 / free,
+                    largest: range.1 * free,
+                }
+            }
+        }
+    }
+
+    /// Least and largest value.
+    pub(crate) fn range(&self) -> (f64, f64) {
+        (self.least, self.largest)
+    }
+
+    /// Place of a value, 0 at the least and 1 at the largest; values without a place go to the nearer end.
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        match self.scale {
+            Scale::Linear => (value - self.least) / (self.largest - self.least),
+            Scale::Logarithmic if value > 0.0 => {
+                libm::log10(value / self.least) / libm::log10(self.largest / self.least)
+            }
+            Scale::Logarithmic => 0.0,
+        }
+    }
+
+    /// Ticks at round numbers, with at most about `most` labels.
+    pub(crate) fn ticks(&self, most: usize) -> Vec<Tick> {
+        match self.scale {
+            Scale::Linear => self.linear_ticks(most.max(2)),
+            Scale::Logarithmic => self.logarithmic_ticks(most.max(2)),
+        }
+    }
+
+    fn linear_ticks(&self, most: usize) -> Vec<Tick> {
+        let wanted = (self.largest - self.least) / most as f64;
+        let (mut factor, mut exponent) = (1.0, libm::floor(libm::log10(wanted)));
+        let reduced = wanted / libm::pow(10.0, exponent);
+        if reduced > 5.0 + ROUNDING {
+            exponent += 1.0;
+        } else if reduced > 2.0 + ROUNDING {
+            factor = 5.0;
+        } else if reduced > 1.0 + ROUNDING {
+            factor = 2.0;
+        }
+        let parts = if factor == 2.0 { 4.0 } else { 5.0 };
+        let fine = factor * libm::pow(10.0, exponent) / parts;
+        let notation = Notation::new(self.least.abs().max(self.largest.abs()), exponent);
+        // A tick that rounding pushes over the end still belongs to the axis.
+        let first = (self.least / fine - 1e-6).ceil();
+        let last = (self.largest / fine + 1e-6).floor();
+        (0..=(last - first).max(0.0) as usize)
+            .map(|index| {
+                let multiple = first + index as f64;
+                let value = multiple * fine;
+                let major = multiple % parts == 0.0;
+                Tick {
+                    value,
+                    length: if major { MAJOR_TICK } else { MINOR_TICK },
+                    label: major.then(|| notation.label(value)),
+                }
+            })
+            .collect()
+    }
+
+    fn logarithmic_ticks(&self, most: usize) -> Vec<Tick> {
+        let decades = libm::log10(self.largest / self.least);
+        let stride = (decades / most as f64).ceil().max(1.0);
+        let (first, last) = (
+            libm::floor(libm::log10(self.least)),
+            libm::ceil(libm::log10(self.largest)),
+        );
+        let mut ticks = Vec::new();
+        for index in 0..=(last - first).max(0.0) as usize {
+            let exponent = first + index as f64;
+            for multiple in 1..10_u8 {
+                let value = f64::from(multiple) * libm::pow(10.0, exponent);
+                if value < self.least * (1.0 - 1e-9) || value > self.largest * (1.0 + 1e-9) {
+                    continue;
+                }
+                let labelled = match multiple {
+                    1 => exponent.rem_euclid(stride) == 0.0,
+                    2 | 5 => decades < FEW_DECADES,
+                    _ => false,
+                };
+                ticks.push(Tick {
+                    value,
+                    length: if multiple == 1 {
+                        MAJOR_TICK
+                    } else {
+                        MINOR_TICK
+                    },
+                    label: labelled.then(|| power_label(multiple, exponent)),
+                });
+            }
+        }
+        ticks
+    }
+}
+
+/// How the labels of one linear axis are written: all with the same decimals and the same power of ten.
+struct Notation {
+    power: f64,
+    decimals: usize,
+}
+
+impl Notation {
+    /// For values up to a magnitude, in steps of 10^exponent.
+    fn new(magnitude: f64, exponent: f64) -> Self {
+        let leading = libm::floor(libm::log10(magnitude) + 1e-9);
+        let power = if (-3.0..5.0).contains(&leading) {
+            0.0
+        } else {
+            leading
+        };
+        Self {
+            power,
+            decimals: (power - exponent).max(0.0) as usize,
+        }
+    }
+
+    fn label(&self, value: f64) -> String {
+        let digits = decimal(value / libm::pow(10.0, self.power), self.decimals);
+        if self.power == 0.0 || value == 0.0 {
+            digits
+        } else {
+            format!("{digits}×10^{{{}}}", decimal(self.power, 0))
+        }
+    }
+}
+
+fn power_label(multiple: u8, exponent: f64) -> String {
+    match (multiple, exponent) {
+        (1, 0.0) => "1".to_owned(),
+        (_, 0.0) => multiple.to_string(),
+        (1, _) => format!("10^{{{}}}", decimal(exponent, 0)),
+        _ => format!("{multiple}×10^{{{}}}", decimal(exponent, 0)),
+    }
+}
+
+/// A number with fixed decimals and a true minus sign, never minus zero.
+pub(crate) fn decimal(value: f64, decimals: usize) -> String {
+    let digits = format!("{:.decimals$}", value.abs());
+    let is_zero = digits.chars().all(|digit| matches!(digit, '0' | '.'));
+    if value < 0.0 && !is_zero {
+        format!("\u{2212}{digits}")
+    } else {
+        digits
+    }
+}
+
+/// A number in three significant digits, or as a whole number where that has more, for a label in markup.
+pub(crate) fn three_digits(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
+    let leading = libm::floor(libm::log10(value.abs()));
+    if (-3.0..6.0).contains(&leading) {
+        decimal(value, (2.0 - leading).max(0.0) as usize)
+    } else {
+        format!(
+            "{}×10^{{{}}}",
+            decimal(value / libm::pow(10.0, leading), 2),
+            decimal(leading, 0)
+        )
+    }
+}
+
+/// A value with its error: the error in one significant digit, or in two where it starts with 1, 2 or 3, and the value
+/// to the same place; alone where the error is 0.
+pub(crate) fn with_error(value: f64, error: f64) -> String {
+    if error <= 0.0 {
+        return decimal(value, 3);
+    }
+    let leading = libm::floor(libm::log10(error));
+    let digits = if error / libm::pow(10.0, leading) < 3.95 {
+        1.0
+    } else {
+        0.0
+    };
+    let place = (digits - leading).clamp(0.0, 6.0) as usize;
+    format!("{} ± {}", decimal(value, place), decimal(error, place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(axis: &Axis, most: usize) -> Vec<String> {
+        axis.ticks(most)
+            .into_iter()
+            .filter_map(|tick| tick.label)
+            .collect()
+    }
+
+    #[test]
+    fn linear_labels_are_round_numbers() {
+        assert_eq!(
+            labels(&Axis::linear((0.0, 1.0)), 5),
+            ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]
+        );
+        assert_eq!(
+            labels(&Axis::linear((-0.12, 0.31)), 5),
+            ["\u{2212}0.1", "0.0", "0.1", "0.2", "0.3"]
+        );
+        assert_eq!(
+            labels(&Axis::linear((0.0, 5000.0)), 5),
+            ["0", "1000", "2000", "3000", "4000", "5000"]
+        );
+        assert_eq!(
+            labels(&Axis::linear((0.0, 4.0e-5)), 4)[1],
+            "1×10^{\u{2212}5}"
+        );
+    }
+
+    #[test]
+    fn logarithmic_labels_are_powers_of_ten() {
+        let axis = Axis::with_margin(Scale::Logarithmic, (1e-3, 1e2), 0.01);
+        assert_eq!(
+            labels(&axis, 6),
+            [
+                "10^{\u{2212}3}",
+                "10^{\u{2212}2}",
+                "10^{\u{2212}1}",
+                "1",
+                "10^{1}",
+                "10^{2}"
+            ]
+        );
+        let short = Axis::with_margin(Scale::Logarithmic, (1.0, 6.0), 0.0);
+        assert_eq!(labels(&short, 6), ["1", "2", "5"]);
+    }
+
+    #[test]
+    fn places_are_monotone_and_reach_from_end_to_end() {
+        for scale in [Scale::Linear, Scale::Logarithmic] {
+            let axis = Axis::with_margin(scale, (0.02, 30.0), 0.05);
+            let (least, largest) = axis.range();
+            assert!(
+                axis.fraction(least).abs() < 1e-12 && (axis.fraction(largest) - 1.0).abs() < 1e-12
+            );
+            let places: Vec<f64> = (1..1000)
+                .map(|step| axis.fraction(f64::from(step) * 0.03))
+                .collect();
+            assert!(places.windows(2).all(|pair| pair[0] < pair[1]));
+        }
+    }
+
+    #[test]
+    fn a_single_value_still_has_a_span() {
+        let axis = Axis::with_margin(Scale::Linear, (3.5, 3.5), 0.05);
+        assert!((axis.fraction(3.5) - 0.5).abs() < 1e-12);
+        let axis = Axis::with_margin(Scale::Logarithmic, (3.5, 3.5), 0.05);
+        assert!((axis.fraction(3.5) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn numbers_are_written_as_physicists_do() {
+        assert_eq!(three_digits(297.4), "297");
+        assert_eq!(three_digits(-0.012_345), "\u{2212}0.0123");
+        assert_eq!(three_digits(2.5e7), "2.50×10^{7}");
+        assert_eq!(with_error(0.998_31, 0.002_14), "0.9983 ± 0.0021");
+        assert_eq!(with_error(-0.09, 0.008), "\u{2212}0.090 ± 0.008");
+        assert_eq!(with_error(-0.05, 0.0), "\u{2212}0.050");
+    }
+}

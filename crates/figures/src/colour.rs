@@ -1,0 +1,117 @@
+//! Colours that stay apart for colour-blind readers: the Okabe-Ito palette, and a diverging map for signed values.
+
+/// A colour with opacity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Colour {
+    pub(crate) red: u8,
+    pub(crate) green: u8,
+    pub(crate) blue: u8,
+    /// 0 (clear) to 1 (solid)
+    pub(crate) opacity: f64,
+}
+
+pub(crate) const BLACK: Colour = Colour::new(0, 0, 0);
+pub(crate) const WHITE: Colour = Colour::new(255, 255, 255);
+pub(crate) const GREY: Colour = Colour::new(128, 128, 128);
+
+/// Okabe and Ito's blue.
+pub(crate) const BLUE: Colour = Colour::new(0, 114, 178);
+/// Okabe and Ito's sky blue.
+pub(crate) const SKY: Colour = Colour::new(86, 180, 233);
+/// Okabe and Ito's vermillion.
+pub(crate) const VERMILLION: Colour = Colour::new(213, 94, 0);
+/// Okabe and Ito's orange.
+pub(crate) const ORANGE: Colour = Colour::new(230, 159, 0);
+/// Okabe and Ito's bluish green.
+pub(crate) const GREEN: Colour = Colour::new(0, 158, 115);
+/// Okabe and Ito's reddish purple.
+pub(crate) const PURPLE: Colour = Colour::new(204, 121, 167);
+
+/// Motion along the wave.
+pub(crate) const ALONG: Colour = Colour::new(178, 24, 43);
+/// Motion against the wave.
+pub(crate) const AGAINST: Colour = Colour::new(33, 102, 172);
+
+/// Blue for -1 through white at 0 to red at 1, in equal steps of the argument (after ColorBrewer's RdBu).
+const DIVERGING: [Colour; 9] = [
+    Colour::new(12, 66, 130),
+    Colour::new(40, 112, 178),
+    Colour::new(98, 164, 207),
+    Colour::new(172, 210, 229),
+    Colour::new(250, 250, 250),
+    Colour::new(251, 205, 180),
+    Colour::new(236, 142, 112),
+    Colour::new(204, 64, 66),
+    Colour::new(134, 8, 36),
+];
+
+/// Steps of the diverging map on either side of 0: few enough that the spheres of a snapshot share their shadings.
+const DIVERGING_STEPS: f64 = 24.0;
+
+impl Colour {
+    pub(crate) const fn new(red: u8, green: u8, blue: u8) -> Self {
+        Self {
+            red,
+            green,
+            blue,
+            opacity: 1.0,
+        }
+    }
+
+    pub(crate) const fn faint(self, opacity: f64) -> Self {
+        Self { opacity, ..self }
+    }
+
+    /// This colour moved towards another: 0 leaves it, 1 gives the other.
+    pub(crate) fn towards(self, other: Self, fraction: f64) -> Self {
+        let channel = |from: u8, to: u8| {
+            let value = f64::from(from) + (f64::from(to) - f64::from(from)) * fraction;
+            // In 0..=255 because both ends are and the fraction is in 0..=1.
+            value.round() as u8
+        };
+        Self {
+            red: channel(self.red, other.red),
+            green: channel(self.green, other.green),
+            blue: channel(self.blue, other.blue),
+            opacity: self.opacity,
+        }
+    }
+
+    /// Six hexadecimal digits, without the opacity.
+    pub(crate) fn hexadecimal(self) -> String {
+        format!("{:02x}{:02x}{:02x}", self.red, self.green, self.blue)
+    }
+}
+
+/// Colour of a signed value scaled to -1..1: blue below 0, white at 0, red above; values beyond are clamped.
+pub(crate) fn diverging(value: f64) -> Colour {
+    let stepped = (value.clamp(-1.0, 1.0) * DIVERGING_STEPS).round() / DIVERGING_STEPS;
+    let position = (stepped + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
+    let below = (position.floor() as usize).min(DIVERGING.len() - 2);
+    DIVERGING[below].towards(DIVERGING[below + 1], position - below as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_diverging_map_is_blue_white_red() {
+        let (against, rest, along) = (diverging(-1.0), diverging(0.0), diverging(1.0));
+        assert!(against.blue > 2 * against.red.max(1), "{against:?}");
+        assert!(along.red > 2 * along.blue, "{along:?}");
+        assert!(rest.red == rest.blue && rest.red > 245, "{rest:?}");
+        assert_eq!(diverging(7.0), along);
+        assert_eq!(diverging(-7.0), against);
+    }
+
+    #[test]
+    fn the_red_half_darkens_steadily() {
+        let mut last = u8::MAX;
+        for step in 0..=24 {
+            let green = diverging(f64::from(step) / 24.0).green;
+            assert!(green < last, "step {step}");
+            last = green;
+        }
+    }
+}

@@ -1,0 +1,315 @@
+//! A page with everything on it at its place, ready to be written as SVG or as PNG.
+
+mod png;
+mod svg;
+
+use crate::colour::Colour;
+use crate::error::FigureError;
+use crate::style::POINTS_PER_MILLIMETRE;
+use crate::text::Text;
+
+/// A finished figure: one list of shapes that both output formats draw.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Points across.
+    width: f64,
+    /// Points down.
+    height: f64,
+    description: String,
+    layers: Vec<Layer>,
+}
+
+/// A place on the page in points, from the top left corner, y downwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Point {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+}
+
+/// A rectangle on the page, in points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rectangle {
+    pub(crate) left: f64,
+    pub(crate) top: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl Rectangle {
+    pub(crate) fn right(&self) -> f64 {
+        self.left + self.width
+    }
+
+    pub(crate) fn bottom(&self) -> f64 {
+        self.top + self.height
+    }
+}
+
+/// Pattern of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Dash {
+    Solid,
+    Dashed,
+    Dotted,
+}
+
+impl Dash {
+    /// Lengths of strokes and gaps in points; empty for a solid line.
+    fn lengths(self) -> &'static [f32] {
+        match self {
+            Self::Solid => &[],
+            Self::Dashed => &[4.0, 2.2],
+            Self::Dotted => &[0.9, 1.6],
+        }
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Stroke {
+    pub(crate) colour: Colour,
+    /// Points.
+    pub(crate) weight: f64,
+    pub(crate) dash: Dash,
+}
+
+impl Stroke {
+    pub(crate) const fn solid(colour: Colour, weight: f64) -> Self {
+        Self {
+            colour,
+            weight,
+            dash: Dash::Solid,
+        }
+    }
+
+    pub(crate) const fn dashed(self, dash: Dash) -> Self {
+        Self { dash, ..self }
+    }
+}
+
+/// Which part of a text stands at its given place.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Direction in which a text runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reading {
+    Rightward,
+    Upward,
+}
+
+/// How a circle is filled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Fill {
+    Flat(Colour),
+    /// Shaded like a sphere that is lit from the upper left.
+    Sphere(Colour),
+}
+
+/// One thing on the page.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Shape {
+    Line {
+        points: Vec<Point>,
+        stroke: Stroke,
+    },
+    Polygon {
+        points: Vec<Point>,
+        fill: Colour,
+    },
+    Circle {
+        centre: Point,
+        radius: f64,
+        fill: Fill,
+        stroke: Option<Stroke>,
+    },
+    Text {
+        start: Point,
+        reading: Reading,
+        text: Text,
+        colour: Colour,
+    },
+}
+
+/// Shapes that belong together, with a name and perhaps a window outside of which nothing shows.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Layer {
+    name: &'static str,
+    window: Option<Rectangle>,
+    shapes: Vec<Shape>,
+}
+
+impl Drawing {
+    /// A white page; width and height in points.
+    pub(crate) fn new(width: f64, height: f64, description: &str) -> Self {
+        let description = Text::new(description, 1.0).characters;
+        Self {
+            width,
+            height,
+            description,
+            layers: Vec::new(),
+        }
+    }
+
+    /// Width of the page in millimetres.
+    pub fn width_millimetres(&self) -> f64 {
+        self.width / POINTS_PER_MILLIMETRE
+    }
+
+    /// Height of the page in millimetres.
+    pub fn height_millimetres(&self) -> f64 {
+        self.height / POINTS_PER_MILLIMETRE
+    }
+
+    /// The figure as a stand-alone SVG document, with text as outlines and its characters as accessible labels.
+    pub fn svg(&self) -> String {
+        svg::document(self)
+    }
+
+    /// The figure as a PNG picture at 300 dots per inch on white.
+    ///
+    /// # Errors
+    /// If the page is too large for memory or the encoder fails.
+    pub fn png(&self) -> Result<Vec<u8>, FigureError> {
+        png::picture(self)
+    }
+
+    /// Opens a layer above all others.
+    pub(crate) fn layer(&mut self, name: &'static str, window: Option<Rectangle>) -> &mut Layer {
+        let place = self.layers.len();
+        self.layers.push(Layer {
+            name,
+            window,
+            shapes: Vec::new(),
+        });
+        &mut self.layers[place]
+    }
+
+    /// The shapes of all layers of a name.
+    #[cfg(test)]
+    pub(crate) fn shapes(&self, name: &str) -> Vec<&Shape> {
+        self.layers
+            .iter()
+            .filter(|layer| layer.name == name)
+            .flat_map(|layer| &layer.shapes)
+            .collect()
+    }
+}
+
+impl Layer {
+    /// An open line through the points.
+    pub(crate) fn line(&mut self, points: impl IntoIterator<Item = Point>, stroke: Stroke) {
+        self.shapes.push(Shape::Line {
+            points: points.into_iter().collect(),
+            stroke,
+        });
+    }
+
+    /// A straight line.
+    pub(crate) fn segment(&mut self, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
+        self.line(
+            [
+                Point {
+                    x: from.0,
+                    y: from.1,
+                },
+                Point { x: to.0, y: to.1 },
+            ],
+            stroke,
+        );
+    }
+
+    /// A filled polygon.
+    pub(crate) fn polygon(&mut self, points: impl IntoIterator<Item = Point>, fill: Colour) {
+        self.shapes.push(Shape::Polygon {
+            points: points.into_iter().collect(),
+            fill,
+        });
+    }
+
+    /// A filled rectangle.
+    pub(crate) fn rectangle(&mut self, area: Rectangle, fill: Colour) {
+        let corners = [
+            (area.left, area.top),
+            (area.right(), area.top),
+            (area.right(), area.bottom()),
+            (area.left, area.bottom()),
+        ];
+        self.polygon(corners.map(|(x, y)| Point { x, y }), fill);
+    }
+
+    /// The outline of a rectangle, its first side repeated so that the corner closes.
+    pub(crate) fn outline(&mut self, area: Rectangle, stroke: Stroke) {
+        let (left, top, right, bottom) = (area.left, area.top, area.right(), area.bottom());
+        let corners = [
+            (left, top),
+            (right, top),
+            (right, bottom),
+            (left, bottom),
+            (left, top),
+            (right, top),
+        ];
+        self.line(corners.map(|(x, y)| Point { x, y }), stroke);
+    }
+
+    /// A disc.
+    pub(crate) fn circle(
+        &mut self,
+        centre: Point,
+        radius: f64,
+        fill: Fill,
+        stroke: Option<Stroke>,
+    ) {
+        self.shapes.push(Shape::Circle {
+            centre,
+            radius,
+            fill,
+            stroke,
+        });
+    }
+
+    /// A line of type with its start, middle or end at a place.
+    pub(crate) fn text(&mut self, place: (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
+        self.place_text(place, anchor, Reading::Rightward, text, colour);
+    }
+
+    /// A line of type that reads upwards.
+    pub(crate) fn upward_text(
+        &mut self,
+        place: (f64, f64),
+        anchor: Anchor,
+        text: Text,
+        colour: Colour,
+    ) {
+        self.place_text(place, anchor, Reading::Upward, text, colour);
+    }
+
+    fn place_text(
+        &mut self,
+        (x, y): (f64, f64),
+        anchor: Anchor,
+        reading: Reading,
+        text: Text,
+        colour: Colour,
+    ) {
+        let back = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => text.width / 2.0,
+            Anchor::End => text.width,
+        };
+        let start = match reading {
+            Reading::Rightward => Point { x: x - back, y },
+            Reading::Upward => Point { x, y: y + back },
+        };
+        self.shapes.push(Shape::Text {
+            start,
+            reading,
+            text,
+            colour,
+        });
+    }
+}

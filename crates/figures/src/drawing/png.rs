@@ -1,0 +1,262 @@
+//! The drawing as a PNG picture: the same shapes, painted at 300 dots per inch.
+
+use tiny_skia::{
+    FillRule, GradientStop, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, RadialGradient,
+    Shader, SpreadMode, StrokeDash, Transform,
+};
+use ttf_parser::OutlineBuilder;
+
+use super::{Drawing, Fill, Point, Reading, Rectangle, Shape, Stroke};
+use crate::colour::{BLACK, Colour, WHITE};
+use crate::error::FigureError;
+
+const PIXELS_PER_POINT: f64 = 300.0 / 72.0;
+/// 300 dots per inch, rounded to whole dots in a metre.
+const PIXELS_PER_METRE: u32 = 11_811;
+
+/// Where the light of a sphere is brightest, as a fraction of the box around it, from the left and from the top.
+pub(super) const SPHERE_CENTRE: f64 = 0.36;
+/// Distance from there to the darkest shade, as a fraction of the box.
+pub(super) const SPHERE_REACH: f64 = 0.72;
+
+/// The shades of a sphere from its brightest place outwards, with the fraction of the reach where each stands.
+pub(super) fn sphere_stops(colour: Colour) -> [(f64, Colour); 3] {
+    [
+        (0.0, colour.towards(WHITE, 0.5)),
+        (0.45, colour),
+        (1.0, colour.towards(BLACK, 0.42)),
+    ]
+}
+
+/// The encoded picture.
+pub(super) fn picture(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
+    // Non-negative by construction; a page too large saturates and is refused below.
+    let [width, height] =
+        [drawing.width, drawing.height].map(|length| (length * PIXELS_PER_POINT).round() as u32);
+    let mut pixels =
+        Pixmap::new(width, height).ok_or(FigureError::PictureTooLarge { width, height })?;
+    pixels.fill(tiny_skia::Color::WHITE);
+    for layer in &drawing.layers {
+        let mask = match &layer.window {
+            Some(window) => Some(window_mask(*window, width, height)?),
+            None => None,
+        };
+        for shape in &layer.shapes {
+            paint_shape(&mut pixels, shape, mask.as_ref());
+        }
+    }
+    encode(&pixels)
+}
+
+/// Opaque inside the window, clear outside.
+fn window_mask(window: Rectangle, width: u32, height: u32) -> Result<Mask, FigureError> {
+    let mut mask =
+        Mask::new(width, height).ok_or(FigureError::PictureTooLarge { width, height })?;
+    let rectangle = tiny_skia::Rect::from_xywh(
+        window.left as f32,
+        window.top as f32,
+        window.width as f32,
+        window.height as f32,
+    );
+    if let Some(rectangle) = rectangle {
+        mask.fill_path(
+            &PathBuilder::from_rect(rectangle),
+            FillRule::Winding,
+            true,
+            page(),
+        );
+    }
+    Ok(mask)
+}
+
+/// Points to pixels.
+fn page() -> Transform {
+    Transform::from_scale(PIXELS_PER_POINT as f32, PIXELS_PER_POINT as f32)
+}
+
+fn paint_shape(pixels: &mut Pixmap, shape: &Shape, mask: Option<&Mask>) {
+    match shape {
+        Shape::Line { points, stroke } => {
+            if let Some(path) = polyline(points, false) {
+                stroke_path(pixels, &path, stroke, mask);
+            }
+        }
+        Shape::Polygon { points, fill } => {
+            if let Some(path) = polyline(points, true) {
+                pixels.fill_path(&path, &flat(*fill), FillRule::EvenOdd, page(), mask);
+            }
+        }
+        Shape::Circle {
+            centre,
+            radius,
+            fill,
+            stroke,
+        } => {
+            let Some(path) =
+                PathBuilder::from_circle(centre.x as f32, centre.y as f32, *radius as f32)
+            else {
+                return;
+            };
+            let paint = match fill {
+                Fill::Flat(colour) => flat(*colour),
+                Fill::Sphere(colour) => sphere(*centre, *radius, *colour),
+            };
+            pixels.fill_path(&path, &paint, FillRule::Winding, page(), mask);
+            if let Some(stroke) = stroke {
+                stroke_path(pixels, &path, stroke, mask);
+            }
+        }
+        Shape::Text {
+            start,
+            reading,
+            text,
+            colour,
+        } => {
+            let line = page().pre_translate(start.x as f32, start.y as f32);
+            let line = match reading {
+                Reading::Rightward => line,
+                Reading::Upward => {
+                    line.pre_concat(Transform::from_row(0.0, -1.0, 1.0, 0.0, 0.0, 0.0))
+                }
+            };
+            for placed in &text.glyphs {
+                let mut outline = Outline(PathBuilder::new());
+                placed.glyph.outline(&mut outline);
+                if let Some(path) = outline.0.finish() {
+                    let scale = placed.scale as f32;
+                    let transform = line
+                        .pre_translate(placed.x as f32, placed.y as f32)
+                        .pre_scale(scale, -scale);
+                    pixels.fill_path(&path, &flat(*colour), FillRule::Winding, transform, mask);
+                }
+            }
+        }
+    }
+}
+
+fn stroke_path(pixels: &mut Pixmap, path: &Path, stroke: &Stroke, mask: Option<&Mask>) {
+    let lengths = stroke.dash.lengths();
+    let pen = tiny_skia::Stroke {
+        width: stroke.weight as f32,
+        line_join: LineJoin::Round,
+        dash: if lengths.is_empty() {
+            None
+        } else {
+            StrokeDash::new(lengths.to_vec(), 0.0)
+        },
+        ..tiny_skia::Stroke::default()
+    };
+    pixels.stroke_path(path, &flat(stroke.colour), &pen, page(), mask);
+}
+
+fn polyline(points: &[Point], closed: bool) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for (index, point) in points.iter().enumerate() {
+        if index == 0 {
+            builder.move_to(point.x as f32, point.y as f32);
+        } else {
+            builder.line_to(point.x as f32, point.y as f32);
+        }
+    }
+    if closed {
+        builder.close();
+    }
+    builder.finish()
+}
+
+fn colour_of(colour: Colour) -> tiny_skia::Color {
+    tiny_skia::Color::from_rgba8(
+        colour.red,
+        colour.green,
+        colour.blue,
+        (colour.opacity.clamp(0.0, 1.0) * 255.0).round() as u8,
+    )
+}
+
+fn flat(colour: Colour) -> Paint<'static> {
+    Paint {
+        shader: Shader::SolidColor(colour_of(colour)),
+        anti_alias: true,
+        ..Paint::default()
+    }
+}
+
+fn sphere(centre: Point, radius: f64, colour: Colour) -> Paint<'static> {
+    let corner = Point {
+        x: centre.x - radius,
+        y: centre.y - radius,
+    };
+    let light = tiny_skia::Point::from_xy(
+        (corner.x + 2.0 * radius * SPHERE_CENTRE) as f32,
+        (corner.y + 2.0 * radius * SPHERE_CENTRE) as f32,
+    );
+    let stops = sphere_stops(colour)
+        .map(|(offset, shade)| GradientStop::new(offset as f32, colour_of(shade)))
+        .to_vec();
+    let reach = (2.0 * radius * SPHERE_REACH) as f32;
+    match RadialGradient::new(
+        light,
+        0.0,
+        light,
+        reach,
+        stops,
+        SpreadMode::Pad,
+        Transform::identity(),
+    ) {
+        Some(shader) => Paint {
+            shader,
+            anti_alias: true,
+            ..Paint::default()
+        },
+        // A sphere too small to shade is a dot.
+        None => flat(colour),
+    }
+}
+
+fn encode(pixels: &Pixmap) -> Result<Vec<u8>, FigureError> {
+    // The page is opaque, so the premultiplied colours are the colours.
+    let colours: Vec<u8> = pixels
+        .data()
+        .chunks_exact(4)
+        .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
+        .collect();
+    let mut bytes = Vec::new();
+    let mut encoder = ::png::Encoder::new(&mut bytes, pixels.width(), pixels.height());
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    let density = ::png::PixelDimensions {
+        xppu: PIXELS_PER_METRE,
+        yppu: PIXELS_PER_METRE,
+        unit: ::png::Unit::Meter,
+    };
+    encoder.set_pixel_dims(Some(density));
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&colours)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// Outline of a glyph in font units.
+struct Outline(PathBuilder);
+
+impl OutlineBuilder for Outline {
+    fn move_to(&mut self, x: f32, y: f32) {
+        self.0.move_to(x, y);
+    }
+
+    fn line_to(&mut self, x: f32, y: f32) {
+        self.0.line_to(x, y);
+    }
+
+    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
+        self.0.quad_to(x1, y1, x, y);
+    }
+
+    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
+        self.0.cubic_to(x1, y1, x2, y2, x, y);
+    }
+
+    fn close(&mut self) {
+        self.0.close();
+    }
+}

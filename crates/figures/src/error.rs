@@ -1,0 +1,77 @@
+//! What can be wrong with the columns of a figure.
+
+/// Why a figure could not be drawn.
+#[derive(Debug, thiserror::Error)]
+pub enum FigureError {
+    /// A series holds no point that can be drawn.
+    #[error("the series `{series}` has no finite point to draw ({length} rows)")]
+    EmptySeries {
+        /// Name of the series.
+        series: &'static str,
+        /// Number of rows that were given.
+        length: usize,
+    },
+    /// Columns of one series differ in length.
+    #[error("the series `{series}` has a column of {found} rows beside one of {expected}")]
+    ColumnLengths {
+        /// Name of the series.
+        series: &'static str,
+        /// Rows of its first column.
+        expected: usize,
+        /// Rows of the column that differs.
+        found: usize,
+    },
+    /// A single value that a figure needs is infinite or not a number.
+    #[error("the {quantity} is {value}, not a finite number")]
+    NonFinite {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A length or range that must be positive is not.
+    #[error("the {quantity} is {value}; it must be positive")]
+    NotPositive {
+        /// Name of the quantity.
+        quantity: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// A sphere of a snapshot has a coordinate, diameter or velocity that is not a finite number.
+    #[error("sphere {index} of the {group} has a value that is not a finite number")]
+    NonFiniteSphere {
+        /// Grains or wall.
+        group: &'static str,
+        /// Row of the sphere.
+        index: usize,
+    },
+    /// A picture of this many pixels cannot be held in memory.
+    #[error("a picture of {width} x {height} pixels cannot be allocated")]
+    PictureTooLarge {
+        /// Pixels across.
+        width: u32,
+        /// Pixels down.
+        height: u32,
+    },
+    /// The PNG encoder failed.
+    #[error("the picture could not be encoded as PNG")]
+    Encoding(#[from] png::EncodingError),
+}
+
+/// Passes a finite value on, and names it otherwise.
+pub(crate) fn finite(quantity: &'static str, value: f64) -> Result<f64, FigureError> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(FigureError::NonFinite { quantity, value })
+    }
+}
+
+/// Passes a finite positive value on, and names it otherwise.
+pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64, FigureError> {
+    if finite(quantity, value)? > 0.0 {
+        Ok(value)
+    } else {
+        Err(FigureError::NotPositive { quantity, value })
+    }
+}

@@ -1,0 +1,215 @@
+//! What the lines of a figure mean, written below the frame where it covers nothing.
+
+use crate::colour::{BLACK, Colour};
+use crate::drawing::{Anchor, Drawing, Rectangle, Stroke};
+use crate::style::LEGEND_SIZE;
+use crate::text::Text;
+
+/// Sample of a line, or of a band with a line in its middle, beside its meaning.
+#[derive(Clone, Debug)]
+pub(crate) struct Entry {
+    pub(crate) line: Option<Stroke>,
+    pub(crate) band: Option<Colour>,
+    pub(crate) meaning: String,
+}
+
+/// A list of entries on a grid; a long entry takes several columns.
+#[derive(Clone, Debug)]
+pub(crate) struct Legend {
+    cells: Vec<Cell>,
+    rows: usize,
+    width: f64,
+}
+
+/// An entry with its row and its distance from the left of the list.
+#[derive(Clone, Debug)]
+struct Cell {
+    entry: Entry,
+    text: Text,
+    row: usize,
+    start: f64,
+}
+
+/// Where an entry stands on the grid.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    row: usize,
+    column: usize,
+    /// Number of columns that it takes.
+    span: usize,
+}
+
+const SAMPLE_WIDTH: f64 = 17.0;
+const SAMPLE_GAP: f64 = 4.0;
+const COLUMN_GAP: f64 = 10.0;
+const ROW_HEIGHT: f64 = 9.2;
+const MOST_COLUMNS: usize = 6;
+
+impl Legend {
+    /// Sets the entries in the room across that there is, in as few rows as possible.
+    pub(crate) fn new(entries: Vec<Entry>, room: f64) -> Self {
+        let texts: Vec<Text> = entries
+            .iter()
+            .map(|entry| {
+                Text::fitted(
+                    &entry.meaning,
+                    LEGEND_SIZE,
+                    room - SAMPLE_WIDTH - SAMPLE_GAP,
+                )
+            })
+            .collect();
+        let widths: Vec<f64> = texts
+            .iter()
+            .map(|text| SAMPLE_WIDTH + SAMPLE_GAP + text.width)
+            .collect();
+        // Of grids with equally few rows, the one with the fewest columns is the most orderly.
+        let places = (1..=MOST_COLUMNS)
+            .map(|columns| places(&widths, columns, (room + COLUMN_GAP) / columns as f64))
+            .min_by_key(|places| rows_of(places))
+            .unwrap_or_default();
+        let rows = rows_of(&places);
+        let starts = column_starts(&places, &widths);
+        let cells: Vec<Cell> = entries
+            .into_iter()
+            .zip(texts)
+            .zip(places)
+            .map(|((entry, text), place)| Cell {
+                entry,
+                text,
+                row: place.row,
+                start: starts[place.column],
+            })
+            .collect();
+        let width = cells
+            .iter()
+            .fold(0.0, |width: f64, cell| width.max(cell.end()));
+        Self { cells, rows, width }
+    }
+
+    /// Height on the page, 0 without entries.
+    pub(crate) fn height(&self) -> f64 {
+        if self.cells.is_empty() {
+            0.0
+        } else {
+            4.0 + ROW_HEIGHT * self.rows as f64
+        }
+    }
+
+    /// Draws the list, centred between two sides, from a height downwards.
+    pub(crate) fn draw(&self, drawing: &mut Drawing, left: f64, right: f64, top: f64) {
+        let layer = drawing.layer("legend", None);
+        for cell in &self.cells {
+            let start = (left + right - self.width) / 2.0 + cell.start;
+            let middle = top + 4.0 + ROW_HEIGHT * (cell.row as f64 + 0.5);
+            if let Some(colour) = cell.entry.band {
+                let area = Rectangle {
+                    left: start,
+                    top: middle - 2.6,
+                    width: SAMPLE_WIDTH,
+                    height: 5.2,
+                };
+                layer.rectangle(area, colour);
+            }
+            if let Some(stroke) = cell.entry.line {
+                layer.segment((start, middle), (start + SAMPLE_WIDTH, middle), stroke);
+            }
+            let place = (
+                start + SAMPLE_WIDTH + SAMPLE_GAP,
+                middle + 0.35 * LEGEND_SIZE,
+            );
+            layer.text(place, Anchor::Start, cell.text.clone(), BLACK);
+        }
+    }
+}
+
+impl Cell {
+    /// Distance of the entry's end from the left of the list.
+    fn end(&self) -> f64 {
+        self.start + SAMPLE_WIDTH + SAMPLE_GAP + self.text.width
+    }
+}
+
+/// Place of each entry on a grid of equal columns, filled like lines of text.
+fn places(widths: &[f64], columns: usize, column_width: f64) -> Vec<Place> {
+    let (mut row, mut column) = (0, 0);
+    let mut places = Vec::with_capacity(widths.len());
+    for width in widths {
+        let span = ((width + COLUMN_GAP) / column_width - 1e-9).ceil().max(1.0) as usize;
+        let span = span.min(columns);
+        if column + span > columns {
+            (row, column) = (row + 1, 0);
+        }
+        places.push(Place { row, column, span });
+        column += span;
+    }
+    places
+}
+
+fn rows_of(places: &[Place]) -> usize {
+    places.last().map_or(0, |place| place.row + 1)
+}
+
+/// Where each column starts when all are drawn together as far as their entries allow.
+fn column_starts(places: &[Place], widths: &[f64]) -> [f64; MOST_COLUMNS] {
+    let mut starts = [0.0; MOST_COLUMNS];
+    for column in 1..MOST_COLUMNS {
+        let before = places
+            .iter()
+            .zip(widths)
+            .filter(|(place, _)| place.column + place.span <= column);
+        starts[column] = before.fold(0.0, |start: f64, (place, width)| {
+            start.max(starts[place.column] + width + COLUMN_GAP)
+        });
+    }
+    starts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn entries(meanings: &[&str]) -> Vec<Entry> {
+        let line = Some(Stroke::solid(BLACK, 1.0));
+        meanings
+            .iter()
+            .map(|meaning| Entry {
+                line,
+                band: None,
+                meaning: (*meaning).to_owned(),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn short_entries_share_a_row_and_long_ones_do_not() {
+        assert_eq!(Legend::new(entries(&["a", "b", "c"]), 200.0).rows, 1);
+        let long = "a meaning that takes much more than a half of the room";
+        assert_eq!(Legend::new(entries(&[long, long]), 220.0).rows, 2);
+        assert_eq!(
+            Legend::new(entries(&["short", "brief", long]), 220.0).rows,
+            2
+        );
+        assert_eq!(Legend::new(Vec::new(), 200.0).height(), 0.0);
+    }
+
+    #[test]
+    fn no_entry_runs_into_the_next() {
+        let room = 300.0;
+        let legend = Legend::new(
+            entries(&[
+                "samples",
+                "mean over a period",
+                "threshold",
+                "a long late mean 0.9 ± 0.1",
+                "x",
+            ]),
+            room,
+        );
+        for pair in legend.cells.windows(2) {
+            assert!(pair[0].end() <= room && pair[1].end() <= room);
+            if pair[0].row == pair[1].row {
+                assert!(pair[0].end() < pair[1].start);
+            }
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Tables in, figures out: the journal figures of a run, as SVG and PNG from one and the same drawing.
+//!
+//! A figure is a small struct of column slices and labels. `draw` checks them and lays the figure out once, as a
+//! [`Drawing`] in points on a page of one or two journal columns; [`Drawing::svg`] and [`Drawing::png`] write that
+//! one drawing. Text is drawn as outlines of an embedded font in both, so that a figure looks the same on every
+//! machine, and the same input gives the same bytes.
+//!
+//! Labels are written in a small markup: `*x*` is italic, `_{...}` and `^{...}` (or one character without braces) set
+//! subscripts and superscripts, a combining dot (U+0307) after a letter sets a dot above it, and a backslash takes
+//! the next character literally. Example: `*J*/*J*_{max}`.
+//!
+//! The sign convention of every figure: flow rates and velocities are positive along the wave.
+//!
+//! ```
+//! use peristalsis_figures::{FlowFigure, Series};
+//!
+//! let figure = FlowFigure {
+//!     samples: Series { x: &[0.0, 1.0, 2.0], y: &[0.0, 0.4, 0.9] },
+//!     ..FlowFigure::default()
+//! };
+//! let drawing = figure.draw()?;
+//! assert!(drawing.svg().starts_with("<svg"));
+//! assert_eq!(drawing.width_millimetres().round(), 86.0);
+//! # Ok::<(), peristalsis_figures::FigureError>(())
+//! ```
+
+mod axis;
+mod colour;
+mod colour_bar;
+mod drawing;
+mod envelope;
+mod error;
+mod flow;
+mod legend;
+mod panel;
+mod profile;
+mod series;
+mod snapshot;
+mod style;
+mod text;
+mod wall;
+
+pub use axis::Scale;
+pub use drawing::Drawing;
+pub use error::FigureError;
+pub use flow::{FlowFigure, LateMean, NewtonianReference, Transition};
+pub use profile::ProfileFigure;
+pub use series::{Profile, Series};
+pub use snapshot::{SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
+pub use style::Width;
+pub use text::escape;
+pub use wall::WallFigure;

@@ -1,0 +1,128 @@
+//! The markup of labels: `*italic*`, `_{subscript}`, `^{superscript}`, and a backslash for a literal character.
+
+/// Where a character stands on the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Level {
+    Base,
+    Subscript,
+    Superscript,
+}
+
+/// One character with its setting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Letter {
+    pub(crate) character: char,
+    pub(crate) italic: bool,
+    pub(crate) level: Level,
+}
+
+/// Reads the markup; anything that is not markup is taken literally, so that no text fails.
+pub(crate) fn parse(markup: &str) -> Vec<Letter> {
+    let mut letters = Vec::new();
+    let mut italic = false;
+    let mut level = Level::Base;
+    let mut braced = false;
+    let mut characters = markup.chars().peekable();
+    while let Some(character) = characters.next() {
+        match character {
+            '*' => italic = !italic,
+            '_' | '^' if level == Level::Base && characters.peek().is_some() => {
+                level = if character == '_' {
+                    Level::Subscript
+                } else {
+                    Level::Superscript
+                };
+                braced = characters.next_if_eq(&'{').is_some();
+            }
+            '}' if braced => {
+                level = Level::Base;
+                braced = false;
+            }
+            _ => {
+                let character = if character == '\\' {
+                    characters.next().unwrap_or('\\')
+                } else {
+                    character
+                };
+                letters.push(Letter {
+                    character,
+                    italic,
+                    level,
+                });
+                if !braced {
+                    level = Level::Base;
+                }
+            }
+        }
+    }
+    letters
+}
+
+/// Marks a text, such as the name of a run, so that none of its characters is read as markup in a label.
+///
+/// ```
+/// assert_eq!(peristalsis_figures::escape("run_7"), "run\\_7");
+/// ```
+pub fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for character in text.chars() {
+        if matches!(character, '*' | '_' | '^' | '}' | '\\') {
+            escaped.push('\\');
+        }
+        escaped.push(character);
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plain(markup: &str) -> String {
+        parse(markup)
+            .iter()
+            .map(|letter| letter.character)
+            .collect()
+    }
+
+    #[test]
+    fn italics_and_scripts_are_read() {
+        let letters = parse("*J*_{max}^2x");
+        assert_eq!(
+            letters[0],
+            Letter {
+                character: 'J',
+                italic: true,
+                level: Level::Base
+            }
+        );
+        assert!(
+            letters[1..4]
+                .iter()
+                .all(|letter| letter.level == Level::Subscript && !letter.italic)
+        );
+        assert_eq!(
+            letters[4],
+            Letter {
+                character: '2',
+                italic: false,
+                level: Level::Superscript
+            }
+        );
+        assert_eq!(
+            letters[5],
+            Letter {
+                character: 'x',
+                italic: false,
+                level: Level::Base
+            }
+        );
+    }
+
+    #[test]
+    fn broken_markup_and_escapes_stay_readable() {
+        assert_eq!(plain("a_{bc"), "abc");
+        assert_eq!(plain("a}b_"), "a}b_");
+        assert_eq!(plain(&escape("run_7*^{x}\\")), "run_7*^{x}\\");
+    }
+}

@@ -1,0 +1,295 @@
+//! Checkpoints: a state of any serializable type behind a header that detects every corrupted byte.
+//!
+//! Layout, all numbers little-endian:
+//!
+//! | offset | bytes | content |
+//! |---|---|---|
+//! | 0 | 8 | signature `89 50 53 54 4c 0d 0a 1a`: not text, and broken by any change of line endings |
+//! | 8 | 4 | version of this container |
+//! | 12 | 8 | kind of the state |
+//! | 20 | 4 | layout version of the state |
+//! | 24 | 32 | hash of the physics that the state belongs to |
+//! | 56 | 8 | length of the payload |
+//! | 64 | 8 | length of the state, that is of the payload after decompression |
+//! | 72 | 4 | CRC-32 of the payload |
+//! | 76 | 4 | CRC-32 of the 76 bytes above |
+//! | 80 | | payload: the state in the postcard encoding, compressed with zstd |
+//!
+//! Postcard stores a real as its 64 bits, so NaN payloads, -0.0 and subnormal numbers come back as they were. A CRC-32
+//! detects every error within 32 neighbouring bits, and others but for one in 2^32. It guards against accidents, not
+//! against forgery; a forged length cannot exhaust the memory, since no more than [`MAXIMUM_STATE_BYTES`] are unpacked.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::atomic;
+use crate::error::FormatError;
+
+/// The container version that this crate writes, and the only one that it reads.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The most bytes that an encoded state may have: 1 GiB, some ten million grains.
+pub const MAXIMUM_STATE_BYTES: u64 = 1 << 30;
+
+const SIGNATURE: [u8; 8] = *b"\x89PSTL\r\n\x1a";
+const HEADER_BYTES: usize = 80;
+/// The lowest level: a state consists of mantissas, which no level compresses, and of small integers, which any level does.
+const COMPRESSION_LEVEL: i32 = 1;
+
+/// What a checkpoint is a checkpoint of; writer and reader must name the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CheckpointIdentity {
+    /// Kind of the state, in printable ASCII padded with spaces, such as `*b"engine  "`.
+    pub kind: [u8; 8],
+    /// Version of the state's own layout: raised whenever a field of its type is added, removed or moved, because the
+    /// payload does not describe itself.
+    pub layout_version: u32,
+    /// Hash of everything that decides how the state evolves: laws, walls, drive, integrator.
+    pub physics_hash: [u8; 32],
+}
+
+impl CheckpointIdentity {
+    fn require(&self, expected: &Self) -> Result<(), FormatError> {
+        if self.kind != expected.kind {
+            return Err(FormatError::CheckpointKind {
+                found: self.kind,
+                expected: expected.kind,
+            });
+        }
+        if self.layout_version != expected.layout_version {
+            let (found, readable) = (self.layout_version, expected.layout_version);
+            return Err(FormatError::CheckpointLayout { found, readable });
+        }
+        if self.physics_hash != expected.physics_hash {
+            let (found, expected) = (self.physics_hash, expected.physics_hash);
+            return Err(FormatError::OtherPhysics { found, expected });
+        }
+        Ok(())
+    }
+}
+
+/// The state as bytes of a checkpoint; the same state gives the same bytes.
+///
+/// # Errors
+/// [`FormatError::StateTooLarge`], [`FormatError::Serialize`].
+pub fn encode<State: Serialize>(
+    identity: &CheckpointIdentity,
+    state: &State,
+) -> Result<Vec<u8>, FormatError> {
+    let plain = postcard::to_allocvec(state).map_err(FormatError::Serialize)?;
+    let bound = zstd::zstd_safe::compress_bound(plain.len());
+    // Compression enlarges noise by a little: the bound keeps the payload of every accepted state within the limit too.
+    if bound as u64 > MAXIMUM_STATE_BYTES {
+        return Err(FormatError::StateTooLarge {
+            bytes: plain.len() as u64,
+            limit: MAXIMUM_STATE_BYTES,
+        });
+    }
+    let payload = zstd::bulk::compress(&plain, COMPRESSION_LEVEL)
+        .expect("the output buffer is made by the compressor for this input");
+    let header = Header {
+        identity: *identity,
+        payload_bytes: payload.len() as u64,
+        state_bytes: plain.len() as u64,
+        payload_checksum: crc32fast::hash(&payload),
+    };
+    let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
+    bytes.extend(header.to_bytes());
+    bytes.extend(payload);
+    Ok(bytes)
+}
+
+/// The state in the bytes of a checkpoint.
+///
+/// # Errors
+/// In this order: [`FormatError::NotACheckpoint`], [`FormatError::CheckpointVersion`],
+/// [`FormatError::CorruptCheckpoint`] of the header, [`FormatError::CheckpointKind`],
+/// [`FormatError::CheckpointLayout`], [`FormatError::OtherPhysics`], [`FormatError::TruncatedCheckpoint`],
+/// [`FormatError::CorruptCheckpoint`] of the payload.
+pub fn decode<State: DeserializeOwned>(
+    identity: &CheckpointIdentity,
+    bytes: &[u8],
+) -> Result<State, FormatError> {
+    let header = Header::from_bytes(bytes)?;
+    header.identity.require(identity)?;
+    let plain = decompress(&header, header.payload_of(bytes)?)?;
+    match postcard::take_from_bytes(&plain) {
+        Ok((state, [])) => Ok(state),
+        Ok((_, rest)) => Err(FormatError::corrupt_checkpoint(format!(
+            "{} bytes remain after the end of the state",
+            rest.len()
+        ))),
+        Err(error) => Err(FormatError::corrupt_checkpoint(format!(
+            "the payload is not such a state: {error}"
+        ))),
+    }
+}
+
+/// What the bytes are a checkpoint of, from the header alone.
+///
+/// # Errors
+/// [`FormatError::NotACheckpoint`], [`FormatError::CheckpointVersion`], [`FormatError::TruncatedCheckpoint`],
+/// [`FormatError::CorruptCheckpoint`].
+pub fn identify(bytes: &[u8]) -> Result<CheckpointIdentity, FormatError> {
+    Header::from_bytes(bytes).map(|header| header.identity)
+}
+
+/// Writes the state to a checkpoint file, whole or not at all.
+///
+/// # Errors
+/// As [`encode`] and [`atomic::write`](fn@atomic::write).
+pub fn write<State: Serialize>(
+    path: &Path,
+    identity: &CheckpointIdentity,
+    state: &State,
+) -> Result<(), FormatError> {
+    atomic::write(path, &encode(identity, state)?)
+}
+
+/// Reads the state from a checkpoint file.
+///
+/// # Errors
+/// As [`decode`], and [`FormatError::Io`].
+pub fn read<State: DeserializeOwned>(
+    path: &Path,
+    identity: &CheckpointIdentity,
+) -> Result<State, FormatError> {
+    let mut file = File::open(path).map_err(FormatError::io("read", path))?;
+    let mut bytes = Vec::new();
+    file.by_ref()
+        .take(HEADER_BYTES as u64)
+        .read_to_end(&mut bytes)
+        .map_err(FormatError::io("read", path))?;
+    // The header comes first on its own, so that a huge file of another kind is refused before it is in memory.
+    let header = Header::from_bytes(&bytes)?;
+    header.identity.require(identity)?;
+    file.take(header.payload_bytes + 1)
+        .read_to_end(&mut bytes)
+        .map_err(FormatError::io("read", path))?;
+    decode(identity, &bytes)
+}
+
+#[derive(Debug)]
+struct Header {
+    identity: CheckpointIdentity,
+    payload_bytes: u64,
+    state_bytes: u64,
+    payload_checksum: u32,
+}
+
+impl Header {
+    fn to_bytes(&self) -> [u8; HEADER_BYTES] {
+        let mut bytes = [0; HEADER_BYTES];
+        bytes[0..8].copy_from_slice(&SIGNATURE);
+        bytes[8..12].copy_from_slice(&FORMAT_VERSION.to_le_bytes());
+        bytes[12..20].copy_from_slice(&self.identity.kind);
+        bytes[20..24].copy_from_slice(&self.identity.layout_version.to_le_bytes());
+        bytes[24..56].copy_from_slice(&self.identity.physics_hash);
+        bytes[56..64].copy_from_slice(&self.payload_bytes.to_le_bytes());
+        bytes[64..72].copy_from_slice(&self.state_bytes.to_le_bytes());
+        bytes[72..76].copy_from_slice(&self.payload_checksum.to_le_bytes());
+        let checksum = crc32fast::hash(&bytes[..76]);
+        bytes[76..80].copy_from_slice(&checksum.to_le_bytes());
+        bytes
+    }
+
+    fn from_bytes(bytes: &[u8]) -> Result<Self, FormatError> {
+        let begun = bytes.len().min(SIGNATURE.len());
+        if bytes[..begun] != SIGNATURE[..begun] {
+            return Err(FormatError::NotACheckpoint);
+        }
+        let truncated = FormatError::TruncatedCheckpoint {
+            expected: HEADER_BYTES as u64,
+            found: bytes.len() as u64,
+        };
+        // The version stands before everything that may differ between versions, the length of the header included.
+        if let Some(version) = bytes.get(8..12) {
+            let found = u32::from_le_bytes(field(version, 0));
+            if found != FORMAT_VERSION {
+                return Err(FormatError::CheckpointVersion {
+                    found,
+                    readable: FORMAT_VERSION,
+                });
+            }
+        }
+        let bytes = bytes.get(..HEADER_BYTES).ok_or(truncated)?;
+        if crc32fast::hash(&bytes[..76]) != u32::from_le_bytes(field(bytes, 76)) {
+            return Err(FormatError::corrupt_checkpoint(
+                "the header does not match its checksum",
+            ));
+        }
+        let header = Self {
+            identity: CheckpointIdentity {
+                kind: field(bytes, 12),
+                layout_version: u32::from_le_bytes(field(bytes, 20)),
+                physics_hash: field(bytes, 24),
+            },
+            payload_bytes: u64::from_le_bytes(field(bytes, 56)),
+            state_bytes: u64::from_le_bytes(field(bytes, 64)),
+            payload_checksum: u32::from_le_bytes(field(bytes, 72)),
+        };
+        if header.payload_bytes.max(header.state_bytes) > MAXIMUM_STATE_BYTES {
+            return Err(FormatError::corrupt_checkpoint(format!(
+                "it claims a state of {} bytes in a payload of {}, beyond the limit of {MAXIMUM_STATE_BYTES}",
+                header.state_bytes, header.payload_bytes
+            )));
+        }
+        Ok(header)
+    }
+
+    fn payload_of<'a>(&self, bytes: &'a [u8]) -> Result<&'a [u8], FormatError> {
+        let payload = &bytes[HEADER_BYTES..];
+        let (expected, found) = (self.payload_bytes, payload.len() as u64);
+        if found < expected {
+            let header = HEADER_BYTES as u64;
+            return Err(FormatError::TruncatedCheckpoint {
+                expected: header + expected,
+                found: header + found,
+            });
+        }
+        if found > expected {
+            return Err(FormatError::corrupt_checkpoint(
+                "bytes follow the end of the payload",
+            ));
+        }
+        if crc32fast::hash(payload) != self.payload_checksum {
+            return Err(FormatError::corrupt_checkpoint(
+                "the payload does not match its checksum",
+            ));
+        }
+        Ok(payload)
+    }
+}
+
+/// N bytes from an offset within the header.
+fn field<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
+    bytes[offset..offset + N]
+        .try_into()
+        .expect("the range is N bytes long")
+}
+
+fn decompress(header: &Header, payload: &[u8]) -> Result<Vec<u8>, FormatError> {
+    let undone = |error| {
+        FormatError::corrupt_checkpoint(format!("the payload cannot be decompressed: {error}"))
+    };
+    // Grows with what really comes out, not with what the header claims, and stops one byte past the claim.
+    let mut plain = Vec::new();
+    zstd::stream::read::Decoder::with_buffer(payload)
+        .map_err(undone)?
+        .take(header.state_bytes + 1)
+        .read_to_end(&mut plain)
+        .map_err(undone)?;
+    if plain.len() as u64 != header.state_bytes {
+        return Err(FormatError::corrupt_checkpoint(
+            "the payload does not decompress to the length in the header",
+        ));
+    }
+    Ok(plain)
+}
+
+#[cfg(test)]
+mod tests;

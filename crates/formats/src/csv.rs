@@ -1,0 +1,399 @@
+//! CSV: the values of a [`Table`] as text, for eyes, spreadsheets and other programs.
+//!
+//! One header row of names, then one row a record, separated by commas and line feeds, as RFC 4180 has it. Reals are
+//! written with the fewest digits that read back to the same bits and always with a point, an exponent, `inf` or `NaN`;
+//! text is always quoted. A field thus tells its kind, and the values come back as they were. Units, descriptions and
+//! metadata are not in the file.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use crate::atomic;
+use crate::error::FormatError;
+use crate::table::{Table, Values};
+
+/// The values of a table as CSV text.
+pub fn encode(table: &Table) -> String {
+    let mut text = String::new();
+    for (index, column) in table.columns().iter().enumerate() {
+        if index > 0 {
+            text.push(',');
+        }
+        if column
+            .name
+            .chars()
+            .all(|character| character.is_ascii_alphanumeric() || character == '_')
+        {
+            text.push_str(&column.name);
+        } else {
+            push_quoted(&mut text, &column.name);
+        }
+    }
+    text.push('\n');
+    // Most readers skip an empty line, so a lone missing value cannot be an empty field.
+    let missing = if table.columns().len() == 1 {
+        "NaN"
+    } else {
+        ""
+    };
+    for row in 0..table.rows() {
+        for (index, column) in table.columns().iter().enumerate() {
+            if index > 0 {
+                text.push(',');
+            }
+            let written = match &column.values {
+                Values::Real(values) if values[row].is_nan() => text.write_str(missing),
+                Values::Real(values) => write!(text, "{:?}", values[row]),
+                Values::Integer(values) => write!(text, "{}", values[row]),
+                Values::Boolean(values) => write!(text, "{}", values[row]),
+                Values::Text(values) => {
+                    push_quoted(&mut text, &values[row]);
+                    Ok(())
+                }
+            };
+            written.expect("writing to a String cannot fail");
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The table in CSV text, with empty units, descriptions and metadata.
+///
+/// A column is text if any of its fields is quoted or none of the following fits: integers if every field is one,
+/// booleans if every field is `true` or `false`, reals if every field is a number or empty. A column without rows, or
+/// with empty fields only, is taken for reals.
+///
+/// # Errors
+/// [`FormatError::Csv`] with the line, [`FormatError::DuplicateColumn`], [`FormatError::UnnamedColumn`].
+pub fn decode(text: &str) -> Result<Table, FormatError> {
+    let mut scanner = Scanner {
+        rest: text.strip_prefix('\u{feff}').unwrap_or(text),
+        line: 1,
+    };
+    let names = scanner.record()?.ok_or(FormatError::Csv {
+        line: 1,
+        reason: "there is no header row".into(),
+    })?;
+    let mut columns: Vec<Vec<Field<'_>>> = names.iter().map(|_| Vec::new()).collect();
+    let mut line = scanner.line;
+    while let Some(record) = scanner.record()? {
+        if record.len() != columns.len() {
+            let reason = format!(
+                "{} fields under {} column names",
+                record.len(),
+                columns.len()
+            );
+            return Err(FormatError::Csv { line, reason });
+        }
+        for (column, field) in columns.iter_mut().zip(record) {
+            column.push(field);
+        }
+        line = scanner.line;
+    }
+    let mut builder = Table::builder();
+    for (name, fields) in names.into_iter().zip(columns) {
+        builder = builder.column(name.text, "", "", values_of(fields));
+    }
+    builder.build()
+}
+
+/// Writes the values of a table to a CSV file, whole or not at all.
+///
+/// # Errors
+/// As [`atomic::write`](fn@atomic::write).
+pub fn write(path: &Path, table: &Table) -> Result<(), FormatError> {
+    atomic::write(path, encode(table).as_bytes())
+}
+
+/// Reads a table from a CSV file; see [`decode`].
+///
+/// # Errors
+/// As [`decode`], and [`FormatError::Io`], with [`std::io::ErrorKind::InvalidData`] where the file is not UTF-8.
+pub fn read(path: &Path) -> Result<Table, FormatError> {
+    decode(&fs::read_to_string(path).map_err(FormatError::io("read", path))?)
+}
+
+fn push_quoted(text: &mut String, value: &str) {
+    text.push('"');
+    text.push_str(&value.replace('"', "\"\""));
+    text.push('"');
+}
+
+fn values_of(fields: Vec<Field<'_>>) -> Values {
+    if !fields.iter().any(|field| field.quoted) {
+        let integers = || {
+            fields
+                .iter()
+                .map(|field| field.text.parse().ok())
+                .collect::<Option<Vec<i64>>>()
+        };
+        let booleans = || {
+            fields
+                .iter()
+                .map(|field| field.text.parse().ok())
+                .collect::<Option<Vec<bool>>>()
+        };
+        let real = |text: &str| {
+            if text.is_empty() {
+                Some(f64::NAN)
+            } else {
+                text.parse().ok()
+            }
+        };
+        let reals = || {
+            fields
+                .iter()
+                .map(|field| real(&field.text))
+                .collect::<Option<Vec<f64>>>()
+        };
+        let found = match fields.is_empty() {
+            true => Some(Values::Real(Vec::new())),
+            false => (integers().map(Values::Integer))
+                .or_else(|| booleans().map(Values::Boolean))
+                .or_else(|| reals().map(Values::Real)),
+        };
+        if let Some(values) = found {
+            return values;
+        }
+    }
+    Values::Text(
+        fields
+            .into_iter()
+            .map(|field| field.text.into_owned())
+            .collect(),
+    )
+}
+
+struct Field<'text> {
+    text: Cow<'text, str>,
+    quoted: bool,
+}
+
+#[derive(PartialEq)]
+enum End {
+    Field,
+    Record,
+}
+
+struct Scanner<'text> {
+    rest: &'text str,
+    /// Line on which `rest` begins, counted from 1.
+    line: usize,
+}
+
+impl<'text> Scanner<'text> {
+    /// The fields of the next record; none at the end of the text.
+    fn record(&mut self) -> Result<Option<Vec<Field<'text>>>, FormatError> {
+        if self.rest.is_empty() {
+            return Ok(None);
+        }
+        let mut fields = Vec::new();
+        loop {
+            let (field, end) = if self.rest.starts_with('"') {
+                self.quoted()?
+            } else {
+                self.plain()?
+            };
+            fields.push(field);
+            if end == End::Record {
+                return Ok(Some(fields));
+            }
+        }
+    }
+
+    fn plain(&mut self) -> Result<(Field<'text>, End), FormatError> {
+        let length = self.rest.find([',', '\n']).unwrap_or(self.rest.len());
+        let (text, rest) = self.rest.split_at(length);
+        if text.contains('"') {
+            return Err(self.error("a quotation mark inside a field that is not quoted"));
+        }
+        let (text, end) = match rest.strip_prefix(',') {
+            Some(rest) => {
+                self.rest = rest;
+                (text, End::Field)
+            }
+            None => {
+                self.rest = rest.strip_prefix('\n').unwrap_or(rest);
+                self.line += 1;
+                (text.strip_suffix('\r').unwrap_or(text), End::Record)
+            }
+        };
+        Ok((
+            Field {
+                text: text.into(),
+                quoted: false,
+            },
+            end,
+        ))
+    }
+
+    fn quoted(&mut self) -> Result<(Field<'text>, End), FormatError> {
+        let mut text = Cow::Borrowed("");
+        let mut rest = &self.rest[1..];
+        loop {
+            let length = rest
+                .find('"')
+                .ok_or_else(|| self.error("a quoted field is not closed"))?;
+            text += &rest[..length];
+            rest = &rest[length + 1..];
+            match rest.strip_prefix('"') {
+                Some(after) => {
+                    text += "\"";
+                    rest = after;
+                }
+                None => break,
+            }
+        }
+        let (after, end) = if let Some(after) = rest.strip_prefix(',') {
+            (after, End::Field)
+        } else if rest.is_empty() {
+            (rest, End::Record)
+        } else if let Some(after) = rest
+            .strip_prefix("\r\n")
+            .or_else(|| rest.strip_prefix('\n'))
+        {
+            (after, End::Record)
+        } else {
+            return Err(self.error("text follows the closing quotation mark"));
+        };
+        self.rest = after;
+        self.line += text.matches('\n').count() + usize::from(end == End::Record);
+        Ok((Field { text, quoted: true }, end))
+    }
+
+    fn error(&self, reason: &str) -> FormatError {
+        FormatError::Csv {
+            line: self.line,
+            reason: reason.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn strings(values: &[&str]) -> Values {
+        Values::Text(values.iter().map(ToString::to_string).collect())
+    }
+
+    fn table(columns: &[(&str, Values)]) -> Table {
+        columns
+            .iter()
+            .fold(Table::builder(), |builder, (name, values)| {
+                builder.column(*name, "", "", values.clone())
+            })
+            .build()
+            .unwrap()
+    }
+
+    #[test]
+    fn the_text_is_what_a_spreadsheet_expects() {
+        let table = Table::builder()
+            .column("time", "t", "Time.", Values::Real(vec![0.0, 0.1, 1e-300]))
+            .column(
+                "a, \"b\"",
+                "",
+                "Text.",
+                strings(&["x", "1,2\n3", "say \"so\""]),
+            )
+            .column(
+                "contacts",
+                "",
+                "Count.",
+                Values::Integer(vec![-3, 0, i64::MAX]),
+            )
+            .column(
+                "flow_rate",
+                "t^-1",
+                "Flow.",
+                Values::Real(vec![f64::NAN, f64::NEG_INFINITY, -0.0]),
+            )
+            .column(
+                "censored",
+                "",
+                "Flag.",
+                Values::Boolean(vec![true, false, true]),
+            )
+            .build()
+            .unwrap();
+        let expected = "time,\"a, \"\"b\"\"\",contacts,flow_rate,censored\n\
+                        0.0,\"x\",-3,,true\n\
+                        0.1,\"1,2\n3\",0,-inf,false\n\
+                        1e-300,\"say \"\"so\"\"\",9223372036854775807,-0.0,true\n";
+        assert_eq!(encode(&table), expected);
+        let back = decode(expected).unwrap();
+        for (written, read) in table.columns().iter().zip(back.columns()) {
+            assert_eq!((&written.name, &written.values), (&read.name, &read.values));
+        }
+    }
+
+    #[test]
+    fn a_lone_missing_value_is_not_an_empty_line() {
+        let lone = table(&[("a", Values::Real(vec![1.0, f64::NAN]))]);
+        assert_eq!(encode(&lone), "a\n1.0\nNaN\n");
+        assert_eq!(decode(&encode(&lone)).unwrap(), lone);
+        let lone = table(&[("a", strings(&["", "x"]))]);
+        assert_eq!(decode(&encode(&lone)).unwrap(), lone);
+    }
+
+    #[test]
+    fn foreign_habits_are_read() {
+        let expected = table(&[
+            ("a", Values::Integer(vec![1, 2])),
+            ("b c", strings(&["x", "7"])),
+            ("d", Values::Real(vec![0.5, 3.0])),
+            ("e", Values::Real(vec![f64::NAN, f64::NAN])),
+        ]);
+        assert_eq!(
+            decode("\u{feff}a,b c,d,e\r\n1,\"x\",.5,\r\n2,7,3,").unwrap(),
+            expected
+        );
+        assert_eq!(
+            decode("a,b\n").unwrap(),
+            table(&[("a", Values::Real(vec![])), ("b", Values::Real(vec![]))])
+        );
+    }
+
+    #[test]
+    fn malformed_text_is_refused_with_its_line() {
+        for (text, expected_line) in [
+            ("", 1),
+            ("a,b\n1,2\n3\n", 3),
+            ("a,b\n\"x\ny\",2\n3\n", 4),
+            ("a\nx\"y\n", 2),
+            ("a,b\n1,\"open\n", 2),
+            ("a\n\"x\"y\n", 2),
+        ] {
+            match decode(text) {
+                Err(FormatError::Csv { line, .. }) => assert_eq!(line, expected_line, "{text:?}"),
+                other => panic!("{text:?}: {other:?}"),
+            }
+        }
+        assert!(matches!(
+            decode("a,a\n1,2\n"),
+            Err(FormatError::DuplicateColumn { .. })
+        ));
+        assert!(matches!(
+            decode("a,\n1,2\n"),
+            Err(FormatError::UnnamedColumn { index: 1 })
+        ));
+    }
+
+    #[test]
+    fn a_file_is_written_and_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("table.csv");
+        let table = table(&[("a", Values::Real(vec![0.1])), ("b", strings(&["ü"]))]);
+        write(&path, &table).unwrap();
+        assert_eq!(read(&path).unwrap(), table);
+        std::fs::write(&path, b"a\n\xff\n").unwrap();
+        assert!(matches!(
+            read(&path),
+            Err(FormatError::Io { source, .. }) if source.kind() == std::io::ErrorKind::InvalidData
+        ));
+    }
+}

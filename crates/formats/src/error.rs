@@ -1,0 +1,198 @@
+//! The one error type of this crate.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use crate::table::ValueKind;
+
+/// What can go wrong between a value in memory and its bytes on disk.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FormatError {
+    /// The operating system refused; [`io::Error::kind`] of `source` tells a full disk from a missing permission.
+    #[error("cannot {operation} {}: {source}", path.display())]
+    Io {
+        /// What was tried, as a verb phrase: "write", "replace", "synchronize the folder of".
+        operation: &'static str,
+        /// The file that the caller asked for.
+        path: PathBuf,
+        /// The refusal itself.
+        source: io::Error,
+    },
+
+    /// A table must have at least one column.
+    #[error("a table needs at least one column")]
+    NoColumns,
+    /// A column must have a name.
+    #[error("column {index} (counted from 0) has no name")]
+    UnnamedColumn {
+        /// Position of the column, counted from 0.
+        index: usize,
+    },
+    /// Two columns have the same name.
+    #[error("two columns are named `{name}`")]
+    DuplicateColumn {
+        /// The name that occurs twice.
+        name: String,
+    },
+    /// The columns of a table must be equally long.
+    #[error("column `{name}` has {found} rows, the columns before it {expected}")]
+    UnequalLength {
+        /// The first column that differs.
+        name: String,
+        /// Its number of rows.
+        found: usize,
+        /// The number of rows of the columns before it.
+        expected: usize,
+    },
+    /// A metadata key is taken by the file format.
+    #[error("the metadata key `{key}` is reserved for the file format")]
+    ReservedMetadata {
+        /// The key in question.
+        key: String,
+    },
+    /// Two tables to be joined differ in their columns.
+    #[error(
+        "the tables differ at column `{name}`: appending needs the same names, kinds, units and descriptions in the same order"
+    )]
+    DifferentColumns {
+        /// The first column that has no equal in the other table.
+        name: String,
+    },
+    /// The table has no such column.
+    #[error("no column named `{name}`")]
+    MissingColumn {
+        /// The name asked for.
+        name: String,
+    },
+    /// The column holds values of another kind.
+    #[error("column `{name}` holds {found} values, not {expected}")]
+    OtherKind {
+        /// The column in question.
+        name: String,
+        /// The kind asked for.
+        expected: ValueKind,
+        /// The kind in the table.
+        found: ValueKind,
+    },
+
+    /// The text is not CSV with one header row and equally many fields in every row.
+    #[error("CSV line {line}: {reason}")]
+    Csv {
+        /// Line on which the offending record begins, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        reason: String,
+    },
+
+    /// The Parquet library refused to write or read.
+    #[error("Parquet: {0}")]
+    Parquet(#[from] ::parquet::errors::ParquetError),
+    /// A Parquet file is not what was once written.
+    #[error("the Parquet file is corrupt: {reason}")]
+    CorruptParquet {
+        /// What betrayed it.
+        reason: String,
+    },
+    /// A Parquet column has a type that no [`Values`](crate::Values) holds, or lacks a value where that kind cannot.
+    #[error("Parquet column `{name}`: {reason}")]
+    UnsupportedParquet {
+        /// The column in question.
+        name: String,
+        /// What is not supported.
+        reason: String,
+    },
+
+    /// The bytes do not begin like a checkpoint.
+    #[error("not a checkpoint of this project: the first bytes differ from its signature")]
+    NotACheckpoint,
+    /// The container has a layout that this program does not know.
+    #[error("the checkpoint has format version {found}; this program reads version {readable}")]
+    CheckpointVersion {
+        /// The version in the file.
+        found: u32,
+        /// The version that can be read.
+        readable: u32,
+    },
+    /// The checkpoint holds another kind of state.
+    #[error("the checkpoint holds a state of kind `{}`, not `{}`", found.escape_ascii(), expected.escape_ascii())]
+    CheckpointKind {
+        /// The kind in the file.
+        found: [u8; 8],
+        /// The kind asked for.
+        expected: [u8; 8],
+    },
+    /// The state in the checkpoint is laid out by another version of its type.
+    #[error(
+        "the state in the checkpoint has layout version {found}; this program reads version {readable}"
+    )]
+    CheckpointLayout {
+        /// The layout version in the file.
+        found: u32,
+        /// The layout version that the caller reads.
+        readable: u32,
+    },
+    /// The checkpoint belongs to a run with other physics.
+    #[error(
+        "the checkpoint belongs to other physics: hash {} in the file, {} here",
+        hexadecimal(found),
+        hexadecimal(expected)
+    )]
+    OtherPhysics {
+        /// The hash in the file.
+        found: [u8; 32],
+        /// The hash of the run that wanted to continue.
+        expected: [u8; 32],
+    },
+    /// The checkpoint ends too early.
+    #[error("the checkpoint is cut short: {found} of {expected} bytes")]
+    TruncatedCheckpoint {
+        /// Bytes that the header (or, in its absence, the shortest header) asks for.
+        expected: u64,
+        /// Bytes present.
+        found: u64,
+    },
+    /// The checkpoint is complete in length but not what was once written.
+    #[error("the checkpoint is corrupt: {reason}")]
+    CorruptCheckpoint {
+        /// What betrayed it.
+        reason: String,
+    },
+    /// The state is larger than a checkpoint may be.
+    #[error("a state of {bytes} bytes is beyond the limit of {limit} bytes for one checkpoint")]
+    StateTooLarge {
+        /// Size of the encoded state.
+        bytes: u64,
+        /// The most that a checkpoint holds.
+        limit: u64,
+    },
+    /// The state refused to be serialized.
+    #[error("the state cannot be serialized: {0}")]
+    Serialize(#[source] postcard::Error),
+}
+
+impl FormatError {
+    pub(crate) fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+        move |source| Self::Io {
+            operation,
+            path: path.to_owned(),
+            source,
+        }
+    }
+
+    pub(crate) fn corrupt_checkpoint(reason: impl Into<String>) -> Self {
+        Self::CorruptCheckpoint {
+            reason: reason.into(),
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8; 32]) -> String {
+    bytes
+        .iter()
+        .fold(String::with_capacity(64), |mut text, byte| {
+            write!(text, "{byte:02x}").expect("writing to a String cannot fail");
+            text
+        })
+}

@@ -1,0 +1,22 @@
+//! Bytes in, bytes out: the files that this project writes, and nothing about the physics in them.
+//!
+//! | module | what it holds |
+//! |---|---|
+//! | [`table`] | [`Table`]: named columns with unit and description, the one shape of every tabular result |
+//! | [`parquet`] | a [`Table`] as Parquet: exact, with units, descriptions and metadata |
+//! | [`csv`] | a [`Table`] as CSV: values only, for eyes and spreadsheets |
+//! | [`checkpoint`] | any serializable state behind a header that detects every corrupted byte |
+//! | [`atomic`] | a file is written whole or not at all |
+//!
+//! The file modules share four verbs: `encode` and `decode` work on bytes, `write` and `read` on a path.
+
+pub mod atomic;
+pub mod checkpoint;
+pub mod csv;
+mod error;
+pub mod parquet;
+pub mod table;
+
+pub use checkpoint::CheckpointIdentity;
+pub use error::FormatError;
+pub use table::{Column, Table, TableBuilder, ValueKind, Values};

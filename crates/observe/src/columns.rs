@@ -1,0 +1,89 @@
+//! The table of observables: a new one is a field of [`Sample`] and a row here.
+
+use crate::sample::Sample;
+
+/// A column of the time series.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Name, the same in files, plots and Python.
+    pub name: &'static str,
+    /// Unit, in m, d, t; "1" for pure numbers.
+    pub unit: &'static str,
+    /// What it is, in a line.
+    pub description: &'static str,
+    /// Which runs have it.
+    pub scope: Scope,
+    /// Its value in a sample.
+    pub value: fn(&Sample) -> f64,
+}
+
+/// Which runs have a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scope {
+    /// All.
+    Always,
+    /// Those with friction.
+    Friction,
+    /// Those with an elastic wall.
+    ElasticWall,
+}
+
+const fn row(
+    name: &'static str,
+    unit: &'static str,
+    scope: Scope,
+    description: &'static str,
+    value: fn(&Sample) -> f64,
+) -> Column {
+    Column {
+        name,
+        unit,
+        description,
+        scope,
+        value,
+    }
+}
+
+use Scope::{Always, ElasticWall, Friction};
+
+/// All columns, in order.
+#[rustfmt::skip]
+pub const COLUMNS: &[Column] = &[
+    row("time", "t", Always, "end of the interval that the row is about", |s| s.time),
+    row("period", "1", Always, "wavelengths that the wave has run: time in periods", |s| s.period),
+    row("flow_rate", "1/t", Always, "J along the wave, mean over the interval, grains inside", |s| s.flow_rate),
+    row("flow_rate_ratio", "1", Always, "J/Jmax, Jmax = N c/L, grains inside", |s| s.flow_rate_ratio),
+    row("flow_rate_raw", "1/t", Always, "J of all grains, escaped ones too", |s| s.flow_rate_raw),
+    row("flow_rate_ratio_raw", "1", Always, "J/Jmax of all grains", |s| s.flow_rate_ratio_raw),
+    row("flow_rate_instantaneous", "1/t", Always, "J from the velocities at the end of the interval", |s| s.flow_rate_instantaneous),
+    row("kinetic_energy", "m d^2/t^2", Always, "sum m v^2/2 of the grains", |s| s.kinetic_energy),
+    row("granular_temperature", "m d^2/t^2", Always, "sum m |v - <v>|^2/(3 N)", |s| s.granular_temperature),
+    row("contacts", "1", Always, "contacts of a grain, wall included", |s| s.contacts),
+    row("largest_overlap", "d", Always, "largest overlap at the end of the interval", |s| s.largest_overlap),
+    row("escaped", "1", Always, "grains whose centre lies outside R + d/2", |s| s.escaped),
+    row("inside", "1", Always, "grains inside", |s| s.inside),
+    row("wall_axial_force", "m d/t^2", Always, "axial force of the wall on the grains, along the wave", |s| s.wall_axial_force),
+    row("wall_power", "m d^2/t^3", Always, "mean power that wall or drive put in", |s| s.wall_power),
+    row("dissipated_power", "m d^2/t^3", Always, "mean power lost", |s| s.dissipated_power),
+    row("potential_energy", "m d^2/t^2", Always, "elastic energy of contacts, wall network and tethers", |s| s.potential_energy),
+    row("axial_momentum", "m d/t", Always, "axial momentum of the grains, along the wave", |s| s.axial_momentum),
+    row("angular_momentum", "m d^2/t", Always, "angular momentum of the grains about +z, spin included", |s| s.angular_momentum),
+    row("narrowest_radius", "d", Always, "least radius of the tube, to the wall's centres", |s| s.narrowest_radius),
+    row("energy_residual", "1", Always, "|what the ledger misses|/integral of |power that entered|", |s| s.energy_residual),
+    row("wall_work", "m d^2/t^2", Always, "ledger: work of the prescribed wall", |s| s.ledger.wall_work),
+    row("normal_dissipated", "m d^2/t^2", Always, "ledger: lost along normals", |s| s.ledger.normal_dissipated),
+    row("rotational_energy", "m d^2/t^2", Friction, "sum I omega^2/2", |s| s.rotational_energy),
+    row("sliding_fraction", "1", Friction, "part of the contacts that slide", |s| s.sliding_fraction),
+    row("tangential_dissipated", "m d^2/t^2", Friction, "ledger: lost to tangential damping", |s| s.ledger.tangential_dissipated),
+    row("sliding_dissipated", "m d^2/t^2", Friction, "ledger: lost to sliding", |s| s.ledger.sliding_dissipated),
+    row("history_reset", "m d^2/t^2", Friction, "ledger: tangential spring energy forgotten at the end of contacts", |s| s.ledger.history_reset),
+    row("drive_work", "m d^2/t^2", ElasticWall, "ledger: work of the travelling force", |s| s.ledger.drive_work),
+    row("keep_work", "m d^2/t^2", ElasticWall, "ledger: work of the removal of the mean force", |s| s.ledger.keep_work),
+    row("drag_dissipated", "m d^2/t^2", ElasticWall, "ledger: lost to drag on the wall", |s| s.ledger.drag_dissipated),
+    row("network_dissipated", "m d^2/t^2", ElasticWall, "ledger: lost in the dashpots of the wall's network", |s| s.ledger.network_dissipated),
+    row("wall_kinetic_energy", "m d^2/t^2", ElasticWall, "kinetic energy of the wall", |s| s.wall_kinetic_energy),
+    row("network_energy", "m d^2/t^2", ElasticWall, "elastic energy of the wall's springs", |s| s.network_energy),
+    row("keep_energy", "m d^2/t^2", ElasticWall, "energy of tethers and balancing force", |s| s.keep_energy),
+    row("wall_axial_displacement", "d", ElasticWall, "mean axial displacement of the wall, along the wave", |s| s.wall_axial_displacement),
+    row("wall_azimuthal_displacement", "d", ElasticWall, "root mean square azimuthal displacement of the wall", |s| s.wall_azimuthal_displacement),
+];

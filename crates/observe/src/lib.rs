@@ -1,0 +1,15 @@
+//! Observables: numbers read off a simulation without touching it.
+//!
+//! [`Observer`] turns a simulation into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
+//! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
+//! the frame of the wave; [`TubeShape`] is the wall's radius as it is.
+
+pub mod columns;
+pub mod profile;
+pub mod sample;
+pub mod shape;
+
+pub use columns::{COLUMNS, Column};
+pub use profile::{ProfileBin, WaveFrameProfile};
+pub use sample::{Observer, Sample};
+pub use shape::TubeShape;

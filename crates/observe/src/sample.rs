@@ -1,0 +1,221 @@
+//! One row of the time series: what a run looked like over one interval.
+
+use glam::DVec3;
+use peristalsis_engine::{Bodies, Ledger, Simulation};
+
+use crate::shape::TubeShape;
+
+/// Observables of one interval of time, in units of d, m, t; flow is positive along the wave.
+///
+/// Rates (flow, powers) are means over the interval; the others are values at its end. Fields without a suffix count the
+/// grains that are inside the tube at the end of the interval, `_raw` all of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Sample {
+    /// End of the interval \[t\].
+    pub time: f64,
+    /// Wavelengths that the wave has run: time in periods.
+    pub period: f64,
+    /// J, from the displacements of the grains in the interval: sum of dz/dt over L \[1/t\].
+    pub flow_rate: f64,
+    /// J/Jmax, Jmax = N c/L; NaN for a static wave or without grains.
+    pub flow_rate_ratio: f64,
+    /// J of all grains.
+    pub flow_rate_raw: f64,
+    /// J/Jmax of all grains.
+    pub flow_rate_ratio_raw: f64,
+    /// J at the end of the interval, from the velocities.
+    pub flow_rate_instantaneous: f64,
+    /// sum m v^2/2 of the grains.
+    pub kinetic_energy: f64,
+    /// sum I omega^2/2 of the grains.
+    pub rotational_energy: f64,
+    /// sum m |v - <v>|^2/(3 N) of the grains, <v> their mean velocity.
+    pub granular_temperature: f64,
+    /// Mean number of contacts of a grain, wall included.
+    pub contacts: f64,
+    /// Part of the grains' contacts that slide; NaN without contacts.
+    pub sliding_fraction: f64,
+    /// Largest overlap at the end of the interval \[d\].
+    pub largest_overlap: f64,
+    /// Grains whose centre lies outside R + d/2.
+    pub escaped: f64,
+    /// Grains inside.
+    pub inside: f64,
+    /// Axial force of the wall on the grains, along the wave, at the end of the interval.
+    pub wall_axial_force: f64,
+    /// Mean power that wall or drive put in.
+    pub wall_power: f64,
+    /// Mean power lost in contacts, drag and dashpots.
+    pub dissipated_power: f64,
+    /// Elastic energy of contacts, wall network and tethers.
+    pub potential_energy: f64,
+    /// |what the energy ledger misses| over the integral of |power that entered|.
+    pub energy_residual: f64,
+    /// Axial momentum of the grains along the wave.
+    pub axial_momentum: f64,
+    /// Angular momentum of the grains about the axis, spin included.
+    pub angular_momentum: f64,
+    /// Kinetic energy of an elastic wall.
+    pub wall_kinetic_energy: f64,
+    /// Elastic energy of an elastic wall's springs.
+    pub network_energy: f64,
+    /// Energy of an elastic wall's tethers and balancing force.
+    pub keep_energy: f64,
+    /// Least radius of the tube, as the mean of the wall spheres of a slice \[d\].
+    pub narrowest_radius: f64,
+    /// Mean axial displacement of an elastic wall from its reference, along the wave \[d\].
+    pub wall_axial_displacement: f64,
+    /// Root mean square azimuthal displacement of an elastic wall \[d\].
+    pub wall_azimuthal_displacement: f64,
+    /// The energy ledger since the start.
+    pub ledger: Ledger,
+}
+
+/// Makes samples of a simulation, one after another.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Observer {
+    time: f64,
+    cycles: f64,
+    unfolded: Vec<f64>,
+    ledger: Ledger,
+}
+
+impl Observer {
+    /// Begins an interval now.
+    #[must_use]
+    pub fn new(simulation: &Simulation) -> Self {
+        let length = simulation.wall().lattice().length();
+        let bodies = simulation.bodies();
+        Self {
+            time: simulation.time(),
+            cycles: simulation.wall().cycles(),
+            unfolded: (0..bodies.grains).map(|i| bodies.unfolded(i, length)).collect(),
+            ledger: *simulation.ledger(),
+        }
+    }
+
+    /// Ends the interval, begins the next, and answers what happened between.
+    pub fn sample(&mut self, simulation: &Simulation) -> Sample {
+        let before = core::mem::replace(self, Self::new(simulation));
+        let wall = simulation.wall();
+        let bodies = simulation.bodies();
+        let (tally, ledger) = (simulation.tally(), simulation.ledger());
+        let heading = wall.heading();
+        let length = wall.lattice().length();
+        let interval = self.time - before.time;
+        let grains = bodies.grains as f64;
+
+        let shape = TubeShape::of(simulation);
+        let (mut inside, mut flux, mut flux_raw, mut flux_now) = (0.0, 0.0, 0.0, 0.0);
+        for grain in 0..bodies.grains {
+            let moved = self.unfolded[grain] - before.unfolded[grain];
+            flux_raw += moved;
+            if !has_escaped(bodies, grain, &shape) {
+                inside += 1.0;
+                flux += moved;
+                flux_now += bodies.velocity[grain].z;
+            }
+        }
+        let rate = |flux: f64| heading * flux / (length * interval);
+        // Jmax = N c/L with the mean wave speed of the interval.
+        let wave_run = (self.cycles - before.cycles) * wall.lattice().wavelength;
+        let ratio = |flux: f64, number: f64| heading * flux / (number * wave_run);
+        let contacts = (2 * tally.grain_contacts + tally.wall_contacts) as f64;
+        let distinct_contacts = (tally.grain_contacts + tally.wall_contacts) as f64;
+        let wall_motion = WallMotion::of(simulation);
+        Sample {
+            time: self.time,
+            period: self.cycles,
+            flow_rate: rate(flux),
+            flow_rate_ratio: ratio(flux, inside),
+            flow_rate_raw: rate(flux_raw),
+            flow_rate_ratio_raw: ratio(flux_raw, grains),
+            flow_rate_instantaneous: heading * flux_now / length,
+            kinetic_energy: bodies.kinetic_energy(0..bodies.grains),
+            rotational_energy: bodies.rotational_energy(),
+            granular_temperature: granular_temperature(bodies),
+            contacts: if grains > 0.0 { contacts / grains } else { 0.0 },
+            sliding_fraction: tally.sliding_contacts as f64 / distinct_contacts,
+            largest_overlap: tally.largest_overlap,
+            escaped: grains - inside,
+            inside,
+            wall_axial_force: heading * tally.wall_axial_force,
+            wall_power: (ledger.input() - before.ledger.input()) / interval,
+            dissipated_power: (ledger.dissipated() - before.ledger.dissipated()) / interval,
+            potential_energy: tally.potential_energy(),
+            energy_residual: simulation.energy_residual(),
+            axial_momentum: heading * axial_momentum(bodies),
+            angular_momentum: angular_momentum(bodies),
+            wall_kinetic_energy: bodies.kinetic_energy(bodies.grains..bodies.number()),
+            network_energy: tally.network_energy,
+            keep_energy: tally.keep_energy,
+            narrowest_radius: shape.narrowest(),
+            wall_axial_displacement: heading * wall_motion.axial,
+            wall_azimuthal_displacement: wall_motion.azimuthal,
+            ledger: *ledger,
+        }
+    }
+}
+
+/// Whether a grain's centre lies outside R + d/2, R the wall's radius at its z and d its diameter.
+#[must_use]
+pub fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
+    let position = bodies.position[grain];
+    let limit = shape.radius(position.z) + 0.5 * bodies.diameter[grain];
+    position.x * position.x + position.y * position.y > limit * limit
+}
+
+fn granular_temperature(bodies: &Bodies) -> f64 {
+    let number = bodies.grains as f64;
+    if bodies.grains == 0 {
+        return 0.0;
+    }
+    let velocities = &bodies.velocity[..bodies.grains];
+    let mean = velocities.iter().copied().sum::<DVec3>() / number;
+    let sum: f64 = velocities
+        .iter()
+        .zip(&bodies.mass)
+        .map(|(velocity, mass)| mass * (*velocity - mean).length_squared())
+        .sum();
+    sum / (3.0 * number)
+}
+
+fn axial_momentum(bodies: &Bodies) -> f64 {
+    (0..bodies.grains).map(|i| bodies.mass[i] * bodies.velocity[i].z).sum()
+}
+
+fn angular_momentum(bodies: &Bodies) -> f64 {
+    (0..bodies.grains)
+        .map(|i| {
+            let (position, velocity) = (bodies.position[i], bodies.velocity[i]);
+            bodies.mass[i] * (position.x * velocity.y - position.y * velocity.x)
+                + bodies.inertia[i] * bodies.angular_velocity[i].z
+        })
+        .sum()
+}
+
+/// How an elastic wall is displaced; zero for a prescribed one.
+#[derive(Default)]
+struct WallMotion {
+    axial: f64,
+    azimuthal: f64,
+}
+
+impl WallMotion {
+    fn of(simulation: &Simulation) -> Self {
+        let peristalsis_engine::Wall::Elastic(wall) = simulation.wall() else {
+            return Self::default();
+        };
+        let spheres = wall.lattice().spheres();
+        let (mut axial, mut azimuthal) = (0.0, 0.0);
+        for sphere in 0..spheres {
+            let away = wall.displacement(simulation.bodies(), sphere);
+            axial += away.z;
+            azimuthal += away.y * away.y;
+        }
+        Self {
+            axial: axial / spheres as f64,
+            azimuthal: (azimuthal / spheres as f64).sqrt(),
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! The shape of the tube: the wall's radius along the axis.
+
+use peristalsis_engine::wall::ElasticWall;
+use peristalsis_engine::{Bodies, Simulation, Wall};
+use peristalsis_physics::wall::RadiusWave;
+
+/// Radius of the tube as a function of z, to the centres of the wall spheres.
+#[derive(Clone, Debug)]
+pub enum TubeShape {
+    /// A prescribed wall: its wave, and how many wavelengths it has run.
+    Wave(RadiusWave, f64),
+    /// An elastic wall: by slices of the tube.
+    Slices(Vec<Slice>, f64),
+}
+
+/// Radii of the wall spheres in a slice of an elastic tube.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slice {
+    /// Mean \[d\].
+    pub mean: f64,
+    /// Least \[d\].
+    pub least: f64,
+    /// Largest \[d\].
+    pub largest: f64,
+}
+
+impl TubeShape {
+    /// The shape now.
+    #[must_use]
+    pub fn of(simulation: &Simulation) -> Self {
+        match simulation.wall() {
+            Wall::Prescribed(wall) => Self::Wave(*wall.wave(), wall.cycles()),
+            Wall::Elastic(wall) => Self::Slices(
+                slices(simulation.bodies(), wall),
+                wall.lattice().length(),
+            ),
+        }
+    }
+
+    /// Mean, least and largest radius at z in \[0, L) \[d\].
+    #[must_use]
+    pub fn slice(&self, z: f64) -> Slice {
+        match self {
+            Self::Wave(wave, cycles) => {
+                let radius = wave.radius(z, *cycles);
+                Slice {
+                    mean: radius,
+                    least: radius,
+                    largest: radius,
+                }
+            }
+            Self::Slices(slices, length) => {
+                let index = (z / length * slices.len() as f64) as usize;
+                slices[index.min(slices.len() - 1)]
+            }
+        }
+    }
+
+    /// Mean radius at z \[d\].
+    #[must_use]
+    pub fn radius(&self, z: f64) -> f64 {
+        self.slice(z).mean
+    }
+
+    /// Least radius anywhere \[d\]: twice it is the smallest bottleneck.
+    #[must_use]
+    pub fn narrowest(&self) -> f64 {
+        match self {
+            Self::Wave(wave, _) => wave.mean_radius - wave.amplitude.abs(),
+            Self::Slices(slices, _) => {
+                slices.iter().map(|slice| slice.mean).fold(f64::INFINITY, f64::min)
+            }
+        }
+    }
+}
+
+/// Slices one ring's spacing thick; a slice that no sphere is in takes the reference radius.
+fn slices(bodies: &Bodies, wall: &ElasticWall) -> Vec<Slice> {
+    let lattice = wall.lattice();
+    let number = lattice.rings() as usize;
+    let mut sums = vec![(0_u32, 0.0, f64::INFINITY, 0.0_f64); number];
+    for position in &bodies.position[bodies.grains..] {
+        let index = ((position.z / lattice.length() * number as f64) as usize).min(number - 1);
+        let radius = (position.x * position.x + position.y * position.y).sqrt();
+        let (count, sum, least, largest) = &mut sums[index];
+        *count += 1;
+        *sum += radius;
+        *least = least.min(radius);
+        *largest = largest.max(radius);
+    }
+    let reference = wall.parameters().mean_radius;
+    sums.into_iter()
+        .map(|(count, sum, least, largest)| match count {
+            0 => Slice {
+                mean: reference,
+                least: reference,
+                largest: reference,
+            },
+            _ => Slice {
+                mean: sum / f64::from(count),
+                least,
+                largest,
+            },
+        })
+        .collect()
+}

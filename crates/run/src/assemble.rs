@@ -1,0 +1,205 @@
+//! From a configuration to the parts of a simulation.
+
+use peristalsis_configuration as configuration;
+use peristalsis_configuration::{Configuration, Control, NormalLaw, ScheduledParameter};
+use peristalsis_engine::initial::{InitialState, Packing, PackingReport, pack};
+use peristalsis_engine::wall::{
+    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+};
+use peristalsis_engine::{Integrator, Parameters, Simulation, Wall};
+use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
+    ViscoelasticHertz,
+};
+use peristalsis_physics::newtonian::NewtonianPeristalsis;
+use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+
+use crate::RunError;
+
+/// Packs the grains and makes the simulation of a configuration, at time 0.
+///
+/// # Errors
+/// [`RunError::Engine`] where the grains do not fit.
+pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
+    let wall = walls(configuration);
+    let contact = contact_model(configuration);
+    let packing = Packing {
+        number: configuration.grains.number as usize,
+        diameter_min: configuration.grains.diameter_min,
+        diameter_max: configuration.grains.diameter_max,
+        state: match configuration.initial.state {
+            configuration::InitialState::Rest => InitialState::Rest,
+            configuration::InitialState::Jammed => InitialState::Jammed,
+        },
+        axial_velocity: wall.heading() * configuration.initial.axial_velocity,
+        seed: configuration.run.seed,
+    };
+    let (bodies, report) = pack(&packing, &wall, contact.normal)?;
+    Ok((Simulation::new(bodies, wall, parameters(configuration)), report))
+}
+
+/// How the engine computes a configuration.
+pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
+    Parameters {
+        contact: contact_model(configuration),
+        integrator: match configuration.run.integrator {
+            configuration::Integrator::Verlet => Integrator::Verlet,
+            configuration::Integrator::AdamsBashforth => Integrator::AdamsBashforth,
+        },
+        time_step: configuration.run.time_step,
+        skin: configuration.run.neighbour_skin,
+    }
+}
+
+/// The contact model of a configuration.
+#[must_use]
+pub fn contact_model(configuration: &Configuration) -> ContactModel {
+    let normal = match configuration.contact.normal {
+        NormalLaw::Linear {
+            normal_stiffness,
+            normal_damping,
+        } => Normal::Linear(LinearSpringDashpot {
+            normal_stiffness,
+            normal_damping,
+        }),
+        NormalLaw::Hertz {
+            young_modulus,
+            poisson_ratio,
+            dissipation_time,
+            dissipation_form,
+        } => Normal::Hertz(ViscoelasticHertz {
+            young_modulus,
+            poisson_ratio,
+            dissipation_time,
+            dissipation_form: match dissipation_form {
+                configuration::DissipationForm::Printed => DissipationForm::Printed,
+                configuration::DissipationForm::Viscoelastic => DissipationForm::Viscoelastic,
+            },
+        }),
+    };
+    let friction = configuration.contact.friction.map(|friction| CundallStrack {
+        tangential_stiffness: friction.tangential_stiffness,
+        tangential_damping: friction.tangential_damping,
+        static_friction: friction.static_friction,
+        kinetic_friction: friction.kinetic_friction,
+        sliding: match friction.sliding {
+            configuration::Sliding::Spring => Sliding::Spring,
+            configuration::Sliding::Balance => Sliding::Balance,
+            configuration::Sliding::Literal => Sliding::Literal,
+        },
+    });
+    ContactModel { normal, friction }
+}
+
+/// The wall of a configuration, at time 0.
+#[must_use]
+pub fn walls(configuration: &Configuration) -> Wall {
+    let tube = configuration.tube;
+    let lattice = Lattice {
+        spheres_per_ring: tube.spheres_per_ring,
+        rings_per_wave: tube.rings_per_wave,
+        waves: tube.waves,
+        wavelength: tube.wavelength,
+        sphere_diameter: configuration.wall.sphere_diameter,
+    };
+    let drive = &configuration.drive;
+    let waveform = match drive.waveform {
+        configuration::Waveform::Sine => Waveform::Sine,
+    };
+    let along = match drive.direction {
+        configuration::WaveDirection::Forward => 1.0,
+        configuration::WaveDirection::Backward => -1.0,
+    };
+    let frequency = schedule(configuration, ScheduledParameter::StrainRate, drive.strain_rate);
+    match drive.control {
+        Control::Strain { width } => {
+            let widths = schedule(configuration, ScheduledParameter::Width, width);
+            let amplitude = widths.map(|width| tube.radius - 0.5 * width);
+            // The source writes this wave as running towards -z.
+            Wall::Prescribed(PrescribedWall::new(
+                lattice,
+                tube.radius,
+                waveform,
+                -along,
+                amplitude,
+                frequency,
+            ))
+        }
+        Control::Stress {
+            force_amplitude,
+            angle,
+            wall,
+        } => Wall::Elastic(ElasticWall::new(ElasticParameters {
+            lattice,
+            mean_radius: tube.radius,
+            sphere_mass: wall.sphere_mass,
+            spring_stiffness: wall.spring_stiffness,
+            natural_length: wall.natural_length,
+            spring_damping: wall.spring_damping,
+            drag: wall.drag,
+            contact_range: wall.contact_range,
+            keep: Keep {
+                balance: wall.keep.balance,
+                radial: wall.keep.radial,
+                azimuthal: wall.keep.azimuthal,
+                axial: wall.keep.axial,
+                net_force: match wall.keep.net_force {
+                    configuration::NetForce::Free => NetForce::Free,
+                    configuration::NetForce::Removed => NetForce::Removed,
+                    configuration::NetForce::RemovedPerRing => NetForce::RemovedPerRing,
+                },
+            },
+            force_amplitude: schedule(
+                configuration,
+                ScheduledParameter::ForceAmplitude,
+                force_amplitude,
+            ),
+            frequency,
+            heading: along,
+            waveform,
+            angle: match angle {
+                configuration::DriveAngle::Reference => DriveAngle::Reference,
+                configuration::DriveAngle::Current => DriveAngle::Current,
+            },
+        })),
+    }
+}
+
+/// A drive parameter in time: as scheduled, or constant.
+fn schedule(
+    configuration: &Configuration,
+    parameter: ScheduledParameter,
+    constant: f64,
+) -> Schedule {
+    let Some(scheduled) = configuration
+        .drive
+        .schedules
+        .iter()
+        .find(|schedule| schedule.parameter == parameter)
+    else {
+        return Schedule::constant(constant);
+    };
+    // Schedules are in periods of the drive's own strain rate.
+    let period = configuration.drive.period().unwrap_or(1.0);
+    let knots = scheduled
+        .knots()
+        .into_iter()
+        .map(|(periods, value)| (periods * period, value))
+        .collect();
+    Schedule::through(knots).expect("a validated schedule has finite knots in order of time")
+}
+
+/// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
+/// pressure rise; the second is missing where the clear bore closes. `None` under stress control.
+#[must_use]
+pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
+    let amplitude = configuration.amplitude()?;
+    let ratio = |radius: f64| {
+        NewtonianPeristalsis::free_pumping(amplitude / radius)
+            .map(|fluid| fluid.flow_rate_ratio())
+    };
+    let radius = configuration.tube.radius;
+    let bore = radius - 0.5 * configuration.wall.sphere_diameter;
+    let clear = if bore > 0.0 { ratio(bore) } else { None };
+    ratio(radius).map(|here| (here, clear))
+}

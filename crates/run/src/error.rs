@@ -1,0 +1,52 @@
+//! What can go wrong in a run.
+
+use std::path::PathBuf;
+
+use peristalsis_engine::EngineError;
+
+/// Errors of a run and its record.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RunError {
+    /// The engine refuses, or the run diverged.
+    #[error(transparent)]
+    Engine(#[from] EngineError),
+    /// The configuration of a record cannot be read.
+    #[error(transparent)]
+    Configuration(#[from] peristalsis_configuration::ConfigurationError),
+    /// The folder holds another run.
+    #[error("{} holds another run ({found}): nothing was changed", folder.display())]
+    HoldsAnotherRun {
+        /// The folder.
+        folder: PathBuf,
+        /// The file that shows it.
+        found: String,
+    },
+    /// The folder cannot be made or written to.
+    #[error("cannot write to {}: {source}", folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// There is no run to go on with.
+    #[error("{} holds no run that can be continued: {reason}", folder.display())]
+    NothingToResume {
+        /// The folder.
+        folder: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
+    /// A file cannot be written or read.
+    #[error(transparent)]
+    Format(#[from] peristalsis_formats::FormatError),
+    /// A figure cannot be drawn.
+    #[error("cannot draw {figure}: {source}")]
+    Figure {
+        /// Name of the figure.
+        figure: &'static str,
+        /// Why.
+        source: peristalsis_figures::FigureError,
+    },
+}

@@ -1,0 +1,180 @@
+//! What would run, before it runs.
+
+use std::time::{Duration, Instant};
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_engine::Wall;
+use peristalsis_physics::contact::{Normal, NormalLaw};
+
+use crate::assemble::{contact_model, walls};
+use crate::run::Run;
+use crate::RunError;
+
+/// Steps that a contact should last.
+const STEPS_PER_CONTACT: f64 = 15.0;
+/// Overlap at which contact stiffness is judged, in units of the least diameter.
+const USUAL_OVERLAP: f64 = 0.1;
+/// Radius of a sphere that passes the wall without overlap above which grains will leak \[d\].
+const LEAKING_RADIUS: f64 = 0.02;
+/// Grains of the trial that measures speed.
+const TRIAL_GRAINS: u64 = 20_000;
+/// Length of the trial.
+const TRIAL: Duration = Duration::from_millis(200);
+
+/// Something that will run but may not mean what was intended.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Warning {
+    /// The key to look at.
+    pub key: &'static str,
+    /// What is to be expected.
+    pub message: String,
+}
+
+/// What would run.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Estimate {
+    /// Grains.
+    pub grains: u64,
+    /// Spheres of the wall.
+    pub wall_spheres: u64,
+    /// rho = N/(6 a^2 L), grain volumes averaged.
+    pub volume_fraction: f64,
+    /// n = N d*^3/(pi a^2 L).
+    pub number_density: f64,
+    /// Length of the tube \[d\].
+    pub length: f64,
+    /// Wave period \[t\].
+    pub period: Option<f64>,
+    /// Length of the run in periods.
+    pub periods: Option<f64>,
+    /// Length of the run \[t\].
+    pub duration: f64,
+    /// Step taken \[t\].
+    pub time_step: f64,
+    /// Steps.
+    pub steps: u64,
+    /// Duration of a usual contact \[t\].
+    pub contact_time: f64,
+    /// J/Jmax of a Newtonian fluid in this tube.
+    pub newtonian_flow_rate_ratio: Option<f64>,
+    /// Expected seconds, from a short trial on this machine.
+    pub expected_seconds: f64,
+    /// What looks doubtful.
+    pub warnings: Vec<Warning>,
+}
+
+/// What would run, with the time it would take, measured by a short trial of it.
+///
+/// # Errors
+/// [`RunError::Engine`] where the grains do not fit.
+pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
+    let expected_seconds = expected_seconds(configuration)?;
+    Ok(Estimate {
+        grains: configuration.grains.number,
+        wall_spheres: configuration.tube.wall_spheres(),
+        volume_fraction: configuration.volume_fraction(),
+        number_density: configuration.number_density(),
+        length: configuration.tube.length(),
+        period: configuration.drive.period(),
+        periods: configuration.run.periods,
+        duration: configuration.run.duration,
+        time_step: configuration.run.time_step,
+        steps: configuration.run.steps(),
+        contact_time: contact_time(configuration),
+        newtonian_flow_rate_ratio: crate::newtonian_reference(configuration)
+            .map(|reference| reference.0),
+        expected_seconds,
+        warnings: warnings(configuration),
+    })
+}
+
+/// Seconds of a run, from a trial of at most [`TRIAL`]; a large tube is tried in a shorter one like it.
+fn expected_seconds(configuration: &Configuration) -> Result<f64, RunError> {
+    let mut trial = configuration.clone();
+    let mut scale = 1.0;
+    if trial.grains.number > TRIAL_GRAINS {
+        let waves = trial.tube.waves;
+        let per_wave = trial.grains.number as f64 / f64::from(waves);
+        // An even number of waves suits every lattice.
+        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32)).clamp(2, waves);
+        trial.tube.waves = kept;
+        trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
+        scale = f64::from(waves) / f64::from(kept);
+    }
+    // A sample at every few steps of the trial would cost more than in the run.
+    let mut run = Run::new(trial)?;
+    let start = Instant::now();
+    while start.elapsed() < TRIAL && !run.is_complete() {
+        run.advance()?;
+    }
+    let done = run.progress().samples.max(1) as f64;
+    Ok(scale * start.elapsed().as_secs_f64() * configuration.run.samples as f64 / done)
+}
+
+/// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
+fn contact_time(configuration: &Configuration) -> f64 {
+    let model = contact_model(configuration);
+    let diameter = configuration.grains.diameter_min;
+    let mut lightest = diameter * diameter * diameter;
+    if let Control::Stress { wall, .. } = configuration.drive.control {
+        lightest = lightest.min(wall.sphere_mass);
+    }
+    let reduced_mass = match configuration.drive.control {
+        // Two grains; against a prescribed wall a contact lasts longer.
+        Control::Strain { .. } => 0.5 * lightest,
+        Control::Stress { .. } => {
+            let grain = diameter * diameter * diameter;
+            lightest * grain / (lightest + grain)
+        }
+    };
+    let overlap = USUAL_OVERLAP * diameter;
+    let normal = match model.normal {
+        Normal::Linear(law) => law.stiffness(overlap, 0.25 * diameter),
+        Normal::Hertz(law) => law.stiffness(overlap, 0.25 * diameter),
+    };
+    let tangential = model.friction.map_or(0.0, |law| law.tangential_stiffness);
+    let stiffest = normal.max(tangential);
+    std::f64::consts::PI / (stiffest / reduced_mass).sqrt()
+}
+
+/// What looks doubtful in a configuration.
+#[must_use]
+pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let contact_time = contact_time(configuration);
+    let step = configuration.run.time_step;
+    if step * STEPS_PER_CONTACT > contact_time {
+        warnings.push(Warning {
+            key: "run.time_step",
+            message: format!(
+                "a step of {step:.3} is too long for a contact that lasts {contact_time:.3}: take {:.3} or less",
+                contact_time / STEPS_PER_CONTACT
+            ),
+        });
+    }
+    if let Wall::Prescribed(wall) = walls(configuration) {
+        let wave = wall.wave();
+        let widest = wave.mean_radius + wave.amplitude.abs();
+        let passing = wall.lattice().largest_passing_radius(widest);
+        if passing > LEAKING_RADIUS {
+            warnings.push(Warning {
+                key: "tube.rings_per_wave",
+                message: format!(
+                    "the lattice leaks where the tube is widest (R = {widest:.2}): a sphere of radius {passing:.3} passes \
+                     between its spheres, and soft grains squeeze through; take more spheres a ring or more rings a wave"
+                ),
+            });
+        }
+        let opening = 2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;
+        if opening <= 0.0 {
+            warnings.push(Warning {
+                key: "drive.width",
+                message: format!(
+                    "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
+                     are squeezed through the wall"
+                ),
+            });
+        }
+    }
+    warnings
+}

@@ -1,0 +1,171 @@
+//! The folder of a run: configuration, summary, tables, figures, state.
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_configuration::{Configuration, SourceFile, Sources};
+use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
+use peristalsis_formats::{FormatError, atomic, csv, parquet};
+
+use crate::error::RunError;
+use crate::pictures;
+use crate::run::{Run, RunState};
+use crate::summary::Summary;
+use crate::tables::{profile_table, timeseries_table};
+
+/// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
+const STATE_LAYOUT: u32 = 1;
+
+const CONFIGURATION: &str = "config.toml";
+const SUMMARY: &str = "summary.json";
+const TIMESERIES: &str = "timeseries.parquet";
+const TIMESERIES_CSV: &str = "timeseries.csv";
+const PROFILE: &str = "profile.parquet";
+const STATE: &str = "state.checkpoint";
+
+/// A folder that holds one run, and no other.
+#[derive(Clone, Debug)]
+pub struct RunFolder {
+    path: PathBuf,
+}
+
+/// Which of the optional files are wanted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Written {
+    /// Tables as Parquet, figures, summary.
+    Standard,
+    /// The time series as CSV as well.
+    WithCsv,
+}
+
+impl RunFolder {
+    /// Makes a folder for a new run and writes its configuration there; an empty folder may exist.
+    ///
+    /// # Errors
+    /// [`RunError::HoldsAnotherRun`] where one is there already, [`RunError::Folder`] where the folder cannot be made or
+    /// written to. Nothing is changed in either case.
+    pub fn create(path: &Path, configuration: &Configuration) -> Result<Self, RunError> {
+        Self::check(path)?;
+        std::fs::create_dir_all(path).map_err(|source| RunError::Folder {
+            folder: path.to_owned(),
+            source,
+        })?;
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        atomic::write(&folder.file(CONFIGURATION), configuration.to_toml().as_bytes()).map_err(
+            |error| match error {
+                FormatError::Io { source, .. } => RunError::Folder {
+                    folder: path.to_owned(),
+                    source,
+                },
+                other => other.into(),
+            },
+        )?;
+        Ok(folder)
+    }
+
+    /// Whether a folder is free for a new run; makes nothing.
+    ///
+    /// # Errors
+    /// [`RunError::HoldsAnotherRun`] where one is there already, [`RunError::Folder`] where there is a file of that name.
+    pub fn check(path: &Path) -> Result<(), RunError> {
+        if path.exists() && !path.is_dir() {
+            return Err(RunError::Folder {
+                folder: path.to_owned(),
+                source: std::io::ErrorKind::NotADirectory.into(),
+            });
+        }
+        for name in [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, STATE] {
+            if path.join(name).symlink_metadata().is_ok() {
+                return Err(RunError::HoldsAnotherRun {
+                    folder: path.to_owned(),
+                    found: name.to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Opens the folder of a run that was stopped, to go on with it.
+    ///
+    /// # Errors
+    /// [`RunError::NothingToResume`] where configuration or state is missing; errors of reading either.
+    pub fn resume(path: &Path) -> Result<(Self, Run), RunError> {
+        let folder = Self {
+            path: path.to_owned(),
+        };
+        let missing = |reason: String| RunError::NothingToResume {
+            folder: path.to_owned(),
+            reason,
+        };
+        let name = folder.file(CONFIGURATION);
+        let text = std::fs::read_to_string(&name)
+            .map_err(|error| missing(format!("{CONFIGURATION}: {error}")))?;
+        let configuration = Configuration::from_sources(&Sources {
+            file: Some(SourceFile {
+                name: &name.display().to_string(),
+                text: &text,
+            }),
+            preset: None,
+            overrides: &[],
+        })?;
+        let state = std::fs::read(folder.file(STATE))
+            .map_err(|error| missing(format!("{STATE}: {error}")))?;
+        let state: RunState = checkpoint::decode(&identity(&configuration), &state)?;
+        let run = Run::resume(configuration, state)?;
+        if run.is_complete() {
+            return Err(missing("it is complete".to_owned()));
+        }
+        Ok((folder, run))
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Saves the state, so that the run can go on from here.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the file cannot be written; an older state stays.
+    pub fn save_state(&self, run: &Run) -> Result<(), RunError> {
+        let bytes = checkpoint::encode(&identity(run.configuration()), &run.state())?;
+        Ok(atomic::write(&self.file(STATE), &bytes)?)
+    }
+
+    /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.
+    ///
+    /// # Errors
+    /// The first file that cannot be written or drawn.
+    pub fn finish(&self, run: &Run, summary: &Summary, written: Written) -> Result<(), RunError> {
+        let timeseries = timeseries_table(run)?;
+        parquet::write(&self.file(TIMESERIES), &timeseries)?;
+        if written == Written::WithCsv {
+            csv::write(&self.file(TIMESERIES_CSV), &timeseries)?;
+        }
+        parquet::write(&self.file(PROFILE), &profile_table(run)?)?;
+        self.save_state(run)?;
+        atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
+        for (name, drawing) in pictures::draw_all(run, summary)? {
+            atomic::write(&self.file(&format!("{name}.svg")), drawing.svg().as_bytes())?;
+            let png = drawing
+                .png()
+                .map_err(|source| RunError::Figure { figure: name, source })?;
+            atomic::write(&self.file(&format!("{name}.png")), &png)?;
+        }
+        Ok(())
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+}
+
+fn identity(configuration: &Configuration) -> CheckpointIdentity {
+    CheckpointIdentity {
+        kind: *b"run     ",
+        layout_version: STATE_LAYOUT,
+        physics_hash: configuration.physics_hash(),
+    }
+}

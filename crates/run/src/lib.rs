@@ -1,0 +1,31 @@
+//! One run: from a configuration to its record.
+//!
+//! [`assemble`] turns a [`Configuration`] into a simulation; [`Run`] advances it sample by sample and keeps what was
+//! measured; [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or
+//! not at all. Nothing here prints or exits.
+
+mod assemble;
+mod error;
+mod estimate;
+mod folder;
+mod pictures;
+mod recorder;
+mod run;
+mod summary;
+mod tables;
+
+pub use assemble::{assemble, contact_model, newtonian_reference, walls};
+pub use error::RunError;
+pub use estimate::{Estimate, Warning, estimate, warnings};
+pub use folder::{RunFolder, Written};
+pub use peristalsis_configuration::Configuration;
+pub use recorder::Recorder;
+pub use run::{Progress, Run, RunState};
+pub use summary::{Status, Summary};
+pub use tables::{profile_table, timeseries_table};
+
+/// Version of this program.
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// Revision of the source that this program was built from; "unknown" outside a checkout.
+pub const REVISION: &str = env!("PERISTALSIS_REVISION");

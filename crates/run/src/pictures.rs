@@ -1,0 +1,232 @@
+//! The figures of a run.
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_engine::Wall;
+use peristalsis_figures::{
+    Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale,
+    Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Transition, WallFigure,
+    Width,
+};
+use peristalsis_observe::TubeShape;
+
+use crate::error::RunError;
+use crate::run::Run;
+use crate::summary::Summary;
+use crate::tables::late_profile;
+
+/// Length of tube that a snapshot shows at most, in wavelengths.
+const SNAPSHOT_WAVES: u32 = 4;
+
+/// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
+/// draw.
+pub(crate) fn draw_all(run: &Run, summary: &Summary) -> Result<Vec<(&'static str, Drawing)>, RunError> {
+    let configuration = run.configuration();
+    let mut drawings = Vec::new();
+    let mut add = |name: &'static str, drawing: Result<Drawing, FigureError>| {
+        drawing
+            .map(|drawing| drawings.push((name, drawing)))
+            .map_err(|source| RunError::Figure { figure: name, source })
+    };
+    let has_ratios = run
+        .recorder()
+        .samples()
+        .iter()
+        .any(|sample| sample.flow_rate_ratio.is_finite());
+    if has_ratios {
+        add("flow", flow(run, summary))?;
+        add("profile", profile(run))?;
+    }
+    if configuration.grains.number > 0 {
+        add("snapshot", snapshot(run))?;
+    }
+    if matches!(configuration.drive.control, Control::Stress { .. })
+        && !run.recorder().samples().is_empty()
+    {
+        add("wall", wall(run))?;
+    }
+    Ok(drawings)
+}
+
+/// The parameters of a run in one line of markup.
+fn title(configuration: &Configuration) -> String {
+    let (control, density) = match configuration.drive.control {
+        Control::Strain { width } => (
+            format!("*w* = {width} *d*"),
+            format!("*ρ* = {:.3}", configuration.volume_fraction()),
+        ),
+        Control::Stress { force_amplitude, .. } => (
+            format!("*f*^{{P}} = {force_amplitude} *Yd*^{{2}}"),
+            format!("*n* = {:.3}", configuration.number_density()),
+        ),
+    };
+    format!(
+        "{control},  *ε\u{307}* = {},  {density},  *N* = {}",
+        configuration.drive.strain_rate, configuration.grains.number
+    )
+}
+
+/// Unit of time in markup.
+fn time_unit(configuration: &Configuration) -> &'static str {
+    match configuration.contact.normal {
+        peristalsis_configuration::NormalLaw::Linear { .. } => "(*m*/*k*)^{1/2}",
+        peristalsis_configuration::NormalLaw::Hertz { .. } => "*t*^{∗}",
+    }
+}
+
+fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let recorder = run.recorder();
+    let samples = recorder.samples();
+    // A sample is the mean over the interval that ends with it.
+    let half = 0.5 / f64::from(configuration.observe.samples_per_period);
+    let period: Vec<f64> = samples.iter().map(|sample| sample.period - half).collect();
+    let ratio: Vec<f64> = samples.iter().map(|sample| sample.flow_rate_ratio).collect();
+    let middles: Vec<f64> = (0..recorder.averages().len()).map(|k| k as f64 + 0.5).collect();
+    let title = title(configuration);
+    FlowFigure {
+        title: &title,
+        samples: Series { x: &period, y: &ratio },
+        averages: (!middles.is_empty()).then_some(Series {
+            x: &middles,
+            y: recorder.averages(),
+        }),
+        threshold: Some(configuration.observe.transition_threshold),
+        transition: summary.transition_time.map(|time| Transition {
+            period: time * configuration.drive.strain_rate,
+            time,
+            unit: time_unit(configuration),
+        }),
+        newtonian: summary.newtonian_flow_rate_ratio.map(|ratio| NewtonianReference {
+            ratio,
+            clear_bore: summary.newtonian_flow_rate_ratio_clear_bore,
+        }),
+        late_mean: (summary.flow_rate_ratio.is_finite() && summary.flow_rate_ratio_error.is_finite())
+            .then_some(LateMean {
+                mean: summary.flow_rate_ratio,
+                error: summary.flow_rate_ratio_error,
+            }),
+        width: Width::SingleColumn,
+    }
+    .draw()
+}
+
+fn profile(run: &Run) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let bins = late_profile(run);
+    let speed = configuration.wave_speed();
+    let column = |value: &dyn Fn(&peristalsis_observe::ProfileBin) -> f64| -> Vec<f64> {
+        bins.iter().map(value).collect()
+    };
+    let position = column(&|bin| bin.position);
+    let radius = column(&|bin| bin.radius);
+    let density = (column(&|bin| bin.density.0), column(&|bin| bin.density.1));
+    let velocity = (
+        column(&|bin| bin.axial_velocity.0 / speed),
+        column(&|bin| bin.axial_velocity.1 / speed),
+    );
+    let temperature = (column(&|bin| bin.temperature.0), column(&|bin| bin.temperature.1));
+    let title = title(configuration);
+    let panel = |value, error, label| Profile {
+        position: &position,
+        value,
+        error,
+        label,
+    };
+    ProfileFigure {
+        title: &title,
+        wall_radius: panel(&radius, None, "*r*/*d*"),
+        density: panel(&density.0, Some(&density.1), "*n*_{1} *d*"),
+        axial_velocity: panel(&velocity.0, Some(&velocity.1), "*v_z*/*c*"),
+        temperature: panel(&temperature.0, Some(&temperature.1), "*T*_{g}"),
+        temperature_scale: Scale::Linear,
+        width: Width::SingleColumn,
+    }
+    .draw()
+}
+
+fn wall(run: &Run) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let bins = late_profile(run);
+    let column = |value: fn(&peristalsis_observe::ProfileBin) -> f64| -> Vec<f64> {
+        bins.iter().map(value).collect()
+    };
+    let title = title(configuration);
+    WallFigure {
+        title: &title,
+        phase: &column(|bin| bin.position),
+        mean: &column(|bin| bin.radius),
+        least: &column(|bin| bin.least_radius),
+        largest: &column(|bin| bin.largest_radius),
+        reference: Some(configuration.tube.radius),
+        length_unit: "*d*",
+        width: Width::SingleColumn,
+    }
+    .draw()
+}
+
+fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let simulation = run.simulation();
+    let bodies = simulation.bodies();
+    let tube = simulation.wall().lattice().length();
+    let heading = simulation.wall().heading();
+    let speed = configuration.wave_speed();
+    // Drawn with the wave running to the right.
+    let along = |z: f64| if heading > 0.0 { z } else { tube - z };
+    let grains: Vec<SnapshotGrain> = (0..bodies.grains)
+        .map(|grain| SnapshotGrain {
+            sphere: SnapshotSphere {
+                along: along(bodies.position[grain].z),
+                across: bodies.position[grain].y,
+                depth: bodies.position[grain].x,
+                diameter: bodies.diameter[grain],
+            },
+            axial_velocity: if speed > 0.0 {
+                heading * bodies.velocity[grain].z / speed
+            } else {
+                0.0
+            },
+        })
+        .collect();
+    let length = configuration.tube.wavelength
+        * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
+    let points = 400;
+    let shape = TubeShape::of(simulation);
+    let outline: (Vec<f64>, Vec<f64>) = (0..=points)
+        .map(|point| {
+            let place = length * f64::from(point) / f64::from(points);
+            (place, shape.radius(along(place).rem_euclid(tube)))
+        })
+        .unzip();
+    let spheres: Vec<SnapshotSphere> = match simulation.wall() {
+        Wall::Prescribed(_) => Vec::new(),
+        Wall::Elastic(_) => (bodies.grains..bodies.number())
+            .map(|sphere| SnapshotSphere {
+                along: along(bodies.position[sphere].z),
+                across: bodies.position[sphere].y,
+                depth: bodies.position[sphere].x,
+                diameter: bodies.diameter[sphere],
+            })
+            .collect(),
+    };
+    let title = format!("{},  *t*/*T* = {:.2}", title(configuration), simulation.wall().cycles());
+    SnapshotFigure {
+        title: &title,
+        grains: &grains,
+        wall: if spheres.is_empty() {
+            SnapshotWall::Outline(Series {
+                x: &outline.0,
+                y: &outline.1,
+            })
+        } else {
+            SnapshotWall::Spheres(&spheres)
+        },
+        start: 0.0,
+        length,
+        period: Some(tube),
+        velocity_limit: 1.0,
+        length_unit: "*d*",
+        width: Width::DoubleColumn,
+    }
+    .draw()
+}

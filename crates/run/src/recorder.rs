@@ -1,0 +1,114 @@
+//! What a run has measured so far.
+
+use peristalsis_analysis::{Direction, Transition, TransitionDetector};
+use peristalsis_configuration::{Configuration, InitialState};
+use peristalsis_engine::Simulation;
+use peristalsis_observe::{Observer, Sample, WaveFrameProfile};
+
+/// Samples, period averages, the search for the transition, and the profile in the wave's frame.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Recorder {
+    observer: Observer,
+    samples: Vec<Sample>,
+    samples_per_period: u64,
+    /// J/Jmax of each whole period.
+    averages: Vec<f64>,
+    detector: Option<TransitionDetector>,
+    profile: WaveFrameProfile,
+}
+
+impl Recorder {
+    /// Begins with a simulation at time 0.
+    pub(crate) fn new(configuration: &Configuration, simulation: &Simulation) -> Self {
+        let direction = match configuration.initial.state {
+            InitialState::Rest => Direction::Upward,
+            InitialState::Jammed => Direction::Downward,
+        };
+        let samples_per_period = u64::from(configuration.observe.samples_per_period);
+        let detector = configuration
+            .drive
+            .period()
+            .filter(|_| configuration.grains.number > 0)
+            .map(|period| {
+                TransitionDetector::new(
+                    direction,
+                    configuration.observe.transition_threshold,
+                    period,
+                )
+                .expect("a validated configuration has a threshold and a period in range")
+            });
+        Self {
+            observer: Observer::new(simulation),
+            samples: Vec::new(),
+            samples_per_period,
+            averages: Vec::new(),
+            detector,
+            profile: WaveFrameProfile::new(
+                configuration.observe.profile_bins as usize,
+                samples_per_period,
+            ),
+        }
+    }
+
+    /// Takes a sample of the simulation.
+    pub(crate) fn record(&mut self, simulation: &Simulation) {
+        self.samples.push(self.observer.sample(simulation));
+        self.profile.add(simulation);
+        if self.samples.len() as u64 % self.samples_per_period == 0 {
+            let first = self.samples.len() - self.samples_per_period as usize;
+            let period = &self.samples[first..];
+            let average = period.iter().map(|sample| sample.flow_rate_ratio).sum::<f64>()
+                / period.len() as f64;
+            self.averages.push(average);
+            // Without grains inside there is no ratio, and the search ends.
+            if !average.is_finite() || self.push(average).is_none() {
+                self.detector = None;
+            }
+        }
+    }
+
+    fn push(&mut self, average: f64) -> Option<()> {
+        self.detector.as_mut()?.push(average).ok().map(|_| ())
+    }
+
+    /// The samples so far.
+    #[must_use]
+    pub fn samples(&self) -> &[Sample] {
+        &self.samples
+    }
+
+    /// J/Jmax averaged over each whole period so far.
+    #[must_use]
+    pub fn averages(&self) -> &[f64] {
+        &self.averages
+    }
+
+    /// The profile in the wave's frame.
+    #[must_use]
+    pub fn profile(&self) -> &WaveFrameProfile {
+        &self.profile
+    }
+
+    /// Time of the transition \[t\], if it has been found.
+    #[must_use]
+    pub fn transition_time(&self) -> Option<f64> {
+        match self.detector.as_ref()?.outcome() {
+            Transition::At { time, .. } => Some(time),
+            Transition::Censored { .. } => None,
+        }
+    }
+
+    /// Time of a crossing \[t\] that has not lasted long enough yet.
+    #[must_use]
+    pub fn candidate(&self) -> Option<f64> {
+        self.detector.as_ref()?.candidate()
+    }
+
+    /// The samples of the last part of what was measured, at least one.
+    #[must_use]
+    pub fn late(&self, fraction: f64) -> &[Sample] {
+        let number = self.samples.len();
+        let taken = ((number as f64 * fraction).round() as usize).clamp(1.min(number), number);
+        &self.samples[number - taken..]
+    }
+}

@@ -1,0 +1,164 @@
+//! A run in progress.
+
+use std::time::{Duration, Instant};
+
+use peristalsis_configuration::Configuration;
+use peristalsis_engine::initial::PackingReport;
+use peristalsis_engine::{Simulation, Snapshot};
+
+use crate::assemble::{assemble, parameters, walls};
+use crate::recorder::Recorder;
+use crate::RunError;
+
+/// A simulation together with what has been measured of it.
+#[derive(Clone, Debug)]
+pub struct Run {
+    configuration: Configuration,
+    simulation: Simulation,
+    packing: PackingReport,
+    recorder: Recorder,
+    /// Time spent in the engine and its observables, earlier parts of the run included.
+    elapsed: Duration,
+}
+
+/// Everything that a run needs to go on with the same bits.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct RunState {
+    snapshot: Snapshot,
+    packing: PackingReport,
+    recorder: Recorder,
+    elapsed: Duration,
+}
+
+/// How far a run is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Progress {
+    /// Samples taken.
+    pub samples: u64,
+    /// Samples of the whole run.
+    pub samples_total: u64,
+    /// Time since the start \[t\].
+    pub time: f64,
+    /// Wavelengths that the wave has run.
+    pub period: f64,
+    /// J/Jmax of the last whole period, or of the last sample before there is one.
+    pub flow_rate_ratio: f64,
+    /// Time of the transition \[t\].
+    pub transition_time: Option<f64>,
+    /// Time spent.
+    pub elapsed: Duration,
+}
+
+impl Run {
+    /// Packs the grains.
+    ///
+    /// # Errors
+    /// [`RunError::Engine`] where they do not fit.
+    pub fn new(configuration: Configuration) -> Result<Self, RunError> {
+        let (simulation, packing) = assemble(&configuration)?;
+        let recorder = Recorder::new(&configuration, &simulation);
+        Ok(Self {
+            configuration,
+            simulation,
+            packing,
+            recorder,
+            elapsed: Duration::ZERO,
+        })
+    }
+
+    /// Goes on from a state that [`Run::state`] gave for the same configuration.
+    ///
+    /// # Errors
+    /// [`RunError::Engine`] where the state does not fit the configuration.
+    pub fn resume(configuration: Configuration, state: RunState) -> Result<Self, RunError> {
+        let simulation = Simulation::restore(
+            state.snapshot,
+            walls(&configuration),
+            parameters(&configuration),
+        )?;
+        Ok(Self {
+            configuration,
+            simulation,
+            packing: state.packing,
+            recorder: state.recorder,
+            elapsed: state.elapsed,
+        })
+    }
+
+    /// The state, to go on from later.
+    #[must_use]
+    pub fn state(&self) -> RunState {
+        RunState {
+            snapshot: self.simulation.snapshot(),
+            packing: self.packing,
+            recorder: self.recorder.clone(),
+            elapsed: self.elapsed,
+        }
+    }
+
+    /// Advances to the next sample and takes it.
+    ///
+    /// # Errors
+    /// [`RunError::Engine`] where the simulation diverged; what was measured before stays.
+    pub fn advance(&mut self) -> Result<(), RunError> {
+        let start = Instant::now();
+        let outcome = self.simulation.advance(self.configuration.run.steps_per_sample);
+        if outcome.is_ok() {
+            self.recorder.record(&self.simulation);
+        }
+        self.elapsed += start.elapsed();
+        Ok(outcome?)
+    }
+
+    /// Whether all samples have been taken.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.recorder.samples().len() as u64 >= self.configuration.run.samples
+    }
+
+    /// How far it is.
+    #[must_use]
+    pub fn progress(&self) -> Progress {
+        let samples = self.recorder.samples();
+        let last_sample = samples.last().map_or(f64::NAN, |sample| sample.flow_rate_ratio);
+        Progress {
+            samples: samples.len() as u64,
+            samples_total: self.configuration.run.samples,
+            time: self.simulation.time(),
+            period: self.simulation.wall().cycles(),
+            flow_rate_ratio: self.recorder.averages().last().copied().unwrap_or(last_sample),
+            transition_time: self.recorder.transition_time(),
+            elapsed: self.elapsed,
+        }
+    }
+
+    /// The configuration.
+    #[must_use]
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The simulation.
+    #[must_use]
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// What has been measured.
+    #[must_use]
+    pub fn recorder(&self) -> &Recorder {
+        &self.recorder
+    }
+
+    /// How the grains were packed.
+    #[must_use]
+    pub fn packing(&self) -> &PackingReport {
+        &self.packing
+    }
+
+    /// Time spent.
+    #[must_use]
+    pub fn elapsed(&self) -> Duration {
+        self.elapsed
+    }
+}

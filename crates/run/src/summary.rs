@@ -1,0 +1,162 @@
+//! The outcome of a run in numbers.
+
+use peristalsis_analysis::mean_with_error;
+use peristalsis_observe::Sample;
+
+use crate::assemble::newtonian_reference;
+use crate::run::Run;
+use crate::{REVISION, VERSION};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Status {
+    /// As long as it was meant to.
+    Complete,
+    /// Stopped before.
+    Interrupted,
+    /// A grain moved too far in one step.
+    Diverged,
+}
+
+/// The outcome of a run; missing numbers are `null` in JSON.
+///
+/// "Late" is the last part of the run, a quarter unless configured otherwise. Units: d, m, t.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Summary {
+    /// How it ended.
+    pub status: Status,
+    /// What went wrong, where it diverged.
+    pub message: Option<String>,
+    /// Grains.
+    pub grains: u64,
+    /// Late mean of J/Jmax of the grains inside.
+    pub flow_rate_ratio: f64,
+    /// Its standard error from block averages.
+    pub flow_rate_ratio_error: f64,
+    /// Late mean of J/Jmax of all grains.
+    pub flow_rate_ratio_raw: f64,
+    /// Late mean of J \[1/t\].
+    pub flow_rate: f64,
+    /// tau \[t\].
+    pub transition_time: Option<f64>,
+    /// Whether the run ended before a transition.
+    pub censored: bool,
+    /// J/Jmax whose crossing counts as the transition.
+    pub transition_threshold: f64,
+    /// J/Jmax of a Newtonian fluid in this tube, phi = b/a.
+    pub newtonian_flow_rate_ratio: Option<f64>,
+    /// The same for the clear bore, phi = b/(a - d/2).
+    pub newtonian_flow_rate_ratio_clear_bore: Option<f64>,
+    /// Grains outside the tube at the end.
+    pub escaped: u64,
+    /// Most grains outside the tube at any sample.
+    pub escaped_most: u64,
+    /// Largest overlap of a grain's contact at any step \[d\].
+    pub largest_overlap: f64,
+    /// |what the energy ledger misses| over the integral of |power that entered|.
+    pub energy_residual: f64,
+    /// Late mean of the granular temperature.
+    pub granular_temperature: f64,
+    /// Late mean number of contacts of a grain.
+    pub contacts: f64,
+    /// Late mean power that wall or drive put in.
+    pub wall_power: f64,
+    /// Late mean power lost.
+    pub dissipated_power: f64,
+    /// Late mean of the tube's least radius \[d\].
+    pub narrowest_radius: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Length of a step \[t\].
+    pub time_step: f64,
+    /// Time reached \[t\].
+    pub time: f64,
+    /// Wavelengths that the wave has run.
+    pub periods: f64,
+    /// Spheres of the wall.
+    pub wall_spheres: u64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+    /// How the grains were packed.
+    pub packing: peristalsis_engine::initial::PackingReport,
+    /// Grains times steps over the seconds that engine and observables took.
+    pub grain_steps_per_second: f64,
+    /// Seconds that engine and observables took.
+    pub seconds: f64,
+    /// What looks wrong with an elastic wall.
+    pub wall_diagnosis: Option<String>,
+    /// Version of the program.
+    pub version: &'static str,
+    /// Revision of its source.
+    pub revision: &'static str,
+}
+
+impl Summary {
+    /// The outcome of a run so far.
+    #[must_use]
+    pub fn of(run: &Run, status: Status, message: Option<String>) -> Self {
+        let configuration = run.configuration();
+        let recorder = run.recorder();
+        let samples = recorder.samples();
+        let late = recorder.late(configuration.observe.late_fraction);
+        let last = samples.last();
+        let ratios: Vec<f64> = late.iter().map(|sample| sample.flow_rate_ratio).collect();
+        let estimate = mean_with_error(&ratios).ok();
+        let mean = |value: fn(&Sample) -> f64| {
+            late.iter().map(value).sum::<f64>() / late.len() as f64
+        };
+        let newtonian = newtonian_reference(configuration);
+        let simulation = run.simulation();
+        let seconds = run.elapsed().as_secs_f64();
+        let grain_steps = configuration.grains.number as f64 * simulation.step() as f64;
+        let transition_time = recorder.transition_time();
+        Self {
+            status,
+            message,
+            grains: configuration.grains.number,
+            flow_rate_ratio: estimate
+                .map_or_else(|| mean(|sample| sample.flow_rate_ratio), |estimate| estimate.mean),
+            flow_rate_ratio_error: estimate.map_or(f64::NAN, |estimate| estimate.error),
+            flow_rate_ratio_raw: mean(|sample| sample.flow_rate_ratio_raw),
+            flow_rate: mean(|sample| sample.flow_rate),
+            transition_time,
+            censored: transition_time.is_none(),
+            transition_threshold: configuration.observe.transition_threshold,
+            newtonian_flow_rate_ratio: newtonian.map(|reference| reference.0),
+            newtonian_flow_rate_ratio_clear_bore: newtonian.and_then(|reference| reference.1),
+            escaped: last.map_or(0, |sample| sample.escaped as u64),
+            escaped_most: samples.iter().map(|sample| sample.escaped as u64).max().unwrap_or(0),
+            largest_overlap: simulation.ledger().largest_overlap,
+            energy_residual: simulation.energy_residual(),
+            granular_temperature: mean(|sample| sample.granular_temperature),
+            contacts: mean(|sample| sample.contacts),
+            wall_power: mean(|sample| sample.wall_power),
+            dissipated_power: mean(|sample| sample.dissipated_power),
+            narrowest_radius: mean(|sample| sample.narrowest_radius),
+            steps: simulation.step(),
+            time_step: configuration.run.time_step,
+            time: simulation.time(),
+            periods: simulation.wall().cycles(),
+            wall_spheres: configuration.tube.wall_spheres(),
+            seed: configuration.run.seed,
+            packing: *run.packing(),
+            grain_steps_per_second: if seconds > 0.0 { grain_steps / seconds } else { 0.0 },
+            seconds,
+            wall_diagnosis: None,
+            version: VERSION,
+            revision: REVISION,
+        }
+    }
+}
+
+impl Summary {
+    /// As JSON, indented.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("a summary is plain numbers and text, which always serialise");
+        text.push('\n');
+        text
+    }
+}

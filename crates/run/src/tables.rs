@@ -1,0 +1,97 @@
+//! The tables of a run.
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_formats::{FormatError, Table, Values};
+use peristalsis_observe::columns::Scope;
+use peristalsis_observe::{COLUMNS, ProfileBin};
+
+use crate::run::Run;
+use crate::{REVISION, VERSION};
+
+/// The time series: one row a sample, one column for each row of [`COLUMNS`] that applies.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn timeseries_table(run: &Run) -> Result<Table, FormatError> {
+    let configuration = run.configuration();
+    let samples = run.recorder().samples();
+    let mut table = Table::builder();
+    for column in COLUMNS.iter().filter(|column| applies(column.scope, configuration)) {
+        let values = samples.iter().map(column.value).collect();
+        table = table.column(column.name, column.unit, column.description, Values::Real(values));
+    }
+    with_origin(table, configuration).build()
+}
+
+/// The profile in the wave's frame over the late part of the run: one row a bin.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
+    let configuration = run.configuration();
+    let bins = late_profile(run);
+    let column = |value: fn(&ProfileBin) -> f64| Values::Real(bins.iter().map(value).collect());
+    let table = Table::builder()
+        .column(
+            "position",
+            "1",
+            "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave",
+            column(|bin| bin.position),
+        )
+        .column("density", "1/d", "grains per length of tube", column(|bin| bin.density.0))
+        .column("density_error", "1/d", "its standard error", column(|bin| bin.density.1))
+        .column(
+            "axial_velocity",
+            "d/t",
+            "mean axial velocity along the wave, laboratory frame",
+            column(|bin| bin.axial_velocity.0),
+        )
+        .column(
+            "axial_velocity_error",
+            "d/t",
+            "its standard error",
+            column(|bin| bin.axial_velocity.1),
+        )
+        .column(
+            "granular_temperature",
+            "m d^2/t^2",
+            "sum m |v - <v>|^2/(3 N) about the bin's mean velocity",
+            column(|bin| bin.temperature.0),
+        )
+        .column(
+            "granular_temperature_error",
+            "m d^2/t^2",
+            "its standard error",
+            column(|bin| bin.temperature.1),
+        )
+        .column("radius", "d", "mean radius of the tube", column(|bin| bin.radius))
+        .column("least_radius", "d", "least radius seen", column(|bin| bin.least_radius))
+        .column("largest_radius", "d", "largest radius seen", column(|bin| bin.largest_radius));
+    with_origin(table, configuration).build()
+}
+
+/// The bins of the late profile.
+pub(crate) fn late_profile(run: &Run) -> Vec<ProfileBin> {
+    let configuration = run.configuration();
+    run.recorder()
+        .profile()
+        .late(configuration.observe.late_fraction, configuration.tube.wavelength)
+}
+
+fn applies(scope: Scope, configuration: &Configuration) -> bool {
+    match scope {
+        Scope::Always => true,
+        Scope::Friction => configuration.contact.friction.is_some(),
+        Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
+    }
+}
+
+fn with_origin(
+    table: peristalsis_formats::TableBuilder,
+    configuration: &Configuration,
+) -> peristalsis_formats::TableBuilder {
+    table
+        .metadata("peristalsis.version", VERSION)
+        .metadata("peristalsis.revision", REVISION)
+        .metadata("peristalsis.configuration", configuration.to_toml())
+}
