@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Presets(PresetsArguments),
     /// Print the JSON schema of the configuration.
     Schema,
+    /// What a Newtonian fluid would do in such a tube (Shapiro, Jaffrin & Weinberg 1969).
+    Newtonian(NewtonianArguments),
     /// Print completions for a shell.
     Completions(CompletionsArguments),
 }
@@ -83,6 +85,27 @@ pub(crate) struct PresetsArguments {
     pub(crate) name: Option<String>,
     /// Print as JSON.
     #[arg(long, conflicts_with = "name")]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewtonianArguments {
+    /// Bottleneck w = 2 (a - b).
+    #[arg(long, value_name = "W")]
+    pub(crate) width: f64,
+    /// Mean radius a, in the same unit.
+    #[arg(long, value_name = "A", default_value_t = 1.5)]
+    pub(crate) radius: f64,
+    /// Pressure rise a wavelength, P = a^2 Dp/(8 mu c lambda).
+    #[arg(
+        long,
+        value_name = "P",
+        default_value_t = 0.0,
+        allow_negative_numbers = true
+    )]
+    pub(crate) pressure: f64,
+    /// Print as JSON.
+    #[arg(long)]
     pub(crate) json: bool,
 }
 

@@ -23,6 +23,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => commands::check::check(&arguments),
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
+        Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),
         Command::Completions(arguments) => commands::completions::completions(&arguments),
     };
     match outcome {

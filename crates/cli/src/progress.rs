@@ -39,8 +39,9 @@ impl Display {
         }
         let target = ProgressDrawTarget::stderr_with_hz(REFRESH_RATE);
         let bar = ProgressBar::with_draw_target(Some(samples), target);
-        let style = ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]")
-            .expect("the template is a constant with known fields");
+        let style =
+            ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]")
+                .expect("the template is a constant with known fields");
         bar.set_style(style.progress_chars("━╸─"));
         Self::Bar(bar)
     }
@@ -88,7 +89,12 @@ fn found(progress: &Progress) -> String {
 fn print_line(progress: &Progress) {
     let done = progress.samples as f64 / progress.samples_total.max(1) as f64;
     let left = progress.elapsed.as_secs_f64() * (1.0 - done) / done;
-    eprintln!("{:3.0} %  {}  {} left", 100.0 * done, found(progress), seconds(left));
+    eprintln!(
+        "{:3.0} %  {}  {} left",
+        100.0 * done,
+        found(progress),
+        seconds(left)
+    );
 }
 
 /// A time span in words: "12 s", "3 min 20 s", "2 h 05 min".

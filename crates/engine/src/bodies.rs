@@ -37,7 +37,11 @@ impl Bodies {
     pub fn grains_at_rest(position: Vec<DVec3>, diameter: Vec<f64>) -> Self {
         let number = position.len();
         let mass: Vec<f64> = diameter.iter().map(|d| d * d * d).collect();
-        let inertia = mass.iter().zip(&diameter).map(|(m, d)| m * d * d / 10.0).collect();
+        let inertia = mass
+            .iter()
+            .zip(&diameter)
+            .map(|(m, d)| m * d * d / 10.0)
+            .collect();
         Self {
             grains: number,
             position,
@@ -110,5 +114,39 @@ impl Bodies {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn folding_keeps_the_unfolded_place() {
+        let length = 20.0;
+        for z in [0.0, 19.999, 20.0, 45.0, -0.25, -1e-18, -60.0] {
+            let mut bodies = Bodies::grains_at_rest(vec![DVec3::new(1.0, 2.0, z)], vec![1.0]);
+            bodies.fold(length);
+            let folded = bodies.position[0];
+            assert!((0.0..length).contains(&folded.z), "{z} folds to {folded}");
+            assert!((bodies.unfolded(0, length) - z).abs() < 1e-13, "{z}");
+            assert_eq!((folded.x, folded.y), (1.0, 2.0));
+        }
+    }
+
+    #[test]
+    fn energies_by_hand() {
+        let mut bodies = Bodies::grains_at_rest(vec![DVec3::ZERO; 2], vec![1.0, 0.5]);
+        bodies.push_wall_sphere(DVec3::X, 1.0, 0.1);
+        bodies.velocity = vec![DVec3::X, 2.0 * DVec3::Y, 3.0 * DVec3::Z];
+        bodies.angular_velocity = vec![DVec3::X, DVec3::Z, DVec3::ZERO];
+        assert_eq!(
+            (bodies.grains, bodies.number(), bodies.mass[1]),
+            (2, 3, 0.125)
+        );
+        assert!((bodies.kinetic_energy(0..2) - 0.75).abs() < 1e-15);
+        assert!((bodies.kinetic_energy(0..3) - 1.2).abs() < 1e-15);
+        // m d^2/10 of each: 0.1 and 0.003125; a wall sphere does not turn.
+        assert!((bodies.rotational_energy() - 0.051_562_5).abs() < 1e-15);
     }
 }

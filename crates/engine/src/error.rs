@@ -23,8 +23,8 @@ pub enum EngineError {
     },
     /// The grains do not fit into the tube.
     #[error(
-        "{grains} grains do not fit: after relaxation their mean overlap is {mean_overlap:.3} d (at most {limit} d is \
-         allowed)"
+        "{grains} grains do not fit: after relaxation their mean overlap is {mean_overlap:.3} d (at most {limit:.3} d is \
+         allowed) and {outside} of them have been pressed out through the wall"
     )]
     DoesNotFit {
         /// Number of grains.
@@ -33,6 +33,8 @@ pub enum EngineError {
         mean_overlap: f64,
         /// Largest mean overlap that counts as fitting \[d\].
         limit: f64,
+        /// Grains outside the wall.
+        outside: usize,
     },
     /// A snapshot does not belong to this simulation.
     #[error("the snapshot does not fit this simulation: {reason}")]

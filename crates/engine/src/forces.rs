@@ -4,9 +4,7 @@
 //! chosen once per [`crate::Simulation::advance`].
 
 use glam::DVec3;
-use peristalsis_physics::contact::{
-    Contact, ContactLaw, Frictionless, NormalLaw, TangentialLaw,
-};
+use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw, TangentialLaw};
 
 use crate::bodies::Bodies;
 use crate::ledger::Tally;
@@ -21,7 +19,7 @@ pub(crate) struct Contacts<H> {
     pub(crate) wall: WallMemory<H>,
 }
 
-impl<H: Copy + Default> Contacts<H> {
+impl<H: Copy + Default + PartialEq> Contacts<H> {
     pub(crate) fn none() -> Self {
         Self {
             pairs: Neighbours::empty(),
@@ -32,7 +30,10 @@ impl<H: Copy + Default> Contacts<H> {
     /// Makes the neighbour list anew where it no longer holds.
     pub(crate) fn refresh(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
         let length = wall.lattice().length();
-        if self.pairs.outdated(&bodies.position, &bodies.turns, length, skin) {
+        if self
+            .pairs
+            .outdated(&bodies.position, &bodies.turns, length, skin)
+        {
             let grains = bodies.grains;
             let rule = PairRule {
                 diameter: &bodies.diameter,
@@ -63,7 +64,14 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
         bodies.angular_acceleration.fill(DVec3::ZERO);
     }
     let length = wall.lattice().length();
-    add_pairs(law, bodies, &mut contacts.pairs, length, time_step, &mut tally);
+    add_pairs(
+        law,
+        bodies,
+        &mut contacts.pairs,
+        length,
+        time_step,
+        &mut tally,
+    );
     match wall {
         Wall::Prescribed(wall) => {
             wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
@@ -111,7 +119,10 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             }
             let distance = squared.sqrt();
             let overlap = reach - distance;
-            let arms = (0.5 * (diameter - overlap), 0.5 * (bodies.diameter[j] - overlap));
+            let arms = (
+                0.5 * (diameter - overlap),
+                0.5 * (bodies.diameter[j] - overlap),
+            );
             let contact = Contact {
                 overlap,
                 distance,

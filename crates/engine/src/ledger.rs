@@ -148,7 +148,15 @@ impl Ledger {
     #[must_use]
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
-        let scale = if self.gross_work > 0.0 { self.gross_work } else { self.initial_energy };
-        if residual == 0.0 { 0.0 } else { residual / scale }
+        let scale = if self.gross_work > 0.0 {
+            self.gross_work
+        } else {
+            self.initial_energy
+        };
+        if residual == 0.0 {
+            0.0
+        } else {
+            residual / scale
+        }
     }
 }

@@ -61,9 +61,13 @@ impl Grid {
             .iter()
             .fold(0.0_f64, |far, p| far.max(p.x.abs()).max(p.y.abs()));
         let half_width = farthest.min(usual_half_width).max(0.5 * cutoff);
-        let across = (2.0 * half_width / cutoff).floor().clamp(1.0, MOST_CELLS_ACROSS);
+        let across = (2.0 * half_width / cutoff)
+            .floor()
+            .clamp(1.0, MOST_CELLS_ACROSS);
         // Never many more cells than spheres.
-        let most_along = (4.0 * position.len() as f64 / (across * across)).ceil().max(1.0);
+        let most_along = (4.0 * position.len() as f64 / (across * across))
+            .ceil()
+            .max(1.0);
         let along = (length / cutoff).floor().clamp(1.0, most_along);
         Self {
             across: across as u32,
@@ -108,7 +112,7 @@ pub struct PairRule<'a, F: Fn(usize, usize) -> bool> {
     pub admits: F,
 }
 
-impl<H: Copy + Default> Neighbours<H> {
+impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// A list without pairs, which the first [`Neighbours::rebuild`] fills.
     #[must_use]
     pub fn empty() -> Self {
@@ -178,8 +182,8 @@ impl<H: Copy + Default> Neighbours<H> {
         axial * axial + 4.0 * lateral > skin * skin
     }
 
-    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, in a time that grows linearly with the
-    /// number of spheres. Histories move with their pairs.
+    /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and those that still remember a
+    /// contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
     pub fn rebuild<F: Fn(usize, usize) -> bool>(
         &mut self,
         position: &[DVec3],
@@ -219,20 +223,31 @@ impl<H: Copy + Default> Neighbours<H> {
                             }
                             let reach = 0.5 * (rule.diameter[i] + rule.diameter[other]) + rule.skin;
                             let separation = periodic(centre - position[other], rule.length);
-                            if separation.length_squared() < reach * reach && (rule.admits)(i, other) {
+                            if separation.length_squared() < reach * reach
+                                && (rule.admits)(i, other)
+                            {
                                 partner.push(j);
                             }
                         }
                     }
                 }
             }
-            partner[begin..].sort_unstable();
-            start.push(partner.len() as u32);
             let old = if i + 1 < self.start.len() {
                 self.start[i] as usize..self.start[i + 1] as usize
             } else {
                 0..0
             };
+            // A contact that ended in this very step is listed once more, however far its spheres have jumped: what it
+            // remembers must be accounted for.
+            let near = partner.len();
+            for at in old.clone() {
+                let remembers = self.history[at] != H::default();
+                if remembers && !partner[begin..near].contains(&self.partner[at]) {
+                    partner.push(self.partner[at]);
+                }
+            }
+            partner[begin..].sort_unstable();
+            start.push(partner.len() as u32);
             let (old_partner, old_history) = (&self.partner[old.clone()], &self.history[old]);
             history.extend(partner[begin..].iter().map(|j| {
                 old_partner
@@ -244,9 +259,12 @@ impl<H: Copy + Default> Neighbours<H> {
         core::mem::swap(&mut self.partner, partner);
         core::mem::swap(&mut self.history, history);
         self.origin.clear();
-        self.origin.extend(position.iter().zip(turns).map(|(p, &turns)| {
-            DVec3::new(p.x, p.y, p.z + f64::from(turns) * rule.length)
-        }));
+        self.origin.extend(
+            position
+                .iter()
+                .zip(turns)
+                .map(|(p, &turns)| DVec3::new(p.x, p.y, p.z + f64::from(turns) * rule.length)),
+        );
         debug_assert_eq!(self.start.len(), number + 1);
     }
 

@@ -68,7 +68,11 @@ impl Simulation {
     fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
         bodies.fold(wall.lattice().length());
         wall.move_to(0.0);
-        let least_diameter = bodies.diameter.iter().copied().fold(f64::INFINITY, f64::min);
+        let least_diameter = bodies
+            .diameter
+            .iter()
+            .copied()
+            .fold(f64::INFINITY, f64::min);
         Self {
             system: System {
                 bodies,
@@ -203,7 +207,9 @@ impl Simulation {
             for (i, j, history) in snapshot.pair_histories {
                 if !contacts.pairs.set_history(i, j, history) {
                     return Err(EngineError::SnapshotMismatch {
-                        reason: format!("it remembers a contact of spheres {i} and {j}, which are far apart"),
+                        reason: format!(
+                            "it remembers a contact of spheres {i} and {j}, which are far apart"
+                        ),
                     });
                 }
             }
@@ -240,18 +246,34 @@ impl Memory {
     /// The one place where names of laws become types.
     fn with_law<W: WithLaw>(&mut self, normal: Normal, work: W) -> W::Answer {
         match (normal, self) {
-            (Normal::Linear(normal), Self::Smooth(contacts)) => {
-                work.run(&ContactLaw { normal, tangential: Frictionless }, contacts)
-            }
-            (Normal::Hertz(normal), Self::Smooth(contacts)) => {
-                work.run(&ContactLaw { normal, tangential: Frictionless }, contacts)
-            }
-            (Normal::Linear(normal), Self::Frictional(tangential, contacts)) => {
-                work.run(&ContactLaw { normal, tangential: *tangential }, contacts)
-            }
-            (Normal::Hertz(normal), Self::Frictional(tangential, contacts)) => {
-                work.run(&ContactLaw { normal, tangential: *tangential }, contacts)
-            }
+            (Normal::Linear(normal), Self::Smooth(contacts)) => work.run(
+                &ContactLaw {
+                    normal,
+                    tangential: Frictionless,
+                },
+                contacts,
+            ),
+            (Normal::Hertz(normal), Self::Smooth(contacts)) => work.run(
+                &ContactLaw {
+                    normal,
+                    tangential: Frictionless,
+                },
+                contacts,
+            ),
+            (Normal::Linear(normal), Self::Frictional(tangential, contacts)) => work.run(
+                &ContactLaw {
+                    normal,
+                    tangential: *tangential,
+                },
+                contacts,
+            ),
+            (Normal::Hertz(normal), Self::Frictional(tangential, contacts)) => work.run(
+                &ContactLaw {
+                    normal,
+                    tangential: *tangential,
+                },
+                contacts,
+            ),
         }
     }
 }
@@ -269,7 +291,13 @@ impl WithLaw for StartForces<'_> {
         law: &ContactLaw<N, T>,
         contacts: &mut Contacts<T::History>,
     ) {
-        let System { bodies, wall, parameters, tally, .. } = self.system;
+        let System {
+            bodies,
+            wall,
+            parameters,
+            tally,
+            ..
+        } = self.system;
         contacts.refresh(bodies, wall, parameters.skin);
         *tally = evaluate(law, bodies, wall, contacts, 0.0);
     }
@@ -289,10 +317,24 @@ impl WithLaw for Advance<'_> {
         contacts: &mut Contacts<T::History>,
     ) -> Self::Answer {
         let system = self.system;
-        let Parameters { integrator, time_step, skin, .. } = system.parameters;
+        let Parameters {
+            integrator,
+            time_step,
+            skin,
+            ..
+        } = system.parameters;
         let length = system.wall.lattice().length();
         for _ in 0..self.steps {
-            let System { bodies, wall, past, tally, ledger, step, limit, .. } = system;
+            let System {
+                bodies,
+                wall,
+                past,
+                tally,
+                ledger,
+                step,
+                limit,
+                ..
+            } = system;
             *step += 1;
             let time = *step as f64 * time_step;
             integrator

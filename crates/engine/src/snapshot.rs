@@ -69,9 +69,14 @@ impl Snapshot {
             return mismatch("it holds positions or velocities that are not finite".to_owned());
         }
         let past = &self.past;
-        if [&past.velocity, &past.acceleration, &past.angular_velocity, &past.angular_acceleration]
-            .iter()
-            .any(|vector| !vector.is_empty() && vector.len() != number)
+        if [
+            &past.velocity,
+            &past.acceleration,
+            &past.angular_velocity,
+            &past.angular_acceleration,
+        ]
+        .iter()
+        .any(|vector| !vector.is_empty() && vector.len() != number)
         {
             return mismatch("the integrator's past differs in length".to_owned());
         }
@@ -80,9 +85,18 @@ impl Snapshot {
             return mismatch("it remembers frictional contacts, the grains are smooth".to_owned());
         }
         let known = |i: u32| (i as usize) < number;
-        if self.pair_histories.iter().any(|&(i, j, _)| i >= j || !known(j))
-            || self.wall_histories.windows(2).any(|pair| pair[0].0 > pair[1].0)
-            || self.wall_histories.iter().any(|&(grain, _, _)| grain as usize >= bodies.grains)
+        if self
+            .pair_histories
+            .iter()
+            .any(|&(i, j, _)| i >= j || !known(j))
+            || self
+                .wall_histories
+                .windows(2)
+                .any(|pair| pair[0].0 > pair[1].0)
+            || self
+                .wall_histories
+                .iter()
+                .any(|&(grain, _, _)| grain as usize >= bodies.grains)
         {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
         }

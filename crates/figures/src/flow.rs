@@ -104,7 +104,8 @@ impl FlowFigure<'_> {
         let periods = extent(
             points()
                 .map(|sample| sample.x)
-                .chain(self.transition.map(|transition| transition.period)),
+                .chain(self.transition.map(|transition| transition.period))
+                .chain([0.0]),
         );
         let ratios = extent(
             points()

@@ -1,7 +1,7 @@
 //! Parquet: a [`Table`] with its units, descriptions and metadata, exact to the bit.
 //!
 //! Unit and description of a column are its Arrow field metadata `unit` and `description`; the metadata of the table are
-//! the key/value metadata of the file. A missing real is null.
+//! the key/value metadata of the file and of its Arrow schema. A missing real is null.
 //!
 //! Between the opening `PAR1` and the first column, where every reader skips it, a file of this crate carries a *seal*:
 //! twelve bytes of signature and the CRC-32 of all other bytes of the file. A file that changed on disk is thus an error
@@ -45,9 +45,9 @@ const SEAL_CHECKSUM_RANGE: Range<usize> = 16..20;
 /// # Errors
 /// [`FormatError::Parquet`].
 pub fn encode(table: &Table) -> Result<Vec<u8>, FormatError> {
-    let schema = Arc::new(Schema::new(
-        table.columns().iter().map(field_of).collect::<Vec<_>>(),
-    ));
+    // Arrow readers take the metadata from the schema, all others from the key/value pairs of the file: hence in both.
+    let fields: Vec<Field> = table.columns().iter().map(field_of).collect();
+    let schema = Arc::new(Schema::new(fields).with_metadata(table.metadata().clone()));
     let arrays = table
         .columns()
         .iter()

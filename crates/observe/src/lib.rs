@@ -5,11 +5,13 @@
 //! the frame of the wave; [`TubeShape`] is the wall's radius as it is.
 
 pub mod columns;
+pub mod diagnosis;
 pub mod profile;
 pub mod sample;
 pub mod shape;
 
 pub use columns::{COLUMNS, Column};
+pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use profile::{ProfileBin, WaveFrameProfile};
 pub use sample::{Observer, Sample};
 pub use shape::TubeShape;

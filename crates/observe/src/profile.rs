@@ -57,7 +57,8 @@ impl Sums {
 
     /// sum m |v - <v>|^2/(3 N), <v> the mean velocity of the bin.
     fn temperature(&self) -> f64 {
-        ((self.twice_energy - self.momentum.length_squared() / self.mass) / (3.0 * self.number)).max(0.0)
+        ((self.twice_energy - self.momentum.length_squared() / self.mass) / (3.0 * self.number))
+            .max(0.0)
     }
 }
 
@@ -224,6 +225,10 @@ fn standard_error(values: &[f64]) -> f64 {
         return f64::NAN;
     }
     let mean = values.iter().sum::<f64>() / number;
-    let variance = values.iter().map(|value| (value - mean) * (value - mean)).sum::<f64>() / (number - 1.0);
+    let variance = values
+        .iter()
+        .map(|value| (value - mean) * (value - mean))
+        .sum::<f64>()
+        / (number - 1.0);
     (variance / number).sqrt()
 }

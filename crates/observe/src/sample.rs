@@ -49,6 +49,8 @@ pub struct Sample {
     pub dissipated_power: f64,
     /// Elastic energy of contacts, wall network and tethers.
     pub potential_energy: f64,
+    /// Elastic energy of contacts.
+    pub contact_energy: f64,
     /// |what the energy ledger misses| over the integral of |power that entered|.
     pub energy_residual: f64,
     /// Axial momentum of the grains along the wave.
@@ -61,12 +63,15 @@ pub struct Sample {
     pub network_energy: f64,
     /// Energy of an elastic wall's tethers and balancing force.
     pub keep_energy: f64,
-    /// Least radius of the tube, as the mean of the wall spheres of a slice \[d\].
-    pub narrowest_radius: f64,
+    /// Smallest bottleneck: twice the least radius of the tube, to the centres; of an elastic wall the mean over a slice
+    /// \[d\].
+    pub bottleneck: f64,
     /// Mean axial displacement of an elastic wall from its reference, along the wave \[d\].
     pub wall_axial_displacement: f64,
+    /// Root mean square axial displacement of an elastic wall \[d\].
+    pub wall_axial_displacement_rms: f64,
     /// Root mean square azimuthal displacement of an elastic wall \[d\].
-    pub wall_azimuthal_displacement: f64,
+    pub wall_azimuthal_displacement_rms: f64,
     /// The energy ledger since the start.
     pub ledger: Ledger,
 }
@@ -89,7 +94,9 @@ impl Observer {
         Self {
             time: simulation.time(),
             cycles: simulation.wall().cycles(),
-            unfolded: (0..bodies.grains).map(|i| bodies.unfolded(i, length)).collect(),
+            unfolded: (0..bodies.grains)
+                .map(|i| bodies.unfolded(i, length))
+                .collect(),
             ledger: *simulation.ledger(),
         }
     }
@@ -143,15 +150,17 @@ impl Observer {
             wall_power: (ledger.input() - before.ledger.input()) / interval,
             dissipated_power: (ledger.dissipated() - before.ledger.dissipated()) / interval,
             potential_energy: tally.potential_energy(),
+            contact_energy: tally.contact_energy,
             energy_residual: simulation.energy_residual(),
             axial_momentum: heading * axial_momentum(bodies),
             angular_momentum: angular_momentum(bodies),
             wall_kinetic_energy: bodies.kinetic_energy(bodies.grains..bodies.number()),
             network_energy: tally.network_energy,
             keep_energy: tally.keep_energy,
-            narrowest_radius: shape.narrowest(),
+            bottleneck: 2.0 * shape.narrowest(),
             wall_axial_displacement: heading * wall_motion.axial,
-            wall_azimuthal_displacement: wall_motion.azimuthal,
+            wall_axial_displacement_rms: wall_motion.axial_rms,
+            wall_azimuthal_displacement_rms: wall_motion.azimuthal_rms,
             ledger: *ledger,
         }
     }
@@ -181,7 +190,9 @@ fn granular_temperature(bodies: &Bodies) -> f64 {
 }
 
 fn axial_momentum(bodies: &Bodies) -> f64 {
-    (0..bodies.grains).map(|i| bodies.mass[i] * bodies.velocity[i].z).sum()
+    (0..bodies.grains)
+        .map(|i| bodies.mass[i] * bodies.velocity[i].z)
+        .sum()
 }
 
 fn angular_momentum(bodies: &Bodies) -> f64 {
@@ -198,7 +209,8 @@ fn angular_momentum(bodies: &Bodies) -> f64 {
 #[derive(Default)]
 struct WallMotion {
     axial: f64,
-    azimuthal: f64,
+    axial_rms: f64,
+    azimuthal_rms: f64,
 }
 
 impl WallMotion {
@@ -207,15 +219,17 @@ impl WallMotion {
             return Self::default();
         };
         let spheres = wall.lattice().spheres();
-        let (mut axial, mut azimuthal) = (0.0, 0.0);
+        let (mut axial, mut axial_squared, mut azimuthal_squared) = (0.0, 0.0, 0.0);
         for sphere in 0..spheres {
             let away = wall.displacement(simulation.bodies(), sphere);
             axial += away.z;
-            azimuthal += away.y * away.y;
+            axial_squared += away.z * away.z;
+            azimuthal_squared += away.y * away.y;
         }
         Self {
             axial: axial / spheres as f64,
-            azimuthal: (azimuthal / spheres as f64).sqrt(),
+            axial_rms: (axial_squared / spheres as f64).sqrt(),
+            azimuthal_rms: (azimuthal_squared / spheres as f64).sqrt(),
         }
     }
 }

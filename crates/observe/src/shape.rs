@@ -30,10 +30,9 @@ impl TubeShape {
     pub fn of(simulation: &Simulation) -> Self {
         match simulation.wall() {
             Wall::Prescribed(wall) => Self::Wave(*wall.wave(), wall.cycles()),
-            Wall::Elastic(wall) => Self::Slices(
-                slices(simulation.bodies(), wall),
-                wall.lattice().length(),
-            ),
+            Wall::Elastic(wall) => {
+                Self::Slices(slices(simulation.bodies(), wall), wall.lattice().length())
+            }
         }
     }
 
@@ -67,9 +66,10 @@ impl TubeShape {
     pub fn narrowest(&self) -> f64 {
         match self {
             Self::Wave(wave, _) => wave.mean_radius - wave.amplitude.abs(),
-            Self::Slices(slices, _) => {
-                slices.iter().map(|slice| slice.mean).fold(f64::INFINITY, f64::min)
-            }
+            Self::Slices(slices, _) => slices
+                .iter()
+                .map(|slice| slice.mean)
+                .fold(f64::INFINITY, f64::min),
         }
     }
 }

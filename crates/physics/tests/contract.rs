@@ -36,7 +36,11 @@ fn case() -> impl Strategy<Value = Case> {
         (vector(0.2), vector(0.3), 0.0..0.1, 0.0..0.1),
     )
         .prop_map(
-            |((overlap, one, other, normal), (relative_velocity, spin), (u, rate, power, time_step))| {
+            |(
+                (overlap, one, other, normal),
+                (relative_velocity, spin),
+                (u, rate, power, time_step),
+            )| {
                 let lateral = |v: DVec3| v - v.dot(normal) * normal;
                 Case {
                     contact: Contact {
@@ -58,9 +62,18 @@ fn case() -> impl Strategy<Value = Case> {
         )
 }
 
-fn ask(model: &ContactModel, case: &Case) -> (peristalsis_physics::contact::ContactForce, TangentialHistory) {
+fn ask(
+    model: &ContactModel,
+    case: &Case,
+) -> (
+    peristalsis_physics::contact::ContactForce,
+    TangentialHistory,
+) {
     let mut history = case.history;
-    (answer(model, &case.contact, &mut history, case.time_step), history)
+    (
+        answer(model, &case.contact, &mut history, case.time_step),
+        history,
+    )
 }
 
 fn normal_force(normal: Normal, contact: &Contact, velocity: f64) -> NormalForce {
@@ -76,7 +89,10 @@ fn undamped(model: &ContactModel) -> ContactModel {
             Normal::Linear(law) => Normal::Linear(law.undamped()),
             Normal::Hertz(law) => Normal::Hertz(law.undamped()),
         },
-        friction: model.friction.map(|law| CundallStrack { tangential_damping: 0.0, ..law }),
+        friction: model.friction.map(|law| CundallStrack {
+            tangential_damping: 0.0,
+            ..law
+        }),
     }
 }
 

@@ -44,7 +44,9 @@ impl OnPlane {
             reduced_radius: 0.5,
             spin: 0.5 * DVec3::new(0.0, self.angular_velocity, 0.0),
         };
-        self.last = self.law.force(&contact, self.pressed, &mut self.history, time_step);
+        self.last = self
+            .law
+            .force(&contact, self.pressed, &mut self.history, time_step);
     }
 
     /// One step under a pull along x; the same rule as velocity Verlet for velocities.
@@ -78,7 +80,10 @@ fn slip_turns_into_roll_at_five_sevenths() {
         println!("{sliding:?}: final speed {ratio:.7} v0");
         assert!((ratio - 5.0 / 7.0).abs() < 1e-6, "{sliding:?}: {ratio}");
         // n x omega/2 + v = 0
-        assert!((sphere.velocity - 0.5 * sphere.angular_velocity).abs() < 1e-6, "{sliding:?}");
+        assert!(
+            (sphere.velocity - 0.5 * sphere.angular_velocity).abs() < 1e-6,
+            "{sliding:?}"
+        );
         assert!(!sphere.last.sliding && sphere.last.force.length() < 1e-6);
     }
 }
@@ -118,16 +123,29 @@ fn pull(law: CundallStrack, speed: f64) -> Pulled {
         steps += 1.0;
         range = (range.0.min(friction), range.1.max(friction));
     }
-    Pulled { crept, held: held / pressed, mean: sum / steps, range }
+    Pulled {
+        crept,
+        held: held / pressed,
+        mean: sum / steps,
+        range,
+    }
 }
 
 #[test]
 fn friction_holds_up_to_its_static_bound() {
     for sliding in SLIDINGS {
         let found = pull(friction(sliding), 0.1);
-        assert!((found.held - 0.5).abs() < 1e-3, "{sliding:?}: held {}", found.held);
+        assert!(
+            (found.held - 0.5).abs() < 1e-3,
+            "{sliding:?}: held {}",
+            found.held
+        );
         // What it gives way meanwhile is the stretch of the spring, mu_s f_n/k_t.
-        assert!((found.crept - 0.1).abs() < 2e-3, "{sliding:?}: crept {}", found.crept);
+        assert!(
+            (found.crept - 0.1).abs() < 2e-3,
+            "{sliding:?}: crept {}",
+            found.crept
+        );
     }
 }
 
@@ -147,11 +165,25 @@ fn sliding_friction_of_each_form() {
         (Sliding::Balance, 0.25, 0.45),
     ] {
         let found = pull(friction(sliding), speed);
-        println!("{sliding:?} at {speed}: mean friction {:.4} f_n in {:?}", found.mean, found.range);
-        assert!((found.mean - expected).abs() < 1e-3, "{sliding:?} at {speed}: {}", found.mean);
-        assert!(found.range.0 > 0.4 - 1e-9 && found.range.1 < 0.5 + 1e-9, "{sliding:?} at {speed}");
+        println!(
+            "{sliding:?} at {speed}: mean friction {:.4} f_n in {:?}",
+            found.mean, found.range
+        );
+        assert!(
+            (found.mean - expected).abs() < 1e-3,
+            "{sliding:?} at {speed}: {}",
+            found.mean
+        );
+        assert!(
+            found.range.0 > 0.4 - 1e-9 && found.range.1 < 0.5 + 1e-9,
+            "{sliding:?} at {speed}"
+        );
         let steady = expected == 0.4;
-        assert_eq!(found.range.1 - found.range.0 < 1e-9, steady, "{sliding:?} at {speed}");
+        assert_eq!(
+            found.range.1 - found.range.0 < 1e-9,
+            steady,
+            "{sliding:?} at {speed}"
+        );
     }
 }
 
@@ -159,10 +191,17 @@ fn sliding_friction_of_each_form() {
 #[test]
 fn with_equal_coefficients_slip_is_steady() {
     for sliding in SLIDINGS {
-        let law = CundallStrack { static_friction: 0.4, ..friction(sliding) };
+        let law = CundallStrack {
+            static_friction: 0.4,
+            ..friction(sliding)
+        };
         for speed in [0.01, 0.1, 1.0] {
             let found = pull(law, speed);
-            assert!((found.mean - 0.4).abs() < 1e-3, "{sliding:?} at {speed}: {}", found.mean);
+            assert!(
+                (found.mean - 0.4).abs() < 1e-3,
+                "{sliding:?} at {speed}: {}",
+                found.mean
+            );
         }
     }
 }

@@ -9,23 +9,48 @@ use peristalsis_physics::contact::{
 
 /// Head-on restitution of two spheres of mass 1 in three dimensions.
 fn restitution_of_spheres(normal: Normal, speed: f64, time_step: f64) -> f64 {
-    let mut spheres = Collision::oblique(ContactModel { normal, friction: None }, speed, 0.0);
+    let mut spheres = Collision::oblique(
+        ContactModel {
+            normal,
+            friction: None,
+        },
+        speed,
+        0.0,
+    );
     spheres.run(time_step);
     (spheres.velocity[1].x - spheres.velocity[0].x) / speed
 }
 
 /// Restitution of xi'' = -f(xi, v_n = -xi')/m on a line, where nothing stops an overlap of more than a diameter; the
 /// fourth-order Runge-Kutta method.
-fn restitution_on_a_line(force: impl Fn(f64, f64) -> f64, reduced_mass: f64, speed: f64, time_step: f64) -> f64 {
+fn restitution_on_a_line(
+    force: impl Fn(f64, f64) -> f64,
+    reduced_mass: f64,
+    speed: f64,
+    time_step: f64,
+) -> f64 {
     let acceleration = |overlap: f64, rate: f64| {
-        if overlap > 0.0 { -force(overlap, -rate) / reduced_mass } else { 0.0 }
+        if overlap > 0.0 {
+            -force(overlap, -rate) / reduced_mass
+        } else {
+            0.0
+        }
     };
     let (mut overlap, mut rate) = (0.0, speed);
     loop {
         let (k1, a1) = (rate, acceleration(overlap, rate));
-        let (k2, a2) = (rate + 0.5 * time_step * a1, acceleration(overlap + 0.5 * time_step * k1, rate + 0.5 * time_step * a1));
-        let (k3, a3) = (rate + 0.5 * time_step * a2, acceleration(overlap + 0.5 * time_step * k2, rate + 0.5 * time_step * a2));
-        let (k4, a4) = (rate + time_step * a3, acceleration(overlap + time_step * k3, rate + time_step * a3));
+        let (k2, a2) = (
+            rate + 0.5 * time_step * a1,
+            acceleration(overlap + 0.5 * time_step * k1, rate + 0.5 * time_step * a1),
+        );
+        let (k3, a3) = (
+            rate + 0.5 * time_step * a2,
+            acceleration(overlap + 0.5 * time_step * k2, rate + 0.5 * time_step * a2),
+        );
+        let (k4, a4) = (
+            rate + time_step * a3,
+            acceleration(overlap + time_step * k3, rate + time_step * a3),
+        );
         overlap += time_step * (k1 + 2.0 * k2 + 2.0 * k3 + k4) / 6.0;
         rate += time_step * (a1 + 2.0 * a2 + 2.0 * a3 + a4) / 6.0;
         if overlap <= 0.0 {
@@ -38,20 +63,34 @@ fn restitution_on_a_line(force: impl Fn(f64, f64) -> f64, reduced_mass: f64, spe
 fn hertz_on_a_line(law: ViscoelasticHertz, speed: f64) -> f64 {
     // The contact lasts about 3.2 (m/k)^(2/5) v^(-1/5).
     let time_step = 1e-3 * libm::pow(speed, -0.2);
-    restitution_on_a_line(|overlap, v_n| law.force(overlap, v_n, 0.25).force, 0.5, speed, time_step)
+    restitution_on_a_line(
+        |overlap, v_n| law.force(overlap, v_n, 0.25).force,
+        0.5,
+        speed,
+        time_step,
+    )
 }
 
 #[test]
 fn the_linear_law_has_its_closed_form() {
     for (stiffness, damping) in [(1.0, 5.48e-3), (1.0, 0.3), (7.0, 0.05), (0.4, 0.8)] {
-        let law = LinearSpringDashpot { normal_stiffness: stiffness, normal_damping: damping };
+        let law = LinearSpringDashpot {
+            normal_stiffness: stiffness,
+            normal_damping: damping,
+        };
         let found = restitution_of_spheres(Normal::Linear(law), 0.1, 2e-5);
         let expected = law.restitution(0.5);
-        assert!((found - expected).abs() < 1e-4, "k = {stiffness}, eta = {damping}: {found} {expected}");
+        assert!(
+            (found - expected).abs() < 1e-4,
+            "k = {stiffness}, eta = {damping}: {found} {expected}"
+        );
     }
     // For m = 1 and k = 1 as the source writes it.
     let eta: f64 = 0.3;
-    let law = LinearSpringDashpot { normal_stiffness: 1.0, normal_damping: eta };
+    let law = LinearSpringDashpot {
+        normal_stiffness: 1.0,
+        normal_damping: eta,
+    };
     let expected = libm::exp(-core::f64::consts::PI * eta / (2.0 - eta * eta).sqrt());
     assert!((law.restitution(0.5) - expected).abs() < 1e-15);
     assert!((LINEAR.restitution(0.5) - 0.988).abs() < 2e-4);
@@ -59,8 +98,18 @@ fn the_linear_law_has_its_closed_form() {
 
 #[test]
 fn the_linear_contact_lasts_as_long_as_it_says() {
-    let law = LinearSpringDashpot { normal_stiffness: 1.0, normal_damping: 0.3 };
-    let mut spheres = Collision::oblique(ContactModel { normal: Normal::Linear(law), friction: None }, 0.1, 0.0);
+    let law = LinearSpringDashpot {
+        normal_stiffness: 1.0,
+        normal_damping: 0.3,
+    };
+    let mut spheres = Collision::oblique(
+        ContactModel {
+            normal: Normal::Linear(law),
+            friction: None,
+        },
+        0.1,
+        0.0,
+    );
     let mut steps = 0;
     let time_step = 1e-4;
     spheres.evaluate(0.0);
@@ -77,9 +126,10 @@ fn the_linear_contact_lasts_as_long_as_it_says() {
 /// 0.897 as printed and 0.852 with the factor 3/2, at v = d/t* on a line; the source states about 0.85.
 #[test]
 fn hertz_at_unit_speed_in_both_forms() {
-    for (form, factor, expected) in
-        [(DissipationForm::Printed, 1.0, 0.897), (DissipationForm::Viscoelastic, 1.5, 0.852)]
-    {
+    for (form, factor, expected) in [
+        (DissipationForm::Printed, 1.0, 0.897),
+        (DissipationForm::Viscoelastic, 1.5, 0.852),
+    ] {
         let found = hertz_on_a_line(hertz(form), 1.0);
         assert!((found - expected).abs() < 5e-4, "{form:?}: {found}");
         // The formula typed again from its source: 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - B sqrt(xi) v_n), Y = 1, nu = 1/2.
@@ -93,7 +143,10 @@ fn hertz_at_unit_speed_in_both_forms() {
             1.0,
             1e-4,
         );
-        assert!((found - by_hand).abs() < 1e-5, "{form:?}: {found} {by_hand}");
+        assert!(
+            (found - by_hand).abs() < 1e-5,
+            "{form:?}: {found} {by_hand}"
+        );
     }
 }
 
@@ -114,11 +167,17 @@ fn hertz_at_small_speed_follows_its_series() {
         let stiffness = law.modulus() * 0.5;
         for speed in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5] {
             let s = law.relaxation_time() * libm::pow(stiffness / 0.5, 0.4) * libm::pow(speed, 0.2);
-            let series = 1.0 - first * s + 0.6 * first * first * s * s + 4.0 / 15.0 * libm::pow(s, 2.5);
+            let series =
+                1.0 - first * s + 0.6 * first * first * s * s + 4.0 / 15.0 * libm::pow(s, 2.5);
             let found = hertz_on_a_line(law, speed);
             let remainder = (found - series) / (s * s * s);
-            println!("{form:?} v = {speed}: s = {s:.4}, e = {found:.6}, series {series:.6}, remainder {remainder:.3} s^3");
-            assert!((-0.65..-0.5).contains(&remainder), "{form:?} at {speed}: {remainder} s^3");
+            println!(
+                "{form:?} v = {speed}: s = {s:.4}, e = {found:.6}, series {series:.6}, remainder {remainder:.3} s^3"
+            );
+            assert!(
+                (-0.65..-0.5).contains(&remainder),
+                "{form:?} at {speed}: {remainder} s^3"
+            );
         }
     }
 }
@@ -129,10 +188,15 @@ fn spheres_bounce_as_on_a_line() {
     for form in [DissipationForm::Printed, DissipationForm::Viscoelastic] {
         let law = hertz(form);
         for speed in [0.02, 0.1] {
-            let (sphere, line) =
-                (restitution_of_spheres(Normal::Hertz(law), speed, 1e-3), hertz_on_a_line(law, speed));
+            let (sphere, line) = (
+                restitution_of_spheres(Normal::Hertz(law), speed, 1e-3),
+                hertz_on_a_line(law, speed),
+            );
             println!("{form:?} v = {speed}: e = {sphere:.5}");
-            assert!((sphere - line).abs() < 1e-4, "{form:?} at {speed}: {sphere} {line}");
+            assert!(
+                (sphere - line).abs() < 1e-4,
+                "{form:?} at {speed}: {sphere} {line}"
+            );
         }
     }
 }
@@ -142,7 +206,14 @@ fn spheres_bounce_as_on_a_line() {
 fn restitution_is_the_same_for_either_sphere_and_any_observer() {
     for (name, normal) in normals() {
         let plain = restitution_of_spheres(normal, 0.1, 1e-3);
-        let mut other = Collision::oblique(ContactModel { normal, friction: None }, 0.0, 0.0);
+        let mut other = Collision::oblique(
+            ContactModel {
+                normal,
+                friction: None,
+            },
+            0.0,
+            0.0,
+        );
         other.velocity[1].x = -0.1;
         other.run(1e-3);
         let seen = (other.velocity[1].x - other.velocity[0].x) / 0.1;

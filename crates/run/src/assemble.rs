@@ -35,7 +35,10 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
         seed: configuration.run.seed,
     };
     let (bodies, report) = pack(&packing, &wall, contact.normal)?;
-    Ok((Simulation::new(bodies, wall, parameters(configuration)), report))
+    Ok((
+        Simulation::new(bodies, wall, parameters(configuration)),
+        report,
+    ))
 }
 
 /// How the engine computes a configuration.
@@ -77,17 +80,20 @@ pub fn contact_model(configuration: &Configuration) -> ContactModel {
             },
         }),
     };
-    let friction = configuration.contact.friction.map(|friction| CundallStrack {
-        tangential_stiffness: friction.tangential_stiffness,
-        tangential_damping: friction.tangential_damping,
-        static_friction: friction.static_friction,
-        kinetic_friction: friction.kinetic_friction,
-        sliding: match friction.sliding {
-            configuration::Sliding::Spring => Sliding::Spring,
-            configuration::Sliding::Balance => Sliding::Balance,
-            configuration::Sliding::Literal => Sliding::Literal,
-        },
-    });
+    let friction = configuration
+        .contact
+        .friction
+        .map(|friction| CundallStrack {
+            tangential_stiffness: friction.tangential_stiffness,
+            tangential_damping: friction.tangential_damping,
+            static_friction: friction.static_friction,
+            kinetic_friction: friction.kinetic_friction,
+            sliding: match friction.sliding {
+                configuration::Sliding::Spring => Sliding::Spring,
+                configuration::Sliding::Balance => Sliding::Balance,
+                configuration::Sliding::Literal => Sliding::Literal,
+            },
+        });
     ContactModel { normal, friction }
 }
 
@@ -110,7 +116,11 @@ pub fn walls(configuration: &Configuration) -> Wall {
         configuration::WaveDirection::Forward => 1.0,
         configuration::WaveDirection::Backward => -1.0,
     };
-    let frequency = schedule(configuration, ScheduledParameter::StrainRate, drive.strain_rate);
+    let frequency = schedule(
+        configuration,
+        ScheduledParameter::StrainRate,
+        drive.strain_rate,
+    );
     match drive.control {
         Control::Strain { width } => {
             let widths = schedule(configuration, ScheduledParameter::Width, width);
@@ -195,8 +205,7 @@ fn schedule(
 pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
     let amplitude = configuration.amplitude()?;
     let ratio = |radius: f64| {
-        NewtonianPeristalsis::free_pumping(amplitude / radius)
-            .map(|fluid| fluid.flow_rate_ratio())
+        NewtonianPeristalsis::free_pumping(amplitude / radius).map(|fluid| fluid.flow_rate_ratio())
     };
     let radius = configuration.tube.radius;
     let bore = radius - 0.5 * configuration.wall.sphere_diameter;

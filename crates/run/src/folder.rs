@@ -52,15 +52,17 @@ impl RunFolder {
         let folder = Self {
             path: path.to_owned(),
         };
-        atomic::write(&folder.file(CONFIGURATION), configuration.to_toml().as_bytes()).map_err(
-            |error| match error {
-                FormatError::Io { source, .. } => RunError::Folder {
-                    folder: path.to_owned(),
-                    source,
-                },
-                other => other.into(),
+        atomic::write(
+            &folder.file(CONFIGURATION),
+            configuration.to_toml().as_bytes(),
+        )
+        .map_err(|error| match error {
+            FormatError::Io { source, .. } => RunError::Folder {
+                folder: path.to_owned(),
+                source,
             },
-        )?;
+            other => other.into(),
+        })?;
         Ok(folder)
     }
 
@@ -149,9 +151,10 @@ impl RunFolder {
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
         for (name, drawing) in pictures::draw_all(run, summary)? {
             atomic::write(&self.file(&format!("{name}.svg")), drawing.svg().as_bytes())?;
-            let png = drawing
-                .png()
-                .map_err(|source| RunError::Figure { figure: name, source })?;
+            let png = drawing.png().map_err(|source| RunError::Figure {
+                figure: name,
+                source,
+            })?;
             atomic::write(&self.file(&format!("{name}.png")), &png)?;
         }
         Ok(())

@@ -19,13 +19,19 @@ const SNAPSHOT_WAVES: u32 = 4;
 
 /// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
 /// draw.
-pub(crate) fn draw_all(run: &Run, summary: &Summary) -> Result<Vec<(&'static str, Drawing)>, RunError> {
+pub(crate) fn draw_all(
+    run: &Run,
+    summary: &Summary,
+) -> Result<Vec<(&'static str, Drawing)>, RunError> {
     let configuration = run.configuration();
     let mut drawings = Vec::new();
     let mut add = |name: &'static str, drawing: Result<Drawing, FigureError>| {
         drawing
             .map(|drawing| drawings.push((name, drawing)))
-            .map_err(|source| RunError::Figure { figure: name, source })
+            .map_err(|source| RunError::Figure {
+                figure: name,
+                source,
+            })
     };
     let has_ratios = run
         .recorder()
@@ -54,7 +60,9 @@ fn title(configuration: &Configuration) -> String {
             format!("*w* = {width} *d*"),
             format!("*ρ* = {:.3}", configuration.volume_fraction()),
         ),
-        Control::Stress { force_amplitude, .. } => (
+        Control::Stress {
+            force_amplitude, ..
+        } => (
             format!("*f*^{{P}} = {force_amplitude} *Yd*^{{2}}"),
             format!("*n* = {:.3}", configuration.number_density()),
         ),
@@ -69,7 +77,7 @@ fn title(configuration: &Configuration) -> String {
 fn time_unit(configuration: &Configuration) -> &'static str {
     match configuration.contact.normal {
         peristalsis_configuration::NormalLaw::Linear { .. } => "(*m*/*k*)^{1/2}",
-        peristalsis_configuration::NormalLaw::Hertz { .. } => "*t*^{∗}",
+        peristalsis_configuration::NormalLaw::Hertz { .. } => "*t*^{\\*}",
     }
 }
 
@@ -80,12 +88,20 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     // A sample is the mean over the interval that ends with it.
     let half = 0.5 / f64::from(configuration.observe.samples_per_period);
     let period: Vec<f64> = samples.iter().map(|sample| sample.period - half).collect();
-    let ratio: Vec<f64> = samples.iter().map(|sample| sample.flow_rate_ratio).collect();
-    let middles: Vec<f64> = (0..recorder.averages().len()).map(|k| k as f64 + 0.5).collect();
+    let ratio: Vec<f64> = samples
+        .iter()
+        .map(|sample| sample.flow_rate_ratio)
+        .collect();
+    let middles: Vec<f64> = (0..recorder.averages().len())
+        .map(|k| k as f64 + 0.5)
+        .collect();
     let title = title(configuration);
     FlowFigure {
         title: &title,
-        samples: Series { x: &period, y: &ratio },
+        samples: Series {
+            x: &period,
+            y: &ratio,
+        },
         averages: (!middles.is_empty()).then_some(Series {
             x: &middles,
             y: recorder.averages(),
@@ -96,15 +112,18 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
             time,
             unit: time_unit(configuration),
         }),
-        newtonian: summary.newtonian_flow_rate_ratio.map(|ratio| NewtonianReference {
-            ratio,
-            clear_bore: summary.newtonian_flow_rate_ratio_clear_bore,
-        }),
-        late_mean: (summary.flow_rate_ratio.is_finite() && summary.flow_rate_ratio_error.is_finite())
-            .then_some(LateMean {
-                mean: summary.flow_rate_ratio,
-                error: summary.flow_rate_ratio_error,
+        newtonian: summary
+            .newtonian_flow_rate_ratio
+            .map(|ratio| NewtonianReference {
+                ratio,
+                clear_bore: summary.newtonian_flow_rate_ratio_clear_bore,
             }),
+        late_mean: (summary.flow_rate_ratio.is_finite()
+            && summary.flow_rate_ratio_error.is_finite())
+        .then_some(LateMean {
+            mean: summary.flow_rate_ratio,
+            error: summary.flow_rate_ratio_error,
+        }),
         width: Width::SingleColumn,
     }
     .draw()
@@ -124,7 +143,10 @@ fn profile(run: &Run) -> Result<Drawing, FigureError> {
         column(&|bin| bin.axial_velocity.0 / speed),
         column(&|bin| bin.axial_velocity.1 / speed),
     );
-    let temperature = (column(&|bin| bin.temperature.0), column(&|bin| bin.temperature.1));
+    let temperature = (
+        column(&|bin| bin.temperature.0),
+        column(&|bin| bin.temperature.1),
+    );
     let title = title(configuration);
     let panel = |value, error, label| Profile {
         position: &position,
@@ -188,8 +210,8 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
             },
         })
         .collect();
-    let length = configuration.tube.wavelength
-        * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
+    let length =
+        configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
     let points = 400;
     let shape = TubeShape::of(simulation);
     let outline: (Vec<f64>, Vec<f64>) = (0..=points)
@@ -209,7 +231,11 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
             })
             .collect(),
     };
-    let title = format!("{},  *t*/*T* = {:.2}", title(configuration), simulation.wall().cycles());
+    let title = format!(
+        "{},  *t*/*T* = {:.2}",
+        title(configuration),
+        simulation.wall().cycles()
+    );
     SnapshotFigure {
         title: &title,
         grains: &grains,

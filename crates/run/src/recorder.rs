@@ -3,7 +3,7 @@
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
-use peristalsis_observe::{Observer, Sample, WaveFrameProfile};
+use peristalsis_observe::{Observer, Sample, WallFault, WaveFrameProfile, note_wall_faults};
 
 /// Samples, period averages, the search for the transition, and the profile in the wave's frame.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -15,6 +15,7 @@ pub struct Recorder {
     averages: Vec<f64>,
     detector: Option<TransitionDetector>,
     profile: WaveFrameProfile,
+    wall_faults: Vec<WallFault>,
 }
 
 impl Recorder {
@@ -47,6 +48,7 @@ impl Recorder {
                 configuration.observe.profile_bins as usize,
                 samples_per_period,
             ),
+            wall_faults: Vec::new(),
         }
     }
 
@@ -54,10 +56,14 @@ impl Recorder {
     pub(crate) fn record(&mut self, simulation: &Simulation) {
         self.samples.push(self.observer.sample(simulation));
         self.profile.add(simulation);
+        note_wall_faults(simulation, &mut self.wall_faults);
         if self.samples.len() as u64 % self.samples_per_period == 0 {
             let first = self.samples.len() - self.samples_per_period as usize;
             let period = &self.samples[first..];
-            let average = period.iter().map(|sample| sample.flow_rate_ratio).sum::<f64>()
+            let average = period
+                .iter()
+                .map(|sample| sample.flow_rate_ratio)
+                .sum::<f64>()
                 / period.len() as f64;
             self.averages.push(average);
             // Without grains inside there is no ratio, and the search ends.
@@ -87,6 +93,12 @@ impl Recorder {
     #[must_use]
     pub fn profile(&self) -> &WaveFrameProfile {
         &self.profile
+    }
+
+    /// What went wrong with an elastic wall, the first of each kind.
+    #[must_use]
+    pub fn wall_faults(&self) -> &[WallFault] {
+        &self.wall_faults
     }
 
     /// Time of the transition \[t\], if it has been found.

@@ -6,9 +6,9 @@ use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{Simulation, Snapshot};
 
+use crate::RunError;
 use crate::assemble::{assemble, parameters, walls};
 use crate::recorder::Recorder;
-use crate::RunError;
 
 /// A simulation together with what has been measured of it.
 #[derive(Clone, Debug)]
@@ -102,7 +102,9 @@ impl Run {
     /// [`RunError::Engine`] where the simulation diverged; what was measured before stays.
     pub fn advance(&mut self) -> Result<(), RunError> {
         let start = Instant::now();
-        let outcome = self.simulation.advance(self.configuration.run.steps_per_sample);
+        let outcome = self
+            .simulation
+            .advance(self.configuration.run.steps_per_sample);
         if outcome.is_ok() {
             self.recorder.record(&self.simulation);
         }
@@ -120,13 +122,20 @@ impl Run {
     #[must_use]
     pub fn progress(&self) -> Progress {
         let samples = self.recorder.samples();
-        let last_sample = samples.last().map_or(f64::NAN, |sample| sample.flow_rate_ratio);
+        let last_sample = samples
+            .last()
+            .map_or(f64::NAN, |sample| sample.flow_rate_ratio);
         Progress {
             samples: samples.len() as u64,
             samples_total: self.configuration.run.samples,
             time: self.simulation.time(),
             period: self.simulation.wall().cycles(),
-            flow_rate_ratio: self.recorder.averages().last().copied().unwrap_or(last_sample),
+            flow_rate_ratio: self
+                .recorder
+                .averages()
+                .last()
+                .copied()
+                .unwrap_or(last_sample),
             transition_time: self.recorder.transition_time(),
             elapsed: self.elapsed,
         }

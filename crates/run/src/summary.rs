@@ -1,7 +1,7 @@
 //! The outcome of a run in numbers.
 
 use peristalsis_analysis::mean_with_error;
-use peristalsis_observe::Sample;
+use peristalsis_observe::{Sample, WallFault};
 
 use crate::assemble::newtonian_reference;
 use crate::run::Run;
@@ -64,8 +64,8 @@ pub struct Summary {
     pub wall_power: f64,
     /// Late mean power lost.
     pub dissipated_power: f64,
-    /// Late mean of the tube's least radius \[d\].
-    pub narrowest_radius: f64,
+    /// Late mean of the smallest bottleneck, between centres of wall spheres \[d\].
+    pub bottleneck: f64,
     /// Steps done.
     pub steps: u64,
     /// Length of a step \[t\].
@@ -84,8 +84,8 @@ pub struct Summary {
     pub grain_steps_per_second: f64,
     /// Seconds that engine and observables took.
     pub seconds: f64,
-    /// What looks wrong with an elastic wall.
-    pub wall_diagnosis: Option<String>,
+    /// What went wrong with an elastic wall: when, where, and the likely cause.
+    pub wall_diagnosis: Vec<String>,
     /// Version of the program.
     pub version: &'static str,
     /// Revision of its source.
@@ -103,9 +103,8 @@ impl Summary {
         let last = samples.last();
         let ratios: Vec<f64> = late.iter().map(|sample| sample.flow_rate_ratio).collect();
         let estimate = mean_with_error(&ratios).ok();
-        let mean = |value: fn(&Sample) -> f64| {
-            late.iter().map(value).sum::<f64>() / late.len() as f64
-        };
+        let mean =
+            |value: fn(&Sample) -> f64| late.iter().map(value).sum::<f64>() / late.len() as f64;
         let newtonian = newtonian_reference(configuration);
         let simulation = run.simulation();
         let seconds = run.elapsed().as_secs_f64();
@@ -115,8 +114,10 @@ impl Summary {
             status,
             message,
             grains: configuration.grains.number,
-            flow_rate_ratio: estimate
-                .map_or_else(|| mean(|sample| sample.flow_rate_ratio), |estimate| estimate.mean),
+            flow_rate_ratio: estimate.map_or_else(
+                || mean(|sample| sample.flow_rate_ratio),
+                |estimate| estimate.mean,
+            ),
             flow_rate_ratio_error: estimate.map_or(f64::NAN, |estimate| estimate.error),
             flow_rate_ratio_raw: mean(|sample| sample.flow_rate_ratio_raw),
             flow_rate: mean(|sample| sample.flow_rate),
@@ -126,14 +127,18 @@ impl Summary {
             newtonian_flow_rate_ratio: newtonian.map(|reference| reference.0),
             newtonian_flow_rate_ratio_clear_bore: newtonian.and_then(|reference| reference.1),
             escaped: last.map_or(0, |sample| sample.escaped as u64),
-            escaped_most: samples.iter().map(|sample| sample.escaped as u64).max().unwrap_or(0),
+            escaped_most: samples
+                .iter()
+                .map(|sample| sample.escaped as u64)
+                .max()
+                .unwrap_or(0),
             largest_overlap: simulation.ledger().largest_overlap,
             energy_residual: simulation.energy_residual(),
             granular_temperature: mean(|sample| sample.granular_temperature),
             contacts: mean(|sample| sample.contacts),
             wall_power: mean(|sample| sample.wall_power),
             dissipated_power: mean(|sample| sample.dissipated_power),
-            narrowest_radius: mean(|sample| sample.narrowest_radius),
+            bottleneck: mean(|sample| sample.bottleneck),
             steps: simulation.step(),
             time_step: configuration.run.time_step,
             time: simulation.time(),
@@ -141,9 +146,17 @@ impl Summary {
             wall_spheres: configuration.tube.wall_spheres(),
             seed: configuration.run.seed,
             packing: *run.packing(),
-            grain_steps_per_second: if seconds > 0.0 { grain_steps / seconds } else { 0.0 },
+            grain_steps_per_second: if seconds > 0.0 {
+                grain_steps / seconds
+            } else {
+                0.0
+            },
             seconds,
-            wall_diagnosis: None,
+            wall_diagnosis: recorder
+                .wall_faults()
+                .iter()
+                .map(WallFault::in_words)
+                .collect(),
             version: VERSION,
             revision: REVISION,
         }

@@ -16,9 +16,17 @@ pub fn timeseries_table(run: &Run) -> Result<Table, FormatError> {
     let configuration = run.configuration();
     let samples = run.recorder().samples();
     let mut table = Table::builder();
-    for column in COLUMNS.iter().filter(|column| applies(column.scope, configuration)) {
+    for column in COLUMNS
+        .iter()
+        .filter(|column| applies(column.scope, configuration))
+    {
         let values = samples.iter().map(column.value).collect();
-        table = table.column(column.name, column.unit, column.description, Values::Real(values));
+        table = table.column(
+            column.name,
+            column.unit,
+            column.description,
+            Values::Real(values),
+        );
     }
     with_origin(table, configuration).build()
 }
@@ -38,8 +46,18 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
             "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave",
             column(|bin| bin.position),
         )
-        .column("density", "1/d", "grains per length of tube", column(|bin| bin.density.0))
-        .column("density_error", "1/d", "its standard error", column(|bin| bin.density.1))
+        .column(
+            "density",
+            "1/d",
+            "grains per length of tube",
+            column(|bin| bin.density.0),
+        )
+        .column(
+            "density_error",
+            "1/d",
+            "its standard error",
+            column(|bin| bin.density.1),
+        )
         .column(
             "axial_velocity",
             "d/t",
@@ -64,18 +82,34 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
             "its standard error",
             column(|bin| bin.temperature.1),
         )
-        .column("radius", "d", "mean radius of the tube", column(|bin| bin.radius))
-        .column("least_radius", "d", "least radius seen", column(|bin| bin.least_radius))
-        .column("largest_radius", "d", "largest radius seen", column(|bin| bin.largest_radius));
+        .column(
+            "radius",
+            "d",
+            "mean radius of the tube",
+            column(|bin| bin.radius),
+        )
+        .column(
+            "least_radius",
+            "d",
+            "least radius seen",
+            column(|bin| bin.least_radius),
+        )
+        .column(
+            "largest_radius",
+            "d",
+            "largest radius seen",
+            column(|bin| bin.largest_radius),
+        );
     with_origin(table, configuration).build()
 }
 
 /// The bins of the late profile.
 pub(crate) fn late_profile(run: &Run) -> Vec<ProfileBin> {
     let configuration = run.configuration();
-    run.recorder()
-        .profile()
-        .late(configuration.observe.late_fraction, configuration.tube.wavelength)
+    run.recorder().profile().late(
+        configuration.observe.late_fraction,
+        configuration.tube.wavelength,
+    )
 }
 
 fn applies(scope: Scope, configuration: &Configuration) -> bool {

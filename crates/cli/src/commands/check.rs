@@ -37,7 +37,10 @@ fn in_words(estimate: &Estimate) -> String {
                 "time              {} t: {periods} periods of {period} t",
                 estimate.duration
             ),
-            _ => format!("time              {} t, the wave stands still", estimate.duration),
+            _ => format!(
+                "time              {} t, the wave stands still",
+                estimate.duration
+            ),
         },
         format!(
             "steps             {} of {:.5} t (a contact lasts about {:.2} t)",
@@ -45,7 +48,9 @@ fn in_words(estimate: &Estimate) -> String {
         ),
     ];
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
-        lines.push(format!("Newtonian fluid   J/Jmax = {ratio:.4} in this tube"));
+        lines.push(format!(
+            "Newtonian fluid   J/Jmax = {ratio:.4} in this tube"
+        ));
     }
     lines.push(format!(
         "expected time     {}",

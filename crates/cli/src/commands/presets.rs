@@ -26,7 +26,11 @@ pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure>
             .collect();
         print(&format!("{:#}\n", serde_json::Value::from(list)))?;
     } else {
-        let width = PRESETS.iter().map(|preset| preset.name.len()).max().unwrap_or(0);
+        let width = PRESETS
+            .iter()
+            .map(|preset| preset.name.len())
+            .max()
+            .unwrap_or(0);
         for preset in PRESETS {
             print(&format!("{:width$}  {}\n", preset.name, preset.summary))?;
         }

@@ -45,7 +45,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     match ending {
         Ending::Complete => {
-            say(arguments, &format!("written to {}", folder.path().display()));
+            say(
+                arguments,
+                &format!("written to {}", folder.path().display()),
+            );
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped(code) => {
@@ -66,7 +69,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Ending::Failed(error) => {
             say(
                 arguments,
-                &format!("what was measured, and the state, are in {}", folder.path().display()),
+                &format!(
+                    "what was measured, and the state, are in {}",
+                    folder.path().display()
+                ),
             );
             Err(error.into())
         }
@@ -83,7 +89,10 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     // Before the work of packing, and again when the folder is made.
     RunFolder::check(&path)?;
     for warning in warnings(&configuration) {
-        say(arguments, &format!("warning: {}: {}", warning.key, warning.message));
+        say(
+            arguments,
+            &format!("warning: {}: {}", warning.key, warning.message),
+        );
     }
     let run = Run::new(configuration)?;
     let folder = RunFolder::create(&path, run.configuration())?;
@@ -170,7 +179,7 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         seconds(summary.seconds),
         summary.grain_steps_per_second / 1e6
     );
-    if let Some(diagnosis) = &summary.wall_diagnosis {
+    for diagnosis in &summary.wall_diagnosis {
         text.push_str(&format!("the wall: {diagnosis}\n"));
     }
     text

@@ -90,8 +90,17 @@ impl<'a> Region<'a> {
 /// Axial position of the middle of the belly, to a thousandth of a wavelength.
 fn widest(wall: &PrescribedWall) -> f64 {
     let wavelength = wall.lattice().wavelength;
-    let radius = |step: u32| wall.wave().radius(f64::from(step) * wavelength / 1000.0, wall.cycles());
-    let best = (0..1000).fold(0, |best, step| if radius(step) > radius(best) { step } else { best });
+    let radius = |step: u32| {
+        wall.wave()
+            .radius(f64::from(step) * wavelength / 1000.0, wall.cycles())
+    };
+    let best = (0..1000).fold(0, |best, step| {
+        if radius(step) > radius(best) {
+            step
+        } else {
+            best
+        }
+    });
     f64::from(best) * wavelength / 1000.0
 }
 
@@ -104,8 +113,9 @@ pub(super) struct Inserted {
 
 /// Inserts grain by grain: at a random place without overlap, or, where none is found, at a random place.
 pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8Rng) -> Inserted {
-    let largest = diameter.iter().copied().fold(0.0, f64::max);
-    let mut bins = Bins::new(region, largest.max(1e-6));
+    // Without grains any width of the cells will do.
+    let largest = diameter.iter().copied().reduce(f64::max).unwrap_or(1.0);
+    let mut bins = Bins::new(region, largest);
     let mut position: Vec<DVec3> = Vec::with_capacity(diameter.len());
     let mut without_overlap = 0;
     let mut stalled = 0_usize;
@@ -149,7 +159,9 @@ struct Bins {
 impl Bins {
     fn new(region: &Region<'_>, largest_diameter: f64) -> Self {
         let half_width = region.wall.usual_radius();
-        let across = (2.0 * half_width / largest_diameter).floor().clamp(1.0, 64.0);
+        let across = (2.0 * half_width / largest_diameter)
+            .floor()
+            .clamp(1.0, 64.0);
         let along = (region.length / largest_diameter).floor().clamp(1.0, 1e6);
         Self {
             across: across as i64,
@@ -163,7 +175,8 @@ impl Bins {
     }
 
     fn cell(&self, place: DVec3) -> [i64; 3] {
-        let across = |x: f64| (((x + self.half_width) / self.width) as i64).clamp(0, self.across - 1);
+        let across =
+            |x: f64| (((x + self.half_width) / self.width) as i64).clamp(0, self.across - 1);
         let along = ((place.z / self.depth) as i64).clamp(0, self.along - 1);
         [across(place.x), across(place.y), along]
     }

@@ -83,7 +83,8 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
 /// their size while the elastic energy is minimised. Velocities are set afterwards. The same seed gives the same state.
 ///
 /// # Errors
-/// [`EngineError::DoesNotFit`] where the mean overlap stays above [`LARGEST_MEAN_OVERLAP`] largest diameters.
+/// [`EngineError::DoesNotFit`] where the mean overlap stays above [`LARGEST_MEAN_OVERLAP`] largest diameters, or where
+/// more than one grain in a hundred is pressed out through the wall.
 pub fn pack(
     packing: &Packing,
     wall: &Wall,
@@ -98,7 +99,11 @@ pub fn pack(
     let insertion::Inserted {
         position,
         without_overlap,
-    } = insertion::insert(&diameter, &region, &mut random(packing.seed, Stream::Positions));
+    } = insertion::insert(
+        &diameter,
+        &region,
+        &mut random(packing.seed, Stream::Positions),
+    );
 
     let mut bodies = Bodies::grains_at_rest(position, diameter);
     if let Wall::Elastic(elastic) = wall {

@@ -19,6 +19,9 @@ const LAST_ITERATIONS: usize = 3_000;
 const BALANCED: f64 = 1e-6;
 /// Overlap in units of the largest diameter above which, after the first iterations at full size, nothing will help.
 const HOPELESS: f64 = 0.65;
+/// Part of the grains that may stand outside the wall: a lattice that leaks lets a few through, a tube that is too full
+/// presses out all that are too many and relaxes to a moderate overlap.
+const LARGEST_PART_OUTSIDE: f64 = 0.01;
 
 /// Grows and relaxes the grains; the wall stands still.
 pub(super) fn grow<N: NormalLaw>(
@@ -32,10 +35,11 @@ pub(super) fn grow<N: NormalLaw>(
     };
     let full: Vec<f64> = bodies.diameter.clone();
     let largest = full[..bodies.grains].iter().copied().fold(0.0, f64::max);
-    let does_not_fit = |mean_overlap: f64| EngineError::DoesNotFit {
+    let does_not_fit = |mean_overlap: f64, outside: usize| EngineError::DoesNotFit {
         grains: bodies.grains,
         mean_overlap,
         limit: LARGEST_MEAN_OVERLAP * largest,
+        outside,
     };
     let mut bodies_now = bodies.clone();
     let mut descent = Descent::new(&law, &bodies_now, largest);
@@ -47,19 +51,40 @@ pub(super) fn grow<N: NormalLaw>(
         descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS);
     }
     let overlap = descent.report.mean_overlap;
-    if overlap > HOPELESS * largest {
-        return Err(does_not_fit(overlap));
+    let outside = pressed_out(&bodies_now, wall);
+    if overlap > HOPELESS * largest || too_many(outside, bodies) {
+        return Err(does_not_fit(overlap, outside));
     }
     descent.run(&law, &mut bodies_now, wall, LAST_ITERATIONS);
     let report = descent.report;
-    if report.mean_overlap > LARGEST_MEAN_OVERLAP * largest {
-        return Err(does_not_fit(report.mean_overlap));
+    let outside = pressed_out(&bodies_now, wall);
+    if report.mean_overlap > LARGEST_MEAN_OVERLAP * largest || too_many(outside, bodies) {
+        return Err(does_not_fit(report.mean_overlap, outside));
     }
     bodies_now.turns.fill(0);
     bodies_now.velocity.fill(DVec3::ZERO);
     bodies_now.acceleration.fill(DVec3::ZERO);
     *bodies = bodies_now;
     Ok(report)
+}
+
+/// Grains whose centres lie outside R + d/2, R the radius of the standing wall at their place and d their diameter.
+fn pressed_out(bodies: &Bodies, wall: &Wall) -> usize {
+    (0..bodies.grains)
+        .filter(|&grain| {
+            let place = bodies.position[grain];
+            let radius = match wall {
+                Wall::Prescribed(wall) => wall.wave().radius(place.z, wall.cycles()),
+                Wall::Elastic(wall) => wall.parameters().mean_radius,
+            };
+            let limit = radius + 0.5 * bodies.diameter[grain];
+            place.x * place.x + place.y * place.y > limit * limit
+        })
+        .count()
+}
+
+fn too_many(outside: usize, bodies: &Bodies) -> bool {
+    outside as f64 > LARGEST_PART_OUTSIDE * bodies.grains as f64
 }
 
 /// Damped descent in energy: motion under the elastic forces whose velocity is turned towards the force and stopped when
@@ -80,11 +105,7 @@ struct Descent {
 const MIXING: f64 = 0.1;
 
 impl Descent {
-    fn new<N: NormalLaw>(
-        law: &ContactLaw<N, Frictionless>,
-        bodies: &Bodies,
-        largest: f64,
-    ) -> Self {
+    fn new<N: NormalLaw>(law: &ContactLaw<N, Frictionless>, bodies: &Bodies, largest: f64) -> Self {
         let overlap = 0.1 * largest;
         // A grain among twelve partners, with mass 1: omega^2 = 12 k; the explicit limit is 2/omega.
         let stiffness = law.normal.stiffness(overlap, 0.25 * largest);

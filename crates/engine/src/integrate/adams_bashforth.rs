@@ -24,7 +24,8 @@ pub(super) fn before_forces(
         })?;
         // A past equal to the present makes the formulas below those of the first step.
         past.acceleration.clone_from(&bodies.acceleration);
-        past.angular_acceleration.clone_from(&bodies.angular_acceleration);
+        past.angular_acceleration
+            .clone_from(&bodies.angular_acceleration);
     }
     past.velocity.clone_from(&bodies.velocity);
     past.angular_velocity.clone_from(&bodies.angular_velocity);
@@ -33,13 +34,18 @@ pub(super) fn before_forces(
             *velocity += h * (1.5 * *now - 0.5 * *then);
         }
     };
-    advance(&mut bodies.velocity, &bodies.acceleration, &past.acceleration);
+    advance(
+        &mut bodies.velocity,
+        &bodies.acceleration,
+        &past.acceleration,
+    );
     advance(
         &mut bodies.angular_velocity,
         &bodies.angular_acceleration,
         &past.angular_acceleration,
     );
     past.acceleration.clone_from(&bodies.acceleration);
-    past.angular_acceleration.clone_from(&bodies.angular_acceleration);
+    past.angular_acceleration
+        .clone_from(&bodies.angular_acceleration);
     Ok(())
 }

@@ -21,20 +21,26 @@ pub(super) fn before_forces(
     for (velocity, acceleration) in bodies.velocity.iter_mut().zip(&bodies.acceleration) {
         *velocity += h * *acceleration;
     }
-    for (velocity, acceleration) in
-        bodies.angular_velocity.iter_mut().zip(&bodies.angular_acceleration)
+    for (velocity, acceleration) in bodies
+        .angular_velocity
+        .iter_mut()
+        .zip(&bodies.angular_acceleration)
     {
         *velocity += h * *acceleration;
     }
     past.acceleration.clone_from(&bodies.acceleration);
-    past.angular_acceleration.clone_from(&bodies.angular_acceleration);
+    past.angular_acceleration
+        .clone_from(&bodies.angular_acceleration);
     Ok(())
 }
 
 pub(super) fn after_forces(bodies: &mut Bodies, past: &Past, h: f64) {
     let half = 0.5 * h;
-    for ((velocity, now), then) in
-        bodies.velocity.iter_mut().zip(&bodies.acceleration).zip(&past.acceleration)
+    for ((velocity, now), then) in bodies
+        .velocity
+        .iter_mut()
+        .zip(&bodies.acceleration)
+        .zip(&past.acceleration)
     {
         *velocity += half * (*now - *then);
     }

@@ -137,8 +137,10 @@ impl ElasticWall {
             .neighbours(WallSphere { ring: 0, place: 0 })
             .iter()
             .map(|&neighbour| {
-                let separation =
-                    periodic(here - self.reference(lattice.index(neighbour)), lattice.length());
+                let separation = periodic(
+                    here - self.reference(lattice.index(neighbour)),
+                    lattice.length(),
+                );
                 let stretch = separation.length() - self.parameters.natural_length;
                 -self.parameters.spring_stiffness * stretch * separation.normalize()
             })
@@ -275,7 +277,9 @@ impl ElasticWall {
             let outward = self.balance - radial * away.x;
             let across = -azimuthal * away.y;
             tally.keep_energy += 0.5
-                * (radial * away.x * away.x + azimuthal * away.y * away.y + axial * away.z * away.z)
+                * (radial * away.x * away.x
+                    + azimuthal * away.y * away.y
+                    + axial * away.z * away.z)
                 - self.balance * away.x;
 
             let position = bodies.position[i];

@@ -77,8 +77,58 @@ impl<H: Copy + Default> WallMemory<H> {
         }
         Self {
             start,
-            entries: histories.iter().map(|&(_, sphere, history)| (sphere, history)).collect(),
+            entries: histories
+                .iter()
+                .map(|&(_, sphere, history)| (sphere, history))
+                .collect(),
             ..Self::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn all(memory: &WallMemory<f64>) -> Vec<(u32, u32, f64)> {
+        memory
+            .iter()
+            .map(|(grain, sphere, history)| (grain, sphere, *history))
+            .collect()
+    }
+
+    #[test]
+    fn contacts_that_go_on_keep_their_history_and_others_end() {
+        let mut memory = WallMemory::default();
+        memory.begin();
+        assert_eq!(memory.take(0, 7), 0.0);
+        memory.put(7, 1.5);
+        memory.put(9, 2.5);
+        assert_eq!(memory.end_grain(0).count(), 0);
+        memory.put(7, 3.5);
+        assert_eq!(memory.end_grain(1).count(), 0);
+        memory.end();
+        assert_eq!(all(&memory), [(0, 7, 1.5), (0, 9, 2.5), (1, 7, 3.5)]);
+
+        memory.begin();
+        assert_eq!(memory.take(0, 9), 2.5);
+        memory.put(9, 2.6);
+        // Sphere 7 was not taken: its contact has ended.
+        assert_eq!(memory.end_grain(0).sum::<f64>(), 1.5);
+        assert_eq!(memory.end_grain(1).sum::<f64>(), 3.5);
+        memory.end();
+        assert_eq!(all(&memory), [(0, 9, 2.6)]);
+    }
+
+    #[test]
+    fn entries_make_the_same_memory() {
+        let entries = [(1, 4, 0.5), (1, 8, 0.7), (3, 4, 0.9)];
+        let mut memory = WallMemory::from_entries(5, &entries);
+        assert_eq!(all(&memory), entries);
+        memory.begin();
+        assert_eq!(
+            (memory.take(3, 4), memory.take(1, 8), memory.take(4, 8)),
+            (0.9, 0.7, 0.0)
+        );
     }
 }

@@ -89,7 +89,8 @@ impl PrescribedWall {
             let z = self.lattice.axial_position(ring as u32);
             *entry = (
                 self.wave.radius(z, self.cycles),
-                self.wave.radial_velocity(z, self.cycles, frequency, amplitude_rate),
+                self.wave
+                    .radial_velocity(z, self.cycles, frequency, amplitude_rate),
             );
         }
     }
@@ -129,7 +130,11 @@ impl PrescribedWall {
         let sphere = self.lattice.sphere(index);
         let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
         let (radius, _) = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
-        DVec3::new(radius * cos, radius * sin, self.lattice.axial_position(sphere.ring))
+        DVec3::new(
+            radius * cos,
+            radius * sin,
+            self.lattice.axial_position(sphere.ring),
+        )
     }
 
     /// Calls `touch` for each wall sphere that overlaps a sphere of diameter `diameter` at `centre`, with the number of
@@ -187,7 +192,7 @@ impl PrescribedWall {
                 steps += 1;
             }
             let mut steps_back = 1;
-            while steps + steps_back <= per_ring - 1 && try_place(nearest - steps_back) {
+            while steps + steps_back < per_ring && try_place(nearest - steps_back) {
                 steps_back += 1;
             }
         }
@@ -228,7 +233,11 @@ impl PrescribedWall {
                     normal: separation / distance,
                     relative_velocity: velocity - wall_velocity,
                     reduced_radius,
-                    spin: if T::ROTATES { arm * angular_velocity } else { DVec3::ZERO },
+                    spin: if T::ROTATES {
+                        arm * angular_velocity
+                    } else {
+                        DVec3::ZERO
+                    },
                 };
                 let mut history = T::History::default();
                 if T::ROTATES {
@@ -258,3 +267,6 @@ impl PrescribedWall {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

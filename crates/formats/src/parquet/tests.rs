@@ -1,3 +1,5 @@
+use ::parquet::arrow::parquet_to_arrow_schema;
+
 use super::*;
 
 fn strings(values: &[&str]) -> Values {
@@ -56,6 +58,25 @@ fn a_table_comes_back_to_the_bit_and_the_bytes_are_reproducible() {
     let bytes = encode(&table()).unwrap();
     assert_eq!(bytes, encode(&table()).unwrap());
     assert_eq!(decode(bytes).unwrap(), table());
+}
+
+#[test]
+fn metadata_stand_in_the_file_and_in_the_arrow_schema() {
+    let builder =
+        ParquetRecordBatchReaderBuilder::try_new(Bytes::from(encode(&table()).unwrap())).unwrap();
+    let file = builder.metadata().file_metadata();
+    let (arrow, plain): (Vec<KeyValue>, Vec<KeyValue>) = file
+        .key_value_metadata()
+        .cloned()
+        .unwrap()
+        .into_iter()
+        .partition(|entry| is_reserved(&entry.key));
+    assert!(plain.contains(&KeyValue::new("version".to_owned(), "0.1.0".to_owned())));
+    let schema = parquet_to_arrow_schema(file.schema_descr(), Some(&arrow)).unwrap();
+    assert_eq!(&schema.metadata, table().metadata());
+    let field = schema.field_with_name("time").unwrap();
+    assert_eq!(field.metadata()["unit"], "t");
+    assert_eq!(field.metadata()["description"], "Time since the start.");
 }
 
 #[test]

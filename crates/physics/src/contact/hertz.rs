@@ -76,3 +76,50 @@ impl NormalLaw for ViscoelasticHertz {
         1.5 * self.modulus() * (reduced_radius * overlap).sqrt()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: ViscoelasticHertz = ViscoelasticHertz {
+        young_modulus: 1.0,
+        poisson_ratio: 0.5,
+        dissipation_time: 0.1,
+        dissipation_form: DissipationForm::Viscoelastic,
+    };
+
+    /// Y = 1, nu = 1/2: 2/(3 * 3/4) = 8/9; sqrt(R xi) = 0.1 for R = 1/4, xi = 0.04.
+    #[test]
+    fn force_and_energy_by_hand() {
+        let found = LAW.force(0.04, -0.2, 0.25);
+        let elastic = 8.0 / 9.0 * 0.1 * 0.04;
+        assert!((found.elastic_force - elastic).abs() < 1e-15);
+        assert!((found.force - elastic - 8.0 / 9.0 * 0.1 * 0.15 * 0.2).abs() < 1e-15);
+        assert!((found.energy - 0.4 * elastic * 0.04).abs() < 1e-15);
+        let printed = ViscoelasticHertz {
+            dissipation_form: DissipationForm::Printed,
+            ..LAW
+        };
+        let less = printed.force(0.04, -0.2, 0.25);
+        assert!((less.force - elastic - 8.0 / 9.0 * 0.1 * 0.1 * 0.2).abs() < 1e-15);
+        assert_eq!(
+            LAW.undamped().force(0.04, -0.2, 0.25).force,
+            found.elastic_force
+        );
+    }
+
+    #[test]
+    fn a_fast_parting_contact_lets_go_instead_of_pulling() {
+        let found = LAW.force(0.04, 1.0, 0.25);
+        assert_eq!(found.force, 0.0);
+        assert!(found.elastic_force > 0.0);
+    }
+
+    #[test]
+    fn stiffness_is_the_slope_of_the_elastic_force() {
+        let (overlap, step) = (0.07, 1e-6);
+        let force = |overlap: f64| LAW.undamped().force(overlap, 0.0, 0.25).force;
+        let slope = (force(overlap + step) - force(overlap - step)) / (2.0 * step);
+        assert!((LAW.stiffness(overlap, 0.25) - slope).abs() < 1e-9);
+    }
+}

@@ -73,3 +73,41 @@ impl NormalLaw for LinearSpringDashpot {
         self.normal_stiffness
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LAW: LinearSpringDashpot = LinearSpringDashpot {
+        normal_stiffness: 2.0,
+        normal_damping: 0.5,
+    };
+
+    #[test]
+    fn force_and_energy_by_hand() {
+        let found = LAW.force(0.1, -0.2, 0.25);
+        assert!((found.force - 0.3).abs() < 1e-15);
+        assert!((found.elastic_force - 0.2).abs() < 1e-15);
+        assert!((found.energy - 0.01).abs() < 1e-15);
+        assert_eq!(
+            LAW.undamped().force(0.1, -0.2, 0.25).force,
+            found.elastic_force
+        );
+        assert_eq!(LAW.stiffness(0.1, 0.25), 2.0);
+    }
+
+    #[test]
+    fn a_parting_contact_may_pull() {
+        assert!((LAW.force(0.01, 0.2, 0.25).force + 0.08).abs() < 1e-15);
+    }
+
+    #[test]
+    fn an_overdamped_contact_does_not_bounce() {
+        let law = LinearSpringDashpot {
+            normal_damping: 3.0,
+            ..LAW
+        };
+        assert_eq!(law.restitution(0.5), 0.0);
+        assert_eq!(law.contact_time(0.5), f64::INFINITY);
+    }
+}

@@ -134,16 +134,21 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     /// f = f_n n + f_t. The tangential law sees max(f_n, 0): a contact that pulls (possible with the unclipped linear
     /// law) has no friction.
     #[inline(always)]
-    pub fn force(&self, contact: &Contact, history: &mut T::History, time_step: f64) -> ContactForce {
+    pub fn force(
+        &self,
+        contact: &Contact,
+        history: &mut T::History,
+        time_step: f64,
+    ) -> ContactForce {
         let normal_velocity = contact.normal_velocity();
         let normal = self
             .normal
             .force(contact.overlap, normal_velocity, contact.reduced_radius);
         let normal_dissipation = (normal.elastic_force - normal.force) * normal_velocity;
         if T::ROTATES {
-            let tangential = self
-                .tangential
-                .force(contact, normal.force.max(0.0), history, time_step);
+            let tangential =
+                self.tangential
+                    .force(contact, normal.force.max(0.0), history, time_step);
             ContactForce {
                 force: normal.force * contact.normal + tangential.force,
                 twist: -contact.normal.cross(tangential.force),
@@ -179,4 +184,78 @@ pub struct ContactModel {
     pub normal: Normal,
     /// Force in the plane of contact; `None`: grains are smooth and do not rotate.
     pub friction: Option<CundallStrack>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const FRICTION: CundallStrack = CundallStrack {
+        tangential_stiffness: 1.0,
+        tangential_damping: 0.1,
+        static_friction: 0.5,
+        kinetic_friction: 0.4,
+        sliding: Sliding::Spring,
+    };
+
+    fn contact(parting: f64) -> Contact {
+        Contact {
+            overlap: 0.1,
+            distance: 0.9,
+            normal: DVec3::X,
+            relative_velocity: DVec3::new(parting, 0.3, 0.0),
+            reduced_radius: 0.25,
+            spin: DVec3::ZERO,
+        }
+    }
+
+    #[test]
+    fn force_and_twist_by_hand() {
+        let law = ContactLaw {
+            normal: LinearSpringDashpot {
+                normal_stiffness: 1.0,
+                normal_damping: 0.2,
+            },
+            tangential: FRICTION,
+        };
+        let found = law.force(&contact(-0.1), &mut TangentialHistory::default(), 0.0);
+        // f_n = 0.1 + 0.02; |f_t| = 0.1 * 0.3 < 0.5 f_n, against the slip along y.
+        assert!((found.force - DVec3::new(0.12, -0.03, 0.0)).length() < 1e-15);
+        // -x cross (-0.03 y) = 0.03 z
+        assert!((found.twist - DVec3::new(0.0, 0.0, 0.03)).length() < 1e-15);
+        assert!((found.energy - 0.005).abs() < 1e-15);
+        assert!((found.normal_dissipation - 0.002).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_contact_that_pulls_has_no_friction() {
+        let law = ContactLaw {
+            normal: LinearSpringDashpot {
+                normal_stiffness: 1.0,
+                normal_damping: 0.2,
+            },
+            tangential: FRICTION,
+        };
+        let found = law.force(&contact(0.8), &mut TangentialHistory::default(), 0.0);
+        assert!((found.force - DVec3::new(-0.06, 0.0, 0.0)).length() < 1e-15);
+        assert_eq!(found.twist, DVec3::ZERO);
+    }
+
+    #[test]
+    fn a_smooth_law_is_the_normal_law_alone() {
+        let normal = LinearSpringDashpot {
+            normal_stiffness: 1.0,
+            normal_damping: 0.2,
+        };
+        let law = ContactLaw {
+            normal,
+            tangential: Frictionless,
+        };
+        let found = law.force(&contact(-0.1), &mut (), 0.05);
+        assert!((found.force - DVec3::new(0.12, 0.0, 0.0)).length() < 1e-15);
+        assert_eq!(
+            (found.twist, found.tangential),
+            (DVec3::ZERO, TangentialForce::default())
+        );
+    }
 }

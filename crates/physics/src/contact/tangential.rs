@@ -94,14 +94,19 @@ impl TangentialLaw for CundallStrack {
             // A contact that does not press forgets, whatever sliding does elsewhere.
             let slid = energy_before + 0.5 * time_step * history.power;
             *history = TangentialHistory::default();
-            return TangentialForce { slid, sliding: true, ..TangentialForce::default() };
+            return TangentialForce {
+                slid,
+                sliding: true,
+                ..TangentialForce::default()
+            };
         }
         let predicted = history.displacement + time_step * history.rate;
         let rate = slip_velocity - predicted.dot(normal_rate) * normal;
         let mut displacement = history.displacement + 0.5 * time_step * (history.rate + rate);
         displacement -= displacement.dot(normal) * normal;
 
-        let trial = -self.tangential_stiffness * displacement - self.tangential_damping * slip_velocity;
+        let trial =
+            -self.tangential_stiffness * displacement - self.tangential_damping * slip_velocity;
         let size = trial.length();
         let sliding = size >= self.static_friction * normal_force;
         let force = if !sliding {
@@ -162,5 +167,99 @@ impl CundallStrack {
             }
             Sliding::Literal => displacement,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn law(sliding: Sliding) -> CundallStrack {
+        CundallStrack {
+            tangential_stiffness: 2.0,
+            tangential_damping: 0.5,
+            static_friction: 0.5,
+            kinetic_friction: 0.4,
+            sliding,
+        }
+    }
+
+    fn contact(slip: f64) -> Contact {
+        Contact {
+            overlap: 0.1,
+            distance: 0.9,
+            normal: DVec3::Z,
+            relative_velocity: DVec3::new(slip, 0.0, -0.3),
+            reduced_radius: 0.25,
+            spin: DVec3::ZERO,
+        }
+    }
+
+    fn stretched(displacement: f64) -> TangentialHistory {
+        TangentialHistory {
+            displacement: DVec3::new(displacement, 0.0, 0.0),
+            ..TangentialHistory::default()
+        }
+    }
+
+    #[test]
+    fn below_the_static_bound_spring_and_dashpot_act() {
+        let mut history = stretched(0.1);
+        // |f~| = 2 * 0.1 + 0.5 * 0.2 = 0.3 < 0.5 * 0.7
+        let found = law(Sliding::Spring).force(&contact(0.2), 0.7, &mut history, 0.0);
+        assert!(!found.sliding);
+        assert!((found.force - DVec3::new(-0.3, 0.0, 0.0)).length() < 1e-15);
+        assert!((found.energy - 0.01).abs() < 1e-15);
+        assert_eq!(history.displacement, DVec3::new(0.1, 0.0, 0.0));
+        assert!((history.power - 0.06).abs() < 1e-15);
+    }
+
+    #[test]
+    fn beyond_it_kinetic_friction_acts_and_each_form_keeps_its_displacement() {
+        for (sliding, expected) in [
+            // mu_k f_n/k_t
+            (Sliding::Spring, 0.08),
+            // (mu_k f_n - eta_t v)/k_t
+            (Sliding::Balance, 0.03),
+            (Sliding::Literal, 0.1),
+        ] {
+            let mut history = stretched(0.1);
+            // |f~| = 0.3 >= 0.5 * 0.4
+            let found = law(sliding).force(&contact(0.2), 0.4, &mut history, 0.0);
+            assert!(found.sliding);
+            assert!((found.force - DVec3::new(-0.16, 0.0, 0.0)).length() < 1e-15);
+            assert!(
+                (history.displacement.x - expected).abs() < 1e-15,
+                "{sliding:?}: {history:?}"
+            );
+        }
+    }
+
+    /// u = 0.1 + (0 + 0.2)/2 * 0.05 for a fresh rate of 0, and a full 0.2 * 0.05 from the second step on.
+    #[test]
+    fn the_displacement_follows_the_trapezoidal_rule() {
+        let mut history = stretched(0.1);
+        law(Sliding::Spring).force(&contact(0.2), 9.0, &mut history, 0.05);
+        assert!((history.displacement.x - 0.105).abs() < 1e-15);
+        law(Sliding::Spring).force(&contact(0.2), 9.0, &mut history, 0.05);
+        assert!((history.displacement.x - 0.115).abs() < 1e-15);
+    }
+
+    #[test]
+    fn spheres_that_roll_on_each_other_do_not_slip() {
+        // v = 0.2 along x is undone by n x spin = -0.2 along x.
+        let contact = Contact {
+            spin: DVec3::new(0.0, 0.2, 0.0),
+            ..contact(0.2)
+        };
+        let mut history = TangentialHistory::default();
+        let found = law(Sliding::Spring).force(&contact, 1.0, &mut history, 0.05);
+        assert!(found.force.length() < 1e-15, "{:?}", found.force);
+    }
+
+    #[test]
+    fn smooth_grains_have_no_friction() {
+        let found = Frictionless.force(&contact(0.2), 1.0, &mut (), 0.05);
+        assert_eq!(found, TangentialForce::default());
     }
 }

@@ -147,8 +147,13 @@ pub fn approximate_half_steps(x: f64, y: f64, spheres_per_ring: f64) -> f64 {
     let q = across / along;
     let s = q * q;
     let octant = q
-        * (0.999_866_0 + s * (-0.330_299_5 + s * (0.180_141_0 + s * (-0.085_133_0 + s * 0.020_835_1))));
-    let quadrant = if y.abs() > x.abs() { 0.5 * PI - octant } else { octant };
+        * (0.999_866_0
+            + s * (-0.330_299_5 + s * (0.180_141_0 + s * (-0.085_133_0 + s * 0.020_835_1))));
+    let quadrant = if y.abs() > x.abs() {
+        0.5 * PI - octant
+    } else {
+        octant
+    };
     let half = if x < 0.0 { PI - quadrant } else { quadrant };
     let angle = if y < 0.0 { 2.0 * PI - half } else { half };
     angle * spheres_per_ring / PI

@@ -14,13 +14,17 @@ impl Schedule {
     /// The same value at all times.
     #[must_use]
     pub fn constant(value: f64) -> Self {
-        Self { knots: vec![(0.0, value)] }
+        Self {
+            knots: vec![(0.0, value)],
+        }
     }
 
     /// Through the given knots; `None` unless there is one at least, all finite, in order of time.
     #[must_use]
     pub fn through(knots: Vec<(f64, f64)>) -> Option<Self> {
-        let finite = knots.iter().all(|&(time, value)| time.is_finite() && value.is_finite());
+        let finite = knots
+            .iter()
+            .all(|&(time, value)| time.is_finite() && value.is_finite());
         let ordered = knots.windows(2).all(|pair| pair[0].0 <= pair[1].0);
         (finite && ordered && !knots.is_empty()).then_some(Self { knots })
     }
@@ -29,7 +33,11 @@ impl Schedule {
     #[must_use]
     pub fn map(&self, linear: impl Fn(f64) -> f64) -> Self {
         Self {
-            knots: self.knots.iter().map(|&(time, value)| (time, linear(value))).collect(),
+            knots: self
+                .knots
+                .iter()
+                .map(|&(time, value)| (time, linear(value)))
+                .collect(),
         }
     }
 

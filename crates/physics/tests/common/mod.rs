@@ -6,8 +6,7 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{
     Contact, ContactForce, ContactLaw, ContactModel, CundallStrack, DissipationForm, Frictionless,
-    LinearSpringDashpot, Normal, NormalLaw, Sliding, TangentialHistory,
-    ViscoelasticHertz,
+    LinearSpringDashpot, Normal, NormalLaw, Sliding, TangentialHistory, ViscoelasticHertz,
 };
 
 /// The normal law of the frictionless preset.
@@ -44,8 +43,14 @@ pub(crate) const SLIDINGS: [Sliding; 3] = [Sliding::Spring, Sliding::Balance, Sl
 pub(crate) fn normals() -> [(&'static str, Normal); 3] {
     [
         ("linear", Normal::Linear(LINEAR)),
-        ("hertz, printed", Normal::Hertz(hertz(DissipationForm::Printed))),
-        ("hertz, viscoelastic", Normal::Hertz(hertz(DissipationForm::Viscoelastic))),
+        (
+            "hertz, printed",
+            Normal::Hertz(hertz(DissipationForm::Printed)),
+        ),
+        (
+            "hertz, viscoelastic",
+            Normal::Hertz(hertz(DissipationForm::Viscoelastic)),
+        ),
     ]
 }
 
@@ -53,10 +58,19 @@ pub(crate) fn normals() -> [(&'static str, Normal); 3] {
 pub(crate) fn table() -> Vec<(String, ContactModel)> {
     let mut rows = Vec::new();
     for (name, normal) in normals() {
-        rows.push((format!("{name}, frictionless"), ContactModel { normal, friction: None }));
+        rows.push((
+            format!("{name}, frictionless"),
+            ContactModel {
+                normal,
+                friction: None,
+            },
+        ));
         for sliding in SLIDINGS {
             let friction = Some(friction(sliding));
-            rows.push((format!("{name}, {sliding:?}"), ContactModel { normal, friction }));
+            rows.push((
+                format!("{name}, {sliding:?}"),
+                ContactModel { normal, friction },
+            ));
         }
     }
     rows
@@ -77,8 +91,14 @@ pub(crate) fn answer(
         time_step: f64,
     ) -> ContactForce {
         match friction {
-            None => ContactLaw { normal, tangential: Frictionless }.force(contact, &mut (), time_step),
-            Some(tangential) => ContactLaw { normal, tangential }.force(contact, history, time_step),
+            None => ContactLaw {
+                normal,
+                tangential: Frictionless,
+            }
+            .force(contact, &mut (), time_step),
+            Some(tangential) => {
+                ContactLaw { normal, tangential }.force(contact, history, time_step)
+            }
         }
     }
     match model.normal {
@@ -170,7 +190,10 @@ impl Collision {
         let arm = |sphere: usize| 0.5 * (self.diameter[sphere] - overlap);
         let force = self.last.force;
         let turn = |sphere: usize| self.last.twist * (arm(sphere) / self.inertia(sphere));
-        ([force / self.mass[0], -force / self.mass[1]], [turn(0), turn(1)])
+        (
+            [force / self.mass[0], -force / self.mass[1]],
+            [turn(0), turn(1)],
+        )
     }
 
     /// One step; the law must have been asked before the first.

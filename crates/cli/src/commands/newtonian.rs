@@ -1,0 +1,81 @@
+//! `peristalsis newtonian`
+
+use std::process::ExitCode;
+
+use peristalsis_physics::newtonian::{NewtonianPeristalsis, Trapping};
+
+use crate::arguments::NewtonianArguments;
+use crate::commands::print;
+use crate::failure::Failure;
+
+/// Prints what a Newtonian fluid does.
+pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Failure> {
+    let NewtonianArguments {
+        width,
+        radius,
+        pressure,
+        json,
+    } = *arguments;
+    let fluid = NewtonianPeristalsis::from_width(width, radius, pressure).ok_or_else(|| {
+        Failure::Usage {
+            message: format!(
+                "there is no such tube: width {width}, radius {radius}, pressure {pressure}"
+            ),
+            help: Some("0 <= width <= 2 radius; a finite pressure".to_owned()),
+        }
+    })?;
+    let region = match fluid.trapping() {
+        Trapping::Absent => None,
+        Trapping::Bolus(region) | Trapping::Ring(region) => Some(region),
+    };
+    let reflux = fluid.reflux();
+    if json {
+        let report = serde_json::json!({
+            "amplitude_ratio": fluid.amplitude_ratio(),
+            "pressure": fluid.pressure(),
+            "flow_rate": fluid.flow_rate(),
+            "flow_rate_ratio": fluid.flow_rate_ratio(),
+            "zero_flow_pressure": fluid.zero_flow_pressure(),
+            "efficiency": fluid.efficiency(),
+            "trapped_volume_fraction": region.map(|region| region.volume_fraction),
+            "reflux_volume_fraction": reflux.map(|layer| layer.volume_fraction),
+            "reflux_flow_rate": reflux.map(|layer| layer.flow_rate),
+        });
+        print(&format!("{report:#}\n"))?;
+        return Ok(ExitCode::SUCCESS);
+    }
+    let trapping = match fluid.trapping() {
+        Trapping::Absent => "none".to_owned(),
+        Trapping::Bolus(region) => format!(
+            "a bolus on the axis, {:.2} % of the fluid",
+            100.0 * region.volume_fraction
+        ),
+        Trapping::Ring(region) => format!(
+            "a ring off the axis, {:.2} % of the fluid",
+            100.0 * region.volume_fraction
+        ),
+    };
+    let reflux = reflux.map_or_else(
+        || "none".to_owned(),
+        |layer| {
+            format!(
+                "{:.2} % of the fluid, near the wall, moves back on average: {:.4} pi a^2 c",
+                100.0 * layer.volume_fraction,
+                layer.flow_rate
+            )
+        },
+    );
+    let efficiency = fluid
+        .efficiency()
+        .map_or_else(|| "does not pump".to_owned(), |value| format!("{value:.4}"));
+    print(&format!(
+        "phi = b/a         {:.5}\npressure rise     P = {} (flow stops at {:.5})\nflow rate         Q = {:.5} pi a^2 c\n\
+         J/Jmax            {:.5}\nefficiency        {efficiency}\ntrapping          {trapping}\nreflux            {reflux}\n",
+        fluid.amplitude_ratio(),
+        fluid.pressure(),
+        fluid.zero_flow_pressure(),
+        fluid.flow_rate(),
+        fluid.flow_rate_ratio(),
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}

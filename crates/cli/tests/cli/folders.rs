@@ -1,0 +1,233 @@
+//! Where results go: new folders, folders that are taken, folders that cannot be written to.
+
+use std::path::Path;
+
+use crate::{Place, SMALL};
+
+const FILES: [&str; 12] = [
+    "config.toml",
+    "flow.png",
+    "flow.svg",
+    "profile.parquet",
+    "profile.png",
+    "profile.svg",
+    "snapshot.png",
+    "snapshot.svg",
+    "state.checkpoint",
+    "summary.json",
+    "timeseries.csv",
+    "timeseries.parquet",
+];
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn nested_relative_folders_are_made_and_filled() {
+    let place = Place::new();
+    place.run_small(&["--out", "a/b/c", "--csv"]).expect_code(0);
+    assert_eq!(names(&place.path("a/b/c")), FILES);
+    let figure = std::fs::read(place.path("a/b/c/flow.png")).unwrap();
+    assert!(figure.starts_with(b"\x89PNG\r\n\x1a\n"));
+    let drawing = std::fs::read_to_string(place.path("a/b/c/flow.svg")).unwrap();
+    assert!(drawing.contains("<svg") && drawing.trim_end().ends_with("</svg>"));
+}
+
+#[test]
+fn an_elastic_wall_has_a_figure_of_its_own() {
+    let place = Place::new();
+    let settings = ["grains.number=20", "run.periods=0.05", "run.seed=3"];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    place
+        .call(
+            ["run", "--preset", "frictional", "--out", "results"]
+                .into_iter()
+                .chain(settings),
+        )
+        .expect_code(0);
+    for name in ["wall.svg", "wall.png"] {
+        assert!(place.path("results").join(name).is_file(), "{name}");
+    }
+}
+
+#[test]
+fn without_out_each_run_gets_a_folder_of_its_own() {
+    let place = Place::new();
+    place.write(
+        "narrow.toml",
+        "preset = \"frictionless\"\ngrains.number = 5\nrun.periods = 1\n",
+    );
+    for _ in 0..2 {
+        place.run_small(&[]).expect_code(0);
+        place.call(["run", "narrow.toml"]).expect_code(0);
+    }
+    let expected = ["frictionless-1", "frictionless-2", "narrow-1", "narrow-2"];
+    assert_eq!(names(&place.path("runs")), expected);
+}
+
+#[test]
+fn an_empty_folder_and_a_folder_with_other_things_are_used_as_they_are() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("results")).unwrap();
+    place.write("results/notes.txt", "keep me");
+    place.run_small(&["--out", "results"]).expect_code(0);
+    assert_eq!(
+        std::fs::read_to_string(place.path("results/notes.txt")).unwrap(),
+        "keep me"
+    );
+    assert!(place.path("results/summary.json").is_file());
+}
+
+#[test]
+fn a_folder_that_holds_another_run_stays_as_it_is() {
+    let place = Place::new();
+    place.run_small(&["--out", "results"]).expect_code(0);
+    let before = place.inventory();
+    place
+        .run_small(&["--out", "results", "--set", "run.seed=2"])
+        .expect_code(2)
+        .says(&[
+            "results holds another run",
+            "nothing was changed",
+            "--out",
+            "--resume",
+        ]);
+    assert_eq!(place.inventory(), before);
+    // Any one of a run's files is enough to show that there was one.
+    for name in [
+        "config.toml",
+        "summary.json",
+        "timeseries.parquet",
+        "profile.parquet",
+        "state.checkpoint",
+    ] {
+        let place = Place::new();
+        std::fs::create_dir(place.path("results")).unwrap();
+        place.write(&format!("results/{name}"), "of another run");
+        let before = place.inventory();
+        place
+            .run_small(&["--out", "results"])
+            .expect_code(2)
+            .says(&["holds another run", name]);
+        assert_eq!(place.inventory(), before);
+    }
+}
+
+#[test]
+fn folders_that_cannot_be_made() {
+    let place = Place::new();
+    place.write("file", "not a folder");
+    let before = place.inventory();
+    let long = format!("new/{}", "x".repeat(300));
+    for (folder, reason) in [
+        ("file", "not a directory"),
+        ("file/below", "directory"),
+        ("file/far/below", "directory"),
+        (long.as_str(), "name too long"),
+    ] {
+        let outcome = place.run_small(&["--out", folder]).expect_code(2);
+        let message = outcome.message().to_lowercase();
+        assert!(message.contains("cannot write to"), "{message}");
+        assert!(message.contains(reason), "{message}");
+        // Parents that were made on the way are taken away again.
+        assert_eq!(place.inventory(), before, "{folder}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_system_that_takes_no_files() {
+    let place = Place::new();
+    place
+        .run_small(&["--out", "/proc/peristalsis"])
+        .expect_code(2)
+        .says(&["cannot write to /proc/peristalsis"]);
+    place
+        .run_small(&["--out", "/proc/self"])
+        .expect_code(2)
+        .says(&["cannot write to /proc/self"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_folder_without_permission_to_write() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new();
+    let folder = place.path("closed");
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::set_permissions(&folder, std::fs::Permissions::from_mode(0o555)).unwrap();
+    if std::fs::write(folder.join("probe"), "").is_ok() {
+        eprintln!("skipped: this user may write anywhere");
+        return;
+    }
+    for out in ["closed", "closed/below"] {
+        place
+            .run_small(&["--out", out])
+            .expect_code(2)
+            .says(&["cannot write to", "Permission denied"]);
+        assert!(names(&folder).is_empty());
+    }
+}
+
+#[test]
+fn what_cannot_be_resumed() {
+    let place = Place::new();
+    place
+        .call(["run", "--resume", "absent"])
+        .expect_code(2)
+        .says(&["absent holds no run that can be continued", "config.toml"]);
+    place.run_small(&["--out", "whole"]).expect_code(0);
+    let before = place.inventory();
+    place
+        .call(["run", "--resume", "whole"])
+        .expect_code(2)
+        .says(&["no run that can be continued", "complete"]);
+    assert_eq!(place.inventory(), before);
+
+    std::fs::remove_file(place.path("whole/state.checkpoint")).unwrap();
+    place
+        .call(["run", "--resume", "whole"])
+        .expect_code(2)
+        .says(&["state.checkpoint"]);
+}
+
+#[test]
+fn a_state_that_is_damaged_or_of_another_run_is_refused() {
+    let place = Place::new();
+    place.run_small(&["--out", "results"]).expect_code(0);
+    let state = place.path("results/state.checkpoint");
+    let bytes = std::fs::read(&state).unwrap();
+    let mut flipped = bytes.clone();
+    flipped[bytes.len() / 2] ^= 1;
+    for damaged in [
+        &bytes[..bytes.len() / 2],
+        &flipped,
+        b"",
+        b"something else altogether",
+    ] {
+        std::fs::write(&state, damaged).unwrap();
+        let before = place.inventory();
+        let outcome = place.call(["run", "--resume", "results"]);
+        assert!(matches!(outcome.code, Some(1 | 2)), "{outcome:?}");
+        assert!(outcome.message().starts_with("Error:"), "{outcome:?}");
+        assert_eq!(place.inventory(), before);
+    }
+    // The state of another seed.
+    place
+        .call(
+            ["run"]
+                .iter()
+                .chain(SMALL)
+                .chain(&["--out", "other", "--set", "run.seed=2"]),
+        )
+        .expect_code(0);
+    std::fs::copy(place.path("other/state.checkpoint"), &state).unwrap();
+    let outcome = place.call(["run", "--resume", "results"]);
+    assert!(matches!(outcome.code, Some(1 | 2)), "{outcome:?}");
+}

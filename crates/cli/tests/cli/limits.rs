@@ -1,0 +1,170 @@
+//! What is extreme but allowed, and what fails on the way: no grains, one grain, a diverging run, a full disk.
+
+use serde_json::Value;
+
+use crate::{Outcome, Place, SMALL, read_json};
+
+#[test]
+fn a_static_wave_has_no_ratio_and_no_figure_of_it() {
+    let place = Place::new();
+    let settings = [
+        "--set",
+        "drive.strain_rate=0",
+        "--set",
+        "run.duration=50",
+        "--json",
+    ];
+    let summary = place
+        .run_small(&[&settings[..], &["--out", "results"]].concat())
+        .expect_code(0)
+        .json();
+    for key in [
+        "flow_rate_ratio",
+        "flow_rate_ratio_error",
+        "flow_rate_ratio_raw",
+        "transition_time",
+    ] {
+        assert_eq!(summary[key], Value::Null, "{key}");
+    }
+    assert_eq!(summary["censored"], true);
+    assert_eq!(summary["periods"], 0.0);
+    // Nothing drives the grains: what moves them is the little that packing left overlapping.
+    assert!(summary["flow_rate"].as_f64().unwrap().abs() < 1e-6);
+    assert_eq!(summary["wall_power"].as_f64().unwrap(), 0.0);
+    assert!(!place.path("results/flow.svg").exists());
+    assert!(place.path("results/timeseries.parquet").is_file());
+}
+
+#[test]
+fn no_grains_at_all() {
+    let place = Place::new();
+    let summary = place
+        .run_small(&["--out", "results", "--json", "--set", "grains.number=0"])
+        .expect_code(0)
+        .json();
+    assert_eq!(summary["grains"], 0);
+    assert_eq!(summary["flow_rate_ratio"], Value::Null);
+    assert_eq!(summary["flow_rate"], 0.0);
+    assert!(place.path("results/timeseries.parquet").is_file());
+}
+
+#[test]
+fn one_grain_and_one_wave() {
+    let place = Place::new();
+    for (settings, name) in [
+        (["grains.number=1", "tube.waves=2"], "grain"),
+        (["grains.number=20", "tube.waves=1"], "wave"),
+    ] {
+        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+        let summary = place
+            .call(
+                ["run"]
+                    .into_iter()
+                    .chain(SMALL.iter().copied())
+                    .chain(settings)
+                    .chain(["--out", name, "--json"]),
+            )
+            .expect_code(0)
+            .json();
+        assert!(summary["flow_rate_ratio"].is_number(), "{name}");
+        assert!(place.path(name).join("flow.svg").is_file(), "{name}");
+    }
+}
+
+#[test]
+fn less_than_a_period() {
+    let place = Place::new();
+    let summary = place
+        .run_small(&["--out", "results", "--json", "--set", "run.periods=0.05"])
+        .expect_code(0)
+        .json();
+    assert!(summary["flow_rate_ratio"].is_number());
+    assert_eq!(summary["transition_time"], Value::Null);
+}
+
+#[test]
+fn a_diverging_run_names_step_and_grain_and_saves_its_state() {
+    let place = Place::new();
+    let settings = ["run.time_step=1", "run.periods=5"];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = ["run", "--preset", "frictionless", "--out", "results"];
+    let outcome: Outcome = place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(1);
+    let message = outcome.message();
+    for part in [
+        "diverged at step ",
+        "grain ",
+        "shorter run.time_step",
+        "the state, are in results",
+    ] {
+        assert!(message.contains(part), "{part:?} is not in {message:?}");
+    }
+    let summary = read_json(&place.path("results/summary.json"));
+    assert_eq!(summary["status"], "diverged");
+    let said = summary["message"].as_str().unwrap();
+    assert!(message.contains(said), "{said:?} is not in {message:?}");
+    let step = summary["steps"].as_u64().unwrap();
+    assert!(said.contains(&format!("at step {step} ")), "{said}");
+    for name in [
+        "state.checkpoint",
+        "timeseries.parquet",
+        "profile.parquet",
+        "config.toml",
+    ] {
+        assert!(place.path("results").join(name).is_file(), "{name}");
+    }
+    // From the saved state it cannot go on either, and says so again.
+    place
+        .call(["run", "--resume", "results"])
+        .expect_code(1)
+        .says(&["diverged at step "]);
+}
+
+/// Runs the small tube in a shell that lets no file grow beyond a number of blocks of 512 bytes.
+#[cfg(unix)]
+fn run_with_small_files(place: &Place, blocks: u32, arguments: &[&str]) -> Outcome {
+    let mut command = std::process::Command::new("sh");
+    // The signal of a file too large would end the program before it can see the error.
+    command
+        .arg("-c")
+        .arg(format!(
+            "trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\""
+        ))
+        .arg(env!("CARGO_BIN_EXE_peristalsis"))
+        .arg("run")
+        .args(SMALL)
+        .args(arguments)
+        .current_dir(place.folder.path());
+    Outcome::of(command.output().unwrap())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_is_full_from_the_start() {
+    let place = Place::new();
+    run_with_small_files(&place, 0, &["--out", "a/b"])
+        .expect_code(2)
+        .says(&["cannot write to a/b"]);
+    assert!(place.inventory().is_empty());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_while_results_are_written() {
+    let place = Place::new();
+    // Room for the configuration, not for the tables.
+    let outcome = run_with_small_files(&place, 8, &["--out", "results"])
+        .expect_code(1)
+        .says(&["Error:", "results"]);
+    assert!(!outcome.message().contains("written to"));
+    let left: Vec<_> = place.inventory().into_keys().collect();
+    // Whole files or none: no summary says that there are tables, nothing partial is left.
+    assert!(!place.path("results/summary.json").exists(), "{left:?}");
+    assert!(
+        left.iter()
+            .all(|name| !name.to_string_lossy().contains("partial")),
+        "{left:?}"
+    );
+    assert!(place.path("results/config.toml").is_file());
+}

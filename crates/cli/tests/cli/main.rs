@@ -1,0 +1,161 @@
+//! The program as a person or a script meets it: arguments in; exit code, streams and files out.
+
+mod bad_input;
+mod checking;
+mod describing;
+mod folders;
+mod limits;
+mod running;
+mod streams;
+
+#[cfg(unix)]
+mod signals;
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::SystemTime;
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A tube that runs within milliseconds.
+const SMALL: &[&str] = &[
+    "--preset",
+    "frictionless",
+    "--set",
+    "grains.number=20",
+    "--set",
+    "tube.waves=2",
+    "--set",
+    "run.periods=4",
+];
+
+/// The program, without what a caller's environment may say about colours.
+fn program() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_peristalsis"));
+    for name in [
+        "NO_COLOR",
+        "FORCE_COLOR",
+        "CLICOLOR_FORCE",
+        "RUST_BACKTRACE",
+    ] {
+        command.env_remove(name);
+    }
+    command
+}
+
+/// What a call of the program left behind.
+#[derive(Debug)]
+struct Outcome {
+    code: Option<i32>,
+    stdout: String,
+    stderr: String,
+}
+
+impl Outcome {
+    fn of(output: Output) -> Self {
+        Self {
+            code: output.status.code(),
+            stdout: String::from_utf8(output.stdout).expect("the program writes UTF-8"),
+            stderr: String::from_utf8(output.stderr).expect("the program writes UTF-8"),
+        }
+    }
+
+    /// Standard error without frames and line breaks, so that a sentence is in one piece.
+    fn message(&self) -> String {
+        self.stderr
+            .split_whitespace()
+            .filter(|word| *word != "│")
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+
+    #[track_caller]
+    fn expect_code(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "{}\n{}", self.stdout, self.stderr);
+        assert!(!self.stderr.contains("panicked"), "{}", self.stderr);
+        self
+    }
+
+    /// Asserts that the message holds each part.
+    #[track_caller]
+    fn says(self, parts: &[&str]) -> Self {
+        let message = self.message();
+        for part in parts {
+            assert!(message.contains(part), "{part:?} is not in {message:?}");
+        }
+        self
+    }
+
+    fn json(&self) -> Value {
+        serde_json::from_str(&self.stdout)
+            .unwrap_or_else(|error| panic!("{error}: {:?}", self.stdout))
+    }
+}
+
+/// A folder of its own for a test, in which the program runs.
+struct Place {
+    folder: TempDir,
+}
+
+impl Place {
+    fn new() -> Self {
+        Self {
+            folder: tempfile::tempdir().unwrap(),
+        }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn write(&self, name: &str, content: impl AsRef<[u8]>) -> PathBuf {
+        let path = self.path(name);
+        std::fs::write(&path, content).unwrap();
+        path
+    }
+
+    fn command<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Command {
+        let mut command = program();
+        command.current_dir(self.folder.path()).args(arguments);
+        command
+    }
+
+    fn call<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Outcome {
+        Outcome::of(self.command(arguments).output().unwrap())
+    }
+
+    /// `peristalsis run` of the small tube with more arguments.
+    fn run_small(&self, arguments: &[&str]) -> Outcome {
+        self.call(["run"].iter().chain(SMALL).chain(arguments))
+    }
+
+    /// Every file below, with content and time of change; folders with neither.
+    fn inventory(&self) -> Inventory {
+        let mut found = Inventory::new();
+        collect(self.folder.path(), self.folder.path(), &mut found);
+        found
+    }
+}
+
+type Inventory = BTreeMap<PathBuf, Option<(Vec<u8>, SystemTime)>>;
+
+fn collect(root: &Path, folder: &Path, found: &mut Inventory) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.strip_prefix(root).unwrap().to_owned();
+        if path.is_dir() {
+            found.insert(name, None);
+            collect(root, &path, found);
+        } else {
+            let changed = path.metadata().unwrap().modified().unwrap();
+            found.insert(name, Some((std::fs::read(&path).unwrap(), changed)));
+        }
+    }
+}
+
+fn read_json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}

@@ -1,0 +1,200 @@
+//! `peristalsis run`: the summary, what `--set` means, and that a record runs again to the same bits.
+
+use serde_json::Value;
+
+use crate::{Place, SMALL, read_json};
+
+fn same_tables(place: &Place, one: &str, other: &str) {
+    for name in ["timeseries.parquet", "profile.parquet"] {
+        let [one, other] =
+            [one, other].map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
+        assert!(one == other, "{name} differs");
+    }
+}
+
+#[test]
+fn the_summary_alone_is_on_standard_output() {
+    let place = Place::new();
+    let outcome = place
+        .run_small(&["--out", "results", "--json", "--set", "run.seed=7"])
+        .expect_code(0);
+    let summary = outcome.json();
+    assert_eq!(summary, read_json(&place.path("results/summary.json")));
+    assert_eq!(summary["grains"], 20);
+    assert_eq!(summary["wall_spheres"], 12 * 14 * 2);
+    assert_eq!(summary["steps"], 4 * 400);
+    assert_eq!(summary["seed"], 7);
+    assert_eq!(summary["escaped"], 0);
+    assert_eq!(summary["status"], "complete");
+    assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(summary["transition_time"], Value::Null);
+    assert_eq!(summary["censored"], true);
+    assert!(!summary["revision"].as_str().unwrap().is_empty());
+    let number = |key: &str| summary[key].as_f64().unwrap_or_else(|| panic!("{key}"));
+    assert!(number("flow_rate_ratio").abs() < 1.5);
+    assert!(number("flow_rate_ratio_error") >= 0.0);
+    assert!(number("largest_overlap") > 0.0 && number("largest_overlap") < 1.0);
+    assert!(number("energy_residual") > 0.0 && number("energy_residual") < 0.05);
+    assert!(number("grain_steps_per_second") > 1e4);
+    assert!((number("time") - 80.0).abs() < 1e-9);
+    assert!((number("periods") - 4.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_transition_is_a_number() {
+    let place = Place::new();
+    let settings = [
+        "drive.width=2.5",
+        "drive.strain_rate=0.1",
+        "tube.waves=2",
+        "run.periods=30",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = [
+        "run",
+        "--preset",
+        "frictionless-fine",
+        "--out",
+        "results",
+        "--json",
+        "-q",
+    ];
+    let outcome = place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(0);
+    assert_eq!(outcome.stderr, "");
+    let summary = outcome.json();
+    let time = summary["transition_time"].as_f64().unwrap();
+    assert!(time > 20.0 && time < 200.0, "{time}");
+    assert_eq!(summary["censored"], false);
+    assert!(summary["flow_rate_ratio"].as_f64().unwrap() > 0.8);
+}
+
+#[test]
+fn a_setting_replaces_the_alternative_of_preset_and_file() {
+    let place = Place::new();
+    place.write(
+        "tube.toml",
+        "preset = \"frictionless\"\ngrains.volume_fraction = 0.1\nrun.periods = 1\n",
+    );
+    for (setting, key, value) in [
+        ("grains.number=12", "grains.number", 12.0),
+        ("drive.amplitude=0.1", "drive.width", 2.8),
+        ("drive.wave_speed=0.2", "drive.strain_rate", 0.02),
+        ("run.duration=40", "run.periods", 2.0),
+    ] {
+        let folder = key.replace('.', "-");
+        place
+            .call(["run", "tube.toml", "--set", setting, "--out", &folder])
+            .expect_code(0);
+        let record = std::fs::read_to_string(place.path(&folder).join("config.toml")).unwrap();
+        let record: toml::Table = toml::from_str(&record).unwrap();
+        let (table, name) = key.split_once('.').unwrap();
+        let found = match &record[table][name] {
+            toml::Value::Integer(number) => *number as f64,
+            other => other.as_float().unwrap(),
+        };
+        assert!(
+            (found - value).abs() < 1e-12,
+            "{key} = {found}, not {value}"
+        );
+        for alternative in ["volume_fraction", "amplitude", "wave_speed", "duration"] {
+            assert!(
+                !record[table].as_table().unwrap().contains_key(alternative),
+                "{alternative}"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_record_of_a_run_runs_again_to_the_same_bits() {
+    let place = Place::new();
+    let jammed = [
+        "initial.state=jammed",
+        "drive.wave_speed=0.7",
+        "grains.diameter_min=0.9",
+    ];
+    let jammed = jammed.iter().flat_map(|setting| ["--set", setting]);
+    place
+        .call(
+            ["run"]
+                .into_iter()
+                .chain(SMALL.iter().copied())
+                .chain(jammed)
+                .chain(["--out", "first"]),
+        )
+        .expect_code(0);
+    place
+        .call(["run", "first/config.toml", "--out", "second"])
+        .expect_code(0);
+    same_tables(&place, "first", "second");
+
+    let elastic = [
+        "grains.number=50",
+        "run.periods=0.2",
+        "run.integrator=adams_bashforth",
+        "run.seed=4",
+    ];
+    let elastic = elastic.iter().flat_map(|setting| ["--set", setting]);
+    place
+        .call(
+            ["run", "--preset", "frictional", "--out", "third"]
+                .into_iter()
+                .chain(elastic),
+        )
+        .expect_code(0);
+    place
+        .call(["run", "third/config.toml", "--out", "fourth"])
+        .expect_code(0);
+    same_tables(&place, "third", "fourth");
+}
+
+#[test]
+fn another_seed_is_another_run() {
+    let place = Place::new();
+    for (folder, seed) in [("one", "run.seed=1"), ("two", "run.seed=2")] {
+        place
+            .run_small(&["--out", folder, "--set", seed])
+            .expect_code(0);
+    }
+    let [one, two] =
+        ["one", "two"].map(|folder| read_json(&place.path(folder).join("summary.json")));
+    assert_ne!(one["flow_rate_ratio"], two["flow_rate_ratio"]);
+}
+
+#[test]
+fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
+    let place = Place::new();
+    for control in ["strain", "stress"] {
+        for direction in ["forward", "backward"] {
+            let preset = if control == "strain" {
+                "frictionless"
+            } else {
+                "frictional"
+            };
+            let folder = format!("{control}-{direction}");
+            let direction = format!("drive.direction={direction}");
+            let periods = if control == "strain" {
+                "run.periods=4"
+            } else {
+                "run.periods=0.2"
+            };
+            let settings = [
+                "initial.state=jammed",
+                "grains.number=40",
+                "tube.waves=2",
+                periods,
+                &direction,
+            ];
+            let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+            let arguments = ["run", "--preset", preset, "--json", "--out", &folder];
+            let summary = place
+                .call(arguments.into_iter().chain(settings))
+                .expect_code(0)
+                .json();
+            let ratio = summary["flow_rate_ratio"].as_f64().unwrap();
+            assert!(ratio > 0.5, "{folder}: {ratio}");
+        }
+    }
+}

@@ -1,0 +1,115 @@
+//! A run that is asked to stop: it ends with what it has, says so, and goes on to the same bits.
+
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Command, Stdio};
+
+use crate::{Place, read_json};
+
+/// A run of a second or two, of which a tenth is done when its first line of progress comes.
+const LONG: &[&str] = &[
+    "--preset",
+    "frictionless-fine",
+    "--set",
+    "drive.width=2.6",
+    "--set",
+    "drive.strain_rate=0.1",
+    "--set",
+    "run.periods=150",
+];
+
+/// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
+fn interrupted(place: &Place, arguments: &[&str], signal: &str) -> (Option<i32>, String) {
+    let mut child = place
+        .command(["run"].iter().chain(arguments))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut errors = BufReader::new(child.stderr.take().unwrap());
+    let mut said = String::new();
+    errors.read_line(&mut said).unwrap();
+    assert!(said.contains("10 %"), "{said}");
+    let sent = Command::new("kill")
+        .args([format!("-{signal}"), child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    errors.read_to_string(&mut said).unwrap();
+    (child.wait().unwrap().code(), said)
+}
+
+#[test]
+fn an_interrupted_run_goes_on_to_the_same_bits() {
+    let place = Place::new();
+    let arguments = [LONG, &["--csv", "--out", "stopped"]].concat();
+    let (code, said) = interrupted(&place, &arguments, "INT");
+    assert_eq!(code, Some(130), "{said}");
+    assert!(said.contains("stopped after"), "{said}");
+    assert!(
+        said.contains("go on with: peristalsis run --resume stopped"),
+        "{said}"
+    );
+    let summary = read_json(&place.path("stopped/summary.json"));
+    assert_eq!(summary["status"], "interrupted");
+    let periods = summary["periods"].as_f64().unwrap();
+    assert!(periods > 14.0 && periods < 149.0, "{periods}");
+    for name in [
+        "timeseries.parquet",
+        "timeseries.csv",
+        "profile.parquet",
+        "flow.svg",
+        "flow.png",
+        "state.checkpoint",
+    ] {
+        assert!(place.path("stopped").join(name).is_file(), "{name}");
+    }
+    let rows = |folder: &str| {
+        let text = std::fs::read_to_string(place.path(folder).join("timeseries.csv")).unwrap();
+        let data = text.lines().filter(|line| !line.starts_with('#')).count();
+        data - 1
+    };
+    assert_eq!(rows("stopped"), (periods * 20.0).round() as usize);
+
+    place
+        .call(["run", "--resume", "stopped", "--csv"])
+        .expect_code(0);
+    place
+        .call(
+            ["run"]
+                .iter()
+                .chain(LONG)
+                .chain(&["--csv", "--out", "through"]),
+        )
+        .expect_code(0);
+    assert_eq!(rows("stopped"), 150 * 20);
+    for name in [
+        "timeseries.parquet",
+        "timeseries.csv",
+        "profile.parquet",
+        "config.toml",
+        "flow.svg",
+    ] {
+        let [one, other] = ["stopped", "through"]
+            .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
+        assert!(one == other, "{name} differs");
+    }
+    let [one, other] =
+        ["stopped", "through"].map(|folder| read_json(&place.path(folder).join("summary.json")));
+    for (key, value) in one.as_object().unwrap() {
+        if !["seconds", "grain_steps_per_second"].contains(&key.as_str()) {
+            assert_eq!(value, &other[key], "{key}");
+        }
+    }
+}
+
+#[test]
+fn a_terminated_run_ends_as_well() {
+    let place = Place::new();
+    let (code, said) = interrupted(&place, &[LONG, &["--out", "stopped"]].concat(), "TERM");
+    assert_eq!(code, Some(143), "{said}");
+    assert!(said.contains("stopped after"), "{said}");
+    assert_eq!(
+        read_json(&place.path("stopped/summary.json"))["status"],
+        "interrupted"
+    );
+}

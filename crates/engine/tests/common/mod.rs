@@ -1,0 +1,219 @@
+//! What the tests of the engine share: laws, tubes, grains and ways to compare states.
+
+// Each test program uses its own part.
+#![allow(dead_code)]
+
+use glam::DVec3;
+use peristalsis_engine::initial::{InitialState, Packing, pack};
+use peristalsis_engine::wall::{
+    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+};
+use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
+use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
+    ViscoelasticHertz,
+};
+use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+
+/// Both integrators.
+pub(crate) const INTEGRATORS: [Integrator; 2] = [Integrator::Verlet, Integrator::AdamsBashforth];
+
+/// The normal law of the frictionless preset.
+pub(crate) const LINEAR: Normal = Normal::Linear(LinearSpringDashpot {
+    normal_stiffness: 1.0,
+    normal_damping: 5.48e-3,
+});
+
+/// The normal law of the frictional preset.
+pub(crate) const HERTZ: Normal = Normal::Hertz(ViscoelasticHertz {
+    young_modulus: 1.0,
+    poisson_ratio: 0.5,
+    dissipation_time: 0.1,
+    dissipation_form: DissipationForm::Viscoelastic,
+});
+
+/// The tangential law of the frictional preset.
+pub(crate) const FRICTION: CundallStrack = CundallStrack {
+    tangential_stiffness: 1.0,
+    tangential_damping: 0.1,
+    static_friction: 0.5,
+    kinetic_friction: 0.4,
+    sliding: Sliding::Spring,
+};
+
+pub(crate) fn parameters(
+    normal: Normal,
+    friction: Option<CundallStrack>,
+    integrator: Integrator,
+    time_step: f64,
+) -> Parameters {
+    Parameters {
+        contact: ContactModel { normal, friction },
+        integrator,
+        time_step,
+        skin: 0.3,
+    }
+}
+
+/// The coarse lattice of the frictionless preset.
+pub(crate) fn coarse(waves: u32) -> Lattice {
+    Lattice {
+        spheres_per_ring: 12,
+        rings_per_wave: 14,
+        waves,
+        wavelength: 10.0,
+        sphere_diameter: 1.0,
+    }
+}
+
+/// A strain-controlled tube of mean radius 1.5.
+pub(crate) fn strained(lattice: Lattice, heading: f64, width: f64, strain_rate: f64) -> Wall {
+    Wall::Prescribed(PrescribedWall::new(
+        lattice,
+        1.5,
+        Waveform::Sine,
+        heading,
+        Schedule::constant(1.5 - 0.5 * width),
+        Schedule::constant(strain_rate),
+    ))
+}
+
+/// A straight tube whose wall is too far away to be touched.
+pub(crate) fn wide(length: f64) -> Wall {
+    let lattice = Lattice {
+        spheres_per_ring: 60,
+        rings_per_wave: 2,
+        waves: 1,
+        wavelength: length,
+        sphere_diameter: 1.0,
+    };
+    Wall::Prescribed(PrescribedWall::new(
+        lattice,
+        10.0,
+        Waveform::Sine,
+        -1.0,
+        Schedule::constant(0.0),
+        Schedule::constant(0.1),
+    ))
+}
+
+/// A small elastic tube, with all that keeps the one of the frictional preset.
+pub(crate) fn elastic_parameters() -> ElasticParameters {
+    ElasticParameters {
+        lattice: Lattice {
+            spheres_per_ring: 16,
+            rings_per_wave: 12,
+            waves: 2,
+            wavelength: 10.4,
+            sphere_diameter: 1.0,
+        },
+        mean_radius: 2.5,
+        sphere_mass: 0.1,
+        spring_stiffness: 0.018,
+        natural_length: 0.7,
+        spring_damping: 0.0,
+        drag: 0.0,
+        contact_range: 3.0,
+        keep: Keep {
+            balance: true,
+            radial: 0.0,
+            azimuthal: 0.1,
+            axial: 0.01,
+            net_force: NetForce::Removed,
+        },
+        force_amplitude: Schedule::constant(0.005),
+        frequency: Schedule::constant(0.02),
+        heading: 1.0,
+        waveform: Waveform::Sine,
+        angle: DriveAngle::Reference,
+    }
+}
+
+pub(crate) fn elastic(parameters: ElasticParameters) -> Wall {
+    Wall::Elastic(ElasticWall::new(parameters))
+}
+
+/// Grains of diameter 1 at the given places with the given velocities.
+pub(crate) fn grains(states: &[(DVec3, DVec3)]) -> Bodies {
+    let position = states.iter().map(|state| state.0).collect();
+    let mut bodies = Bodies::grains_at_rest(position, vec![1.0; states.len()]);
+    for (velocity, state) in bodies.velocity.iter_mut().zip(states) {
+        *velocity = state.1;
+    }
+    bodies
+}
+
+/// Appends the spheres of an elastic wall at their reference places.
+pub(crate) fn with_wall_spheres(mut bodies: Bodies, wall: &Wall) -> Bodies {
+    if let Wall::Elastic(elastic) = wall {
+        for sphere in 0..elastic.lattice().spheres() {
+            bodies.push_wall_sphere(
+                elastic.reference(sphere),
+                elastic.lattice().sphere_diameter,
+                elastic.parameters().sphere_mass,
+            );
+        }
+    }
+    bodies
+}
+
+/// Grains at rest in a tube, of diameters between `diameter_min` and 1.
+pub(crate) fn packed(
+    number: usize,
+    diameter_min: f64,
+    wall: &Wall,
+    normal: Normal,
+    seed: u64,
+) -> Bodies {
+    let packing = Packing {
+        number,
+        diameter_min,
+        diameter_max: 1.0,
+        state: InitialState::Rest,
+        axial_velocity: 0.0,
+        seed,
+    };
+    pack(&packing, wall, normal).expect("the grains fit").0
+}
+
+/// The bits of everything that moves.
+pub(crate) fn bits(simulation: &Simulation) -> Vec<u64> {
+    let bodies = simulation.bodies();
+    bodies
+        .position
+        .iter()
+        .chain(&bodies.velocity)
+        .chain(&bodies.angular_velocity)
+        .flat_map(|vector| vector.to_array())
+        .map(f64::to_bits)
+        .collect()
+}
+
+/// Total momentum.
+pub(crate) fn momentum(bodies: &Bodies) -> DVec3 {
+    bodies
+        .velocity
+        .iter()
+        .zip(&bodies.mass)
+        .map(|(v, m)| *m * *v)
+        .sum()
+}
+
+/// Uniform numbers in [0, 1) for test states; any will do, as long as they are the same each time.
+pub(crate) struct Numbers(pub(crate) u64);
+
+impl Numbers {
+    pub(crate) fn uniform(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / 9_007_199_254_740_992.0
+    }
+
+    /// A vector with components between -`size` and `size`.
+    pub(crate) fn vector(&mut self, size: f64) -> DVec3 {
+        let mut side = || size * (2.0 * self.uniform() - 1.0);
+        DVec3::new(side(), side(), side())
+    }
+}
