@@ -355,3 +355,32 @@ fn drag_and_dashpots_take_the_energy_out() {
     assert!((start - simulation.energy() + ledger.keep_work - lost).abs() < 1e-3 * lost);
     assert_eq!(ledger.dissipated(), lost);
 }
+
+/// A wall that drifts as a whole stretches its tethers against the removed mean force: what removes it does that work.
+/// From rest the wall's momentum stays zero, and so does this work.
+#[test]
+fn what_removes_the_mean_force_does_work_on_a_drifting_wall() {
+    for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
+        let parameters = undriven(elastic_parameters());
+        let keep = Keep {
+            net_force,
+            ..parameters.keep
+        };
+        let axial = keep.axial;
+        let mut simulation = alone(ElasticParameters { keep, ..parameters }, |bodies| {
+            bodies.velocity.fill(DVec3::new(0.0, 0.0, 0.02));
+        });
+        let start = simulation.energy();
+        simulation.advance(400).unwrap();
+        let drifted = 0.02 * simulation.time();
+        let spheres = simulation.bodies().number() as f64;
+        let expected = spheres * 0.5 * axial * drifted * drifted;
+        let ledger = simulation.ledger();
+        assert!(
+            (ledger.keep_work - expected).abs() < 1e-9 * expected,
+            "{} {expected}",
+            ledger.keep_work
+        );
+        assert!((simulation.energy() - start - expected).abs() < 1e-9 * expected);
+    }
+}

@@ -55,6 +55,8 @@ fn case() -> impl Strategy<Value = Case> {
                         displacement: lateral(u),
                         rate: lateral(rate),
                         power,
+                        // As good as any coin for both branches to be seen.
+                        sliding: power > 0.0,
                     },
                     time_step,
                 }

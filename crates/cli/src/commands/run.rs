@@ -13,6 +13,8 @@ use crate::progress::{Display, seconds};
 use crate::sources::{configuration, name};
 use crate::stop::Stop;
 
+/// Grains whose packing takes long enough to say so.
+const SLOW_PACKING: u64 = 5_000;
 /// Time between two savings of the state.
 const SAVE_INTERVAL: Duration = Duration::from_secs(60);
 
@@ -94,6 +96,12 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
             &format!("warning: {}: {}", warning.key, warning.message),
         );
     }
+    if configuration.grains.number > SLOW_PACKING {
+        say(
+            arguments,
+            &format!("packing {} grains", configuration.grains.number),
+        );
+    }
     let run = Run::new(configuration)?;
     let folder = RunFolder::create(&path, run.configuration())?;
     Ok((folder, run))
@@ -159,12 +167,19 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         ),
         None => format!("no transition within {:.1} periods", summary.periods),
     };
-    let mut flow = format!(
-        "J/Jmax = {:.4} ± {:.4}, mean of the last {:.0} %",
-        summary.flow_rate_ratio,
-        summary.flow_rate_ratio_error,
-        100.0 * configuration.observe.late_fraction
-    );
+    let late = 100.0 * configuration.observe.late_fraction;
+    let mut flow = match (summary.flow_rate_ratio, summary.flow_rate_ratio_error) {
+        (ratio, error) if error.is_finite() => {
+            format!("J/Jmax = {ratio:.4} ± {error:.4}, mean of the last {late:.0} %")
+        }
+        (ratio, _) if ratio.is_finite() => {
+            format!("J/Jmax = {ratio:.4}, mean of the last {late:.0} % (too short for an error)")
+        }
+        _ => format!(
+            "J = {:.4e}, mean of the last {late:.0} %; there is no J/Jmax without grains and a moving wave",
+            summary.flow_rate
+        ),
+    };
     if let Some(newtonian) = summary.newtonian_flow_rate_ratio {
         flow.push_str(&format!(" (a Newtonian fluid: {newtonian:.4})"));
     }

@@ -42,6 +42,8 @@ pub enum Sliding {
 ///
 /// f~ = -k_t u - eta_t v_t;  f_t = f~ if |f~| < mu_s f_n, else mu_k f_n f~/|f~|
 ///
+/// A contact that slides sticks again once |f~| < mu_k f_n (forms `spring` and `balance`).
+///
 /// u is the tangential displacement since the contact began \[d\]: du/dt = v_t - (u . dn/dt) n, which keeps it in the
 /// plane of contact; where f_n vanishes u is forgotten. v_t = v_ij - (v_ij . n) n + n x (l_i omega_i + l_j omega_j)
 /// \[d/t\]. After Cundall & Strack, Geotechnique 29, 47 (1979).
@@ -68,6 +70,8 @@ pub struct TangentialHistory {
     pub rate: DVec3,
     /// -f_t . v_t at the end of the last step: the power that the contact takes out of the tangential motion.
     pub power: f64,
+    /// Whether the contact slid at the end of the last step.
+    pub sliding: bool,
 }
 
 impl TangentialLaw for CundallStrack {
@@ -108,7 +112,7 @@ impl TangentialLaw for CundallStrack {
         let trial =
             -self.tangential_stiffness * displacement - self.tangential_damping * slip_velocity;
         let size = trial.length();
-        let sliding = size >= self.static_friction * normal_force;
+        let sliding = size >= self.threshold(history.sliding) * normal_force;
         let force = if !sliding {
             trial
         } else if size > 0.0 {
@@ -127,6 +131,7 @@ impl TangentialLaw for CundallStrack {
             displacement,
             rate,
             power,
+            sliding,
         };
         TangentialForce {
             force,
@@ -144,6 +149,20 @@ impl TangentialLaw for CundallStrack {
 }
 
 impl CundallStrack {
+    /// Coefficient that |f~|/f_n must reach for a contact to slide.
+    ///
+    /// A contact that slides goes on until |f~| falls below mu_k f_n: without this memory it would stick at once, its
+    /// spring being cut, and be dragged to mu_s f_n again (after Luding, Granular Matter 10, 235 (2008)). The literal form
+    /// needs none, for its spring is never cut.
+    #[inline(always)]
+    fn threshold(&self, slid_before: bool) -> f64 {
+        if slid_before && self.sliding != Sliding::Literal {
+            self.kinetic_friction
+        } else {
+            self.static_friction
+        }
+    }
+
     #[inline(always)]
     fn slid_displacement(
         &self,
