@@ -9,6 +9,8 @@ use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_run::RunError;
 
+use crate::commands::say;
+
 /// Why a command ended without what was asked for.
 #[derive(Debug, thiserror::Error)]
 pub(crate) enum Failure {
@@ -51,6 +53,7 @@ impl Failure {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }
                 | RunError::NothingToResume { .. }
+                | RunError::TooManyGrains { .. }
                 | RunError::Configuration(_)
                 | RunError::Engine(
                     EngineError::DoesNotFit { .. } | EngineError::InvalidParameter { .. },
@@ -67,7 +70,13 @@ impl Failure {
             Self::Run(RunError::HoldsAnotherRun { .. }) => {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }
-            Self::Run(RunError::Engine(EngineError::DoesNotFit { .. })) => Some(
+            Self::Read { .. } => Some(
+                "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one"
+                    .to_owned(),
+            ),
+            Self::Run(
+                RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }),
+            ) => Some(
                 "take fewer grains (grains.number, grains.volume_fraction, grains.number_density) or a wider tube \
                  (drive.width, tube.radius)"
                     .to_owned(),
@@ -93,16 +102,12 @@ impl Failure {
             }],
         };
         for problem in problems {
-            print_error(&miette::Report::new(problem));
+            say(&format!("Error: {:?}", miette::Report::new(problem)));
         }
         ExitCode::from(self.exit_code())
     }
 }
 
-#[allow(clippy::print_stderr)]
-fn print_error(report: &miette::Report) {
-    eprintln!("Error: {report:?}");
-}
 
 /// An error with places in a text.
 #[derive(Debug)]

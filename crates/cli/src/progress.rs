@@ -6,6 +6,8 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use peristalsis_run::Progress;
 
+use crate::commands::say;
+
 /// Where progress goes.
 pub(crate) enum Display {
     /// Nowhere.
@@ -75,7 +77,12 @@ impl Display {
 
 /// What was found so far, in a few words.
 fn found(progress: &Progress) -> String {
-    let mut text = format!("t/T {:.1}", progress.period);
+    let mut text = if progress.period > 0.0 {
+        format!("t/T {:.1}", progress.period)
+    } else {
+        // A static wave counts no periods.
+        format!("t {:.1}", progress.time)
+    };
     if progress.flow_rate_ratio.is_finite() {
         text.push_str(&format!("  J/Jmax {:+.3}", progress.flow_rate_ratio));
     }
@@ -85,16 +92,15 @@ fn found(progress: &Progress) -> String {
     text
 }
 
-#[allow(clippy::print_stderr)]
 fn print_line(progress: &Progress) {
     let done = progress.samples as f64 / progress.samples_total.max(1) as f64;
     let left = progress.elapsed.as_secs_f64() * (1.0 - done) / done;
-    eprintln!(
+    say(&format!(
         "{:3.0} %  {}  {} left",
         100.0 * done,
         found(progress),
         seconds(left)
-    );
+    ));
 }
 
 /// A time span in words: "12 s", "3 min 20 s", "2 h 05 min".

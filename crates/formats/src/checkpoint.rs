@@ -13,16 +13,17 @@
 //! | 64 | 8 | length of the state, that is of the payload after decompression |
 //! | 72 | 4 | CRC-32 of the payload |
 //! | 76 | 4 | CRC-32 of the 76 bytes above |
-//! | 80 | | payload: the state in the postcard encoding, compressed with zstd |
+//! | 80 | | payload: the state in the postcard encoding, compressed to an LZ4 frame |
 //!
 //! Postcard stores a real as its 64 bits, so NaN payloads, -0.0 and subnormal numbers come back as they were. A CRC-32
 //! detects every error within 32 neighbouring bits, and others but for one in 2^32. It guards against accidents, not
 //! against forgery; a forged length cannot exhaust the memory, since no more than [`MAXIMUM_STATE_BYTES`] are unpacked.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::Path;
 
+use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -37,8 +38,6 @@ pub const MAXIMUM_STATE_BYTES: u64 = 1 << 30;
 
 const SIGNATURE: [u8; 8] = *b"\x89PSTL\r\n\x1a";
 const HEADER_BYTES: usize = 80;
-/// The lowest level: a state consists of mantissas, which no level compresses, and of small integers, which any level does.
-const COMPRESSION_LEVEL: i32 = 1;
 
 /// What a checkpoint is a checkpoint of; writer and reader must name the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -81,16 +80,15 @@ pub fn encode<State: Serialize>(
     state: &State,
 ) -> Result<Vec<u8>, FormatError> {
     let plain = postcard::to_allocvec(state).map_err(FormatError::Serialize)?;
-    let bound = zstd::zstd_safe::compress_bound(plain.len());
-    // Compression enlarges noise by a little: the bound keeps the payload of every accepted state within the limit too.
-    if bound as u64 > MAXIMUM_STATE_BYTES {
+    let payload = compress(&plain);
+    // Compression enlarges noise by a little: both lengths stay within what `decode` accepts.
+    let bytes = plain.len().max(payload.len()) as u64;
+    if bytes > MAXIMUM_STATE_BYTES {
         return Err(FormatError::StateTooLarge {
-            bytes: plain.len() as u64,
+            bytes,
             limit: MAXIMUM_STATE_BYTES,
         });
     }
-    let payload = zstd::bulk::compress(&plain, COMPRESSION_LEVEL)
-        .expect("the output buffer is made by the compressor for this input");
     let header = Header {
         identity: *identity,
         payload_bytes: payload.len() as u64,
@@ -160,7 +158,7 @@ pub fn read<State: DeserializeOwned>(
 ) -> Result<State, FormatError> {
     let mut file = File::open(path).map_err(FormatError::io("read", path))?;
     let mut bytes = Vec::new();
-    file.by_ref()
+    (&mut file)
         .take(HEADER_BYTES as u64)
         .read_to_end(&mut bytes)
         .map_err(FormatError::io("read", path))?;
@@ -272,17 +270,27 @@ fn field<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
         .expect("the range is N bytes long")
 }
 
+/// Fast and simple is enough: a state consists of mantissas, which nothing compresses, and of small integers, which
+/// anything does.
+fn compress(plain: &[u8]) -> Vec<u8> {
+    let mut encoder = FrameEncoder::new(Vec::new());
+    encoder
+        .write_all(plain)
+        .expect("writing to a vector cannot fail");
+    encoder
+        .finish()
+        .expect("the frame header announces no length to miss")
+}
+
 fn decompress(header: &Header, payload: &[u8]) -> Result<Vec<u8>, FormatError> {
-    let undone = |error| {
-        FormatError::corrupt_checkpoint(format!("the payload cannot be decompressed: {error}"))
-    };
     // Grows with what really comes out, not with what the header claims, and stops one byte past the claim.
     let mut plain = Vec::new();
-    zstd::stream::read::Decoder::with_buffer(payload)
-        .map_err(undone)?
+    FrameDecoder::new(payload)
         .take(header.state_bytes + 1)
         .read_to_end(&mut plain)
-        .map_err(undone)?;
+        .map_err(|error| {
+            FormatError::corrupt_checkpoint(format!("the payload cannot be decompressed: {error}"))
+        })?;
     if plain.len() as u64 != header.state_bytes {
         return Err(FormatError::corrupt_checkpoint(
             "the payload does not decompress to the length in the header",

@@ -1,7 +1,8 @@
 //! Parquet: a [`Table`] with its units, descriptions and metadata, exact to the bit.
 //!
-//! Unit and description of a column are its Arrow field metadata `unit` and `description`; the metadata of the table are
-//! the key/value metadata of the file and of its Arrow schema. A missing real is null.
+//! The metadata of the table are the key/value metadata of the file. Under the key `peristalsis.columns` they also hold
+//! units and descriptions, as a JSON object by the names of the columns: `{"time": {"unit": "t", "description": ".."}}`.
+//! A missing real is null.
 //!
 //! Between the opening `PAR1` and the first column, where every reader skips it, a file of this crate carries a *seal*:
 //! twelve bytes of signature and the CRC-32 of all other bytes of the file. A file that changed on disk is thus an error
@@ -9,59 +10,74 @@
 //! A file without a seal, from another program, is read unchecked: if it makes the library panic, that is caught and
 //! returned as an error (the panic hook still runs), but its false lengths may demand much memory.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::ops::Range;
 use std::panic;
 use std::path::Path;
 use std::sync::Arc;
 
-use ::parquet::arrow::ArrowWriter;
-use ::parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
-use ::parquet::basic::Compression;
+use ::parquet::basic::{
+    Compression, ConvertedType, IntType, LogicalType, Repetition, Type as PhysicalType,
+};
+use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
+use ::parquet::column::writer::ColumnWriter;
+use ::parquet::data_type::{ByteArray, DataType};
 use ::parquet::errors::ParquetError;
 use ::parquet::file::metadata::KeyValue;
 use ::parquet::file::properties::WriterProperties;
-use ::parquet::schema::types::ColumnPath;
-use arrow_array::{
-    Array, ArrayRef, BooleanArray, Float64Array, Int64Array, LargeStringArray, RecordBatch,
-    StringArray,
-};
-use arrow_schema::{DataType, Field, Schema};
+use ::parquet::file::reader::{FileReader, SerializedFileReader};
+use ::parquet::file::writer::SerializedFileWriter;
+use ::parquet::schema::printer::print_schema;
+use ::parquet::schema::types::{ColumnPath, Type};
 use bytes::Bytes;
+use serde::{Deserialize, Serialize};
 
 use crate::atomic;
 use crate::error::FormatError;
-use crate::table::{Column, Table, ValueKind, Values, is_reserved};
+use crate::table::{COLUMNS_KEY, Column, Table, ValueKind, Values, is_reserved};
 
-const UNIT_KEY: &str = "unit";
-const DESCRIPTION_KEY: &str = "description";
 /// What stands in bytes 4 to 16 of a sealed file; the checksum follows in bytes 16 to 20.
 const SEAL_SIGNATURE: [u8; 12] = *b"\x89peristalsis";
 const SEAL_SIGNATURE_RANGE: Range<usize> = 4..16;
 const SEAL_CHECKSUM_RANGE: Range<usize> = 16..20;
+/// A row group is what a reader has to hold at once, and what several readers can share out among themselves.
+const MAXIMUM_ROWS_OF_GROUP: usize = 1 << 20;
+const ROWS_READ_AT_ONCE: usize = 8192;
+
+/// What the file says about a column besides name and type.
+#[derive(Default, Serialize, Deserialize)]
+#[serde(default)]
+struct Meaning {
+    unit: String,
+    description: String,
+}
 
 /// The table as the bytes of a Parquet file; the same table gives the same bytes.
 ///
 /// # Errors
 /// [`FormatError::Parquet`].
 pub fn encode(table: &Table) -> Result<Vec<u8>, FormatError> {
-    // Arrow readers take the metadata from the schema, all others from the key/value pairs of the file: hence in both.
-    let fields: Vec<Field> = table.columns().iter().map(field_of).collect();
-    let schema = Arc::new(Schema::new(fields).with_metadata(table.metadata().clone()));
-    let arrays = table
-        .columns()
-        .iter()
-        .map(|column| array_of(&column.values))
-        .collect();
-    let batch = RecordBatch::try_new(Arc::clone(&schema), arrays).map_err(ParquetError::from)?;
-    let mut writer = ArrowWriter::try_new(Vec::new(), schema, Some(properties_of(table)))?;
+    let schema = Arc::new(schema_of(table)?);
+    let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties_of(table)))?;
     writer
         .write_all(&SEAL_SIGNATURE)
         .map_err(ParquetError::from)?;
     writer
         .write_all(&[0; SEAL_CHECKSUM_RANGE.end - SEAL_CHECKSUM_RANGE.start])
         .map_err(ParquetError::from)?;
-    writer.write(&batch)?;
+    for start in (0..table.rows()).step_by(MAXIMUM_ROWS_OF_GROUP) {
+        let rows = start..table.rows().min(start + MAXIMUM_ROWS_OF_GROUP);
+        let mut group = writer.next_row_group()?;
+        for column in table.columns() {
+            let mut chunk = group
+                .next_column()?
+                .expect("the schema has a field for every column");
+            write_rows(chunk.untyped(), &column.values, rows.clone())?;
+            chunk.close()?;
+        }
+        group.close()?;
+    }
     let mut bytes = writer.into_inner()?;
     let checksum = checksum_of(&bytes).to_le_bytes();
     bytes[SEAL_CHECKSUM_RANGE].copy_from_slice(&checksum);
@@ -70,7 +86,7 @@ pub fn encode(table: &Table) -> Result<Vec<u8>, FormatError> {
 
 /// The table in the bytes of a Parquet file.
 ///
-/// Columns of 64-bit reals and integers, booleans and text are read; only reals may have nulls.
+/// Columns of 64-bit reals and integers, booleans and text are read, none of them nested; only reals may have nulls.
 ///
 /// # Errors
 /// [`FormatError::CorruptParquet`], [`FormatError::Parquet`], [`FormatError::UnsupportedParquet`].
@@ -92,23 +108,21 @@ pub fn decode(bytes: Vec<u8>) -> Result<Table, FormatError> {
 }
 
 fn decode_unchecked(bytes: Vec<u8>) -> Result<Table, FormatError> {
-    let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes))?;
-    let entries = builder
-        .metadata()
-        .file_metadata()
-        .key_value_metadata()
-        .cloned()
-        .unwrap_or_default();
-    let mut columns = builder
+    let reader = SerializedFileReader::new(Bytes::from(bytes))?;
+    let file = reader.metadata().file_metadata();
+    let entries = file.key_value_metadata().cloned().unwrap_or_default();
+    let mut meanings = meanings_in(&entries)?;
+    let mut columns = file
         .schema()
-        .fields()
+        .get_fields()
         .iter()
-        .map(|field| column_of(field))
+        .map(|field| column_of(field, meanings.remove(field.name()).unwrap_or_default()))
         .collect::<Result<Vec<_>, _>>()?;
-    for batch in builder.build()? {
-        let batch = batch.map_err(ParquetError::from)?;
-        for (column, array) in columns.iter_mut().zip(batch.columns()) {
-            extend(column, array)?;
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group)?;
+        // No field is nested, so the columns of the file are the fields of its schema.
+        for (index, column) in columns.iter_mut().enumerate() {
+            read_rows(group.get_column_reader(index)?, column)?;
         }
     }
     let mut table = Table::builder().columns(columns);
@@ -136,39 +150,78 @@ pub fn read(path: &Path) -> Result<Table, FormatError> {
     decode(fs::read(path).map_err(FormatError::io("read", path))?)
 }
 
-fn field_of(column: &Column) -> Field {
-    let (data_type, nullable) = match column.values.kind() {
-        ValueKind::Real => (DataType::Float64, true),
-        ValueKind::Integer => (DataType::Int64, false),
-        ValueKind::Text => (DataType::Utf8, false),
-        ValueKind::Boolean => (DataType::Boolean, false),
-    };
-    let metadata = [
-        (UNIT_KEY, column.unit.as_str()),
-        (DESCRIPTION_KEY, column.description.as_str()),
-    ];
-    Field::new(&column.name, data_type, nullable).with_metadata(metadata)
+fn schema_of(table: &Table) -> Result<Type, ParquetError> {
+    let fields = table
+        .columns()
+        .iter()
+        .map(|column| field_of(column).map(Arc::new))
+        .collect::<Result<_, _>>()?;
+    Type::group_type_builder("schema")
+        .with_fields(fields)
+        .build()
 }
 
-fn array_of(values: &Values) -> ArrayRef {
-    match values {
-        Values::Real(values) => Arc::new(
-            values
-                .iter()
-                .map(|value| (!value.is_nan()).then_some(*value))
-                .collect::<Float64Array>(),
+fn field_of(column: &Column) -> Result<Type, ParquetError> {
+    let (physical, logical, repetition) = match column.values.kind() {
+        ValueKind::Real => (PhysicalType::DOUBLE, None, Repetition::OPTIONAL),
+        ValueKind::Integer => (PhysicalType::INT64, None, Repetition::REQUIRED),
+        ValueKind::Text => (
+            PhysicalType::BYTE_ARRAY,
+            Some(LogicalType::String),
+            Repetition::REQUIRED,
         ),
-        Values::Integer(values) => Arc::new(Int64Array::from(values.clone())),
-        Values::Text(values) => Arc::new(StringArray::from_iter_values(values)),
-        Values::Boolean(values) => Arc::new(BooleanArray::from(values.clone())),
-    }
+        ValueKind::Boolean => (PhysicalType::BOOLEAN, None, Repetition::REQUIRED),
+    };
+    Type::primitive_type_builder(&column.name, physical)
+        .with_logical_type(logical)
+        .with_repetition(repetition)
+        .build()
+}
+
+fn write_rows(
+    chunk: &mut ColumnWriter<'_>,
+    values: &Values,
+    rows: Range<usize>,
+) -> Result<(), ParquetError> {
+    match (values, chunk) {
+        (Values::Real(values), ColumnWriter::DoubleColumnWriter(chunk)) => {
+            let values = &values[rows];
+            // The level of a row is 1 if its value is there, which then stands among the present ones, and 0 if not.
+            let levels: Vec<i16> = values
+                .iter()
+                .map(|value| (!value.is_nan()).into())
+                .collect();
+            let present: Vec<f64> = values
+                .iter()
+                .copied()
+                .filter(|value| !value.is_nan())
+                .collect();
+            chunk.write_batch(&present, Some(&levels), None)
+        }
+        (Values::Integer(values), ColumnWriter::Int64ColumnWriter(chunk)) => {
+            chunk.write_batch(&values[rows], None, None)
+        }
+        (Values::Text(values), ColumnWriter::ByteArrayColumnWriter(chunk)) => {
+            let values: Vec<ByteArray> = values[rows]
+                .iter()
+                .map(|value| value.as_str().into())
+                .collect();
+            chunk.write_batch(&values, None, None)
+        }
+        (Values::Boolean(values), ColumnWriter::BoolColumnWriter(chunk)) => {
+            chunk.write_batch(&values[rows], None, None)
+        }
+        _ => unreachable!("the schema is made of the kinds of these values"),
+    }?;
+    Ok(())
 }
 
 fn properties_of(table: &Table) -> WriterProperties {
     let entries = table
         .metadata()
         .iter()
-        .map(|(key, value)| KeyValue::new(key.clone(), value.clone()));
+        .map(|(key, value)| KeyValue::new(key.clone(), value.clone()))
+        .chain([KeyValue::new(COLUMNS_KEY.to_owned(), meanings_of(table))]);
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_key_value_metadata(Some(entries.collect()));
@@ -190,65 +243,139 @@ fn checksum_of(bytes: &[u8]) -> u32 {
     hasher.finalize()
 }
 
+fn meanings_of(table: &Table) -> String {
+    let meanings: BTreeMap<&str, Meaning> = table
+        .columns()
+        .iter()
+        .map(|column| {
+            let (unit, description) = (column.unit.clone(), column.description.clone());
+            (column.name.as_str(), Meaning { unit, description })
+        })
+        .collect();
+    serde_json::to_string(&meanings).expect("text by text is always JSON")
+}
+
+fn meanings_in(entries: &[KeyValue]) -> Result<BTreeMap<String, Meaning>, FormatError> {
+    entries
+        .iter()
+        .find(|entry| entry.key == COLUMNS_KEY)
+        .and_then(|entry| entry.value.as_deref())
+        .map_or(Ok(BTreeMap::new()), serde_json::from_str)
+        .map_err(|error| FormatError::CorruptParquet {
+            reason: format!("its metadata `{COLUMNS_KEY}` do not describe columns: {error}"),
+        })
+}
+
 /// A column without rows, for a field of the file.
-fn column_of(field: &Field) -> Result<Column, FormatError> {
-    let kind = match field.data_type() {
-        DataType::Float64 => ValueKind::Real,
-        DataType::Int64 => ValueKind::Integer,
-        DataType::Utf8 | DataType::LargeUtf8 => ValueKind::Text,
-        DataType::Boolean => ValueKind::Boolean,
-        other => {
-            return Err(unsupported(
-                field.name(),
-                format!("the type {other} is not supported"),
-            ));
-        }
-    };
-    let text = |key| field.metadata().get(key).cloned().unwrap_or_default();
+fn column_of(field: &Type, meaning: Meaning) -> Result<Column, FormatError> {
+    let kind = kind_of(field).ok_or_else(|| {
+        let mut declaration = Vec::new();
+        print_schema(&mut declaration, field);
+        let declaration = String::from_utf8_lossy(&declaration);
+        let words: Vec<&str> = declaration.split_whitespace().collect();
+        unsupported(
+            field.name(),
+            format!("the type in `{}` is not supported", words.join(" ")),
+        )
+    })?;
     Ok(Column {
-        name: field.name().clone(),
-        unit: text(UNIT_KEY),
-        description: text(DESCRIPTION_KEY),
+        name: field.name().to_owned(),
+        unit: meaning.unit,
+        description: meaning.description,
         values: Values::empty(kind),
     })
 }
 
-fn extend(column: &mut Column, array: &ArrayRef) -> Result<(), FormatError> {
-    if array.null_count() > 0 && column.values.kind() != ValueKind::Real {
-        return Err(unsupported(
-            &column.name,
-            format!(
-                "a missing value in a column of {} values",
-                column.values.kind()
-            ),
-        ));
+/// The kind that holds every value of the field, if there is one.
+fn kind_of(field: &Type) -> Option<ValueKind> {
+    let information = field.get_basic_info();
+    if !field.is_primitive() || information.repetition() == Repetition::REPEATED {
+        return None;
     }
-    let array = array.as_any();
-    let done = match &mut column.values {
-        Values::Real(values) => array
-            .downcast_ref::<Float64Array>()
-            .map(|array| values.extend(array.iter().map(|value| value.unwrap_or(f64::NAN)))),
-        Values::Integer(values) => array
-            .downcast_ref::<Int64Array>()
-            .map(|array| values.extend_from_slice(array.values())),
-        Values::Text(values) => array
-            .downcast_ref::<StringArray>()
-            .map(|array| values.extend(array.iter().flatten().map(str::to_owned)))
-            .or_else(|| {
-                array
-                    .downcast_ref::<LargeStringArray>()
-                    .map(|array| values.extend(array.iter().flatten().map(str::to_owned)))
-            }),
-        Values::Boolean(values) => array
-            .downcast_ref::<BooleanArray>()
-            .map(|array| values.extend(array.iter().flatten())),
+    let annotation = (information.logical_type_ref(), information.converted_type());
+    // Programs from before the logical types annotate with the converted type alone.
+    match (field.get_physical_type(), annotation) {
+        (PhysicalType::DOUBLE, (None, ConvertedType::NONE)) => Some(ValueKind::Real),
+        (
+            PhysicalType::INT64,
+            (None, ConvertedType::NONE | ConvertedType::INT_64)
+            | (
+                Some(LogicalType::Integer(IntType {
+                    bit_width: 64,
+                    is_signed: true,
+                })),
+                _,
+            ),
+        ) => Some(ValueKind::Integer),
+        (
+            PhysicalType::BYTE_ARRAY,
+            (None, ConvertedType::UTF8 | ConvertedType::JSON)
+            | (Some(LogicalType::String | LogicalType::Json), _),
+        ) => Some(ValueKind::Text),
+        (PhysicalType::BOOLEAN, (None, ConvertedType::NONE)) => Some(ValueKind::Boolean),
+        _ => None,
+    }
+}
+
+/// Adds the values of one row group to its column.
+fn read_rows(chunk: ColumnReader, column: &mut Column) -> Result<(), FormatError> {
+    let (name, kind) = (&column.name, column.values.kind());
+    let missing = || {
+        let reason = format!("a missing value in a column of {kind} values");
+        unsupported(name, reason)
     };
-    done.ok_or_else(|| {
-        unsupported(
-            &column.name,
+    match (&mut column.values, chunk) {
+        (Values::Real(values), ColumnReader::DoubleColumnReader(chunk)) => {
+            for_each(chunk, |value| {
+                values.push(value.unwrap_or(f64::NAN));
+                Ok(())
+            })
+        }
+        (Values::Integer(values), ColumnReader::Int64ColumnReader(chunk)) => {
+            for_each(chunk, |value| {
+                values.push(value.ok_or_else(missing)?);
+                Ok(())
+            })
+        }
+        (Values::Text(values), ColumnReader::ByteArrayColumnReader(chunk)) => {
+            for_each(chunk, |value| {
+                values.push(value.ok_or_else(missing)?.as_utf8()?.to_owned());
+                Ok(())
+            })
+        }
+        (Values::Boolean(values), ColumnReader::BoolColumnReader(chunk)) => {
+            for_each(chunk, |value| {
+                values.push(value.ok_or_else(missing)?);
+                Ok(())
+            })
+        }
+        _ => Err(unsupported(
+            name,
             "its values are not of the type in the schema".into(),
-        )
-    })
+        )),
+    }
+}
+
+/// Hands over the value of every row in order, or that there is none.
+fn for_each<T: DataType>(
+    mut chunk: ColumnReaderImpl<T>,
+    mut accept: impl FnMut(Option<T::T>) -> Result<(), FormatError>,
+) -> Result<(), FormatError> {
+    let (mut present, mut levels) = (Vec::new(), Vec::new());
+    loop {
+        let (rows, ..) =
+            chunk.read_records(ROWS_READ_AT_ONCE, Some(&mut levels), None, &mut present)?;
+        if rows == 0 {
+            return Ok(());
+        }
+        let mut present = present.drain(..);
+        for row in 0..rows {
+            // A required column has no levels.
+            let is_missing = levels.get(row) == Some(&0);
+            accept(if is_missing { None } else { present.next() })?;
+        }
+        levels.clear();
+    }
 }
 
 fn unsupported(name: &str, reason: String) -> FormatError {

@@ -8,9 +8,12 @@ use crate::error::FormatError;
 /// Beginning of the metadata keys that Arrow keeps for itself.
 const ARROW_PREFIX: &str = "ARROW:";
 
+/// The metadata key that holds units and descriptions of the columns in a Parquet file.
+pub(crate) const COLUMNS_KEY: &str = "peristalsis.columns";
+
 /// Whether a file format keeps this metadata key for itself.
 pub(crate) fn is_reserved(key: &str) -> bool {
-    key.starts_with(ARROW_PREFIX)
+    key.starts_with(ARROW_PREFIX) || key == COLUMNS_KEY
 }
 
 /// The kind of the values in one column.

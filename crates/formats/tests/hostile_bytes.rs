@@ -1,5 +1,8 @@
 //! Arbitrary and damaged bytes: every reader answers with a value or an error, and never with a panic.
 
+use std::io::Write;
+
+use lz4_flex::frame::FrameEncoder;
 use peristalsis_formats::{
     CheckpointIdentity, FormatError, Table, Values, checkpoint, csv, parquet,
 };
@@ -124,7 +127,9 @@ proptest! {
     #[test]
     fn an_arbitrary_payload_under_a_true_checksum_is_an_error_or_a_state(payload in vec(any::<u8>(), 0..200)) {
         // What the header promises is kept, so the bytes reach the decoder of the state.
-        let compressed = zstd::bulk::compress(&payload, 1).unwrap();
+        let mut encoder = FrameEncoder::new(Vec::new());
+        encoder.write_all(&payload).unwrap();
+        let compressed = encoder.finish().unwrap();
         match checkpoint::decode::<State>(&IDENTITY, &sealed(&compressed, payload.len())) {
             Ok(state) => prop_assert!(state.len() <= payload.len()),
             Err(error) => {

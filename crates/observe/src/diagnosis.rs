@@ -7,7 +7,7 @@ const NEAR_AXIS: f64 = 0.25;
 /// Azimuthal or axial displacement beyond which the lattice counts as buckled, in diameters of a wall sphere.
 const LATERAL: f64 = 1.0;
 /// Radius beyond which the wall counts as blown up, in reference radii.
-const BLOWN_UP: f64 = 2.0;
+const BLOWN_UP: f64 = 2.5;
 
 /// A way in which an elastic wall fails.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -17,7 +17,7 @@ pub enum FaultKind {
     Buckled,
     /// A sphere came close to the axis.
     Collapsed,
-    /// A sphere went beyond twice the reference radius.
+    /// A sphere went beyond two and a half reference radii.
     BlownUp,
 }
 
@@ -67,7 +67,7 @@ impl WallFault {
                  wall.spring_stiffness), or nothing balances their tension (wall.keep.balance)",
             ),
             FaultKind::BlownUp => (
-                format!("is {radius:.2} d from the axis, more than twice the tube's radius"),
+                format!("is {radius:.2} d from the axis, far outside the tube"),
                 "the bulge gives way: the force is too strong for the springs (drive.force_amplitude against \
                  wall.spring_stiffness), or their natural length is too large; grains will escape",
             ),

@@ -16,11 +16,23 @@ use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 
 use crate::RunError;
 
+/// Volume fraction above which packing is not even tried: neighbours would be nearer than half a diameter, and the pairs
+/// to relax more than fit in memory.
+const LARGEST_VOLUME_FRACTION: f64 = 10.0;
+
 /// Packs the grains and makes the simulation of a configuration, at time 0.
 ///
 /// # Errors
-/// [`RunError::Engine`] where the grains do not fit.
+/// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit.
 pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
+    let volume_fraction = configuration.volume_fraction();
+    if volume_fraction > LARGEST_VOLUME_FRACTION {
+        return Err(RunError::TooManyGrains {
+            grains: configuration.grains.number,
+            volume_fraction,
+            limit: LARGEST_VOLUME_FRACTION,
+        });
+    }
     let wall = walls(configuration);
     let contact = contact_model(configuration);
     let packing = Packing {

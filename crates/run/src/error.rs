@@ -11,6 +11,19 @@ pub enum RunError {
     /// The engine refuses, or the run diverged.
     #[error(transparent)]
     Engine(#[from] EngineError),
+    /// So many grains that packing them is not tried.
+    #[error(
+        "{grains} grains do not fit: their volume fraction would be {volume_fraction:.3}, and above {limit} packing is \
+         not tried"
+    )]
+    TooManyGrains {
+        /// Number of grains.
+        grains: u64,
+        /// rho = N d^3/(6 a^2 L), d^3 averaged over the diameters.
+        volume_fraction: f64,
+        /// Largest volume fraction that is tried.
+        limit: f64,
+    },
     /// The configuration of a record cannot be read.
     #[error(transparent)]
     Configuration(#[from] peristalsis_configuration::ConfigurationError),

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, Control};
-use peristalsis_engine::Wall;
+use peristalsis_engine::{EngineError, Wall};
 use peristalsis_physics::contact::{Normal, NormalLaw};
 
 use crate::RunError;
@@ -68,7 +68,9 @@ pub struct Estimate {
 /// # Errors
 /// [`RunError::Engine`] where the grains do not fit.
 pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
-    let expected_seconds = expected_seconds(configuration)?;
+    let trial = trial(configuration)?;
+    let mut warnings = warnings(configuration);
+    warnings.extend(trial.divergence);
     Ok(Estimate {
         grains: configuration.grains.number,
         wall_spheres: configuration.tube.wall_spheres(),
@@ -83,36 +85,56 @@ pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
         contact_time: contact_time(configuration),
         newtonian_flow_rate_ratio: crate::newtonian_reference(configuration)
             .map(|reference| reference.0),
-        expected_seconds,
-        warnings: warnings(configuration),
+        expected_seconds: trial.expected_seconds,
+        warnings,
     })
 }
 
-/// Seconds of a run, from a trial of at most [`TRIAL`]; a large tube is tried in a shorter one like it.
-fn expected_seconds(configuration: &Configuration) -> Result<f64, RunError> {
+/// What a trial showed.
+struct Trial {
+    expected_seconds: f64,
+    /// That it diverged, which the whole run would do as well.
+    divergence: Option<Warning>,
+}
+
+/// Tries a run for at most [`TRIAL`]; a large tube is tried in a shorter one like it.
+fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
     let mut trial = configuration.clone();
     let mut scale = 1.0;
     if trial.grains.number > TRIAL_GRAINS {
         let waves = trial.tube.waves;
         let per_wave = trial.grains.number as f64 / f64::from(waves);
         // An even number of waves suits every lattice.
-        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32)).clamp(2, waves);
+        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32)).max(2).min(waves);
         trial.tube.waves = kept;
         trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
         scale = f64::from(waves) / f64::from(kept);
     }
     let mut run = Run::new(trial)?;
     let mut timed = (0, Duration::ZERO);
+    let mut divergence = None;
     let start = Instant::now();
     while start.elapsed() < TRIAL && !run.is_complete() {
         let before = start.elapsed();
-        run.advance()?;
+        match run.advance() {
+            Err(RunError::Engine(error @ EngineError::Diverged { .. })) => {
+                divergence = Some(Warning {
+                    key: "run.time_step",
+                    message: format!("a short trial {error}; take a shorter step, or softer or fewer grains"),
+                });
+                break;
+            }
+            outcome => outcome?,
+        }
         if timed.0 == 0 || before > TRIAL / 2 {
             timed = (timed.0 + 1, timed.1 + (start.elapsed() - before));
         }
     }
     let seconds_per_sample = timed.1.as_secs_f64() / f64::from(timed.0.max(1));
-    Ok(scale * seconds_per_sample * configuration.run.samples as f64)
+    Ok(Trial {
+        expected_seconds: scale * seconds_per_sample * configuration.run.samples as f64,
+        divergence,
+    })
 }
 
 /// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.

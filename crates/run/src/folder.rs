@@ -45,25 +45,36 @@ impl RunFolder {
     /// written to. Nothing is changed in either case.
     pub fn create(path: &Path, configuration: &Configuration) -> Result<Self, RunError> {
         Self::check(path)?;
-        std::fs::create_dir_all(path).map_err(|source| RunError::Folder {
-            folder: path.to_owned(),
-            source,
-        })?;
+        let missing: Vec<&Path> = path
+            .ancestors()
+            .take_while(|ancestor| {
+                !ancestor.as_os_str().is_empty() && ancestor.symlink_metadata().is_err()
+            })
+            .collect();
         let folder = Self {
             path: path.to_owned(),
         };
-        atomic::write(
-            &folder.file(CONFIGURATION),
-            configuration.to_toml().as_bytes(),
-        )
-        .map_err(|error| match error {
-            FormatError::Io { source, .. } => RunError::Folder {
-                folder: path.to_owned(),
-                source,
-            },
-            other => other.into(),
+        folder.begin(configuration).inspect_err(|_| {
+            // Deepest first; what another program has filled meanwhile stays, for only empty folders go.
+            for made in missing {
+                drop(std::fs::remove_dir(made));
+            }
         })?;
         Ok(folder)
+    }
+
+    /// Makes the folder and writes the configuration.
+    fn begin(&self, configuration: &Configuration) -> Result<(), RunError> {
+        let refused = |source| RunError::Folder {
+            folder: self.path.clone(),
+            source,
+        };
+        std::fs::create_dir_all(&self.path).map_err(refused)?;
+        let text = configuration.to_toml();
+        atomic::write(&self.file(CONFIGURATION), text.as_bytes()).map_err(|error| match error {
+            FormatError::Io { source, .. } => refused(source),
+            other => other.into(),
+        })
     }
 
     /// Whether a folder is free for a new run; makes nothing.

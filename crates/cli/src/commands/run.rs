@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use peristalsis_run::{Run, RunError, RunFolder, Status, Summary, Written, warnings};
 
 use crate::arguments::RunArguments;
-use crate::commands::print;
+use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
 use crate::sources::{configuration, name};
@@ -47,29 +47,25 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     match ending {
         Ending::Complete => {
-            say(
+            tell(
                 arguments,
                 &format!("written to {}", folder.path().display()),
             );
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped(code) => {
-            say(
+            tell(
                 arguments,
                 &format!(
-                    "stopped after {:.1} of {} periods; what there is is in {folder}\ngo on with: peristalsis run --resume {folder}",
-                    summary.periods,
-                    run.configuration()
-                        .run
-                        .periods
-                        .map_or_else(|| "no".to_owned(), |periods| periods.to_string()),
+                    "stopped {}; what there is is in {folder}\ngo on with: peristalsis run --resume {folder}",
+                    how_far(&run, &summary),
                     folder = folder.path().display()
                 ),
             );
             Ok(ExitCode::from(code))
         }
         Ending::Failed(error) => {
-            say(
+            tell(
                 arguments,
                 &format!(
                     "what was measured, and the state, are in {}",
@@ -91,13 +87,13 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     // Before the work of packing, and again when the folder is made.
     RunFolder::check(&path)?;
     for warning in warnings(&configuration) {
-        say(
+        tell(
             arguments,
             &format!("warning: {}: {}", warning.key, warning.message),
         );
     }
     if configuration.grains.number > SLOW_PACKING {
-        say(
+        tell(
             arguments,
             &format!("packing {} grains", configuration.grains.number),
         );
@@ -137,7 +133,7 @@ fn advance(run: &mut Run, folder: &RunFolder, stop: &Stop, display: &mut Display
         if saved.elapsed() > SAVE_INTERVAL {
             // The run can go on without this state; the final save reports what is wrong with the disk.
             if let Err(error) = folder.save_state(run) {
-                warn(&error.to_string());
+                say(&error.to_string());
             }
             saved = Instant::now();
         }
@@ -146,15 +142,19 @@ fn advance(run: &mut Run, folder: &RunFolder, stop: &Stop, display: &mut Display
 }
 
 /// Says something on standard error, unless asked to be quiet.
-fn say(arguments: &RunArguments, text: &str) {
+fn tell(arguments: &RunArguments, text: &str) {
     if !arguments.quiet {
-        warn(text);
+        say(text);
     }
 }
 
-#[allow(clippy::print_stderr)]
-fn warn(text: &str) {
-    eprintln!("{text}");
+/// How far a run came: in periods, or in time where the wave stands still.
+fn how_far(run: &Run, summary: &Summary) -> String {
+    let extent = run.configuration().run;
+    match extent.periods {
+        Some(periods) => format!("after {:.1} of {periods} periods", summary.periods),
+        None => format!("at t = {:.1} of {}", summary.time, extent.duration),
+    }
 }
 
 fn in_words(run: &Run, summary: &Summary) -> String {

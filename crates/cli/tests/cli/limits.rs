@@ -7,17 +7,14 @@ use crate::{Outcome, Place, SMALL, read_json};
 #[test]
 fn a_static_wave_has_no_ratio_and_no_figure_of_it() {
     let place = Place::new();
-    let settings = [
-        "--set",
-        "drive.strain_rate=0",
-        "--set",
-        "run.duration=50",
-        "--json",
-    ];
-    let summary = place
-        .run_small(&[&settings[..], &["--out", "results"]].concat())
+    let settings = ["drive.strain_rate=0", "run.duration=50", "grains.number=20"];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = ["run", "--preset", "frictionless", "--out", "results", "--json"];
+    let outcome = place
+        .call(arguments.into_iter().chain(settings))
         .expect_code(0)
-        .json();
+        .says(&["100 % t 50.0"]);
+    let summary = outcome.json();
     for key in [
         "flow_rate_ratio",
         "flow_rate_ratio_error",

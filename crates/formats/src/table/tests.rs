@@ -25,13 +25,13 @@ fn the_builder_refuses_what_is_not_a_table() {
         build(vec![reals("a", &[1.0, 2.0]), reals("b", &[1.0])]),
         Err(FormatError::UnequalLength { name, found: 1, expected: 2 }) if name == "b"
     ));
-    let reserved = Table::builder()
-        .columns([reals("a", &[])])
-        .metadata("ARROW:schema", "x")
-        .build();
-    assert!(
-        matches!(reserved, Err(FormatError::ReservedMetadata { key }) if key == "ARROW:schema")
-    );
+    for taken in ["ARROW:schema", "peristalsis.columns"] {
+        let reserved = Table::builder()
+            .columns([reals("a", &[])])
+            .metadata(taken, "x")
+            .build();
+        assert!(matches!(reserved, Err(FormatError::ReservedMetadata { key }) if key == taken));
+    }
 }
 
 #[test]

@@ -1,0 +1,42 @@
+//! Runs by preset and settings, for the tests of what must be seen.
+
+use peristalsis_configuration::Sources;
+use peristalsis_run::{Configuration, Run, Status, Summary};
+
+/// The configuration of a preset with settings over it.
+pub fn configuration(preset: &str, settings: &[&str]) -> Configuration {
+    let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    Configuration::from_sources(&Sources {
+        file: None,
+        preset: Some(preset),
+        overrides: &overrides,
+    })
+    .unwrap_or_else(|error| panic!("{settings:?}: {error}"))
+}
+
+/// What a whole run came to.
+#[derive(Debug)]
+pub struct Outcome {
+    /// J/Jmax averaged over each period.
+    pub averages: Vec<f64>,
+    /// The summary.
+    pub summary: Summary,
+}
+
+/// Runs to the end.
+pub fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
+    let seed = format!("run.seed={seed}");
+    let mut run = Run::new(configuration(preset, &[settings, &[&seed]].concat())).unwrap();
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    Outcome {
+        averages: run.recorder().averages().to_vec(),
+        summary: Summary::of(&run, Status::Complete, None),
+    }
+}
+
+/// Mean of the averages of periods `from` to `to`, counted from 1, both included.
+pub fn mean(averages: &[f64], from: usize, to: usize) -> f64 {
+    averages[from - 1..to].iter().sum::<f64>() / (to + 1 - from) as f64
+}

@@ -1,0 +1,90 @@
+//! Stopped anywhere and gone on with, a run gives the same bits as in one go, for every kind of model.
+
+mod common;
+
+use peristalsis_run::{Run, RunFolder, RunState, Status, Summary, Written, profile_table, timeseries_table};
+
+const STRAIN: &[&str] = &["grains.number=30", "tube.waves=2", "run.periods=2", "drive.width=2.3"];
+const STRESS: &[&str] = &["grains.number=200", "run.periods=0.3", "initial.state=jammed"];
+const FRICTION: &[&str] = &["contact.static_friction=0.5", "contact.kinetic_friction=0.4"];
+const NO_FRICTION: &[&str] = &["contact.static_friction=0", "contact.kinetic_friction=0"];
+
+/// Preset and settings of one model each.
+fn models() -> Vec<(&'static str, Vec<&'static str>)> {
+    let mut models = Vec::new();
+    for integrator in ["run.integrator=verlet", "run.integrator=adams_bashforth"] {
+        for law in ["contact.law=linear", "contact.law=hertz"] {
+            for friction in [FRICTION, NO_FRICTION] {
+                for (preset, base) in [("frictionless", STRAIN), ("frictional", STRESS)] {
+                    let mut settings = base.to_vec();
+                    settings.extend(friction);
+                    settings.extend([integrator, law, "grains.diameter_min=0.8", "grains.diameter_max=1"]);
+                    models.push((preset, settings));
+                }
+            }
+        }
+    }
+    models
+}
+
+fn finish(mut run: Run) -> Run {
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    run
+}
+
+#[test]
+fn a_state_goes_on_to_the_same_bits() {
+    for (preset, settings) in models() {
+        let configuration = common::configuration(preset, &settings);
+        let whole = finish(Run::new(configuration.clone()).unwrap());
+        let mut parts = Run::new(configuration.clone()).unwrap();
+        let samples = configuration.run.samples;
+        // Before the first sample, after the first, and in the middle of a period.
+        for stop in [0, 1, samples / 2 + 1] {
+            while parts.progress().samples < stop {
+                parts.advance().unwrap();
+            }
+            let state: RunState = parts.state();
+            parts = Run::resume(configuration.clone(), state).unwrap();
+        }
+        let parts = finish(parts);
+        let tables = |run: &Run| (timeseries_table(run).unwrap(), profile_table(run).unwrap());
+        // Tables compare by bits, so that one NaN equals another.
+        assert!(tables(&whole) == tables(&parts), "{preset} {settings:?}");
+        assert_eq!(whole.simulation().bodies(), parts.simulation().bodies(), "{preset} {settings:?}");
+        assert!(whole.simulation().step() > 300);
+    }
+}
+
+#[test]
+fn a_folder_goes_on_to_the_same_bits() {
+    let place = tempfile::tempdir().unwrap();
+    let configuration = common::configuration("frictional", &[STRESS, FRICTION].concat());
+    let (through, stopped) = (place.path().join("through"), place.path().join("stopped"));
+
+    let folder = RunFolder::create(&through, &configuration).unwrap();
+    let run = finish(Run::new(configuration.clone()).unwrap());
+    let summary = Summary::of(&run, Status::Complete, None);
+    folder.finish(&run, &summary, Written::Standard).unwrap();
+
+    let folder = RunFolder::create(&stopped, &configuration).unwrap();
+    let mut run = Run::new(configuration).unwrap();
+    for _ in 0..3 {
+        run.advance().unwrap();
+    }
+    folder.save_state(&run).unwrap();
+    drop(run);
+    let (folder, run) = RunFolder::resume(&stopped).unwrap();
+    assert_eq!(run.progress().samples, 3);
+    let run = finish(run);
+    let summary = Summary::of(&run, Status::Complete, None);
+    folder.finish(&run, &summary, Written::Standard).unwrap();
+
+    for name in ["timeseries.parquet", "profile.parquet"] {
+        let [one, other] =
+            [&through, &stopped].map(|folder| std::fs::read(folder.join(name)).unwrap());
+        assert!(one == other, "{name} differs");
+    }
+}

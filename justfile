@@ -1,0 +1,16 @@
+# What CI runs.
+check:
+    bash scripts/check.sh
+
+# The README's test command.
+test:
+    cargo test --workspace
+
+# The checks and the long validation runs (about half an hour on two cores).
+full-check: check
+    cargo test --workspace --release -- --ignored
+    cargo bench --workspace --no-run
+
+# Speed of the kernels (see BENCHMARKS.md).
+bench:
+    cargo bench -p peristalsis-engine
