@@ -57,7 +57,7 @@ impl Recorder {
         self.samples.push(self.observer.sample(simulation));
         self.profile.add(simulation);
         note_wall_faults(simulation, &mut self.wall_faults);
-        if self.samples.len() as u64 % self.samples_per_period == 0 {
+        if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
             let first = self.samples.len() - self.samples_per_period as usize;
             let period = &self.samples[first..];
             let average = period

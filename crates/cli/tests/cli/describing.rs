@@ -149,7 +149,7 @@ fn help_version_and_completions() {
     );
     for shell in ["bash", "zsh", "fish"] {
         let script = place.call(["completions", shell]).expect_code(0).stdout;
-        assert!(script.contains("--preset"), "{shell}");
+        assert!(script.contains("preset"), "{shell}");
     }
     assert!(place.inventory().is_empty());
 }

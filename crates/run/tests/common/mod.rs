@@ -1,10 +1,12 @@
 //! Runs by preset and settings, for the tests of what must be seen.
 
+#![allow(dead_code, reason = "each test takes what it needs")]
+
 use peristalsis_configuration::Sources;
 use peristalsis_run::{Configuration, Run, Status, Summary};
 
 /// The configuration of a preset with settings over it.
-pub fn configuration(preset: &str, settings: &[&str]) -> Configuration {
+pub(crate) fn configuration(preset: &str, settings: &[&str]) -> Configuration {
     let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
     Configuration::from_sources(&Sources {
         file: None,
@@ -16,15 +18,15 @@ pub fn configuration(preset: &str, settings: &[&str]) -> Configuration {
 
 /// What a whole run came to.
 #[derive(Debug)]
-pub struct Outcome {
+pub(crate) struct Outcome {
     /// J/Jmax averaged over each period.
-    pub averages: Vec<f64>,
+    pub(crate) averages: Vec<f64>,
     /// The summary.
-    pub summary: Summary,
+    pub(crate) summary: Summary,
 }
 
 /// Runs to the end.
-pub fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
+pub(crate) fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
     let seed = format!("run.seed={seed}");
     let mut run = Run::new(configuration(preset, &[settings, &[&seed]].concat())).unwrap();
     while !run.is_complete() {
@@ -37,6 +39,6 @@ pub fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
 }
 
 /// Mean of the averages of periods `from` to `to`, counted from 1, both included.
-pub fn mean(averages: &[f64], from: usize, to: usize) -> f64 {
+pub(crate) fn mean(averages: &[f64], from: usize, to: usize) -> f64 {
     averages[from - 1..to].iter().sum::<f64>() / (to + 1 - from) as f64
 }
