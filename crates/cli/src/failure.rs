@@ -108,7 +108,6 @@ impl Failure {
     }
 }
 
-
 /// An error with places in a text.
 #[derive(Debug)]
 struct Report {

@@ -164,7 +164,9 @@ fn assemble(packing: &Packing, wall: Wall, contact: ContactModel) -> Simulation 
 /// Times `steps` steps of a simulation that has run for `time` before.
 fn case(criterion: &mut Criterion, name: &str, mut simulation: Simulation, time: f64, steps: u64) {
     let advance = |simulation: &mut Simulation, steps| {
-        simulation.advance(steps).expect("the steps are short enough");
+        simulation
+            .advance(steps)
+            .expect("the steps are short enough");
     };
     advance(&mut simulation, (time / TIME_STEP).round() as u64);
     let grains = simulation.bodies().grains as u64;
@@ -184,11 +186,29 @@ fn case(criterion: &mut Criterion, name: &str, mut simulation: Simulation, time:
 
 fn reference(criterion: &mut Criterion) {
     let fine = |state| Frictionless::fine(state).simulation();
-    case(criterion, "fine, unjammed", fine(InitialState::Rest), 20.0, 2000);
-    case(criterion, "fine, jammed", fine(InitialState::Jammed), 100.0, 2000);
+    case(
+        criterion,
+        "fine, unjammed",
+        fine(InitialState::Rest),
+        20.0,
+        2000,
+    );
+    case(
+        criterion,
+        "fine, jammed",
+        fine(InitialState::Jammed),
+        100.0,
+        2000,
+    );
     let dense = Frictionless::coarse(0.3, 10).simulation();
     case(criterion, "coarse, volume fraction 0.3", dense, 100.0, 2000);
-    case(criterion, "frictional, elastic wall", frictional(), 100.0, 200);
+    case(
+        criterion,
+        "frictional, elastic wall",
+        frictional(),
+        100.0,
+        200,
+    );
     // 5,000 waves, 101,250 grains.
     let large = Frictionless::coarse(0.15, 5000).simulation();
     case(criterion, "coarse, 101250 grains", large, 10.0, 20);

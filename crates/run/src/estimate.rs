@@ -105,7 +105,9 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         let waves = trial.tube.waves;
         let per_wave = trial.grains.number as f64 / f64::from(waves);
         // An even number of waves suits every lattice.
-        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32)).max(2).min(waves);
+        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32))
+            .max(2)
+            .min(waves);
         trial.tube.waves = kept;
         trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
         scale = f64::from(waves) / f64::from(kept);
@@ -120,7 +122,9 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
             Err(RunError::Engine(error @ EngineError::Diverged { .. })) => {
                 divergence = Some(Warning {
                     key: "run.time_step",
-                    message: format!("a short trial {error}; take a shorter step, or softer or fewer grains"),
+                    message: format!(
+                        "a short trial {error}; take a shorter step, or softer or fewer grains"
+                    ),
                 });
                 break;
             }

@@ -158,7 +158,18 @@ fn two_alternatives_in_one_file() {
             ["run.periods", "run.duration"],
         ),
     ] {
-        refused_with(STRAIN, from, to, &[line, keys[0], keys[1], "exclude one another", "help: keep one of"]);
+        refused_with(
+            STRAIN,
+            from,
+            to,
+            &[
+                line,
+                keys[0],
+                keys[1],
+                "exclude one another",
+                "help: keep one of",
+            ],
+        );
     }
 }
 
@@ -341,7 +352,12 @@ fn files_that_are_not_toml_or_not_text_or_not_there() {
     refused(b"\x89PNG\r\n\x1a\n\xff\xfe", &["tube.toml", "UTF-8"]);
     refused(
         b"",
-        &["tube.toml", "these keys are missing", "tube.radius", "preset = \"frictionless\""],
+        &[
+            "tube.toml",
+            "these keys are missing",
+            "tube.radius",
+            "preset = \"frictionless\"",
+        ],
     );
     let place = Place::new();
     for command in ["run", "check"] {

@@ -9,7 +9,14 @@ fn a_static_wave_has_no_ratio_and_no_figure_of_it() {
     let place = Place::new();
     let settings = ["drive.strain_rate=0", "run.duration=50", "grains.number=20"];
     let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments = ["run", "--preset", "frictionless", "--out", "results", "--json"];
+    let arguments = [
+        "run",
+        "--preset",
+        "frictionless",
+        "--out",
+        "results",
+        "--json",
+    ];
     let outcome = place
         .call(arguments.into_iter().chain(settings))
         .expect_code(0)

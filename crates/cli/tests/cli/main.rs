@@ -1,5 +1,10 @@
 //! The program as a person or a script meets it: arguments in; exit code, streams and files out.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails where what it needs is missing"
+)]
+
 mod bad_input;
 mod checking;
 mod describing;

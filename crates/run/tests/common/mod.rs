@@ -28,9 +28,10 @@ pub(crate) struct Outcome {
 /// Runs to the end.
 pub(crate) fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
     let seed = format!("run.seed={seed}");
-    let mut run = Run::new(configuration(preset, &[settings, &[&seed]].concat())).unwrap();
+    let mut run = Run::new(configuration(preset, &[settings, &[&seed]].concat()))
+        .expect("the grains of each case fit");
     while !run.is_complete() {
-        run.advance().unwrap();
+        run.advance().expect("no case diverges");
     }
     Outcome {
         averages: run.recorder().averages().to_vec(),

@@ -1,0 +1,244 @@
+//! Observables of states whose values are known without a simulation: free flight in a wide tube.
+
+use glam::DVec3;
+use peristalsis_engine::wall::{
+    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+};
+use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
+use peristalsis_observe::columns::Scope;
+use peristalsis_observe::{
+    COLUMNS, FaultKind, Observer, TubeShape, WaveFrameProfile, note_wall_faults,
+};
+use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
+use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+
+const LATTICE: Lattice = Lattice {
+    spheres_per_ring: 40,
+    rings_per_wave: 14,
+    waves: 2,
+    wavelength: 10.0,
+    sphere_diameter: 1.0,
+};
+const STRAIN_RATE: f64 = 0.1;
+
+fn wall(heading: f64, amplitude: f64) -> Wall {
+    Wall::Prescribed(PrescribedWall::new(
+        LATTICE,
+        6.0,
+        Waveform::Sine,
+        heading,
+        Schedule::constant(amplitude),
+        Schedule::constant(STRAIN_RATE),
+    ))
+}
+
+fn parameters() -> Parameters {
+    Parameters {
+        contact: ContactModel {
+            normal: Normal::Linear(LinearSpringDashpot {
+                normal_stiffness: 1.0,
+                normal_damping: 5.48e-3,
+            }),
+            friction: None,
+        },
+        integrator: Integrator::Verlet,
+        time_step: 0.05,
+        skin: 0.3,
+    }
+}
+
+/// Four grains far apart near the axis; each flies freely.
+fn free_flight(heading: f64) -> Simulation {
+    let places = [3.0, 8.0, 13.0, 0.1].map(|z| DVec3::new(0.0, 0.0, z));
+    let mut bodies = Bodies::grains_at_rest(places.to_vec(), vec![1.0; 4]);
+    bodies.velocity = vec![
+        DVec3::new(0.0, 0.0, 0.5),
+        DVec3::new(0.1, 0.0, 0.5),
+        DVec3::new(-0.1, 0.0, 0.5),
+        DVec3::new(0.0, 0.0, -0.1),
+    ];
+    Simulation::new(bodies, wall(heading, 0.5), parameters())
+}
+
+#[test]
+fn the_flow_of_free_flight_is_that_of_the_velocities() {
+    for heading in [1.0, -1.0] {
+        let mut simulation = free_flight(heading);
+        let mut observer = Observer::new(&simulation);
+        // The last grain goes backward through the seam.
+        simulation.advance(40).unwrap();
+        let sample = observer.sample(&simulation);
+        let sum = heading * 1.4;
+        assert!((sample.flow_rate - sum / 20.0).abs() < 1e-12);
+        assert!((sample.flow_rate_instantaneous - sum / 20.0).abs() < 1e-12);
+        // c = 1: J/Jmax is the mean velocity.
+        assert!((sample.flow_rate_ratio - sum / 4.0).abs() < 1e-12);
+        assert!((sample.time - 2.0).abs() < 1e-12 && (sample.period - 0.2).abs() < 1e-12);
+        assert!((sample.kinetic_energy - 0.5 * (3.0 * 0.25 + 0.02 + 0.01)).abs() < 1e-12);
+        // Velocities about their mean (0, 0, 0.35): squares 0.0225 * 3 + 0.02 + 0.2025, over 3 N.
+        let temperature = (3.0 * 0.0225 + 0.02 + 0.2025) / 12.0;
+        assert!((sample.granular_temperature - temperature).abs() < 1e-12);
+        assert_eq!((sample.escaped, sample.inside), (0.0, 4.0));
+        assert!((sample.bottleneck - 11.0).abs() < 1e-12);
+        assert!((sample.axial_momentum - sum).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_grain_outside_counts_in_the_raw_columns_only() {
+    let mut simulation = free_flight(1.0);
+    // Beyond R + d/2 at any phase, and beyond the reach of the wall.
+    let mut bodies = simulation.bodies().clone();
+    bodies.position[3].x = 8.0;
+    simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
+    let mut observer = Observer::new(&simulation);
+    simulation.advance(20).unwrap();
+    let sample = observer.sample(&simulation);
+    assert_eq!((sample.escaped, sample.inside), (1.0, 3.0));
+    assert!((sample.flow_rate_ratio - 0.5).abs() < 1e-12);
+    assert!((sample.flow_rate_ratio_raw - 0.35).abs() < 1e-12);
+    assert!((sample.flow_rate - 1.5 / 20.0).abs() < 1e-12);
+    assert!((sample.flow_rate_raw - 1.4 / 20.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
+    for heading in [1.0, -1.0] {
+        let mut simulation = free_flight(heading);
+        // More blocks than are kept, so that some are merged.
+        let mut profile = WaveFrameProfile::new(20, 2);
+        for _ in 0..300 {
+            simulation.advance(1).unwrap();
+            profile.add(&simulation);
+        }
+        let bins = profile.late(1.0, 10.0);
+        let grains: f64 = bins.iter().map(|bin| bin.density.0 * 0.5 * 2.0).sum();
+        assert!((grains - 4.0).abs() < 1e-9, "{grains}");
+        let momentum: f64 = bins
+            .iter()
+            .filter(|bin| bin.density.0 > 0.0)
+            .map(|bin| bin.density.0 * bin.axial_velocity.0)
+            .sum();
+        assert!((momentum * 0.5 * 2.0 - heading * 1.4).abs() < 1e-9);
+        // R = a + b sin(2 pi phase), and the phase runs against the position in the wave's frame.
+        for bin in &bins {
+            let radius = 6.0 - 0.5 * (core::f64::consts::TAU * bin.position).sin();
+            assert!((bin.radius - radius).abs() < 1e-9, "{bin:?}");
+        }
+    }
+}
+
+#[test]
+fn the_shape_of_a_prescribed_tube_is_its_wave() {
+    let simulation = free_flight(-1.0);
+    let shape = TubeShape::of(&simulation);
+    assert!((shape.narrowest() - 5.5).abs() < 1e-12);
+    assert!((shape.radius(2.5) - 6.5).abs() < 1e-12);
+}
+
+#[test]
+fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
+    let parameters_of_wall = ElasticParameters {
+        lattice: Lattice {
+            spheres_per_ring: 22,
+            rings_per_wave: 24,
+            waves: 2,
+            wavelength: 20.0,
+            sphere_diameter: 1.0,
+        },
+        mean_radius: 3.5,
+        sphere_mass: 0.1,
+        spring_stiffness: 0.018,
+        natural_length: 0.7,
+        spring_damping: 0.0,
+        drag: 0.0,
+        contact_range: 3.0,
+        keep: Keep {
+            balance: true,
+            radial: 0.0,
+            azimuthal: 0.1,
+            axial: 0.01,
+            net_force: NetForce::Removed,
+        },
+        force_amplitude: Schedule::constant(0.004),
+        frequency: Schedule::constant(4e-3),
+        heading: 1.0,
+        waveform: Waveform::Sine,
+        angle: DriveAngle::Reference,
+    };
+    let elastic = ElasticWall::new(parameters_of_wall);
+    let simulation = |changed: Option<(usize, DVec3)>| {
+        let mut bodies = Bodies::grains_at_rest(Vec::new(), Vec::new());
+        for sphere in 0..elastic.lattice().spheres() {
+            bodies.push_wall_sphere(elastic.reference(sphere), 1.0, 0.1);
+        }
+        if let Some((sphere, place)) = changed {
+            bodies.position[sphere] = place;
+        }
+        Simulation::new(bodies, Wall::Elastic(elastic.clone()), parameters())
+    };
+    let mut faults = Vec::new();
+    note_wall_faults(&simulation(None), &mut faults);
+    assert!(faults.is_empty(), "{faults:?}");
+
+    let middle = 22 * 10;
+    let place = elastic.reference(middle);
+    for (moved, kind, word) in [
+        (
+            place + DVec3::new(0.0, 0.0, 1.2),
+            FaultKind::Buckled,
+            "natural_length",
+        ),
+        (
+            DVec3::new(0.1, 0.0, place.z),
+            FaultKind::Collapsed,
+            "balance",
+        ),
+        (
+            DVec3::new(9.0, 0.0, place.z),
+            FaultKind::BlownUp,
+            "force_amplitude",
+        ),
+    ] {
+        let mut faults = Vec::new();
+        let simulation = simulation(Some((middle, moved)));
+        note_wall_faults(&simulation, &mut faults);
+        note_wall_faults(&simulation, &mut faults);
+        assert_eq!(faults.len(), 1, "{faults:?}");
+        assert_eq!((faults[0].kind, faults[0].sphere), (kind, middle as u64));
+        let words = faults[0].in_words();
+        assert!(
+            words.contains(word) && words.contains("wall sphere 220"),
+            "{words}"
+        );
+    }
+}
+
+#[test]
+fn columns_have_distinct_names_and_all_are_explained() {
+    for (index, column) in COLUMNS.iter().enumerate() {
+        assert!(
+            !column.unit.is_empty() && column.description.len() > 3,
+            "{}",
+            column.name
+        );
+        assert!(
+            COLUMNS[..index]
+                .iter()
+                .all(|other| other.name != column.name),
+            "{}",
+            column.name
+        );
+    }
+    for name in [
+        "time",
+        "period",
+        "flow_rate",
+        "flow_rate_ratio",
+        "kinetic_energy",
+        "escaped",
+    ] {
+        let column = COLUMNS.iter().find(|column| column.name == name).unwrap();
+        assert_eq!(column.scope, Scope::Always, "{name}");
+    }
+}
