@@ -8,7 +8,7 @@ test:
 
 # The checks and the long validation runs (about half an hour on two cores).
 full-check: check
-    cargo test --workspace --release -- --ignored
+    cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
 # Speed of the kernels (see BENCHMARKS.md).

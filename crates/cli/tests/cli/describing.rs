@@ -153,3 +153,37 @@ fn help_version_and_completions() {
     }
     assert!(place.inventory().is_empty());
 }
+
+#[test]
+fn the_newtonian_fluid() {
+    let place = Place::new();
+    let report = place
+        .call(["newtonian", "--width", "2", "--json"])
+        .expect_code(0)
+        .json();
+    // phi = 1/3, phi^2 = 1/9: Q = phi^2 (16 - phi^2)/(2 (2 + 3 phi^2)) pi a^2 c; J/Jmax = Q/(1 + phi^2/2)
+    let square = 1.0 / 9.0;
+    let flow_rate = square * (16.0 - square) / (2.0 * (2.0 + 3.0 * square));
+    for (key, value) in [
+        ("amplitude_ratio", 1.0 / 3.0),
+        ("flow_rate", flow_rate),
+        ("flow_rate_ratio", flow_rate / (1.0 + 0.5 * square)),
+    ] {
+        assert!(
+            (report[key].as_f64().unwrap() - value).abs() < 1e-12,
+            "{key}"
+        );
+    }
+    // Trapping begins at phi = 4 - sqrt(14) = 0.258.
+    assert!(report["trapped_volume_fraction"].as_f64().unwrap() > 0.0);
+    place
+        .call(["newtonian", "--width", "2"])
+        .expect_code(0)
+        .shows(&["0.35840", "a bolus on the axis"]);
+    for width in ["4", "-1", "nan"] {
+        place
+            .call(["newtonian", &format!("--width={width}")])
+            .expect_code(2)
+            .says(&["width", "0 <= width <= 2 radius"]);
+    }
+}

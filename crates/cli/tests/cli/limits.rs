@@ -125,6 +125,59 @@ fn a_diverging_run_names_step_and_grain_and_saves_its_state() {
         .says(&["diverged at step "]);
 }
 
+#[test]
+fn a_wall_that_buckles_is_a_diagnosis_not_a_crash() {
+    let place = Place::new();
+    // Springs without tension and no tethers.
+    let settings = [
+        "grains.number=20",
+        "wall.natural_length=1",
+        "wall.keep.azimuthal=0",
+        "wall.keep.axial=0",
+        "run.periods=0.2",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = ["run", "--preset", "frictional", "--out", "results"];
+    let outcome = place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(0);
+    let summary = read_json(&place.path("results/summary.json"));
+    let diagnoses = summary["wall_diagnosis"].as_array().unwrap();
+    assert!(!diagnoses.is_empty());
+    for diagnosis in diagnoses {
+        let diagnosis = diagnosis.as_str().unwrap();
+        assert!(outcome.stdout.contains(diagnosis), "{}", outcome.stdout);
+        for part in ["at t = ", "wall sphere ", "z = "] {
+            assert!(diagnosis.contains(part), "{diagnosis}");
+        }
+    }
+    assert!(
+        outcome.stdout.contains("wall.natural_length"),
+        "{}",
+        outcome.stdout
+    );
+    assert!(outcome.stdout.contains("wall.keep."), "{}", outcome.stdout);
+}
+
+#[test]
+fn a_sound_wall_has_no_diagnosis() {
+    let place = Place::new();
+    let settings = ["grains.number=20", "run.periods=0.2"];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = [
+        "run",
+        "--preset",
+        "frictional",
+        "--out",
+        "results",
+        "--json",
+    ];
+    let outcome = place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(0);
+    assert_eq!(outcome.json()["wall_diagnosis"], Value::Array(Vec::new()));
+}
+
 /// Runs the small tube in a shell that lets no file grow beyond a number of blocks of 512 bytes.
 #[cfg(unix)]
 fn run_with_small_files(place: &Place, blocks: u32, arguments: &[&str]) -> Outcome {

@@ -94,6 +94,19 @@ impl Outcome {
         self
     }
 
+    /// Asserts that standard output holds each part.
+    #[track_caller]
+    fn shows(self, parts: &[&str]) -> Self {
+        for part in parts {
+            assert!(
+                self.stdout.contains(part),
+                "{part:?} is not in {}",
+                self.stdout
+            );
+        }
+        self
+    }
+
     fn json(&self) -> Value {
         serde_json::from_str(&self.stdout)
             .unwrap_or_else(|error| panic!("{error}: {:?}", self.stdout))
