@@ -126,7 +126,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             let contact = Contact {
                 overlap,
                 distance,
-                normal: separation / distance,
+                normal: separation * (1.0 / distance),
                 relative_velocity: velocity - bodies.velocity[j],
                 reduced_radius: diameter * bodies.diameter[j]
                     / (2.0 * (diameter + bodies.diameter[j])),

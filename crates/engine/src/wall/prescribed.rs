@@ -22,6 +22,9 @@ pub struct PrescribedWall {
     heading: f64,
     amplitude: Schedule,
     frequency: Schedule,
+    /// Distance of neighbouring rings, and its inverse.
+    spacing: f64,
+    rings_per_length: f64,
     /// cos and sin of every angle that a wall sphere can have, by half steps.
     directions: Vec<(f64, f64)>,
     /// Radius and radial velocity of the rings of one wavelength now.
@@ -65,6 +68,8 @@ impl PrescribedWall {
             heading,
             amplitude,
             frequency,
+            spacing: lattice.spacing(),
+            rings_per_length: 1.0 / lattice.spacing(),
             directions,
             rings: vec![(0.0, 0.0); lattice.rings_per_wave as usize],
             wave,
@@ -87,11 +92,9 @@ impl PrescribedWall {
         let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
         for (ring, entry) in self.rings.iter_mut().enumerate() {
             let z = self.lattice.axial_position(ring as u32);
-            *entry = (
-                self.wave.radius(z, self.cycles),
-                self.wave
-                    .radial_velocity(z, self.cycles, frequency, amplitude_rate),
-            );
+            *entry = self
+                .wave
+                .radius_and_velocity(z, self.cycles, frequency, amplitude_rate);
         }
     }
 
@@ -153,47 +156,59 @@ impl PrescribedWall {
         if axis_distance + reach <= narrowest {
             return;
         }
-        let spacing = self.lattice.spacing();
-        let per_ring = self.lattice.spheres_per_ring as i64;
-        let rings = i64::from(self.lattice.rings());
+        let per_ring = self.lattice.spheres_per_ring as usize;
+        let rings = self.lattice.rings() as usize;
+        let first = ceiling((centre.z - reach) * self.rings_per_length);
+        // z is never negative, and truncation rounds down.
+        let last = ((centre.z + reach) * self.rings_per_length) as i64;
+        // Divisions once for the first ring; from there on by counting.
+        let mut ring = first.rem_euclid(rings as i64) as usize;
+        let mut in_wave = ring % self.rings.len();
         let mut half_steps = None;
-        let first = ((centre.z - reach) / spacing).ceil() as i64;
-        let last = ((centre.z + reach) / spacing).floor() as i64;
         for unfolded_ring in first..=last {
-            let dz = centre.z - unfolded_ring as f64 * spacing;
+            let (this_ring, (radius, radial_velocity)) = (ring, self.rings[in_wave]);
+            ring = if ring + 1 == rings { 0 } else { ring + 1 };
+            in_wave = if in_wave + 1 == self.rings.len() {
+                0
+            } else {
+                in_wave + 1
+            };
+
+            let dz = centre.z - unfolded_ring as f64 * self.spacing;
             let room = reach * reach - dz * dz;
-            let ring = unfolded_ring.rem_euclid(rings);
-            let (radius, radial_velocity) = self.rings[(ring as usize) % self.rings.len()];
             let gap = radius - axis_distance;
             if gap * gap >= room {
                 continue;
             }
-            let parity = ring & 1;
+            let parity = this_ring % 2;
             let hint = *half_steps
                 .get_or_insert_with(|| approximate_half_steps(centre.x, centre.y, per_ring as f64));
-            let nearest = ((hint - parity as f64) * 0.5).round() as i64;
             // |separation|^2 = rho^2 + R^2 - 2 R (x cos + y sin) + dz^2 < reach^2
             let threshold = (axis_distance_squared + radius * radius - room) / (2.0 * radius);
-            let mut try_place = |place: i64| -> bool {
-                let place = place.rem_euclid(per_ring);
-                let (cos, sin) = self.directions[(2 * place + parity) as usize];
+            let nearest = nearest_place(hint, parity, per_ring);
+            // From the nearest sphere on while they touch, then from its other neighbour back while they touch. The hint
+            // may be a neighbour's, so that both directions are tried even where the first sphere does not touch.
+            let (mut place, mut forward, mut visited) = (nearest, true, 0);
+            while visited < per_ring {
+                let (cos, sin) = self.directions[2 * place + parity];
                 let touches = centre.x * cos + centre.y * sin > threshold;
                 if touches {
                     let separation =
                         DVec3::new(centre.x - radius * cos, centre.y - radius * sin, dz);
                     let velocity = DVec3::new(radial_velocity * cos, radial_velocity * sin, 0.0);
-                    touch((ring * per_ring + place) as u32, separation, velocity);
+                    touch((this_ring * per_ring + place) as u32, separation, velocity);
                 }
-                touches
-            };
-            try_place(nearest);
-            let mut steps = 1;
-            while steps < per_ring && try_place(nearest + steps) {
-                steps += 1;
-            }
-            let mut steps_back = 1;
-            while steps + steps_back < per_ring && try_place(nearest - steps_back) {
-                steps_back += 1;
+                let goes_on = touches || visited == 0;
+                visited += 1;
+                if forward && goes_on {
+                    place = if place + 1 == per_ring { 0 } else { place + 1 };
+                } else if forward || goes_on {
+                    let from = if forward { nearest } else { place };
+                    place = if from == 0 { per_ring - 1 } else { from - 1 };
+                    forward = false;
+                } else {
+                    break;
+                }
             }
         }
     }
@@ -230,7 +245,7 @@ impl PrescribedWall {
                 let contact = Contact {
                     overlap,
                     distance,
-                    normal: separation / distance,
+                    normal: separation * (1.0 / distance),
                     relative_velocity: velocity - wall_velocity,
                     reduced_radius,
                     spin: if T::ROTATES {
@@ -265,6 +280,25 @@ impl PrescribedWall {
         if T::ROTATES {
             memory.end();
         }
+    }
+}
+
+/// Least whole number that is not below x: by truncation, for rounding is a library call on the plainest processors.
+#[inline(always)]
+fn ceiling(x: f64) -> i64 {
+    let whole = x as i64;
+    whole + i64::from((whole as f64) < x)
+}
+
+/// Place on its ring of the sphere whose angle, in half steps, is nearest to `half_steps`.
+#[inline(always)]
+fn nearest_place(half_steps: f64, parity: usize, per_ring: usize) -> usize {
+    // From -1/2 up to M, so that half a place more is never negative and truncation rounds.
+    let place = ((half_steps - parity as f64) * 0.5 + 0.5) as usize;
+    if place >= per_ring {
+        place - per_ring
+    } else {
+        place
     }
 }
 

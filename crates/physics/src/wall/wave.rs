@@ -31,11 +31,14 @@ impl Waveform {
         }
     }
 
-    /// Derivative with respect to the phase in cycles.
+    /// Value, and derivative with respect to the phase in cycles.
     #[must_use]
-    pub fn slope(self, phase: f64) -> f64 {
+    pub fn value_and_slope(self, phase: f64) -> (f64, f64) {
         match self {
-            Self::Sine => TAU * libm::cos(TAU * phase),
+            Self::Sine => {
+                let (sin, cos) = libm::sincos(TAU * phase);
+                (sin, TAU * cos)
+            }
         }
     }
 }
@@ -74,12 +77,21 @@ impl RadiusWave {
         self.mean_radius + self.amplitude * self.waveform.value(self.phase(z, cycles))
     }
 
-    /// dR/dt at z \[d/t\], for frequency c/lambda and rate of change db/dt of the amplitude.
+    /// R \[d\] and dR/dt \[d/t\] at z, for frequency c/lambda and rate of change db/dt of the amplitude.
     #[must_use]
-    pub fn radial_velocity(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> f64 {
+    pub fn radius_and_velocity(
+        &self,
+        z: f64,
+        cycles: f64,
+        frequency: f64,
+        amplitude_rate: f64,
+    ) -> (f64, f64) {
         let phase = self.phase(z, cycles);
-        self.amplitude * frequency * self.waveform.slope(phase)
-            + amplitude_rate * self.waveform.value(phase)
+        let (value, slope) = self.waveform.value_and_slope(phase);
+        (
+            self.mean_radius + self.amplitude * value,
+            self.amplitude * frequency * slope + amplitude_rate * value,
+        )
     }
 
     /// Position in the frame of the wave, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
@@ -125,7 +137,8 @@ mod tests {
             let (frequency, z, cycles, dt) = (0.1, 2.3, 0.77, 1e-5);
             let later = wave.radius(z, cycles + frequency * dt);
             let earlier = wave.radius(z, cycles - frequency * dt);
-            let velocity = wave.radial_velocity(z, cycles, frequency, 0.0);
+            let (radius, velocity) = wave.radius_and_velocity(z, cycles, frequency, 0.0);
+            assert_eq!(radius, wave.radius(z, cycles));
             assert!((velocity - (later - earlier) / (2.0 * dt)).abs() < 1e-9);
         }
     }
