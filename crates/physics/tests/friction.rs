@@ -5,7 +5,7 @@ mod common;
 use common::{SLIDINGS, friction};
 use glam::DVec3;
 use peristalsis_physics::contact::{
-    Contact, CundallStrack, Sliding, TangentialForce, TangentialHistory, TangentialLaw,
+    Contact, CundallStrack, TangentialForce, TangentialHistory, TangentialLaw,
 };
 
 /// A sphere of diameter and mass 1 pressed on a plane by a constant force: the law with l = 1/2 and given f_n.
