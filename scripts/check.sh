@@ -27,8 +27,10 @@ if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     step "tables, as pyarrow reads them"
     cargo run --locked --quiet -- run --quiet --preset frictional --set grains.number=100 --set run.periods=0.2 \
         --out "$scratch/elastic" --csv
+    cargo run --locked --quiet -- run --quiet --preset frictionless --set drive.strain_rate=0 --set run.duration=20 \
+        --out "$scratch/static" --csv
     "$scratch/venv/bin/pip" install --quiet pyarrow
-    "$scratch/venv/bin/python" tests/python/read_tables.py "$scratch/run" "$scratch/elastic"
+    "$scratch/venv/bin/python" tests/python/read_tables.py "$scratch/run" "$scratch/elastic" "$scratch/static"
 else
     step "skipped: tables, as pyarrow reads them (python3 makes no virtual environment here)"
 fi

@@ -29,6 +29,13 @@ pub(crate) enum Failure {
         message: String,
         help: Option<String>,
     },
+    /// More grains than the tube holds.
+    #[error("{place}: {error}")]
+    DoesNotFit {
+        /// Where their number is given, as `file:line: text` or the override.
+        place: String,
+        error: RunError,
+    },
     /// The run or its record.
     #[error(transparent)]
     Run(#[from] RunError),
@@ -48,7 +55,10 @@ const FAILED: u8 = 1;
 impl Failure {
     fn exit_code(&self) -> u8 {
         match self {
-            Self::Configuration(_) | Self::Read { .. } | Self::Usage { .. } => BAD_INPUT,
+            Self::Configuration(_)
+            | Self::Read { .. }
+            | Self::Usage { .. }
+            | Self::DoesNotFit { .. } => BAD_INPUT,
             Self::Run(error) => match error {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }
@@ -74,7 +84,8 @@ impl Failure {
                 "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one"
                     .to_owned(),
             ),
-            Self::Run(
+            Self::DoesNotFit { .. }
+            | Self::Run(
                 RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }),
             ) => Some(
                 "take fewer grains (grains.number, grains.volume_fraction, grains.number_density) or a wider tube \

@@ -103,6 +103,9 @@ pub struct Ledger {
     pub largest_overlap: f64,
 }
 
+/// Work, in units of the initial energy, below which it is no scale for what is missing.
+const LEAST_WORK: f64 = 1e-6;
+
 impl Ledger {
     /// Adds one step from the tally at its beginning to the tally at its end.
     pub(crate) fn add_step(&mut self, before: &Tally, after: &Tally, time_step: f64) {
@@ -118,6 +121,12 @@ impl Ledger {
         self.sliding_dissipated += after.sliding_lost;
         self.history_reset += after.history_reset;
         self.largest_overlap = self.largest_overlap.max(after.largest_overlap);
+    }
+
+    /// Adds the work of a prescribed wall that jumped.
+    pub(crate) fn add_jump(&mut self, work: f64) {
+        self.wall_work += work;
+        self.gross_work += work.abs();
     }
 
     /// Work that entered.
@@ -143,12 +152,12 @@ impl Ledger {
         energy - self.initial_energy - self.input() + self.dissipated()
     }
 
-    /// |residual| over the integral of |power that enters|; over the initial energy where nothing entered; 0 where that
-    /// is 0 too and nothing is missing.
+    /// |residual| over the integral of |power that enters|; over the initial energy where next to nothing entered; 0
+    /// where nothing is missing.
     #[must_use]
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
-        let scale = if self.gross_work > 0.0 {
+        let scale = if self.gross_work > LEAST_WORK * self.initial_energy {
             self.gross_work
         } else {
             self.initial_energy

@@ -126,7 +126,13 @@ impl Observer {
         let rate = |flux: f64| heading * flux / (length * interval);
         // Jmax = N c/L with the mean wave speed of the interval.
         let wave_run = (self.cycles - before.cycles) * wall.lattice().wavelength;
-        let ratio = |flux: f64, number: f64| heading * flux / (number * wave_run);
+        let ratio = |flux: f64, number: f64| {
+            if wave_run > 0.0 && number > 0.0 {
+                heading * flux / (number * wave_run)
+            } else {
+                f64::NAN
+            }
+        };
         let contacts = (2 * tally.grain_contacts + tally.wall_contacts) as f64;
         let distinct_contacts = (tally.grain_contacts + tally.wall_contacts) as f64;
         let wall_motion = WallMotion::of(simulation);

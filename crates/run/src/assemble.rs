@@ -212,9 +212,17 @@ fn schedule(
 }
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
-/// pressure rise; the second is missing where the clear bore closes. `None` under stress control.
+/// pressure rise; the second is missing where the clear bore closes. `None` under stress control, where the width
+/// follows a schedule, and for a static wave.
 #[must_use]
 pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
+    let schedules = &configuration.drive.schedules;
+    let changes = schedules
+        .iter()
+        .any(|schedule| schedule.parameter == ScheduledParameter::Width);
+    if changes || configuration.drive.period().is_none() {
+        return None;
+    }
     let amplitude = configuration.amplitude()?;
     let ratio = |radius: f64| {
         NewtonianPeristalsis::free_pumping(amplitude / radius).map(|fluid| fluid.flow_rate_ratio())

@@ -1,6 +1,6 @@
 //! The figures of a run.
 
-use peristalsis_configuration::{Configuration, Control};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_engine::Wall;
 use peristalsis_figures::{
     Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale,
@@ -40,6 +40,13 @@ pub(crate) fn draw_all(
         .any(|sample| sample.flow_rate_ratio.is_finite());
     if has_ratios {
         add("flow", flow(run, summary))?;
+    }
+    // The late part may have no grain left inside.
+    if has_ratios
+        && late_profile(run)
+            .iter()
+            .any(|bin| bin.axial_velocity.0.is_finite())
+    {
         add("profile", profile(run))?;
     }
     if configuration.grains.number > 0 {
@@ -55,22 +62,49 @@ pub(crate) fn draw_all(
 
 /// The parameters of a run in one line of markup.
 fn title(configuration: &Configuration) -> String {
+    let value = |parameter, constant| scheduled_value(configuration, parameter, constant);
     let (control, density) = match configuration.drive.control {
         Control::Strain { width } => (
-            format!("*w* = {width} *d*"),
+            format!("*w* = {} *d*", value(ScheduledParameter::Width, width)),
             format!("*ρ* = {:.3}", configuration.volume_fraction()),
         ),
         Control::Stress {
             force_amplitude, ..
         } => (
-            format!("*f*^{{P}} = {force_amplitude} *Yd*^{{2}}"),
+            format!(
+                "*f*^{{P}} = {} *Yd*^{{2}}",
+                value(ScheduledParameter::ForceAmplitude, force_amplitude)
+            ),
             format!("*n* = {:.3}", configuration.number_density()),
         ),
     };
     format!(
         "{control},  *ε\u{307}* = {},  {density},  *N* = {}",
-        configuration.drive.strain_rate, configuration.grains.number
+        value(
+            ScheduledParameter::StrainRate,
+            configuration.drive.strain_rate
+        ),
+        configuration.grains.number
     )
+}
+
+/// A drive parameter as a title shows it: its value, or the first and the last of its schedule.
+fn scheduled_value(
+    configuration: &Configuration,
+    parameter: ScheduledParameter,
+    constant: f64,
+) -> String {
+    let schedules = &configuration.drive.schedules;
+    match schedules
+        .iter()
+        .find(|schedule| schedule.parameter == parameter)
+    {
+        Some(schedule) => {
+            let last = configuration.run.periods.unwrap_or(f64::INFINITY);
+            format!("{} to {}", schedule.value(0.0), schedule.value(last))
+        }
+        None => constant.to_string(),
+    }
 }
 
 /// Unit of time in markup.
@@ -85,16 +119,36 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let configuration = run.configuration();
     let recorder = run.recorder();
     let samples = recorder.samples();
-    // A sample is the mean over the interval that ends with it.
-    let half = 0.5 / f64::from(configuration.observe.samples_per_period);
-    let period: Vec<f64> = samples.iter().map(|sample| sample.period - half).collect();
+    // A sample is the mean over the interval that ends with it, an average that over so many intervals.
+    let end = |index: usize| {
+        if index == 0 {
+            0.0
+        } else {
+            samples[index - 1].period
+        }
+    };
+    let period: Vec<f64> = (0..samples.len())
+        .map(|k| 0.5 * (end(k) + end(k + 1)))
+        .collect();
     let ratio: Vec<f64> = samples
         .iter()
         .map(|sample| sample.flow_rate_ratio)
         .collect();
+    let per_period = configuration.observe.samples_per_period as usize;
     let middles: Vec<f64> = (0..recorder.averages().len())
-        .map(|k| k as f64 + 0.5)
+        .map(|k| 0.5 * (end(k * per_period) + end((k + 1) * per_period)))
         .collect();
+    let cycles_at = |time: f64| {
+        let passed = samples.partition_point(|sample| sample.time <= time);
+        let (before, after) = (end(passed), end((passed + 1).min(samples.len())));
+        let start = if passed == 0 {
+            0.0
+        } else {
+            samples[passed - 1].time
+        };
+        let interval = samples[0].time;
+        before + (after - before) * (time - start) / interval
+    };
     let title = title(configuration);
     FlowFigure {
         title: &title,
@@ -102,13 +156,17 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
             x: &period,
             y: &ratio,
         },
-        averages: (!middles.is_empty()).then_some(Series {
-            x: &middles,
-            y: recorder.averages(),
-        }),
+        averages: recorder
+            .averages()
+            .iter()
+            .any(|average| average.is_finite())
+            .then_some(Series {
+                x: &middles,
+                y: recorder.averages(),
+            }),
         threshold: Some(configuration.observe.transition_threshold),
         transition: summary.transition_time.map(|time| Transition {
-            period: time * configuration.drive.strain_rate,
+            period: cycles_at(time),
             time,
             unit: time_unit(configuration),
         }),

@@ -8,12 +8,13 @@ use crate::arguments::CheckArguments;
 use crate::commands::print;
 use crate::failure::Failure;
 use crate::progress::seconds;
-use crate::sources::configuration;
+use crate::sources::{configuration, locate};
 
 /// Says what would run.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let configuration = configuration(&arguments.configuration)?;
-    let estimate = estimate(&configuration)?;
+    let estimate =
+        estimate(&configuration).map_err(|error| locate(error, &arguments.configuration))?;
     if arguments.json {
         print(&format!("{:#}\n", serde_json::json!(estimate)))?;
     } else {

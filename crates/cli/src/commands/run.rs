@@ -10,7 +10,7 @@ use crate::arguments::RunArguments;
 use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
-use crate::sources::{configuration, name};
+use crate::sources::{configuration, locate, name};
 use crate::stop::Stop;
 
 /// Grains whose packing takes long enough to say so.
@@ -25,6 +25,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(folder) => RunFolder::resume(folder)?,
         None => begin(arguments)?,
     };
+    stop.keep_results();
     let mut display = Display::new(arguments.quiet, run.configuration().run.samples);
     let ending = advance(&mut run, &folder, &stop, &mut display);
     display.finish();
@@ -39,12 +40,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     } else {
         Written::Standard
     };
-    folder.finish(&run, &summary, written)?;
+    let finished = folder.finish(&run, &summary, written);
     if arguments.json {
         print(&summary.to_json())?;
     } else {
         print(&in_words(&run, &summary))?;
     }
+    finished?;
     match ending {
         Ending::Complete => {
             tell(
@@ -98,7 +100,7 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
             &format!("packing {} grains", configuration.grains.number),
         );
     }
-    let run = Run::new(configuration)?;
+    let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
     let folder = RunFolder::create(&path, run.configuration())?;
     Ok((folder, run))
 }
@@ -165,6 +167,7 @@ fn in_words(run: &Run, summary: &Summary) -> String {
             time * configuration.drive.strain_rate,
             summary.transition_threshold
         ),
+        None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
         None => format!("no transition within {:.1} periods", summary.periods),
     };
     let late = 100.0 * configuration.observe.late_fraction;
@@ -176,7 +179,7 @@ fn in_words(run: &Run, summary: &Summary) -> String {
             format!("J/Jmax = {ratio:.4}, mean of the last {late:.0} % (too short for an error)")
         }
         _ => format!(
-            "J = {:.4e}, mean of the last {late:.0} %; there is no J/Jmax without grains and a moving wave",
+            "J = {:.4e}, mean of the last {late:.0} %; no J/Jmax without grains inside and a moving wave",
             summary.flow_rate
         ),
     };

@@ -27,6 +27,15 @@ impl Wall {
         }
     }
 
+    /// Brings a prescribed wall to where it would be at `time` had it not jumped since `start`; `false` where it has not.
+    pub(crate) fn move_without_jump(&mut self, start: f64, time: f64) -> bool {
+        match self {
+            Self::Prescribed(wall) => wall.move_without_jump(start, time),
+            // The force on an elastic wall may jump; its spheres do not.
+            Self::Elastic(_) => false,
+        }
+    }
+
     /// The lattice of the wall's spheres.
     #[must_use]
     pub fn lattice(&self) -> &Lattice {

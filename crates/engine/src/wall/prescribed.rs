@@ -81,10 +81,24 @@ impl PrescribedWall {
 
     /// Moves the wall to where it is at `time`.
     pub fn move_to(&mut self, time: f64) {
+        self.move_with_amplitude(time, self.amplitude.value(time));
+    }
+
+    /// Moves the wall to where it would be at `time` had its amplitude not jumped since `start`; `false`, and nothing
+    /// moves, where it has not.
+    pub(crate) fn move_without_jump(&mut self, start: f64, time: f64) -> bool {
+        let jump = self.amplitude.jump(start, time);
+        if jump != 0.0 {
+            self.move_with_amplitude(time, self.amplitude.value(time) - jump);
+        }
+        jump != 0.0
+    }
+
+    fn move_with_amplitude(&mut self, time: f64, amplitude: f64) {
         self.cycles = self.frequency.integral(time);
         self.wave = RadiusWave {
             mean_radius: self.mean_radius,
-            amplitude: self.amplitude.value(time),
+            amplitude,
             wavelength: self.lattice.wavelength,
             waveform: self.waveform,
             heading: self.heading,

@@ -78,6 +78,16 @@ impl Schedule {
         }
     }
 
+    /// Sum of the steps after `start` and up to `end`: how much the value jumps in that time.
+    #[must_use]
+    pub fn jump(&self, start: f64, end: f64) -> f64 {
+        self.knots
+            .windows(2)
+            .filter(|pair| pair[0].0 == pair[1].0 && pair[1].0 > start && pair[1].0 <= end)
+            .map(|pair| pair[1].1 - pair[0].1)
+            .sum()
+    }
+
     /// Integral from 0 to `time` >= 0.
     #[must_use]
     pub fn integral(&self, time: f64) -> f64 {
@@ -117,6 +127,8 @@ mod tests {
             assert_eq!(schedule.value(time), value, "at {time}");
         }
         assert_eq!(schedule.rate(2.0), 2.0);
+        assert_eq!(schedule.jump(4.9, 5.0), -5.0);
+        assert_eq!(schedule.jump(5.0, 9.0) + schedule.jump(0.0, 4.9), 0.0);
         // 2 (constant) + 8 (ramp) + 12 (plateau) + 4 (after the step)
         assert!((schedule.integral(9.0) - 26.0).abs() < 1e-12);
     }
