@@ -1,10 +1,10 @@
 //! Errors as a person reads them, and the exit code that goes with each.
 
-use std::fmt::{self, Display};
+use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_run::RunError;
@@ -101,73 +101,61 @@ impl Failure {
 
     /// Prints the error and answers the exit code.
     pub(crate) fn report(&self) -> ExitCode {
-        let problems = match self {
-            Self::Configuration(error) | Self::Run(RunError::Configuration(error)) => {
-                error.problems().iter().map(Report::of_problem).collect()
-            }
-            other => vec![Report {
-                message: other.to_string(),
-                help: other.help(),
-                source: None,
-                labels: Vec::new(),
-            }],
+        let renderer = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
+        {
+            Renderer::styled()
+        } else {
+            Renderer::plain()
         };
-        for problem in problems {
-            say(&format!("Error: {:?}", miette::Report::new(problem)));
+        match self {
+            Self::Configuration(error) | Self::Run(RunError::Configuration(error)) => {
+                for problem in error.problems() {
+                    say(&format!("{}\n", renderer.render(&[of_problem(problem)])));
+                }
+            }
+            other => {
+                let (message, help) = (other.to_string(), other.help());
+                say(&renderer.render(&[with_help(
+                    Group::with_title(Level::ERROR.primary_title(&message)),
+                    help.as_deref(),
+                )]));
+            }
         }
         ExitCode::from(self.exit_code())
     }
 }
 
-/// An error with places in a text.
-#[derive(Debug)]
-struct Report {
-    message: String,
-    help: Option<String>,
-    source: Option<NamedSource<String>>,
-    labels: Vec<LabeledSpan>,
+/// A problem of a configuration with its places marked in the text.
+fn of_problem(problem: &Problem) -> Group<'_> {
+    let main = problem.labels.first();
+    let place = main.map_or_else(String::new, |label| format!("{label}: "));
+    let mut group =
+        Group::with_title(Level::ERROR.primary_title(format!("{place}{}", problem.message)));
+    if let Some(main) = main {
+        // A snippet shows one text; places in others are in the message already.
+        let marked = problem
+            .labels
+            .iter()
+            .filter(|label| label.source_name == main.source_name);
+        group = group.element(
+            Snippet::source(&*main.source_text)
+                .path(&*main.source_name)
+                .annotations(marked.enumerate().map(|(index, label)| {
+                    let kind = if index == 0 {
+                        AnnotationKind::Primary
+                    } else {
+                        AnnotationKind::Context
+                    };
+                    kind.span(label.span.clone()).label(&label.message)
+                })),
+        );
+    }
+    with_help(group, problem.help.as_deref())
 }
 
-impl Report {
-    fn of_problem(problem: &Problem) -> Self {
-        let main = problem.labels.first();
-        let place = main.map_or_else(String::new, |label| format!("{label}: "));
-        Self {
-            message: format!("{place}{}", problem.message),
-            help: problem.help.clone(),
-            source: main
-                .map(|label| NamedSource::new(&label.source_name, label.source_text.to_string())),
-            // A snippet shows one text; places in others are in the message already.
-            labels: problem
-                .labels
-                .iter()
-                .filter(|label| main.is_some_and(|main| main.source_name == label.source_name))
-                .map(|label| LabeledSpan::at(label.span.clone(), label.message.clone()))
-                .collect(),
-        }
-    }
-}
-
-impl Display for Report {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.message)
-    }
-}
-
-impl std::error::Error for Report {}
-
-impl Diagnostic for Report {
-    fn help<'a>(&'a self) -> Option<Box<dyn Display + 'a>> {
-        self.help
-            .as_ref()
-            .map(|help| Box::new(help) as Box<dyn Display>)
-    }
-
-    fn source_code(&self) -> Option<&dyn SourceCode> {
-        self.source.as_ref().map(|source| source as &dyn SourceCode)
-    }
-
-    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
-        Some(Box::new(self.labels.iter().cloned()))
+fn with_help<'a>(group: Group<'a>, help: Option<&'a str>) -> Group<'a> {
+    match help {
+        Some(help) => group.element(Level::HELP.message(help)),
+        None => group,
     }
 }
