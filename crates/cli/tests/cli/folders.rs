@@ -215,7 +215,7 @@ fn a_state_that_is_damaged_or_of_another_run_is_refused() {
         let before = place.inventory();
         let outcome = place.call(["run", "--resume", "results"]);
         assert!(matches!(outcome.code, Some(1 | 2)), "{outcome:?}");
-        assert!(outcome.message().starts_with("Error:"), "{outcome:?}");
+        assert!(outcome.message().starts_with("error:"), "{outcome:?}");
         assert_eq!(place.inventory(), before);
     }
     // The state of another seed.

@@ -213,7 +213,7 @@ fn a_disk_that_fills_while_results_are_written() {
     // Room for the configuration, not for the tables.
     let outcome = run_with_small_files(&place, 8, &["--out", "results"])
         .expect_code(1)
-        .says(&["Error:", "results"]);
+        .says(&["error:", "results"]);
     assert!(!outcome.message().contains("written to"));
     let left: Vec<_> = place.inventory().into_keys().collect();
     // Whole files or none: no summary says that there are tables, nothing partial is left.
