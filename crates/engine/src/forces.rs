@@ -55,7 +55,7 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &mut Bodies,
     wall: &Wall,
-    contacts: &mut Contacts<T::History>,
+    contacts: &mut Contacts<T::History<f64>>,
     time_step: f64,
 ) -> Tally {
     let mut tally = Tally::default();
@@ -94,7 +94,7 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
 fn add_pairs<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &mut Bodies,
-    pairs: &mut Neighbours<T::History>,
+    pairs: &mut Neighbours<T::History<f64>>,
     length: f64,
     time_step: f64,
     tally: &mut Tally,
@@ -113,7 +113,7 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
             if squared >= reach * reach || squared == 0.0 {
                 if T::ROTATES {
                     tally.history_reset += law.tangential.stored_energy(history);
-                    *history = T::History::default();
+                    *history = T::History::<f64>::default();
                 }
                 continue;
             }

@@ -238,7 +238,7 @@ trait WithLaw {
     fn run<N: NormalLaw, T: TangentialLaw>(
         self,
         law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History>,
+        contacts: &mut Contacts<T::History<f64>>,
     ) -> Self::Answer;
 }
 
@@ -289,7 +289,7 @@ impl WithLaw for StartForces<'_> {
     fn run<N: NormalLaw, T: TangentialLaw>(
         self,
         law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History>,
+        contacts: &mut Contacts<T::History<f64>>,
     ) {
         let System {
             bodies,
@@ -314,7 +314,7 @@ impl WithLaw for Advance<'_> {
     fn run<N: NormalLaw, T: TangentialLaw>(
         self,
         law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History>,
+        contacts: &mut Contacts<T::History<f64>>,
     ) -> Self::Answer {
         let system = self.system;
         let Parameters {

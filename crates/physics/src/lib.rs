@@ -2,8 +2,10 @@
 //!
 //! Everything here is pure: no input or output, no threads, no random numbers, no allocation in a force. Parameter
 //! types are `Copy` and carry their units in their documentation. A contact law sees a [`contact::Contact`], never
-//! particles, so that grain-grain and grain-wall contacts, every integrator and every kernel share one formula.
+//! particles, so that grain-grain and grain-wall contacts, every integrator and every kernel share one formula;
+//! the laws are written for any [`real::Real`], one number or several side by side.
 
 pub mod contact;
 pub mod newtonian;
+pub mod real;
 pub mod wall;

@@ -102,6 +102,13 @@ fn close(one: DVec3, other: DVec3, tolerance: f64) -> bool {
     (one - other).length() <= tolerance
 }
 
+fn with_overlap(contact: &Contact, overlap: f64) -> Contact {
+    Contact {
+        overlap,
+        ..*contact
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 256, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -109,12 +116,9 @@ proptest! {
     fn a_fresh_contact_at_rest_begins_without_force(case in case()) {
         for (name, model) in table() {
             let mut forces = [1e-4, 1e-6, 1e-8].map(|overlap| {
-                let contact = Contact {
-                    overlap,
-                    relative_velocity: DVec3::ZERO,
-                    spin: DVec3::ZERO,
-                    ..case.contact
-                };
+                let mut contact = with_overlap(&case.contact, overlap);
+                contact.relative_velocity = DVec3::ZERO;
+                contact.spin = DVec3::ZERO;
                 let answer = answer(&model, &contact, &mut TangentialHistory::default(), case.time_step);
                 prop_assert!(answer.force.dot(contact.normal) > 0.0, "{}: not repelled", name);
                 prop_assert!(answer.energy > 0.0 && answer.energy <= overlap * overlap);
@@ -249,7 +253,7 @@ proptest! {
             let model = undamped(&model);
             let step = 1e-6;
             let at = |overlap: f64| {
-                normal_force(model.normal, &Contact { overlap, ..case.contact }, 0.3)
+                normal_force(model.normal, &with_overlap(&case.contact, overlap), 0.3)
             };
             let here = at(case.contact.overlap);
             let slope = (at(case.contact.overlap + step).energy - at(case.contact.overlap - step).energy)

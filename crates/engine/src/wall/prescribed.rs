@@ -232,7 +232,7 @@ impl PrescribedWall {
         &self,
         law: &ContactLaw<N, T>,
         bodies: &mut Bodies,
-        memory: &mut WallMemory<T::History>,
+        memory: &mut WallMemory<T::History<f64>>,
         time_step: f64,
         tally: &mut Tally,
     ) {
@@ -268,7 +268,7 @@ impl PrescribedWall {
                         DVec3::ZERO
                     },
                 };
-                let mut history = T::History::default();
+                let mut history = T::History::<f64>::default();
                 if T::ROTATES {
                     history = memory.take(grain, sphere);
                 }

@@ -1,6 +1,7 @@
 //! Hertz spring with viscoelastic dissipation: the normal law of the frictional model.
 
 use super::{NormalForce, NormalLaw};
+use crate::real::Real;
 
 /// How the dissipation time enters the viscoelastic force.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
@@ -55,13 +56,14 @@ impl ViscoelasticHertz {
 
 impl NormalLaw for ViscoelasticHertz {
     #[inline(always)]
-    fn force(&self, overlap: f64, normal_velocity: f64, reduced_radius: f64) -> NormalForce {
-        let root = (reduced_radius * overlap).sqrt() * self.modulus();
+    fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R> {
+        let root = (reduced_radius * overlap).sqrt() * R::splat(self.modulus());
         let elastic_force = root * overlap;
+        let damping_force = root * R::splat(self.relaxation_time()) * normal_velocity;
         NormalForce {
-            force: (elastic_force - root * self.relaxation_time() * normal_velocity).max(0.0),
+            force: (elastic_force - damping_force).positive_part(),
             elastic_force,
-            energy: 0.4 * elastic_force * overlap,
+            energy: R::splat(0.4) * elastic_force * overlap,
         }
     }
 

@@ -1,6 +1,7 @@
 //! Linear spring and dashpot: the contact law of the frictionless model.
 
 use super::{NormalForce, NormalLaw};
+use crate::real::Real;
 
 /// Normal contact force of two spheres, a spring and a dashpot in parallel.
 ///
@@ -53,12 +54,12 @@ impl LinearSpringDashpot {
 
 impl NormalLaw for LinearSpringDashpot {
     #[inline(always)]
-    fn force(&self, overlap: f64, normal_velocity: f64, _reduced_radius: f64) -> NormalForce {
-        let elastic_force = self.normal_stiffness * overlap;
+    fn force<R: Real>(&self, overlap: R, normal_velocity: R, _reduced_radius: R) -> NormalForce<R> {
+        let elastic_force = R::splat(self.normal_stiffness) * overlap;
         NormalForce {
-            force: elastic_force - self.normal_damping * normal_velocity,
+            force: elastic_force - R::splat(self.normal_damping) * normal_velocity,
             elastic_force,
-            energy: 0.5 * elastic_force * overlap,
+            energy: R::splat(0.5) * elastic_force * overlap,
         }
     }
 

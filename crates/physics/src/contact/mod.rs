@@ -9,7 +9,7 @@ pub mod hertz;
 pub mod linear;
 pub mod tangential;
 
-use glam::DVec3;
+use crate::real::{Real, Vector};
 
 pub use hertz::{DissipationForm, ViscoelasticHertz};
 pub use linear::LinearSpringDashpot;
@@ -19,60 +19,60 @@ pub use tangential::{CundallStrack, Frictionless, Sliding, TangentialHistory};
 ///
 /// Lengths in d, velocities in d/t; `normal` points from the partner to this sphere.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
+pub struct Contact<R: Real = f64> {
     /// xi = (d_i + d_j)/2 - |r_i - r_j| > 0.
-    pub overlap: f64,
+    pub overlap: R,
     /// |r_i - r_j|.
-    pub distance: f64,
+    pub distance: R,
     /// n = (r_i - r_j)/|r_i - r_j|.
-    pub normal: DVec3,
+    pub normal: R::Vector,
     /// v_i - v_j of the centres.
-    pub relative_velocity: DVec3,
+    pub relative_velocity: R::Vector,
     /// R_ij = d_i d_j/(2 (d_i + d_j)).
-    pub reduced_radius: f64,
+    pub reduced_radius: R,
     /// l_i omega_i + l_j omega_j with the lever arms l = (d - xi)/2; zero where nothing rotates.
-    pub spin: DVec3,
+    pub spin: R::Vector,
 }
 
-impl Contact {
+impl<R: Real> Contact<R> {
     /// v_n = (v_i - v_j) . n, positive when parting.
     #[inline(always)]
     #[must_use]
-    pub fn normal_velocity(&self) -> f64 {
+    pub fn normal_velocity(&self) -> R {
         self.relative_velocity.dot(self.normal)
     }
 }
 
 /// What a normal law answers: the force along n and its bookkeeping.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct NormalForce {
+pub struct NormalForce<R: Real = f64> {
     /// f_n, the force on this sphere along n; positive repels.
-    pub force: f64,
+    pub force: R,
     /// The part of f_n that derives from `energy`.
-    pub elastic_force: f64,
+    pub elastic_force: R,
     /// Stored elastic energy of the contact.
-    pub energy: f64,
+    pub energy: R,
 }
 
 /// What a tangential law answers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TangentialForce {
+pub struct TangentialForce<R: Real = f64> {
     /// f_t on this sphere, perpendicular to n.
-    pub force: DVec3,
+    pub force: R::Vector,
     /// Elastic energy stored in the tangential spring, k_t u^2/2.
-    pub energy: f64,
+    pub energy: R,
     /// Energy lost in this step to tangential damping.
-    pub damped: f64,
+    pub damped: R,
     /// Energy lost in this step to sliding.
-    pub slid: f64,
+    pub slid: R,
     /// Whether the contact slides.
-    pub sliding: bool,
+    pub sliding: R::Mask,
 }
 
 /// A force along the line of centres.
 pub trait NormalLaw: Copy {
     /// Force at overlap xi > 0, normal velocity v_n (positive when parting) and reduced radius R_ij.
-    fn force(&self, overlap: f64, normal_velocity: f64, reduced_radius: f64) -> NormalForce;
+    fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R>;
 
     /// The same law without dissipation.
     #[must_use]
@@ -85,23 +85,23 @@ pub trait NormalLaw: Copy {
 /// A force in the plane of contact.
 pub trait TangentialLaw: Copy {
     /// What a contact remembers from one step to the next.
-    type History: Copy + Default + PartialEq + core::fmt::Debug;
+    type History<R: Real>: Copy + Default + PartialEq + core::fmt::Debug;
 
     /// Whether this law turns grains: `false` lets a kernel skip everything about rotation.
     const ROTATES: bool;
 
     /// Force after a step of length `time_step` that led to `contact`, for normal force `normal_force`; brings
     /// `history` from the step's beginning to its end. A `time_step` of zero evaluates without moving the history.
-    fn force(
+    fn force<R: Real>(
         &self,
-        contact: &Contact,
-        normal_force: f64,
-        history: &mut Self::History,
+        contact: &Contact<R>,
+        normal_force: R,
+        history: &mut Self::History<R>,
         time_step: f64,
-    ) -> TangentialForce;
+    ) -> TangentialForce<R>;
 
     /// Energy held by a history: what is lost when a contact ends.
-    fn stored_energy(&self, history: &Self::History) -> f64;
+    fn stored_energy<R: Real>(&self, history: &Self::History<R>) -> R;
 }
 
 /// A normal and a tangential law together.
@@ -115,17 +115,17 @@ pub struct ContactLaw<N, T> {
 
 /// The whole answer of a contact law.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactForce {
+pub struct ContactForce<R: Real = f64> {
     /// Force on this sphere; the partner feels the opposite.
-    pub force: DVec3,
+    pub force: R::Vector,
     /// -n x f_t: times the lever arm l_i it is the torque on this sphere, times l_j the torque on the partner.
-    pub twist: DVec3,
+    pub twist: R::Vector,
     /// Elastic energy of normal and tangential springs.
-    pub energy: f64,
+    pub energy: R,
     /// Rate of energy loss along the normal, (f_elastic - f_n) v_n.
-    pub normal_dissipation: f64,
+    pub normal_dissipation: R,
     /// Tangential part, with its losses of this step.
-    pub tangential: TangentialForce,
+    pub tangential: TangentialForce<R>,
 }
 
 impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
@@ -134,12 +134,12 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     /// f = f_n n + f_t. The tangential law sees max(f_n, 0): a contact that pulls (possible with the unclipped linear
     /// law) has no friction.
     #[inline(always)]
-    pub fn force(
+    pub fn force<R: Real>(
         &self,
-        contact: &Contact,
-        history: &mut T::History,
+        contact: &Contact<R>,
+        history: &mut T::History<R>,
         time_step: f64,
-    ) -> ContactForce {
+    ) -> ContactForce<R> {
         let normal_velocity = contact.normal_velocity();
         let normal = self
             .normal
@@ -148,9 +148,9 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
         if T::ROTATES {
             let tangential =
                 self.tangential
-                    .force(contact, normal.force.max(0.0), history, time_step);
+                    .force(contact, normal.force.positive_part(), history, time_step);
             ContactForce {
-                force: normal.force * contact.normal + tangential.force,
+                force: contact.normal * normal.force + tangential.force,
                 twist: -contact.normal.cross(tangential.force),
                 energy: normal.energy + tangential.energy,
                 normal_dissipation,
@@ -158,7 +158,7 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
             }
         } else {
             ContactForce {
-                force: normal.force * contact.normal,
+                force: contact.normal * normal.force,
                 energy: normal.energy,
                 normal_dissipation,
                 ..ContactForce::default()
@@ -188,6 +188,8 @@ pub struct ContactModel {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     const FRICTION: CundallStrack = CundallStrack {

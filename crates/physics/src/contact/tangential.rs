@@ -1,25 +1,24 @@
 //! Friction of two spheres: none, or a spring in the plane of contact that slides (Cundall & Strack).
 
-use glam::DVec3;
-
 use super::{Contact, TangentialForce, TangentialLaw};
+use crate::real::{Real, Vector};
 
 /// Smooth grains: no force in the plane of contact, no memory, no rotation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Frictionless;
 
 impl TangentialLaw for Frictionless {
-    type History = ();
+    type History<R: Real> = ();
     const ROTATES: bool = false;
 
     #[inline(always)]
-    fn force(&self, _: &Contact, _: f64, (): &mut (), _: f64) -> TangentialForce {
+    fn force<R: Real>(&self, _: &Contact<R>, _: R, (): &mut (), _: f64) -> TangentialForce<R> {
         TangentialForce::default()
     }
 
     #[inline(always)]
-    fn stored_energy(&self, (): &()) -> f64 {
-        0.0
+    fn stored_energy<R: Real>(&self, (): &()) -> R {
+        R::splat(0.0)
     }
 }
 
@@ -63,88 +62,105 @@ pub struct CundallStrack {
 
 /// Memory of a frictional contact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct TangentialHistory {
+#[serde(bound(
+    serialize = "R: serde::Serialize, R::Vector: serde::Serialize, R::Mask: serde::Serialize",
+    deserialize = "R: serde::Deserialize<'de>, R::Vector: serde::Deserialize<'de>, R::Mask: serde::Deserialize<'de>"
+))]
+pub struct TangentialHistory<R: Real = f64> {
     /// u \[d\]
-    pub displacement: DVec3,
+    pub displacement: R::Vector,
     /// du/dt at the end of the last step \[d/t\]; zero at the first.
-    pub rate: DVec3,
+    pub rate: R::Vector,
     /// -f_t . v_t at the end of the last step: the power that the contact takes out of the tangential motion.
-    pub power: f64,
+    pub power: R,
     /// Whether the contact slid at the end of the last step.
-    pub sliding: bool,
+    pub sliding: R::Mask,
+}
+
+impl<R: Real> TangentialHistory<R> {
+    /// `yes` where `mask` holds, else `no`.
+    #[inline(always)]
+    fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            displacement: R::Vector::select(mask, yes.displacement, no.displacement),
+            rate: R::Vector::select(mask, yes.rate, no.rate),
+            power: R::select(mask, yes.power, no.power),
+            sliding: (mask & yes.sliding) | (!mask & no.sliding),
+        }
+    }
 }
 
 impl TangentialLaw for CundallStrack {
-    type History = TangentialHistory;
+    type History<R: Real> = TangentialHistory<R>;
     const ROTATES: bool = true;
 
     /// The displacement is brought forward by the trapezoidal rule, so that the order is 2 while a contact persists,
     /// whatever the integrator of the motion.
     #[inline(always)]
-    fn force(
+    fn force<R: Real>(
         &self,
-        contact: &Contact,
-        normal_force: f64,
-        history: &mut TangentialHistory,
+        contact: &Contact<R>,
+        normal_force: R,
+        history: &mut TangentialHistory<R>,
         time_step: f64,
-    ) -> TangentialForce {
+    ) -> TangentialForce<R> {
+        let zero = R::splat(0.0);
+        let stiffness = R::splat(self.tangential_stiffness);
+        let damping = R::splat(self.tangential_damping);
+        let (step, half_step) = (R::splat(time_step), R::splat(0.5 * time_step));
+
         let normal = contact.normal;
-        let lateral_velocity = contact.relative_velocity - contact.normal_velocity() * normal;
+        let lateral_velocity = contact.relative_velocity - normal * contact.normal_velocity();
         let slip_velocity = lateral_velocity + normal.cross(contact.spin);
-        let normal_rate = lateral_velocity / contact.distance;
+        let normal_rate = lateral_velocity * (R::splat(1.0) / contact.distance);
+
+        let predicted = history.displacement + history.rate * step;
+        let rate = slip_velocity - normal * predicted.dot(normal_rate);
+        let moved = history.displacement + (history.rate + rate) * half_step;
+        let stuck = moved - normal * moved.dot(normal);
+
+        // A contact that does not press slides freely, and forgets whatever sliding does elsewhere.
+        let presses = zero.less(normal_force);
+        let trial = -(stuck * stiffness) - slip_velocity * damping;
+        let size = trial.dot(trial).sqrt();
+        let sliding = !size.less(self.threshold::<R>(history.sliding) * normal_force) | !presses;
+        let limit = R::splat(self.kinetic_friction) * normal_force;
+        let scale = R::select(zero.less(size), limit / size, zero);
+        let force = R::Vector::select(
+            presses,
+            R::Vector::select(sliding, trial * scale, trial),
+            R::Vector::default(),
+        );
 
         let energy_before = self.stored_energy(history);
-        if normal_force <= 0.0 {
-            // A contact that does not press forgets, whatever sliding does elsewhere.
-            let slid = energy_before + 0.5 * time_step * history.power;
-            *history = TangentialHistory::default();
-            return TangentialForce {
-                slid,
-                sliding: true,
-                ..TangentialForce::default()
-            };
-        }
-        let predicted = history.displacement + time_step * history.rate;
-        let rate = slip_velocity - predicted.dot(normal_rate) * normal;
-        let mut displacement = history.displacement + 0.5 * time_step * (history.rate + rate);
-        displacement -= displacement.dot(normal) * normal;
-
-        let trial =
-            -self.tangential_stiffness * displacement - self.tangential_damping * slip_velocity;
-        let size = trial.length();
-        let sliding = size >= self.threshold(history.sliding) * normal_force;
-        let force = if !sliding {
-            trial
-        } else if size > 0.0 {
-            trial * (self.kinetic_friction * normal_force / size)
-        } else {
-            DVec3::ZERO
-        };
-        if sliding {
-            displacement = self.slid_displacement(displacement, force, slip_velocity, normal_force);
-        }
-
         let power = -force.dot(slip_velocity);
-        let energy = 0.5 * self.tangential_stiffness * displacement.length_squared();
-        let lost = 0.5 * time_step * (history.power + power) - (energy - energy_before);
-        *history = TangentialHistory {
-            displacement,
+        let moved = TangentialHistory {
+            displacement: R::Vector::select(
+                sliding,
+                self.slid_displacement(stuck, force, slip_velocity, limit),
+                stuck,
+            ),
             rate,
             power,
             sliding,
         };
+        let fresh = TangentialHistory::default();
+        let after = TangentialHistory::select(presses, moved, fresh);
+        let energy = self.stored_energy(&after);
+        let lost = half_step * (history.power + after.power) - (energy - energy_before);
+        *history = after;
         TangentialForce {
             force,
             energy,
-            damped: if sliding { 0.0 } else { lost },
-            slid: if sliding { lost } else { 0.0 },
+            damped: R::select(sliding, zero, lost),
+            slid: R::select(sliding, lost, zero),
             sliding,
         }
     }
 
     #[inline(always)]
-    fn stored_energy(&self, history: &TangentialHistory) -> f64 {
-        0.5 * self.tangential_stiffness * history.displacement.length_squared()
+    fn stored_energy<R: Real>(&self, history: &TangentialHistory<R>) -> R {
+        R::splat(0.5 * self.tangential_stiffness) * history.displacement.dot(history.displacement)
     }
 }
 
@@ -155,34 +171,36 @@ impl CundallStrack {
     /// spring being cut, and be dragged to mu_s f_n again (after Luding, Granular Matter 10, 235 (2008)). The literal form
     /// needs none, for its spring is never cut.
     #[inline(always)]
-    fn threshold(&self, slid_before: bool) -> f64 {
-        if slid_before && self.sliding != Sliding::Literal {
-            self.kinetic_friction
-        } else {
-            self.static_friction
+    fn threshold<R: Real>(&self, slid_before: R::Mask) -> R {
+        let at_rest = R::splat(self.static_friction);
+        match self.sliding {
+            Sliding::Literal => at_rest,
+            Sliding::Spring | Sliding::Balance => {
+                R::select(slid_before, R::splat(self.kinetic_friction), at_rest)
+            }
         }
     }
 
+    /// The displacement of a contact that slides with the force `force`, at most `limit` = mu_k f_n.
     #[inline(always)]
-    fn slid_displacement(
+    fn slid_displacement<R: Real>(
         &self,
-        displacement: DVec3,
-        force: DVec3,
-        slip_velocity: DVec3,
-        normal_force: f64,
-    ) -> DVec3 {
+        displacement: R::Vector,
+        force: R::Vector,
+        slip_velocity: R::Vector,
+        limit: R,
+    ) -> R::Vector {
+        let stiffness = R::splat(self.tangential_stiffness);
         match self.sliding {
             Sliding::Spring => {
-                let limit = self.kinetic_friction * normal_force / self.tangential_stiffness;
-                let length = displacement.length();
-                if length > limit {
-                    displacement * (limit / length)
-                } else {
-                    displacement
-                }
+                let longest = limit / stiffness;
+                let length = displacement.dot(displacement).sqrt();
+                let shortened = displacement * (longest / length);
+                R::Vector::select(longest.less(length), shortened, displacement)
             }
             Sliding::Balance => {
-                -(force + self.tangential_damping * slip_velocity) / self.tangential_stiffness
+                -(force + slip_velocity * R::splat(self.tangential_damping))
+                    * (R::splat(1.0) / stiffness)
             }
             Sliding::Literal => displacement,
         }
@@ -191,6 +209,8 @@ impl CundallStrack {
 
 #[cfg(test)]
 mod tests {
+    use glam::DVec3;
+
     use super::*;
 
     fn law(sliding: Sliding) -> CundallStrack {
