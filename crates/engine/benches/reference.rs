@@ -157,6 +157,7 @@ fn assemble(packing: &Packing, wall: Wall, contact: ContactModel) -> Simulation 
         integrator: Integrator::Verlet,
         time_step: TIME_STEP,
         skin: 0.3,
+        kernel: peristalsis_engine::Kernel::default(),
     };
     Simulation::new(bodies, wall, parameters)
 }

@@ -5,6 +5,7 @@
 
 pub mod bodies;
 pub mod error;
+mod fast;
 mod forces;
 pub mod initial;
 pub mod integrate;
@@ -18,6 +19,6 @@ pub use bodies::Bodies;
 pub use error::EngineError;
 pub use integrate::Integrator;
 pub use ledger::{Ledger, Tally};
-pub use simulation::{Parameters, Simulation};
+pub use simulation::{Kernel, Parameters, Simulation};
 pub use snapshot::Snapshot;
 pub use wall::Wall;

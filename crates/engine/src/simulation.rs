@@ -7,6 +7,7 @@ use peristalsis_physics::contact::{
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
+use crate::fast;
 use crate::forces::{Contacts, evaluate};
 use crate::integrate::{Integrator, Past};
 use crate::ledger::{Ledger, Tally};
@@ -25,6 +26,19 @@ pub struct Parameters {
     pub time_step: f64,
     /// Skin of the neighbour list \[d\]; results do not depend on it.
     pub skin: f64,
+    /// Which kernel computes the forces.
+    pub kernel: Kernel,
+}
+
+/// Which kernel computes the forces. They agree up to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// The fastest that serves the case at hand; the same bits on every set of instructions.
+    #[default]
+    Fast,
+    /// The plain one that the fast ones are tested against.
+    Reference,
 }
 
 /// Grains in a peristaltic tube, advanced in time.
@@ -45,6 +59,7 @@ struct System {
     ledger: Ledger,
     step: u64,
     limit: f64,
+    scratch: fast::listed::Scratch,
 }
 
 /// A law in the plane of contact together with what its contacts remember, so that they cannot disagree.
@@ -83,6 +98,7 @@ impl Simulation {
                 ledger: Ledger::default(),
                 step: 0,
                 limit: 0.5 * least_diameter,
+                scratch: fast::listed::Scratch::default(),
             },
             memory: match parameters.contact.friction {
                 None => Memory::Smooth(Contacts::none()),
@@ -321,6 +337,7 @@ impl WithLaw for Advance<'_> {
             integrator,
             time_step,
             skin,
+            kernel,
             ..
         } = system.parameters;
         let length = system.wall.lattice().length();
@@ -333,6 +350,7 @@ impl WithLaw for Advance<'_> {
                 ledger,
                 step,
                 limit,
+                scratch,
                 ..
             } = system;
             *step += 1;
@@ -355,7 +373,12 @@ impl WithLaw for Advance<'_> {
             });
             wall.move_to(time);
             contacts.refresh(bodies, wall, skin);
-            let after = evaluate(law, bodies, wall, contacts, time_step);
+            let after = match kernel {
+                Kernel::Reference => evaluate(law, bodies, wall, contacts, time_step),
+                Kernel::Fast => {
+                    fast::listed::evaluate(law, bodies, wall, contacts, scratch, time_step)
+                }
+            };
             if let Some(stored) = stored_before_jump {
                 ledger.add_jump(after.contact_energy - stored);
             }

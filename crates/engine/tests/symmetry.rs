@@ -240,6 +240,7 @@ fn the_skin_changes_no_bit() {
         let with = |skin: f64, steps: u64| {
             let parameters = Parameters {
                 skin,
+                kernel: peristalsis_engine::Kernel::default(),
                 ..parameters(normal, friction, Integrator::Verlet, 0.05)
             };
             let mut simulation = start(&bodies, -1.0, parameters);
@@ -291,6 +292,7 @@ fn the_skin_changes_no_bit_in_odd_tubes() {
             let with = |skin: f64| {
                 let parameters = Parameters {
                     skin,
+                    kernel: peristalsis_engine::Kernel::default(),
                     ..parameters(LINEAR, friction, Integrator::Verlet, 0.05)
                 };
                 let mut simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
@@ -323,6 +325,7 @@ fn the_skin_changes_no_bit_of_the_ledger_of_a_fast_parting() {
         bodies.angular_velocity[0] = DVec3::X;
         let parameters = Parameters {
             skin,
+            kernel: peristalsis_engine::Kernel::default(),
             ..parameters(LINEAR, Some(FRICTION), Integrator::Verlet, 0.05)
         };
         let mut simulation = Simulation::new(bodies, wide(20.0), parameters);

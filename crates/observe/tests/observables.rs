@@ -44,6 +44,7 @@ fn parameters() -> Parameters {
         integrator: Integrator::Verlet,
         time_step: 0.05,
         skin: 0.3,
+        kernel: peristalsis_engine::Kernel::default(),
     }
 }
 

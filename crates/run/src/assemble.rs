@@ -63,6 +63,7 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
         },
         time_step: configuration.run.time_step,
         skin: configuration.run.neighbour_skin,
+        kernel: peristalsis_engine::Kernel::default(),
     }
 }
 

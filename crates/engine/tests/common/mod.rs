@@ -52,6 +52,7 @@ pub(crate) fn parameters(
         integrator,
         time_step,
         skin: 0.3,
+        kernel: peristalsis_engine::Kernel::default(),
     }
 }
 
