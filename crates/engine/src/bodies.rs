@@ -100,21 +100,31 @@ impl Bodies {
     /// Brings every z back into \[0, L), counting turns.
     pub(crate) fn fold(&mut self, length: f64) {
         for (position, turns) in self.position.iter_mut().zip(&mut self.turns) {
-            while position.z >= length {
-                position.z -= length;
-                *turns += 1;
-            }
-            while position.z < 0.0 {
-                position.z += length;
-                *turns -= 1;
-                // A tiny negative z plus L may round to L itself.
-                if position.z >= length {
-                    position.z = 0.0;
-                    *turns += 1;
-                }
-            }
+            let more;
+            (position.z, more) = fold(position.z, length);
+            *turns += more;
         }
     }
+}
+
+/// z brought back into \[0, L), and the turns that this takes off it.
+#[inline(always)]
+pub(crate) fn fold(mut z: f64, length: f64) -> (f64, i32) {
+    let mut turns = 0;
+    while z >= length {
+        z -= length;
+        turns += 1;
+    }
+    while z < 0.0 {
+        z += length;
+        turns -= 1;
+        // A tiny negative z plus L may round to L itself.
+        if z >= length {
+            z = 0.0;
+            turns += 1;
+        }
+    }
+    (z, turns)
 }
 
 #[cfg(test)]

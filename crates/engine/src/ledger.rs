@@ -58,6 +58,18 @@ impl Tally {
         self.total_overlap += overlap;
     }
 
+    /// Adds the contacts of smooth grains in a prescribed wall that another part of the same evaluation has found.
+    pub(crate) fn merge(&mut self, other: &Self) {
+        self.contact_energy += other.contact_energy;
+        self.wall_power += other.wall_power;
+        self.normal_dissipation += other.normal_dissipation;
+        self.wall_axial_force += other.wall_axial_force;
+        self.grain_contacts += other.grain_contacts;
+        self.wall_contacts += other.wall_contacts;
+        self.largest_overlap = self.largest_overlap.max(other.largest_overlap);
+        self.total_overlap += other.total_overlap;
+    }
+
     /// Elastic energy of contacts, network and tethers.
     #[must_use]
     pub fn potential_energy(&self) -> f64 {

@@ -8,8 +8,9 @@ use peristalsis_physics::contact::{
 use crate::bodies::Bodies;
 use crate::error::EngineError;
 use crate::fast;
+use crate::fast::sorted::{Course, Sorted, Sorting};
 use crate::forces::{Contacts, evaluate};
-use crate::integrate::{Integrator, Past};
+use crate::integrate::{Integrator, Past, Runaway};
 use crate::ledger::{Ledger, Tally};
 use crate::snapshot::Snapshot;
 use crate::wall::Wall;
@@ -46,6 +47,8 @@ pub enum Kernel {
 pub struct Simulation {
     system: System,
     memory: Memory,
+    /// The kernel that keeps the grains in the order of z, where it serves.
+    sorted: Option<Box<Sorted>>,
 }
 
 /// Everything but the memory of contacts, whose type depends on the law.
@@ -74,9 +77,10 @@ impl Simulation {
     #[must_use]
     pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
         let mut simulation = Self::assemble(bodies, wall, parameters);
-        let Self { system, memory } = &mut simulation;
+        let Self { system, memory, .. } = &mut simulation;
         memory.with_law(parameters.contact.normal, StartForces { system });
         system.ledger.initial_energy = system.energy();
+        simulation.choose_kernel(None);
         simulation
     }
 
@@ -104,6 +108,25 @@ impl Simulation {
                 None => Memory::Smooth(Contacts::none()),
                 Some(law) => Memory::Frictional(law, Contacts::none()),
             },
+            sorted: None,
+        }
+    }
+
+    /// Hands equal smooth grains in a narrow prescribed tube to the kernel that is made for them.
+    fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
+        let System {
+            bodies,
+            wall,
+            parameters,
+            ..
+        } = &self.system;
+        if let Wall::Prescribed(prescribed) = wall
+            && parameters.kernel == Kernel::Fast
+            && Sorted::serves(bodies, wall, parameters)
+        {
+            let sorted = Sorted::new(bodies, prescribed, parameters.skin, sorting);
+            self.sorted = Some(Box::new(sorted));
+            self.memory = Memory::Smooth(Contacts::none());
         }
     }
 
@@ -113,8 +136,15 @@ impl Simulation {
     /// [`EngineError::Diverged`] where a sphere moves by more than half the smallest diameter in one step, or its
     /// position is no longer finite; the state is then that of the step that failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
-        let Self { system, memory } = self;
-        memory.with_law(system.parameters.contact.normal, Advance { system, steps })
+        let Self {
+            system,
+            memory,
+            sorted,
+        } = self;
+        match sorted {
+            None => memory.with_law(system.parameters.contact.normal, Advance { system, steps }),
+            Some(sorted) => system.advance_sorted(sorted, steps),
+        }
     }
 
     /// The spheres.
@@ -198,6 +228,7 @@ impl Simulation {
             ledger: self.system.ledger,
             pair_histories,
             wall_histories,
+            sorting: self.sorted.as_ref().map(|sorted| sorted.sorting()),
         }
     }
 
@@ -212,7 +243,7 @@ impl Simulation {
     ) -> Result<Self, EngineError> {
         snapshot.check(&wall, &parameters)?;
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
-        let Self { system, memory } = &mut simulation;
+        let Self { system, memory, .. } = &mut simulation;
         system.past = snapshot.past;
         system.tally = snapshot.tally;
         system.ledger = snapshot.ledger;
@@ -232,6 +263,7 @@ impl Simulation {
             contacts.wall =
                 WallMemory::from_entries(system.bodies.grains, &snapshot.wall_histories);
         }
+        simulation.choose_kernel(snapshot.sorting.as_ref());
         Ok(simulation)
     }
 }
@@ -245,6 +277,47 @@ impl System {
         self.bodies.kinetic_energy(0..self.bodies.number())
             + self.bodies.rotational_energy()
             + self.tally.potential_energy()
+    }
+}
+
+impl System {
+    fn advance_sorted(&mut self, sorted: &mut Sorted, steps: u64) -> Result<(), EngineError> {
+        let Self {
+            bodies,
+            wall,
+            parameters,
+            tally,
+            ledger,
+            step,
+            limit,
+            ..
+        } = self;
+        let Wall::Prescribed(wall) = wall else {
+            unreachable!("the sorted kernel serves prescribed walls only")
+        };
+        let course = Course {
+            wall,
+            tally,
+            ledger,
+            step,
+            time_step: parameters.time_step,
+            limit: *limit,
+        };
+        let outcome = match parameters.contact.normal {
+            Normal::Linear(law) => sorted.advance(&law, course, bodies, steps),
+            Normal::Hertz(law) => sorted.advance(&law, course, bodies, steps),
+        };
+        outcome.map_err(|runaway| self.diverged(runaway))
+    }
+
+    fn diverged(&self, runaway: Runaway) -> EngineError {
+        EngineError::Diverged {
+            step: self.step,
+            time: self.time(),
+            grain: runaway.body,
+            displacement: runaway.displacement,
+            limit: self.limit,
+        }
     }
 }
 

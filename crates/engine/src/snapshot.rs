@@ -4,6 +4,7 @@ use peristalsis_physics::contact::TangentialHistory;
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
+pub use crate::fast::sorted::Sorting;
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::simulation::Parameters;
@@ -29,6 +30,8 @@ pub struct Snapshot {
     pub pair_histories: Vec<(u32, u32, TangentialHistory)>,
     /// (grain, wall sphere, history) of contacts with a prescribed wall, in order of the grains.
     pub wall_histories: Vec<(u32, u32, TangentialHistory)>,
+    /// The order of the grains along the tube, where the kernel keeps one.
+    pub sorting: Option<Sorting>,
 }
 
 impl Snapshot {
@@ -99,6 +102,9 @@ impl Snapshot {
                 .any(|&(grain, _, _)| grain as usize >= bodies.grains)
         {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
+        }
+        if let Some(sorting) = &self.sorting {
+            sorting.check(bodies.grains).or_else(mismatch)?;
         }
         Ok(())
     }

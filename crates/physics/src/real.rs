@@ -48,6 +48,27 @@ pub trait Real:
         let zero = Self::splat(0.0);
         Self::select(zero.less(self), self, zero)
     }
+
+    /// The lesser of this and `other`.
+    #[inline(always)]
+    #[must_use]
+    fn lesser(self, other: Self) -> Self {
+        Self::select(self.less(other), self, other)
+    }
+
+    /// The larger of this and `other`.
+    #[inline(always)]
+    #[must_use]
+    fn larger(self, other: Self) -> Self {
+        Self::select(other.less(self), self, other)
+    }
+
+    /// This without its sign.
+    #[inline(always)]
+    #[must_use]
+    fn size(self) -> Self {
+        self.larger(-self)
+    }
 }
 
 /// A vector in space whose components are of type `R`.

@@ -1,192 +1,202 @@
-//! Eight numbers side by side.
+//! Eight numbers, truth values or vectors side by side, for the kernels to compute with.
 //!
-//! Plain arrays and loops over them: compiled with wide registers each operation is one instruction (or two, or four),
-//! and since every lane does the same operations of IEEE 754 in the same order whatever the registers, the results are
-//! the same bits on every machine. For the same reason nothing here fuses a multiplication with an addition.
+//! Nothing here fuses a multiplication with an addition: not every machine could, and all give the same bits.
 
+use core::fmt;
 use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
 
 use peristalsis_physics::real::{Real, Vector};
 
-/// Number of lanes, whatever the registers of the machine.
-pub(crate) const LANES: usize = 8;
+pub(crate) use super::machine::LANES;
+use super::machine::Machine;
 
 /// Eight real numbers.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(64))]
-pub(crate) struct Lanes(pub(crate) [f64; LANES]);
+#[derive(Clone, Copy)]
+pub(crate) struct Lanes<M: Machine>(M::Numbers);
 
-/// Eight truth values, each all ones or all zeros.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(64))]
-pub(crate) struct Mask(pub(crate) [u64; LANES]);
+/// Eight truth values.
+#[derive(Clone, Copy)]
+pub(crate) struct Mask<M: Machine>(M::Truths);
 
 /// Eight vectors in space.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct LaneVector {
-    pub(crate) x: Lanes,
-    pub(crate) y: Lanes,
-    pub(crate) z: Lanes,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LaneVector<M: Machine> {
+    pub(crate) x: Lanes<M>,
+    pub(crate) y: Lanes<M>,
+    pub(crate) z: Lanes<M>,
 }
 
-impl Lanes {
-    /// One number from each lane's number.
+impl<M: Machine> Lanes<M> {
+    /// A number for each lane.
     #[inline(always)]
     pub(crate) fn from_lanes(of: impl FnMut(usize) -> f64) -> Self {
-        Self(core::array::from_fn(of))
+        Self(M::from_array(core::array::from_fn(of)))
+    }
+
+    /// The number of each lane.
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [f64; LANES] {
+        M::to_array(self.0)
     }
 
     /// The numbers of `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn load(slice: &[f64], start: usize) -> Self {
-        let window: &[f64; LANES] = slice[start..start + LANES]
-            .try_into()
-            .expect("a window of LANES numbers");
-        Self(*window)
+        let window = slice[start..].first_chunk::<LANES>();
+        Self(M::load(window.expect("a window of LANES numbers")))
     }
 
     /// Writes the numbers into `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
-        slice[start..start + LANES].copy_from_slice(&self.0);
-    }
-
-    #[inline(always)]
-    fn zip(self, other: Self, with: impl Fn(f64, f64) -> f64) -> Self {
-        Self(core::array::from_fn(|lane| {
-            with(self.0[lane], other.0[lane])
-        }))
+        let window = slice[start..].first_chunk_mut::<LANES>();
+        M::store(self.0, window.expect("a window of LANES numbers"));
     }
 
     /// Where this is at most `other`; false where either is not a number.
     #[inline(always)]
-    pub(crate) fn at_most(self, other: Self) -> Mask {
-        Mask(core::array::from_fn(|lane| {
-            0u64.wrapping_sub(u64::from(self.0[lane] <= other.0[lane]))
-        }))
-    }
-
-    /// The lesser of each lane.
-    #[inline(always)]
-    pub(crate) fn min(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a < b { a } else { b })
-    }
-
-    /// The larger of each lane.
-    #[inline(always)]
-    pub(crate) fn max(self, other: Self) -> Self {
-        self.zip(other, |a, b| if a > b { a } else { b })
-    }
-
-    /// Without signs.
-    #[inline(always)]
-    pub(crate) fn abs(self) -> Self {
-        Self(self.0.map(f64::abs))
+    pub(crate) fn at_most(self, other: Self) -> Mask<M> {
+        Mask(M::at_most(self.0, other.0))
     }
 
     /// 1/sqrt of positive numbers between 1e-30 and 1e30, to within two units in the last place: from single precision
     /// by one step of third order, y (1 + e/2 + 3 e^2/8) with e = 1 - x y^2.
     #[inline(always)]
     pub(crate) fn reciprocal_sqrt(self) -> Self {
-        let seed = Self(self.0.map(|x| f64::from(1.0 / (x as f32).sqrt())));
+        let seed = Self(M::rough_reciprocal_sqrt(self.0));
         let rest = Self::splat(1.0) - self * (seed * seed);
         seed + seed * (rest * (Self::splat(0.5) + Self::splat(0.375) * rest))
+    }
+
+    /// The nearest whole numbers, as numbers and as integers; for less than 2^31 in size.
+    #[inline(always)]
+    pub(crate) fn round(self) -> (Self, [i32; LANES]) {
+        // Added to a number, this leaves no digits behind the point, and the integer in the lowest bits.
+        let shift = Self::splat(6_755_399_441_055_744.0);
+        let shifted = self + shift;
+        (
+            shifted - shift,
+            shifted.to_array().map(|value| value.to_bits() as i32),
+        )
     }
 
     /// The sum of all lanes, in an order that does not depend on the machine.
     #[inline(always)]
     pub(crate) fn sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.0;
+        let [a, b, c, d, e, f, g, h] = self.to_array();
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
     /// The largest of all lanes.
     #[inline(always)]
     pub(crate) fn largest(self) -> f64 {
-        self.0
-            .into_iter()
-            .reduce(|a, b| if a > b { a } else { b })
-            .expect("there are lanes")
+        let [a, b, c, d, e, f, g, h] = self.to_array();
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        larger(
+            larger(larger(a, e), larger(c, g)),
+            larger(larger(b, f), larger(d, h)),
+        )
     }
 }
 
-impl Mask {
-    /// From a truth value for each lane.
+impl<M: Machine> Mask<M> {
+    /// Bit l is the truth value of lane l.
     #[inline(always)]
-    pub(crate) fn from_lanes(mut of: impl FnMut(usize) -> bool) -> Self {
-        Self(core::array::from_fn(|lane| {
-            0u64.wrapping_sub(u64::from(of(lane)))
-        }))
+    pub(crate) fn from_bits(bits: u8) -> Self {
+        Self(M::from_bits(bits))
+    }
+
+    /// True in the first so many lanes, in all if there are fewer.
+    #[inline(always)]
+    pub(crate) fn first(number: usize) -> Self {
+        Self::from_bits(if number < LANES {
+            (1 << number) - 1
+        } else {
+            u8::MAX
+        })
+    }
+
+    /// Bit l is the truth value of lane l.
+    #[inline(always)]
+    pub(crate) fn to_bits(self) -> u8 {
+        M::to_bits(self.0)
     }
 
     /// Whether it holds anywhere.
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
-        self.0.into_iter().fold(0, |all, lane| all | lane) != 0
+        self.to_bits() != 0
     }
 
     /// Number of lanes where it holds.
     #[inline(always)]
     pub(crate) fn count(self) -> u64 {
-        self.0.into_iter().map(|lane| lane & 1).sum()
-    }
-
-    /// Whether it holds in a lane.
-    #[inline(always)]
-    pub(crate) fn holds(self, lane: usize) -> bool {
-        self.0[lane] != 0
+        u64::from(self.to_bits().count_ones())
     }
 }
 
-impl LaneVector {
+impl<M: Machine> LaneVector<M> {
     /// A vector in each lane.
     #[inline(always)]
-    pub(crate) fn new(x: Lanes, y: Lanes, z: Lanes) -> Self {
+    pub(crate) fn new(x: Lanes<M>, y: Lanes<M>, z: Lanes<M>) -> Self {
         Self { x, y, z }
     }
 
+    /// |v|^2
     #[inline(always)]
-    fn map(self, of: impl Fn(Lanes) -> Lanes) -> Self {
+    pub(crate) fn squared(self) -> Lanes<M> {
+        self.dot(self)
+    }
+
+    #[inline(always)]
+    fn map(self, of: impl Fn(Lanes<M>) -> Lanes<M>) -> Self {
         Self::new(of(self.x), of(self.y), of(self.z))
     }
 }
 
-impl Real for Lanes {
-    type Mask = Mask;
-    type Vector = LaneVector;
+impl<M: Machine> Real for Lanes<M> {
+    type Mask = Mask<M>;
+    type Vector = LaneVector<M>;
 
     #[inline(always)]
     fn splat(value: f64) -> Self {
-        Self([value; LANES])
+        Self(M::splat(value))
     }
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Self(self.0.map(f64::sqrt))
+        Self(M::sqrt(self.0))
     }
 
     #[inline(always)]
-    fn less(self, other: Self) -> Mask {
-        Mask(core::array::from_fn(|lane| {
-            0u64.wrapping_sub(u64::from(self.0[lane] < other.0[lane]))
-        }))
+    fn less(self, other: Self) -> Mask<M> {
+        Mask(M::less(self.0, other.0))
     }
 
     #[inline(always)]
-    fn select(mask: Mask, yes: Self, no: Self) -> Self {
-        Self(core::array::from_fn(|lane| {
-            if mask.0[lane] != 0 {
-                yes.0[lane]
-            } else {
-                no.0[lane]
-            }
-        }))
+    fn select(mask: Mask<M>, yes: Self, no: Self) -> Self {
+        Self(M::select(mask.0, yes.0, no.0))
+    }
+
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        Self(M::lesser(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn larger(self, other: Self) -> Self {
+        Self(M::larger(self.0, other.0))
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        Self(M::size(self.0))
     }
 }
 
-impl Vector<Lanes> for LaneVector {
+impl<M: Machine> Vector<Lanes<M>> for LaneVector<M> {
     #[inline(always)]
-    fn dot(self, other: Self) -> Lanes {
+    fn dot(self, other: Self) -> Lanes<M> {
         self.x * other.x + self.y * other.y + self.z * other.z
     }
 
@@ -200,7 +210,7 @@ impl Vector<Lanes> for LaneVector {
     }
 
     #[inline(always)]
-    fn select(mask: Mask, yes: Self, no: Self) -> Self {
+    fn select(mask: Mask<M>, yes: Self, no: Self) -> Self {
         Self::new(
             Lanes::select(mask, yes.x, no.x),
             Lanes::select(mask, yes.y, no.y),
@@ -209,50 +219,58 @@ impl Vector<Lanes> for LaneVector {
     }
 }
 
-macro_rules! lane_by_lane {
-    ($($operator:ident $method:ident $symbol:tt;)*) => {$(
-        impl $operator for Lanes {
+/// An operator of a wrapper, by the machine's operation of that name.
+macro_rules! operators {
+    ($($type:ident: $($operator:ident $method:ident $operation:ident),+;)+) => {$($(
+        impl<M: Machine> $operator for $type<M> {
             type Output = Self;
 
             #[inline(always)]
             fn $method(self, other: Self) -> Self {
-                self.zip(other, |a, b| a $symbol b)
+                Self(M::$operation(self.0, other.0))
             }
         }
-    )*};
+    )+)+};
 }
 
-lane_by_lane! {
-    Add add +;
-    Sub sub -;
-    Mul mul *;
-    Div div /;
+operators! {
+    Lanes: Add add add, Sub sub sub, Mul mul mul, Div div div;
+    Mask: BitAnd bitand and, BitOr bitor or;
 }
 
-impl AddAssign for Lanes {
+impl<M: Machine> Neg for Lanes<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self(M::neg(self.0))
+    }
+}
+
+impl<M: Machine> Not for Mask<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self(M::not(self.0))
+    }
+}
+
+impl<M: Machine> AddAssign for Lanes<M> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl SubAssign for Lanes {
+impl<M: Machine> SubAssign for Lanes<M> {
     #[inline(always)]
     fn sub_assign(&mut self, other: Self) {
         *self = *self - other;
     }
 }
 
-impl Neg for Lanes {
-    type Output = Self;
-
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(self.0.map(|value| -value))
-    }
-}
-
-impl Add for LaneVector {
+impl<M: Machine> Add for LaneVector<M> {
     type Output = Self;
 
     #[inline(always)]
@@ -261,14 +279,14 @@ impl Add for LaneVector {
     }
 }
 
-impl AddAssign for LaneVector {
+impl<M: Machine> AddAssign for LaneVector<M> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
     }
 }
 
-impl Sub for LaneVector {
+impl<M: Machine> Sub for LaneVector<M> {
     type Output = Self;
 
     #[inline(always)]
@@ -277,7 +295,7 @@ impl Sub for LaneVector {
     }
 }
 
-impl Neg for LaneVector {
+impl<M: Machine> Neg for LaneVector<M> {
     type Output = Self;
 
     #[inline(always)]
@@ -286,38 +304,62 @@ impl Neg for LaneVector {
     }
 }
 
-impl Mul<Lanes> for LaneVector {
+impl<M: Machine> Mul<Lanes<M>> for LaneVector<M> {
     type Output = Self;
 
     #[inline(always)]
-    fn mul(self, by: Lanes) -> Self {
+    fn mul(self, by: Lanes<M>) -> Self {
         self.map(|component| component * by)
     }
 }
 
-macro_rules! bit_by_bit {
-    ($($operator:ident $method:ident $symbol:tt;)*) => {$(
-        impl $operator for Mask {
-            type Output = Self;
-
-            #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(core::array::from_fn(|lane| self.0[lane] $symbol other.0[lane]))
-            }
-        }
-    )*};
-}
-
-bit_by_bit! {
-    BitAnd bitand &;
-    BitOr bitor |;
-}
-
-impl Not for Mask {
-    type Output = Self;
-
+impl<M: Machine> Default for Lanes<M> {
     #[inline(always)]
-    fn not(self) -> Self {
-        Self(self.0.map(|lane| !lane))
+    fn default() -> Self {
+        Self::splat(0.0)
+    }
+}
+
+impl<M: Machine> Default for Mask<M> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::from_bits(0)
+    }
+}
+
+impl<M: Machine> PartialEq for Lanes<M> {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_array() == other.to_array()
+    }
+}
+
+impl<M: Machine> PartialEq for Mask<M> {
+    fn eq(&self, other: &Self) -> bool {
+        self.to_bits() == other.to_bits()
+    }
+}
+
+impl<M: Machine> fmt::Debug for Lanes<M> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.to_array().fmt(formatter)
+    }
+}
+
+impl<M: Machine> fmt::Debug for Mask<M> {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{:#010b}", self.to_bits())
+    }
+}
+
+impl<M: Machine> Default for LaneVector<M> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::new(Lanes::default(), Lanes::default(), Lanes::default())
+    }
+}
+
+impl<M: Machine> PartialEq for LaneVector<M> {
+    fn eq(&self, other: &Self) -> bool {
+        (self.x, self.y, self.z) == (other.x, other.y, other.z)
     }
 }

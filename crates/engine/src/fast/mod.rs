@@ -1,5 +1,6 @@
 //! The fast kernels: eight contacts at a time, the same bits on every set of instructions.
 
-pub(crate) mod dispatch;
 pub(crate) mod lanes;
 pub(crate) mod listed;
+pub(crate) mod machine;
+pub(crate) mod sorted;

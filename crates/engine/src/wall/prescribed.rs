@@ -3,7 +3,7 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 use peristalsis_physics::wall::lattice::approximate_half_steps;
-use peristalsis_physics::wall::{Lattice, RadiusWave, Schedule, Waveform};
+use peristalsis_physics::wall::{Lattice, RadiusWave, Ring, Schedule, Waveform};
 
 use super::memory::WallMemory;
 use crate::bodies::Bodies;
@@ -27,8 +27,8 @@ pub struct PrescribedWall {
     rings_per_length: f64,
     /// cos and sin of every angle that a wall sphere can have, by half steps.
     directions: Vec<(f64, f64)>,
-    /// Radius and radial velocity of the rings of one wavelength now.
-    rings: Vec<(f64, f64)>,
+    /// The rings of one wavelength now.
+    rings: Vec<Ring>,
     wave: RadiusWave,
     cycles: f64,
 }
@@ -71,7 +71,7 @@ impl PrescribedWall {
             spacing: lattice.spacing(),
             rings_per_length: 1.0 / lattice.spacing(),
             directions,
-            rings: vec![(0.0, 0.0); lattice.rings_per_wave as usize],
+            rings: vec![Ring::default(); lattice.rings_per_wave as usize],
             wave,
             cycles: 0.0,
         };
@@ -106,10 +106,13 @@ impl PrescribedWall {
         let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
         for (ring, entry) in self.rings.iter_mut().enumerate() {
             let z = self.lattice.axial_position(ring as u32);
-            *entry = self
-                .wave
-                .radius_and_velocity(z, self.cycles, frequency, amplitude_rate);
+            *entry = self.wave.ring(z, self.cycles, frequency, amplitude_rate);
         }
+    }
+
+    /// The rings of one wavelength now.
+    pub(crate) fn rings(&self) -> &[Ring] {
+        &self.rings
     }
 
     /// The lattice.
@@ -146,7 +149,7 @@ impl PrescribedWall {
     pub fn sphere_position(&self, index: usize) -> DVec3 {
         let sphere = self.lattice.sphere(index);
         let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
-        let (radius, _) = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
+        let Ring { radius, .. } = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
         DVec3::new(
             radius * cos,
             radius * sin,
@@ -180,7 +183,8 @@ impl PrescribedWall {
         let mut in_wave = ring % self.rings.len();
         let mut half_steps = None;
         for unfolded_ring in first..=last {
-            let (this_ring, (radius, radial_velocity)) = (ring, self.rings[in_wave]);
+            let (this_ring, here) = (ring, self.rings[in_wave]);
+            let (radius, radial_velocity) = (here.radius, here.velocity);
             ring = if ring + 1 == rings { 0 } else { ring + 1 };
             in_wave = if in_wave + 1 == self.rings.len() {
                 0

@@ -2,6 +2,8 @@
 
 use core::f64::consts::PI;
 
+use crate::real::Real;
+
 /// Staggered rings: M spheres a ring, alternate rings turned by pi/M, an axial distance s apart.
 ///
 /// Ring k stands at zeta_k = k s, s = lambda/(rings a wavelength); sphere i of it at the angle
@@ -137,26 +139,24 @@ impl Lattice {
 ///
 /// Enough to find the nearest sphere of a ring, whose contacts are then found exactly. A polynomial, so that the same
 /// bits come out on every platform; after Abramowitz & Stegun 4.4.49.
-#[inline]
+#[inline(always)]
 #[must_use]
-pub fn approximate_half_steps(x: f64, y: f64, spheres_per_ring: f64) -> f64 {
-    let (across, along) = (x.abs().min(y.abs()), x.abs().max(y.abs()));
-    if along == 0.0 {
-        return 0.0;
-    }
-    let q = across / along;
+pub fn approximate_half_steps<R: Real>(x: R, y: R, spheres_per_ring: f64) -> R {
+    let zero = R::splat(0.0);
+    let (size_x, size_y) = (x.size(), y.size());
+    let (across, along) = (size_x.lesser(size_y), size_x.larger(size_y));
+    // On the axis any angle will do.
+    let q = across / along.larger(R::splat(f64::MIN_POSITIVE));
     let s = q * q;
-    let octant = q
-        * (0.999_866_0
-            + s * (-0.330_299_5 + s * (0.180_141_0 + s * (-0.085_133_0 + s * 0.020_835_1))));
-    let quadrant = if y.abs() > x.abs() {
-        0.5 * PI - octant
-    } else {
-        octant
-    };
-    let half = if x < 0.0 { PI - quadrant } else { quadrant };
-    let angle = if y < 0.0 { 2.0 * PI - half } else { half };
-    angle * spheres_per_ring / PI
+    let mut series = R::splat(0.020_835_1);
+    for coefficient in [-0.085_133_0, 0.180_141_0, -0.330_299_5, 0.999_866_0] {
+        series = series * s + R::splat(coefficient);
+    }
+    let octant = q * series;
+    let quadrant = R::select(size_x.less(size_y), R::splat(0.5 * PI) - octant, octant);
+    let half = R::select(x.less(zero), R::splat(PI) - quadrant, quadrant);
+    let angle = R::select(y.less(zero), R::splat(2.0 * PI) - half, half);
+    angle * R::splat(spheres_per_ring / PI)
 }
 
 #[cfg(test)]

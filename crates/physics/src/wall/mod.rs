@@ -6,4 +6,4 @@ pub mod wave;
 
 pub use lattice::{Lattice, WallSphere};
 pub use schedule::Schedule;
-pub use wave::{Direction, RadiusWave, Waveform};
+pub use wave::{Direction, RadiusWave, Ring, Waveform};

@@ -41,6 +41,22 @@ impl Waveform {
             }
         }
     }
+
+    /// Largest size of the slope against 2 pi phase.
+    #[must_use]
+    pub fn steepest(self) -> f64 {
+        match self {
+            Self::Sine => 1.0,
+        }
+    }
+
+    /// Largest size of the second derivative against 2 pi phase.
+    #[must_use]
+    pub fn most_curved(self) -> f64 {
+        match self {
+            Self::Sine => 1.0,
+        }
+    }
 }
 
 /// Radius of a peristaltic tube and its velocity.
@@ -63,6 +79,17 @@ pub struct RadiusWave {
     pub heading: f64,
 }
 
+/// A ring of a wall that follows the wave, at one instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ring {
+    /// R \[d\]
+    pub radius: f64,
+    /// dR/dt at fixed z \[d/t\]
+    pub velocity: f64,
+    /// dR/dz at fixed time
+    pub slope: f64,
+}
+
 impl RadiusWave {
     /// Phase in cycles at z, after the wave has gone `cycles` = c t/lambda wavelengths.
     #[must_use]
@@ -77,21 +104,16 @@ impl RadiusWave {
         self.mean_radius + self.amplitude * self.waveform.value(self.phase(z, cycles))
     }
 
-    /// R \[d\] and dR/dt \[d/t\] at z, for frequency c/lambda and rate of change db/dt of the amplitude.
+    /// The wall at z, for frequency c/lambda and rate of change db/dt of the amplitude.
     #[must_use]
-    pub fn radius_and_velocity(
-        &self,
-        z: f64,
-        cycles: f64,
-        frequency: f64,
-        amplitude_rate: f64,
-    ) -> (f64, f64) {
+    pub fn ring(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> Ring {
         let phase = self.phase(z, cycles);
         let (value, slope) = self.waveform.value_and_slope(phase);
-        (
-            self.mean_radius + self.amplitude * value,
-            self.amplitude * frequency * slope + amplitude_rate * value,
-        )
+        Ring {
+            radius: self.mean_radius + self.amplitude * value,
+            velocity: self.amplitude * frequency * slope + amplitude_rate * value,
+            slope: -self.heading / self.wavelength * self.amplitude * slope,
+        }
     }
 
     /// Position in the frame of the wave, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
@@ -131,15 +153,18 @@ mod tests {
     }
 
     #[test]
-    fn velocity_is_the_derivative_of_the_radius() {
+    fn velocity_and_slope_are_the_derivatives_of_the_radius() {
         for heading in [-1.0, 1.0] {
             let wave = wave(heading);
             let (frequency, z, cycles, dt) = (0.1, 2.3, 0.77, 1e-5);
             let later = wave.radius(z, cycles + frequency * dt);
             let earlier = wave.radius(z, cycles - frequency * dt);
-            let (radius, velocity) = wave.radius_and_velocity(z, cycles, frequency, 0.0);
-            assert_eq!(radius, wave.radius(z, cycles));
-            assert!((velocity - (later - earlier) / (2.0 * dt)).abs() < 1e-9);
+            let ring = wave.ring(z, cycles, frequency, 0.0);
+            assert_eq!(ring.radius, wave.radius(z, cycles));
+            assert!((ring.velocity - (later - earlier) / (2.0 * dt)).abs() < 1e-9);
+            let ahead = wave.radius(z + dt, cycles);
+            let behind = wave.radius(z - dt, cycles);
+            assert!((ring.slope - (ahead - behind) / (2.0 * dt)).abs() < 1e-9);
         }
     }
 

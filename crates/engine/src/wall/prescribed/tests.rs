@@ -198,7 +198,7 @@ fn forces_are_sums_over_the_spheres() {
             for (sphere, apart) in by_looking_at_all(&wall, centre, diameter) {
                 let ring = wall.lattice.sphere(sphere as usize).ring;
                 let z = wall.lattice.axial_position(ring);
-                let speed = wall.wave.radius_and_velocity(z, wall.cycles, 0.07, 0.0).1;
+                let speed = wall.wave.ring(z, wall.cycles, 0.07, 0.0).velocity;
                 let place = wall.sphere_position(sphere as usize);
                 let velocity = speed * DVec3::new(place.x, place.y, 0.0).normalize();
                 let n = apart.normalize();

@@ -1,0 +1,173 @@
+//! Eight numbers in two registers of 256 bits.
+
+use core::arch::x86_64::*;
+
+use super::{LANES, Machine};
+
+/// AVX2.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Avx2;
+
+/// Does the same with both registers.
+macro_rules! both {
+    ($operation:ident($($argument:ident),+)) => {
+        // SAFETY: see the module above; the instructions have been found before any of this runs.
+        unsafe { [$operation($($argument[0]),+), $operation($($argument[1]),+)] }
+    };
+}
+
+// SAFETY of every block below: as above.
+impl Machine for Avx2 {
+    type Numbers = [__m256d; 2];
+    type Truths = [__m256d; 2];
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self::Numbers {
+        unsafe { [_mm256_set1_pd(value); 2] }
+    }
+
+    #[inline(always)]
+    fn from_array([a, b, c, d, e, f, g, h]: [f64; LANES]) -> Self::Numbers {
+        unsafe { [_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)] }
+    }
+
+    #[inline(always)]
+    fn to_array(values: Self::Numbers) -> [f64; LANES] {
+        let mut array = [0.0; LANES];
+        Self::store(values, &mut array);
+        array
+    }
+
+    #[inline(always)]
+    fn load(values: &[f64; LANES]) -> Self::Numbers {
+        let (low, high) = values.split_at(4);
+        unsafe {
+            [
+                _mm256_loadu_pd(low.as_ptr()),
+                _mm256_loadu_pd(high.as_ptr()),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn store(values: Self::Numbers, to: &mut [f64; LANES]) {
+        let (low, high) = to.split_at_mut(4);
+        unsafe {
+            _mm256_storeu_pd(low.as_mut_ptr(), values[0]);
+            _mm256_storeu_pd(high.as_mut_ptr(), values[1]);
+        }
+    }
+
+    #[inline(always)]
+    fn add(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_add_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn sub(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_sub_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn mul(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_mul_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_div_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn neg(a: Self::Numbers) -> Self::Numbers {
+        let sign = Self::splat(-0.0);
+        both!(_mm256_xor_pd(a, sign))
+    }
+
+    #[inline(always)]
+    fn sqrt(a: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_sqrt_pd(a))
+    }
+
+    #[inline(always)]
+    fn size(a: Self::Numbers) -> Self::Numbers {
+        let sign = Self::splat(-0.0);
+        both!(_mm256_andnot_pd(sign, a))
+    }
+
+    #[inline(always)]
+    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_min_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_max_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers {
+        a.map(|a| unsafe {
+            let root = _mm_sqrt_ps(_mm256_cvtpd_ps(a));
+            _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1.0), root))
+        })
+    }
+
+    #[inline(always)]
+    fn less(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+        unsafe {
+            [
+                _mm256_cmp_pd::<_CMP_LT_OQ>(a[0], b[0]),
+                _mm256_cmp_pd::<_CMP_LT_OQ>(a[1], b[1]),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+        unsafe {
+            [
+                _mm256_cmp_pd::<_CMP_LE_OQ>(a[0], b[0]),
+                _mm256_cmp_pd::<_CMP_LE_OQ>(a[1], b[1]),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers {
+        both!(_mm256_blendv_pd(no, yes, mask))
+    }
+
+    #[inline(always)]
+    fn and(a: Self::Truths, b: Self::Truths) -> Self::Truths {
+        both!(_mm256_and_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn or(a: Self::Truths, b: Self::Truths) -> Self::Truths {
+        both!(_mm256_or_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn not(a: Self::Truths) -> Self::Truths {
+        let all = unsafe { [_mm256_castsi256_pd(_mm256_set1_epi64x(-1)); 2] };
+        both!(_mm256_xor_pd(a, all))
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u8) -> Self::Truths {
+        unsafe {
+            let bits = _mm256_set1_epi64x(i64::from(bits));
+            [
+                _mm256_setr_epi64x(1, 2, 4, 8),
+                _mm256_setr_epi64x(16, 32, 64, 128),
+            ]
+            .map(|bit| _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, bit), bit)))
+        }
+    }
+
+    #[inline(always)]
+    fn to_bits(a: Self::Truths) -> u8 {
+        unsafe { (_mm256_movemask_pd(a[0]) | _mm256_movemask_pd(a[1]) << 4) as u8 }
+    }
+}

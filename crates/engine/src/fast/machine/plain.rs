@@ -1,0 +1,143 @@
+//! Eight numbers in an array: the meaning of every operation, and what runs where there are no wide registers.
+
+use super::{LANES, Machine};
+
+/// Plain code.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plain;
+
+#[inline(always)]
+fn zip(a: [f64; LANES], b: [f64; LANES], with: impl Fn(f64, f64) -> f64) -> [f64; LANES] {
+    core::array::from_fn(|lane| with(a[lane], b[lane]))
+}
+
+#[inline(always)]
+fn bits(of: impl Fn(usize) -> bool) -> u8 {
+    (0..LANES).fold(0, |bits, lane| bits | (u8::from(of(lane)) << lane))
+}
+
+impl Machine for Plain {
+    type Numbers = [f64; LANES];
+    type Truths = u8;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self::Numbers {
+        [value; LANES]
+    }
+
+    #[inline(always)]
+    fn from_array(values: [f64; LANES]) -> Self::Numbers {
+        values
+    }
+
+    #[inline(always)]
+    fn to_array(values: Self::Numbers) -> [f64; LANES] {
+        values
+    }
+
+    #[inline(always)]
+    fn load(values: &[f64; LANES]) -> Self::Numbers {
+        *values
+    }
+
+    #[inline(always)]
+    fn store(values: Self::Numbers, to: &mut [f64; LANES]) {
+        *to = values;
+    }
+
+    #[inline(always)]
+    fn add(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| a + b)
+    }
+
+    #[inline(always)]
+    fn sub(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| a - b)
+    }
+
+    #[inline(always)]
+    fn mul(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| a * b)
+    }
+
+    #[inline(always)]
+    fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| a / b)
+    }
+
+    #[inline(always)]
+    fn neg(a: Self::Numbers) -> Self::Numbers {
+        a.map(|a| -a)
+    }
+
+    #[inline(always)]
+    fn sqrt(a: Self::Numbers) -> Self::Numbers {
+        a.map(f64::sqrt)
+    }
+
+    #[inline(always)]
+    fn size(a: Self::Numbers) -> Self::Numbers {
+        a.map(f64::abs)
+    }
+
+    #[inline(always)]
+    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| if a < b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+        zip(a, b, |a, b| if a > b { a } else { b })
+    }
+
+    #[inline(always)]
+    fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers {
+        a.map(|a| f64::from(1.0 / (a as f32).sqrt()))
+    }
+
+    #[inline(always)]
+    fn less(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+        bits(|lane| a[lane] < b[lane])
+    }
+
+    #[inline(always)]
+    fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+        bits(|lane| a[lane] <= b[lane])
+    }
+
+    #[inline(always)]
+    fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers {
+        core::array::from_fn(|lane| {
+            if mask >> lane & 1 == 1 {
+                yes[lane]
+            } else {
+                no[lane]
+            }
+        })
+    }
+
+    #[inline(always)]
+    fn and(a: Self::Truths, b: Self::Truths) -> Self::Truths {
+        a & b
+    }
+
+    #[inline(always)]
+    fn or(a: Self::Truths, b: Self::Truths) -> Self::Truths {
+        a | b
+    }
+
+    #[inline(always)]
+    fn not(a: Self::Truths) -> Self::Truths {
+        !a
+    }
+
+    #[inline(always)]
+    fn from_bits(bits: u8) -> Self::Truths {
+        bits
+    }
+
+    #[inline(always)]
+    fn to_bits(a: Self::Truths) -> u8 {
+        a
+    }
+}

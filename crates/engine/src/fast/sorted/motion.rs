@@ -1,0 +1,191 @@
+//! Velocity Verlet, tile by tile: the kick that ends a step and the drift that begins the next in one pass.
+
+use peristalsis_physics::real::Real;
+use rayon::prelude::*;
+
+use super::columns::{Columns, ColumnsMut};
+use super::{Sorted, TILE, Tile};
+use crate::fast::lanes::{LANES, Lanes, Mask};
+use crate::fast::machine::{Machine, Work};
+use crate::integrate::Runaway;
+
+/// Which part of a step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Phase {
+    /// x' = x + h v + h^2 a/2, v* = v + h a: the beginning of a step.
+    Drift,
+    /// v' = v* + h (a' - a)/2: its end.
+    Kick,
+    /// The end of a step and the beginning of the next.
+    KickAndDrift,
+}
+
+/// What a drift has moved.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Moved {
+    /// Least and largest displacement along z since the last sorting \[d\].
+    least: f64,
+    largest: f64,
+    /// Place of a grain that moved too far, and how far.
+    runaway: Option<(usize, f64)>,
+}
+
+impl Sorted {
+    /// Moves all grains; makes the order anew where it no longer holds.
+    pub(super) fn go(&mut self, phase: Phase, time_step: f64, limit: f64) -> Result<(), Runaway> {
+        let Self {
+            mass,
+            position,
+            velocity,
+            acceleration,
+            origin,
+            tiles,
+            instructions,
+            threads,
+            ..
+        } = self;
+        let one = |((((tile, position), velocity), acceleration), origin): (
+            (
+                ((&mut Tile, ColumnsMut<'_>), ColumnsMut<'_>),
+                ColumnsMut<'_>,
+            ),
+            &[f64],
+        )| {
+            instructions.run(MoveTile {
+                tile,
+                position,
+                velocity,
+                acceleration,
+                origin,
+                phase,
+                time_step,
+                per_mass: 1.0 / *mass,
+                limit,
+            });
+        };
+        if *threads > 1 {
+            tiles
+                .par_iter_mut()
+                .zip(position.par_tiles())
+                .zip(velocity.par_tiles())
+                .zip(acceleration.par_tiles())
+                .zip(origin.par_chunks(TILE))
+                .for_each(one);
+        } else {
+            tiles
+                .iter_mut()
+                .zip(position.tiles())
+                .zip(velocity.tiles())
+                .zip(acceleration.tiles())
+                .zip(origin.chunks(TILE))
+                .for_each(one);
+        }
+        if phase == Phase::Kick {
+            return Ok(());
+        }
+        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for tile in &self.tiles {
+            if let Some((place, displacement)) = tile.moved.runaway {
+                return Err(Runaway {
+                    body: self.order[place] as usize,
+                    displacement,
+                });
+            }
+            least = least.min(tile.moved.least);
+            largest = largest.max(tile.moved.largest);
+        }
+        if largest - least > self.skin {
+            self.sort();
+        }
+        Ok(())
+    }
+}
+
+impl Columns {
+    fn tiles(&mut self) -> impl Iterator<Item = ColumnsMut<'_>> {
+        let z = self.z.chunks_mut(TILE);
+        let xy = self.x.chunks_mut(TILE).zip(self.y.chunks_mut(TILE));
+        xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
+    }
+
+    fn par_tiles(&mut self) -> impl IndexedParallelIterator<Item = ColumnsMut<'_>> {
+        let z = self.z.par_chunks_mut(TILE);
+        let xy = self.x.par_chunks_mut(TILE).zip(self.y.par_chunks_mut(TILE));
+        xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
+    }
+}
+
+struct MoveTile<'a> {
+    tile: &'a mut Tile,
+    position: ColumnsMut<'a>,
+    velocity: ColumnsMut<'a>,
+    acceleration: ColumnsMut<'a>,
+    origin: &'a [f64],
+    phase: Phase,
+    time_step: f64,
+    per_mass: f64,
+    limit: f64,
+}
+
+impl Work for MoveTile<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        match self.phase {
+            Phase::Drift => self.go::<M, false, true>(),
+            Phase::Kick => self.go::<M, true, false>(),
+            Phase::KickAndDrift => self.go::<M, true, true>(),
+        }
+    }
+}
+
+impl MoveTile<'_> {
+    #[inline(always)]
+    fn go<M: Machine, const KICK: bool, const DRIFT: bool>(mut self) {
+        let step = Lanes::<M>::splat(self.time_step);
+        let half_step = Lanes::splat(0.5 * self.time_step);
+        let per_mass = Lanes::splat(self.per_mass);
+        let limit_squared = Lanes::splat(self.limit * self.limit);
+        let (first, end) = (self.tile.first, self.tile.end);
+        let mut least = Lanes::splat(f64::INFINITY);
+        let mut largest = Lanes::splat(f64::NEG_INFINITY);
+        let mut runaway = None;
+        for at in (0..end - first).step_by(LANES) {
+            let mut velocity = self.velocity.load(at);
+            let mut acceleration = self.acceleration.load(at);
+            if KICK {
+                let now = self.tile.force.load(at) * per_mass;
+                velocity += (now - acceleration) * half_step;
+                acceleration = now;
+                self.acceleration.store(at, acceleration);
+            }
+            if DRIFT {
+                let by = (velocity + acceleration * half_step) * step;
+                let position = self.position.load(at) + by;
+                velocity += acceleration * step;
+                self.position.store(at, position);
+                let holds = Mask::first(end - first - at);
+                let apart = !by.squared().at_most(limit_squared) & holds;
+                if apart.any() {
+                    let lane = apart.to_bits().trailing_zeros() as usize;
+                    runaway = runaway.or(Some((
+                        first + at + lane,
+                        by.squared().to_array()[lane].sqrt(),
+                    )));
+                }
+                let displacement = position.z - Lanes::load(self.origin, at);
+                least = least.lesser(Lanes::select(holds, displacement, least));
+                largest = largest.larger(Lanes::select(holds, displacement, largest));
+            }
+            self.velocity.store(at, velocity);
+        }
+        if DRIFT {
+            self.tile.moved = Moved {
+                least: -(-least).largest(),
+                largest: largest.largest(),
+                runaway,
+            };
+        }
+    }
+}

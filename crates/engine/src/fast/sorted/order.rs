@@ -1,0 +1,288 @@
+//! The order along the tube: making it, and bringing grains into it and back.
+
+use glam::DVec3;
+
+use super::columns::Columns;
+use super::{Sorted, TILE, Tile};
+use crate::bodies::{Bodies, fold};
+use crate::fast::lanes::LANES;
+
+/// What a restart needs to go on in the same order, and so with the same bits.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Sorting {
+    /// Which grain stands at each place.
+    pub order: Vec<u32>,
+    /// z at the last sorting, by place \[d\].
+    pub origin: Vec<f64>,
+    /// z now, running on beyond the ends of the tube since then, by place \[d\].
+    pub unfolded: Vec<f64>,
+}
+
+impl Sorting {
+    /// Whether this can be the order of so many grains; else why not.
+    pub(crate) fn check(&self, grains: usize) -> Result<(), String> {
+        if [self.order.len(), self.origin.len(), self.unfolded.len()] != [grains; 3] {
+            return Err("its order holds another number of grains".to_owned());
+        }
+        let mut seen = vec![false; grains];
+        for &grain in &self.order {
+            match seen.get_mut(grain as usize) {
+                Some(seen) if !*seen => *seen = true,
+                _ => return Err("its order does not hold each grain once".to_owned()),
+            }
+        }
+        if !self
+            .origin
+            .iter()
+            .chain(&self.unfolded)
+            .all(|z| z.abs() < FARTHEST)
+        {
+            return Err("its order holds places that are not in the tube".to_owned());
+        }
+        Ok(())
+    }
+}
+
+/// No tube reaches as far as this \[d\].
+const FARTHEST: f64 = 1e12;
+
+#[derive(Clone, Debug, Default)]
+pub(super) struct Scratch {
+    /// (z, place before) in the order that is being made.
+    keys: Vec<(f64, u32)>,
+    above: Vec<(f64, u32)>,
+    column: Vec<f64>,
+    order: Vec<u32>,
+    turns: Vec<i32>,
+}
+
+/// z of places that hold no grain: out of reach of everything.
+const NOWHERE: f64 = 1e30;
+
+impl Sorted {
+    /// Takes over all grains.
+    pub(super) fn load(&mut self, bodies: &Bodies, sorting: Option<&Sorting>) {
+        self.order.clear();
+        match sorting {
+            Some(sorting) => self.order.extend(&sorting.order),
+            None => self.order.extend(0..self.grains as u32),
+        }
+        for &grain in &self.order {
+            let grain = grain as usize;
+            self.turns.push(bodies.turns[grain]);
+            self.position.push(bodies.position[grain]);
+            self.velocity.push(bodies.velocity[grain]);
+            self.acceleration.push(bodies.acceleration[grain]);
+        }
+        match sorting {
+            Some(sorting) => {
+                for (place, &unfolded) in sorting.unfolded.iter().enumerate() {
+                    self.turns[place] -= fold(unfolded, self.length).1;
+                }
+                // What depends on where the grains were sorted is made from there.
+                self.position.z.copy_from_slice(&sorting.origin);
+                self.mark();
+                self.position.z[..self.grains].copy_from_slice(&sorting.unfolded);
+                self.copy_ghosts();
+            }
+            None => {
+                self.position
+                    .z
+                    .iter_mut()
+                    .zip(&mut self.turns)
+                    .for_each(|(z, turns)| {
+                        let (folded, count) = fold(*z, self.length);
+                        *z = folded;
+                        *turns += count;
+                    });
+                self.scratch.keys.clear();
+                let places = self.position.z.iter().zip(0..);
+                self.scratch
+                    .keys
+                    .extend(places.map(|(&z, place)| (z, place)));
+                self.scratch
+                    .keys
+                    .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+                self.permute();
+                self.mark();
+                self.copy_ghosts();
+            }
+        }
+    }
+
+    /// Brings the grains back to where the rest of the program looks for them.
+    pub(super) fn store(&self, bodies: &mut Bodies) {
+        for (place, &grain) in self.order.iter().enumerate() {
+            let grain = grain as usize;
+            let (z, turns) = fold(self.position.z[place], self.length);
+            bodies.position[grain] = DVec3::new(self.position.x[place], self.position.y[place], z);
+            bodies.turns[grain] = self.turns[place] + turns;
+            bodies.velocity[grain] = self.velocity.get(place);
+            bodies.acceleration[grain] = self.acceleration.get(place);
+        }
+    }
+
+    /// What a restart needs.
+    pub(crate) fn sorting(&self) -> Sorting {
+        Sorting {
+            order: self.order.clone(),
+            origin: self.origin[..self.grains].to_vec(),
+            unfolded: self.position.z[..self.grains].to_vec(),
+        }
+    }
+
+    /// Makes the order anew.
+    pub(super) fn sort(&mut self) {
+        let Scratch { keys, above, .. } = &mut self.scratch;
+        // Grains that left the tube at its end come first, those that left at its beginning last: what then remains to
+        // be done is little.
+        keys.clear();
+        above.clear();
+        let places = || self.position.z[..self.grains].iter().zip(0_u32..);
+        for (&z, place) in places() {
+            if z >= self.length {
+                keys.push((z, place));
+            } else if z < 0.0 {
+                above.push((z, place));
+            }
+        }
+        for (&z, place) in places() {
+            if (0.0..self.length).contains(&z) {
+                keys.push((z, place));
+            }
+        }
+        keys.append(above);
+        for (z, place) in keys.iter_mut() {
+            let (folded, turns) = fold(*z, self.length);
+            *z = folded;
+            self.turns[*place as usize] += turns;
+        }
+        for (z, &mut place) in keys.iter_mut().map(|(z, place)| (*z, place)) {
+            self.position.z[place as usize] = z;
+        }
+        insertion_sort(keys);
+        self.permute();
+        self.mark();
+        self.copy_ghosts();
+    }
+
+    /// Brings all columns into the order of the keys.
+    fn permute(&mut self) {
+        let Scratch {
+            keys,
+            column,
+            order,
+            turns,
+            ..
+        } = &mut self.scratch;
+        let grains = self.grains;
+        for columns in [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.acceleration,
+        ] {
+            for values in columns.each() {
+                column.clear();
+                column.extend(keys.iter().map(|&(_, place)| values[place as usize]));
+                values[..grains].copy_from_slice(column);
+            }
+        }
+        order.clear();
+        order.extend(keys.iter().map(|&(_, place)| self.order[place as usize]));
+        core::mem::swap(&mut self.order, order);
+        turns.clear();
+        turns.extend(keys.iter().map(|&(_, place)| self.turns[place as usize]));
+        core::mem::swap(&mut self.turns, turns);
+    }
+
+    /// Notes where the grains stand now and who may touch whom until they are sorted again.
+    fn mark(&mut self) {
+        let grains = self.grains;
+        let cutoff = self.pairs.reach + self.skin;
+        let z = &self.position.z;
+        // z of a place, going on round the tube.
+        let unfolded = |place: usize| {
+            if place < grains {
+                z[place]
+            } else {
+                z[place - grains] + self.length
+            }
+        };
+        self.ahead.clear();
+        let (mut end, mut last) = (0, 0);
+        for first in (0..grains).step_by(LANES) {
+            let mut most = 0;
+            for place in first..(first + LANES).min(grains) {
+                end = end.max(place + 1);
+                // A grain never meets itself.
+                while end < place + grains && unfolded(end) < unfolded(place) + cutoff {
+                    end += 1;
+                }
+                most = most.max(end - 1 - place);
+            }
+            last = last.max(first + LANES.min(grains - first) - 1 + most);
+            self.ahead.push(most as u32);
+        }
+        self.ghosts = (last + 1).saturating_sub(grains).min(grains);
+
+        let most_ahead = self.ahead.iter().copied().max().unwrap_or(0) as usize;
+        let room = grains + self.ghosts + most_ahead + 2 * LANES;
+        for columns in [
+            &mut self.position,
+            &mut self.velocity,
+            &mut self.acceleration,
+        ] {
+            columns.resize(room);
+        }
+        self.position.z[grains..].fill(NOWHERE);
+        self.origin.clear();
+        self.origin.extend_from_slice(&self.position.z);
+
+        let tiles = grains.div_ceil(TILE);
+        self.tiles.resize_with(tiles, Tile::empty);
+        for (index, tile) in self.tiles.iter_mut().enumerate() {
+            tile.first = index * TILE;
+            tile.end = (tile.first + TILE).min(grains);
+            let reaches = (tile.first..tile.end)
+                .step_by(LANES)
+                .map(|place| (place + LANES).min(grains) - 1 + self.ahead[place / LANES] as usize);
+            let last = reaches.max().unwrap_or(0);
+            tile.overhang = (last + 1).saturating_sub(tile.end).min(grains);
+            tile.force.resize(TILE + most_ahead + LANES);
+        }
+    }
+
+    /// Repeats the first grains behind the last, one period on.
+    pub(super) fn copy_ghosts(&mut self) {
+        for ghost in 0..self.ghosts {
+            self.position.copy(ghost, self.grains + ghost, self.length);
+            self.velocity.copy(ghost, self.grains + ghost, 0.0);
+        }
+    }
+}
+
+impl Tile {
+    fn empty() -> Self {
+        Self {
+            first: 0,
+            end: 0,
+            force: Columns::default(),
+            overhang: 0,
+            tally: super::Tally::default(),
+            moved: super::Moved::default(),
+        }
+    }
+}
+
+/// Sorts what is nearly sorted.
+fn insertion_sort(keys: &mut [(f64, u32)]) {
+    for unsorted in 1..keys.len() {
+        let key = keys[unsorted];
+        let mut hole = unsorted;
+        while hole > 0 && key.0 < keys[hole - 1].0 {
+            keys[hole] = keys[hole - 1];
+            hole -= 1;
+        }
+        keys[hole] = key;
+    }
+}

@@ -1,0 +1,106 @@
+//! Contacts between grains: each block of grains against the grains ahead of it, offset by offset.
+
+use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::real::{Real, Vector};
+
+use super::Sums;
+use super::columns::Columns;
+use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::machine::Machine;
+
+/// Squared distance \[d^2\] below which two centres count as one, and have no normal.
+pub(super) const COINCIDENT: f64 = 1e-30;
+
+/// What all pairs of grains share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PairConstants {
+    /// d, the distance at which grains touch.
+    pub(super) reach: f64,
+    /// R_ij \[d\]
+    pub(super) reduced_radius: f64,
+}
+
+/// A block of grains, one in each lane.
+#[derive(Clone, Copy)]
+pub(super) struct Block<M: Machine> {
+    place: usize,
+    pub(super) position: LaneVector<M>,
+    pub(super) velocity: LaneVector<M>,
+    /// Which lanes hold a grain.
+    pub(super) holds: Mask<M>,
+}
+
+impl<M: Machine> Block<M> {
+    /// The block that begins at `place`, of `grains` grains in all.
+    #[inline(always)]
+    pub(super) fn load(
+        position: &Columns,
+        velocity: &Columns,
+        place: usize,
+        grains: usize,
+    ) -> Self {
+        let holds = Mask::first(grains - place);
+        let mut block = Self {
+            place,
+            position: position.load(place),
+            velocity: velocity.load(place),
+            holds,
+        };
+        if place + LANES > grains {
+            // What stands in the other lanes may be anywhere.
+            block.position = LaneVector::select(holds, block.position, LaneVector::default());
+            block.velocity = LaneVector::select(holds, block.velocity, LaneVector::default());
+        }
+        block
+    }
+
+    /// Adds the forces between these grains and the `ahead` grains that follow each; `force` holds those from place
+    /// `first` on.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn add_pairs<N: NormalLaw, const FULL: bool>(
+        &self,
+        law: &N,
+        constants: &PairConstants,
+        position: &Columns,
+        velocity: &Columns,
+        ahead: usize,
+        first: usize,
+        force: &mut Columns,
+        sums: &mut Sums<M>,
+    ) {
+        let (block, place) = (self, self.place);
+        let reach = Lanes::splat(constants.reach);
+        let reach_squared = reach * reach;
+        let reduced_radius = Lanes::splat(constants.reduced_radius);
+        let mut on_block = LaneVector::default();
+        for offset in 1..=ahead {
+            let separation = block.position - position.load(place + offset);
+            let distance_squared = separation.squared();
+            let touches = distance_squared.less(reach_squared)
+                & Lanes::splat(COINCIDENT).less(distance_squared)
+                & block.holds;
+            if !touches.any() {
+                continue;
+            }
+            let inverse = distance_squared.reciprocal_sqrt();
+            let distance = distance_squared * inverse;
+            let overlap = reach - distance;
+            let away = block.velocity - velocity.load(place + offset);
+            let normal = separation * inverse;
+            let normal_velocity = away.dot(normal);
+            let answer = law.force(overlap, normal_velocity, reduced_radius);
+            let pushes = Lanes::select(touches, answer.force, Lanes::splat(0.0));
+            let pushed = normal * pushes;
+            on_block += pushed;
+            force.add(place + offset - first, -pushed);
+
+            let lost = (answer.elastic_force - answer.force) * normal_velocity;
+            sums.add_contact::<FULL>(touches, overlap, answer.energy, lost);
+            if FULL {
+                sums.grain_contacts += touches.count();
+            }
+        }
+        force.add(place - first, on_block);
+    }
+}
