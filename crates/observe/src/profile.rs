@@ -124,7 +124,12 @@ impl WaveFrameProfile {
             let folded = position - position.floor();
             ((folded * bins as f64) as usize).min(bins - 1)
         };
-        for wave in 0..lattice.waves {
+        let different_waves = if shape.is_periodic() {
+            1
+        } else {
+            lattice.waves
+        };
+        for wave in 0..different_waves {
             for (bin, sums) in last.iter_mut().enumerate() {
                 let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;
                 let z = (heading * position * lattice.wavelength).rem_euclid(lattice.length());

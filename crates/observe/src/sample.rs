@@ -176,8 +176,11 @@ impl Observer {
 #[must_use]
 pub fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
     let position = bodies.position[grain];
-    let limit = shape.radius(position.z) + 0.5 * bodies.diameter[grain];
-    position.x * position.x + position.y * position.y > limit * limit
+    let from_axis_squared = position.x * position.x + position.y * position.y;
+    let beyond = |limit: f64| from_axis_squared > limit * limit;
+    let half = 0.5 * bodies.diameter[grain];
+    // Nearly all grains are within the throat's radius, and need no look at the wall where they are.
+    beyond(shape.least_radius() + half) && beyond(shape.radius(position.z) + half)
 }
 
 fn granular_temperature(bodies: &Bodies) -> f64 {

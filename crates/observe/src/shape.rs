@@ -61,6 +61,20 @@ impl TubeShape {
         self.slice(z).mean
     }
 
+    /// A radius that the tube has at least everywhere, known without looking \[d\].
+    #[inline]
+    pub(crate) fn least_radius(&self) -> f64 {
+        match self {
+            Self::Wave(wave, _) => (wave.mean_radius - wave.amplitude.abs()).max(0.0),
+            Self::Slices(..) => 0.0,
+        }
+    }
+
+    /// Whether every wave of the tube has the same shape.
+    pub(crate) fn is_periodic(&self) -> bool {
+        matches!(self, Self::Wave(..))
+    }
+
     /// Least radius anywhere \[d\]: twice it is the smallest bottleneck.
     #[must_use]
     pub fn narrowest(&self) -> f64 {

@@ -1,5 +1,7 @@
 //! A wall whose spheres move as prescribed: strain control.
 
+use core::f64::consts::TAU;
+
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 use peristalsis_physics::wall::lattice::approximate_half_steps;
@@ -27,6 +29,8 @@ pub struct PrescribedWall {
     rings_per_length: f64,
     /// cos and sin of every angle that a wall sphere can have, by half steps.
     directions: Vec<(f64, f64)>,
+    /// cos and sin of 2 pi z/lambda of each ring of a wavelength, z along the wave.
+    ring_phases: Vec<(f64, f64)>,
     /// The rings of one wavelength now.
     rings: Vec<Ring>,
     wave: RadiusWave,
@@ -54,6 +58,12 @@ impl PrescribedWall {
                 (libm::cos(angle), libm::sin(angle))
             })
             .collect();
+        let ring_phases = (0..lattice.rings_per_wave)
+            .map(|ring| {
+                let phase = heading * TAU * f64::from(ring) / f64::from(lattice.rings_per_wave);
+                (libm::cos(phase), libm::sin(phase))
+            })
+            .collect();
         let wave = RadiusWave {
             mean_radius,
             amplitude: amplitude.value(0.0),
@@ -71,6 +81,7 @@ impl PrescribedWall {
             spacing: lattice.spacing(),
             rings_per_length: 1.0 / lattice.spacing(),
             directions,
+            ring_phases,
             rings: vec![Ring::default(); lattice.rings_per_wave as usize],
             wave,
             cycles: 0.0,

@@ -107,8 +107,14 @@ impl RadiusWave {
     /// The wall at z, for frequency c/lambda and rate of change db/dt of the amplitude.
     #[must_use]
     pub fn ring(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> Ring {
-        let phase = self.phase(z, cycles);
-        let (value, slope) = self.waveform.value_and_slope(phase);
+        let value_and_slope = self.waveform.value_and_slope(self.phase(z, cycles));
+        self.ring_of(value_and_slope, frequency, amplitude_rate)
+    }
+
+    /// The wall where the waveform has the given value and slope against phase.
+    #[inline]
+    #[must_use]
+    pub fn ring_of(&self, (value, slope): (f64, f64), frequency: f64, amplitude_rate: f64) -> Ring {
         Ring {
             radius: self.mean_radius + self.amplitude * value,
             velocity: self.amplitude * frequency * slope + amplitude_rate * value,
