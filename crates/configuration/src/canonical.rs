@@ -40,10 +40,10 @@ impl Configuration {
     }
 
     /// SHA-256 of everything that determines the trajectory: grains, contact, tube, drive, wall, initial state, time
-    /// step, integrator and seed.
+    /// step, integrator, kernel, skin of the neighbour search (the last two by rounding only) and seed.
     ///
-    /// The same for configurations that differ in the length of the run, in what is measured, in the skin of the
-    /// neighbour search, in the order of keys, or in the alternative given where it resolves to the same bits.
+    /// The same for configurations that differ in the length of the run, in what is measured, in the order of keys, or in
+    /// the alternative given where it resolves to the same bits.
     #[must_use]
     pub fn physics_hash(&self) -> [u8; 32] {
         self.hash("peristalsis physics 1\n", |role| role == Role::Physics)

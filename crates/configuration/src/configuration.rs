@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, NetForce, Sliding, WaveDirection,
+    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding, WaveDirection,
     Waveform,
 };
 use crate::schedule::Schedule;
@@ -248,6 +248,8 @@ pub struct Run {
     pub samples: u64,
     /// How the equations of motion are stepped.
     pub integrator: Integrator,
+    /// Which kernel computes the forces.
+    pub kernel: Kernel,
     /// Seed of the random numbers.
     pub seed: u64,
     /// How much farther the neighbour search looks than contacts reach \[d\].

@@ -134,8 +134,9 @@ impl Configuration {
         }
         entries.add("run", "time_step", Value::Number(run.time_step));
         entries.add("run", "integrator", Value::name(run.integrator));
+        entries.add("run", "kernel", Value::name(run.kernel));
         entries.add("run", "seed", Value::Count(run.seed));
-        entries.extent("run", "neighbour_skin", Value::Number(run.neighbour_skin));
+        entries.add("run", "neighbour_skin", Value::Number(run.neighbour_skin));
         let samples = Value::Count(observe.samples_per_period.into());
         entries.extent("observe", "samples_per_period", samples);
         entries.extent(

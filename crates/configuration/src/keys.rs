@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use crate::defaults;
 use crate::options::{
-    ControlName, DissipationForm, DriveAngle, InitialState, Integrator, NetForce, NormalLawName,
+    ControlName, DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, NormalLawName,
     ScheduleFormName, ScheduleName, ScheduledParameterName, Sliding, WaveDirection, Waveform,
 };
 
@@ -279,10 +279,13 @@ pub(crate) struct RunKeys {
     /// How the equations of motion are stepped.
     #[schemars(extend("default" = "verlet"))]
     pub(crate) integrator: Option<Integrator>,
+    /// Which kernel computes the forces.
+    #[schemars(extend("default" = "fast"))]
+    pub(crate) kernel: Option<Kernel>,
     /// Seed of the random numbers that place the grains.
     #[schemars(extend("x-unit" = "1", "maximum" = i64::MAX, "default" = defaults::SEED))]
     pub(crate) seed: Option<u64>,
-    /// Distance by which the neighbour search looks farther than contacts reach: speed only, no result depends on it.
+    /// Distance by which the neighbour search looks farther than contacts reach: it sets the speed, and the order of sums.
     /// Missing: 0.3 of the largest grain diameter.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) neighbour_skin: Option<f64>,

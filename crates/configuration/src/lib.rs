@@ -44,7 +44,7 @@ pub use configuration::{
 };
 pub use error::{ConfigurationError, Label, Problem, ProblemKind};
 pub use options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, NetForce, Sliding, WaveDirection,
+    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding, WaveDirection,
     Waveform,
 };
 pub use presets::{PRESETS, Preset, preset};

@@ -105,6 +105,16 @@ pub enum Integrator {
     AdamsBashforth,
 }
 
+/// Which kernel computes the forces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// The fastest for the case at hand; the same bits on every machine.
+    Fast,
+    /// The plain one that the fast ones are tested against; equal up to rounding.
+    Reference,
+}
+
 /// Schedule of the drive by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

@@ -6,7 +6,7 @@ use peristalsis_engine::initial::{InitialState, Packing, PackingReport, pack};
 use peristalsis_engine::wall::{
     DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
 };
-use peristalsis_engine::{Integrator, Parameters, Simulation, Wall};
+use peristalsis_engine::{Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
     ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
     ViscoelasticHertz,
@@ -63,7 +63,10 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
         },
         time_step: configuration.run.time_step,
         skin: configuration.run.neighbour_skin,
-        kernel: peristalsis_engine::Kernel::default(),
+        kernel: match configuration.run.kernel {
+            configuration::Kernel::Fast => Kernel::Fast,
+            configuration::Kernel::Reference => Kernel::Reference,
+        },
     }
 }
 

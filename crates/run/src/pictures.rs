@@ -16,6 +16,8 @@ use crate::tables::late_profile;
 
 /// Length of tube that a snapshot shows at most, in wavelengths.
 const SNAPSHOT_WAVES: u32 = 4;
+/// How far from the axis a snapshot shows spheres, in radii of the tube.
+const SNAPSHOT_RADII: f64 = 2.5;
 
 /// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
 /// draw.
@@ -253,7 +255,13 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
     let speed = configuration.wave_speed();
     // Drawn with the wave running to the right.
     let along = |z: f64| if heading > 0.0 { z } else { tube - z };
+    // A grain that has flown off must not stretch the picture.
+    let shows = |body: &usize| {
+        let position = bodies.position[*body];
+        position.x.hypot(position.y) < SNAPSHOT_RADII * configuration.tube.radius
+    };
     let grains: Vec<SnapshotGrain> = (0..bodies.grains)
+        .filter(shows)
         .map(|grain| SnapshotGrain {
             sphere: SnapshotSphere {
                 along: along(bodies.position[grain].z),
@@ -281,6 +289,7 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
     let spheres: Vec<SnapshotSphere> = match simulation.wall() {
         Wall::Prescribed(_) => Vec::new(),
         Wall::Elastic(_) => (bodies.grains..bodies.number())
+            .filter(shows)
             .map(|sphere| SnapshotSphere {
                 along: along(bodies.position[sphere].z),
                 across: bodies.position[sphere].y,

@@ -5,7 +5,7 @@ use crate::configuration::{Drive, Grains, Observe, Run};
 use crate::defaults;
 use crate::error::ProblemKind;
 use crate::keys::RunKeys;
-use crate::options::Integrator;
+use crate::options::{Integrator, Kernel};
 
 /// Quotients this near to a whole number are taken for it, so that 0.3/0.1 is 3.
 const ROUNDING: f64 = 1e-9;
@@ -61,6 +61,7 @@ pub(super) fn run(
         steps_per_sample: steps_per_sample as u64,
         samples: samples as u64,
         integrator: keys.integrator.unwrap_or(Integrator::Verlet),
+        kernel: keys.kernel.unwrap_or(Kernel::Fast),
         seed: keys.seed.unwrap_or(defaults::SEED),
         neighbour_skin: keys
             .neighbour_skin
