@@ -3,8 +3,8 @@
 use std::f64::consts::PI;
 
 use crate::options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding, WaveDirection,
-    Waveform,
+    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
+    WaveDirection, Waveform,
 };
 use crate::schedule::Schedule;
 

@@ -8,8 +8,9 @@ use serde::Deserialize;
 
 use crate::defaults;
 use crate::options::{
-    ControlName, DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, NormalLawName,
-    ScheduleFormName, ScheduleName, ScheduledParameterName, Sliding, WaveDirection, Waveform,
+    ControlName, DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce,
+    NormalLawName, ScheduleFormName, ScheduleName, ScheduledParameterName, Sliding, WaveDirection,
+    Waveform,
 };
 
 /// Configuration of one simulation of grains in a peristaltic tube.

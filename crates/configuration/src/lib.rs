@@ -44,8 +44,8 @@ pub use configuration::{
 };
 pub use error::{ConfigurationError, Label, Problem, ProblemKind};
 pub use options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding, WaveDirection,
-    Waveform,
+    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
+    WaveDirection, Waveform,
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};

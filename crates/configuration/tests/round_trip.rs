@@ -319,10 +319,7 @@ fn the_hash_is_of_what_matters() {
         );
         assert_eq!(of(overrides).run_hash(), base.run_hash(), "{overrides:?}");
     }
-    let longer: [&[&str]; 2] = [
-        &["run.periods=41"],
-        &["observe.profile_bins=40"],
-    ];
+    let longer: [&[&str]; 2] = [&["run.periods=41"], &["observe.profile_bins=40"]];
     for overrides in longer {
         assert_eq!(
             of(overrides).physics_hash(),

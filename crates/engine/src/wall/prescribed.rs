@@ -4,7 +4,7 @@ use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
-use peristalsis_physics::wall::lattice::approximate_half_steps;
+use peristalsis_physics::wall::lattice::approximate_angle;
 use peristalsis_physics::wall::{Lattice, RadiusWave, Ring, Schedule, Waveform};
 
 use super::memory::WallMemory;
@@ -115,9 +115,16 @@ impl PrescribedWall {
             heading: self.heading,
         };
         let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
-        for (ring, entry) in self.rings.iter_mut().enumerate() {
-            let z = self.lattice.axial_position(ring as u32);
-            *entry = self.wave.ring(z, self.cycles, frequency, amplitude_rate);
+        match self.waveform {
+            Waveform::Sine => {
+                // One sine for all rings: sin(a - b) = sin a cos b - cos a sin b.
+                let (sin, cos) = libm::sincos(TAU * (self.cycles - self.cycles.floor()));
+                for (entry, (ring_cos, ring_sin)) in self.rings.iter_mut().zip(&self.ring_phases) {
+                    let value = sin * ring_cos - cos * ring_sin;
+                    let slope = TAU * (cos * ring_cos + sin * ring_sin);
+                    *entry = self.wave.ring_of((value, slope), frequency, amplitude_rate);
+                }
+            }
         }
     }
 
@@ -185,6 +192,7 @@ impl PrescribedWall {
             return;
         }
         let per_ring = self.lattice.spheres_per_ring as usize;
+        let half_steps_per_radian = per_ring as f64 / core::f64::consts::PI;
         let rings = self.lattice.rings() as usize;
         let first = ceiling((centre.z - reach) * self.rings_per_length);
         // z is never negative, and truncation rounds down.
@@ -210,8 +218,9 @@ impl PrescribedWall {
                 continue;
             }
             let parity = this_ring % 2;
-            let hint = *half_steps
-                .get_or_insert_with(|| approximate_half_steps(centre.x, centre.y, per_ring as f64));
+            let hint = *half_steps.get_or_insert_with(|| {
+                approximate_angle(centre.x, centre.y) * half_steps_per_radian
+            });
             // |separation|^2 = rho^2 + R^2 - 2 R (x cos + y sin) + dz^2 < reach^2
             let threshold = (axis_distance_squared + radius * radius - room) / (2.0 * radius);
             let nearest = nearest_place(hint, parity, per_ring);

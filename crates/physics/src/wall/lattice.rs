@@ -135,13 +135,13 @@ impl Lattice {
     }
 }
 
-/// Angle of a point about the axis in units of pi/M, from 0 to 2M, good to 2e-5 rad.
+/// Angle of a point about the axis, from 0 to 2 pi, good to 2e-5 rad.
 ///
 /// Enough to find the nearest sphere of a ring, whose contacts are then found exactly. A polynomial, so that the same
 /// bits come out on every platform; after Abramowitz & Stegun 4.4.49.
 #[inline(always)]
 #[must_use]
-pub fn approximate_half_steps<R: Real>(x: R, y: R, spheres_per_ring: f64) -> R {
+pub fn approximate_angle<R: Real>(x: R, y: R) -> R {
     let zero = R::splat(0.0);
     let (size_x, size_y) = (x.size(), y.size());
     let (across, along) = (size_x.lesser(size_y), size_x.larger(size_y));
@@ -155,8 +155,7 @@ pub fn approximate_half_steps<R: Real>(x: R, y: R, spheres_per_ring: f64) -> R {
     let octant = q * series;
     let quadrant = R::select(size_x.less(size_y), R::splat(0.5 * PI) - octant, octant);
     let half = R::select(x.less(zero), R::splat(PI) - quadrant, quadrant);
-    let angle = R::select(y.less(zero), R::splat(2.0 * PI) - half, half);
-    angle * R::splat(spheres_per_ring / PI)
+    R::select(y.less(zero), R::splat(2.0 * PI) - half, half)
 }
 
 #[cfg(test)]
@@ -253,11 +252,11 @@ mod tests {
         for step in 0..10_000 {
             let angle = f64::from(step) * 2.0 * PI / 10_000.0;
             let (x, y) = (0.7 * angle.cos(), 0.7 * angle.sin());
-            let found = approximate_half_steps(x, y, 12.0) * PI / 12.0;
+            let found = approximate_angle(x, y);
             let mut error = (found - angle).abs();
             error = error.min(2.0 * PI - error);
             assert!(error < 2e-5, "{angle}: {error}");
         }
-        assert_eq!(approximate_half_steps(0.0, 0.0, 12.0), 0.0);
+        assert_eq!(approximate_angle(0.0, 0.0), 0.0);
     }
 }

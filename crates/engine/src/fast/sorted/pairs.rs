@@ -73,6 +73,7 @@ impl<M: Machine> Block<M> {
         let reach = Lanes::splat(constants.reach);
         let reach_squared = reach * reach;
         let reduced_radius = Lanes::splat(constants.reduced_radius);
+        let zero = Lanes::splat(0.0);
         let mut on_block = LaneVector::default();
         for offset in 1..=ahead {
             let separation = block.position - position.load(place + offset);
@@ -84,19 +85,16 @@ impl<M: Machine> Block<M> {
                 continue;
             }
             let inverse = distance_squared.reciprocal_sqrt();
-            let distance = distance_squared * inverse;
-            let overlap = reach - distance;
+            let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
             let away = block.velocity - velocity.load(place + offset);
-            let normal = separation * inverse;
-            let normal_velocity = away.dot(normal);
+            let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
             let answer = law.force(overlap, normal_velocity, reduced_radius);
-            let pushes = Lanes::select(touches, answer.force, Lanes::splat(0.0));
-            let pushed = normal * pushes;
+            let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
             on_block += pushed;
             force.add(place + offset - first, -pushed);
 
             let lost = (answer.elastic_force - answer.force) * normal_velocity;
-            sums.add_contact::<FULL>(touches, overlap, answer.energy, lost);
+            sums.add_contact::<FULL>(overlap, answer.energy, lost);
             if FULL {
                 sums.grain_contacts += touches.count();
             }

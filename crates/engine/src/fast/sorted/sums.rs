@@ -2,7 +2,7 @@
 
 use peristalsis_physics::real::Real;
 
-use crate::fast::lanes::{Lanes, Mask};
+use crate::fast::lanes::Lanes;
 use crate::fast::machine::Machine;
 use crate::ledger::Tally;
 
@@ -35,21 +35,19 @@ impl<M: Machine> Sums<M> {
         }
     }
 
-    /// Adds contacts where `touches` holds. What only observers ask for, not the ledger, is left out unless `FULL`.
+    /// Adds contacts; lanes without one hold zeros. What only observers ask for, not the ledger, is left out unless
+    /// `FULL`.
     #[inline(always)]
     pub(super) fn add_contact<const FULL: bool>(
         &mut self,
-        touches: Mask<M>,
         overlap: Lanes<M>,
         energy: Lanes<M>,
         lost: Lanes<M>,
     ) {
-        let zero = Lanes::splat(0.0);
-        let overlap = Lanes::select(touches, overlap, zero);
-        self.normal_dissipation += Lanes::select(touches, lost, zero);
+        self.normal_dissipation += lost;
         self.largest_overlap = self.largest_overlap.larger(overlap);
         if FULL {
-            self.contact_energy += Lanes::select(touches, energy, zero);
+            self.contact_energy += energy;
             self.total_overlap += overlap;
         }
     }

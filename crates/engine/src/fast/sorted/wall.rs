@@ -6,8 +6,8 @@
 //! lane touches. The distance to the spheres of a ring grows in that order.
 
 use peristalsis_physics::contact::NormalLaw;
-use peristalsis_physics::real::{Real, Vector};
-use peristalsis_physics::wall::lattice::approximate_half_steps;
+use peristalsis_physics::real::Real;
+use peristalsis_physics::wall::lattice::approximate_angle;
 
 use super::Sums;
 use super::pairs::{Block, COINCIDENT};
@@ -31,7 +31,8 @@ pub(super) struct WallTable {
     /// tan of the angle of half a step.
     half_step: f64,
     rings_per_wave: f64,
-    spheres_per_ring: f64,
+    waves_per_ring: f64,
+    half_steps_per_radian: f64,
     spacing: f64,
     rings_per_length: f64,
     reach: f64,
@@ -41,6 +42,27 @@ pub(super) struct WallTable {
     /// Largest |dR/dz|, and half the largest |d^2R/dz^2|.
     steepest: f64,
     half_curvature: f64,
+    /// 1 + s^2, s the largest slope, and its inverse.
+    stretch: f64,
+    per_stretch: f64,
+}
+
+/// Sums of force over distance on the spheres of a ring, and of it times their cos and sin.
+struct RingSums<M: Machine> {
+    all: Lanes<M>,
+    cos: Lanes<M>,
+    sin: Lanes<M>,
+}
+
+impl<M: Machine> Default for RingSums<M> {
+    #[inline(always)]
+    fn default() -> Self {
+        Self {
+            all: Lanes::default(),
+            cos: Lanes::default(),
+            sin: Lanes::default(),
+        }
+    }
 }
 
 /// Keeps what is at the edge of reach within, whatever the rounding.
@@ -81,7 +103,8 @@ impl WallTable {
             outward: [aligned, between],
             half_step: libm::tan(angle(1.0).min(1.0)),
             rings_per_wave: f64::from(lattice.rings_per_wave),
-            spheres_per_ring: f64::from(per_ring),
+            waves_per_ring: 1.0 / f64::from(lattice.rings_per_wave),
+            half_steps_per_radian: f64::from(per_ring) / core::f64::consts::PI,
             spacing: lattice.spacing(),
             rings_per_length: 1.0 / lattice.spacing(),
             reach,
@@ -105,6 +128,8 @@ impl WallTable {
         let wave_number = core::f64::consts::TAU / wave.wavelength;
         self.clear = (wave.mean_radius - amplitude - self.reach).max(0.0);
         self.steepest = amplitude * wave_number * wave.waveform.steepest();
+        self.stretch = 1.0 + self.steepest * self.steepest;
+        self.per_stretch = 1.0 / self.stretch;
         self.half_curvature =
             0.5 * amplitude * wave_number * wave_number * wave.waveform.most_curved();
     }
@@ -139,15 +164,16 @@ impl WallTable {
         let steepest = Lanes::splat(self.steepest);
         // (A gap so small that some ring's may vanish has every ring in reach.)
         let gap = (radius_here - from_axis).larger(Lanes::splat(self.steepest * self.reach));
-        let stretch = Lanes::splat(1.0) + steepest * steepest;
         let reach = Lanes::splat(self.reach);
         let reach_squared = reach * reach;
-        let under_root = reach_squared * stretch - gap * gap;
+        let under_root = Lanes::splat(self.reach * self.reach * self.stretch) - gap * gap;
         let near = zero.less(under_root) & block.holds;
         if !near.any() {
             return None;
         }
-        let within = ((steepest * gap + under_root.positive_part().sqrt()) / stretch).lesser(reach);
+        let within = ((steepest * gap + under_root.positive_part().sqrt())
+            * Lanes::splat(self.per_stretch))
+        .lesser(reach);
         let rings_within =
             within * Lanes::splat(self.rings_per_length) + Lanes::splat(MARGIN - 0.5);
         let (first, first_index) = (place - rings_within).round();
@@ -163,7 +189,7 @@ impl WallTable {
             let (half, _) = (first * Lanes::splat(0.5) - Lanes::splat(0.25)).round();
             first - Lanes::splat(2.0) * half
         };
-        let half_steps = approximate_half_steps(x, y, self.spheres_per_ring);
+        let half_steps = approximate_angle(x, y) * Lanes::splat(self.half_steps_per_radian);
         let (sphere, _) = ((half_steps - parity) * Lanes::splat(0.5)).round();
         let (_, direction) = (Lanes::splat(2.0) * sphere + parity).round();
         let cos = Lanes::from_lanes(|lane| self.cos[direction[lane] as usize]);
@@ -179,28 +205,36 @@ impl WallTable {
         // order, so that one sphere out of touch does not yet mean that there is none behind it.
         let patience = 1 + usize::from((u * Lanes::splat(self.half_step)).less(v).any());
 
+        // With p = u cos + v sin of a sphere, R of its ring and dz to it, the separation s from the grain has
+        // s^2 = rho^2 + R^2 + dz^2 - 2 R p, and the rest of what a contact needs is as linear in cos and sin.
         let first_in_wave = self.in_wave(first_index, first);
-        let mut on_block = LaneVector::default();
+        let mut on_u = zero;
+        let mut on_v = zero;
+        let mut on_z = zero;
         for ring in 0..most as usize {
             let index = Lanes::splat(ring as f64);
-            let active = index.less(number) & block.holds;
             let radius = Lanes::from_lanes(|lane| self.radius[first_in_wave[lane] + ring]);
             let dz = z - (first + index) * Lanes::splat(self.spacing);
             let gap = radius - from_axis;
             let room = reach_squared - dz * dz;
-            let active = active & (gap * gap).less(room);
+            let active = index.less(number) & block.holds & (gap * gap).less(room);
             if !active.any() {
                 continue;
             }
             let ring_velocity = Lanes::from_lanes(|lane| self.velocity[first_in_wave[lane] + ring]);
+            let twice_radius = radius + radius;
+            let squares = from_axis_squared + radius * radius + dz * dz;
+            // Lanes that are not active are out of reach wherever they stand.
+            let squares = Lanes::select(active, squares, Lanes::splat(f64::INFINITY));
+            let along = u * velocity_u + v * velocity_v + dz * velocity_z;
+            let mut pushes = RingSums::default();
             let mut misses = 0;
             for (visited, &(cos, sin)) in self.outward[ring % 2].iter().enumerate() {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
-                let separation = LaneVector::new(u - radius * cos, v - radius * sin, dz);
-                let distance_squared = separation.dot(separation);
+                let projection = u * cos + v * sin;
+                let distance_squared = squares - twice_radius * projection;
                 let touches = distance_squared.less(reach_squared)
-                    & Lanes::splat(COINCIDENT).less(distance_squared)
-                    & active;
+                    & Lanes::splat(COINCIDENT).less(distance_squared);
                 if !touches.any() {
                     misses += 1;
                     // The first two are always looked at: a lane may stand half way between them.
@@ -211,37 +245,43 @@ impl WallTable {
                 }
                 misses = 0;
                 let inverse = distance_squared.reciprocal_sqrt();
-                let distance = distance_squared * inverse;
-                let overlap = reach - distance;
-                let normal = separation * inverse;
-                let (wall_u, wall_v) = (ring_velocity * cos, ring_velocity * sin);
-                let away = LaneVector::new(velocity_u - wall_u, velocity_v - wall_v, velocity_z);
-                let normal_velocity = away.dot(normal);
+                let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
+                // V . s and v . s
+                let wall_along = ring_velocity * (projection - radius);
+                let grain_along = along - radius * (velocity_u * cos + velocity_v * sin);
+                let normal_velocity =
+                    Lanes::select(touches, (grain_along - wall_along) * inverse, zero);
                 let answer = law.force(overlap, normal_velocity, Lanes::splat(self.reduced_radius));
-                let pushes = Lanes::select(touches, answer.force, zero);
-                let pushed = normal * pushes;
-                on_block += pushed;
-                sums.wall_power += pushed.x * wall_u + pushed.y * wall_v;
+                let push = Lanes::select(touches, answer.force * inverse, zero);
+                pushes.all += push;
+                pushes.cos += push * cos;
+                pushes.sin += push * sin;
+                sums.wall_power += push * wall_along;
                 let lost = (answer.elastic_force - answer.force) * normal_velocity;
-                sums.add_contact::<FULL>(touches, overlap, answer.energy, lost);
+                sums.add_contact::<FULL>(overlap, answer.energy, lost);
                 if FULL {
                     sums.wall_contacts += touches.count();
-                    sums.wall_axial_force += pushed.z;
                 }
             }
+            on_u += u * pushes.all - radius * pushes.cos;
+            on_v += v * pushes.all - radius * pushes.sin;
+            on_z += dz * pushes.all;
         }
-        let on_v = on_block.y * side;
+        if FULL {
+            sums.wall_axial_force += on_z;
+        }
+        let on_v = on_v * side;
         Some(LaneVector::new(
-            on_block.x * cos - on_v * sin,
-            on_block.x * sin + on_v * cos,
-            on_block.z,
+            on_u * cos - on_v * sin,
+            on_u * sin + on_v * cos,
+            on_z,
         ))
     }
 
     /// Which ring of a wavelength a ring is.
     #[inline(always)]
     fn in_wave<M: Machine>(&self, index: [i32; LANES], ring: Lanes<M>) -> [usize; LANES] {
-        let past_middle = (ring + Lanes::splat(0.5)) * Lanes::splat(1.0 / self.rings_per_wave);
+        let past_middle = (ring + Lanes::splat(0.5)) * Lanes::splat(self.waves_per_ring);
         let (waves, _) = (past_middle - Lanes::splat(0.5)).round();
         let (_, before) = (waves * Lanes::splat(self.rings_per_wave)).round();
         core::array::from_fn(|lane| (index[lane] - before[lane]) as usize)
