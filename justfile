@@ -14,3 +14,8 @@ full-check: check
 # Speed of the kernels (see BENCHMARKS.md).
 bench:
     cargo bench -p peristalsis-engine
+
+# The same work for this program and for LAMMPS, in turn (see benchmarks/peers/README.md): --quick, --runs N, --cases NAME ...
+bench-peers *options:
+    cargo build --release -p peristalsis
+    python3 benchmarks/peers/bench_peers.py {{options}}

@@ -48,6 +48,17 @@ pub(crate) struct ConfigurationArguments {
     pub(crate) overrides: Vec<String>,
 }
 
+/// Instructions that the fast kernels can be held to; the results are the same bits.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum InstructionSet {
+    /// 512-bit registers
+    Avx512,
+    /// 256-bit registers
+    Avx2,
+    /// what every processor of the kind has
+    Plain,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
@@ -55,6 +66,12 @@ pub(crate) struct RunArguments {
     /// Folder for the results; the default is a new one below runs/.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Threads to compute with; they pay from some ten thousand smooth grains in a narrow tube on.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
+    /// Instructions to compute with; the default is the widest that the machine has.
+    #[arg(long, value_name = "SET", value_enum)]
+    pub(crate) instructions: Option<InstructionSet>,
     /// Go on with a run that was stopped, to the same bits as if it had not been.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "preset", "overrides", "out"])]
     pub(crate) resume: Option<PathBuf>,

@@ -52,4 +52,12 @@ pub enum EngineError {
         /// What is allowed.
         allowed: &'static str,
     },
+    /// The system gives no more threads.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many were asked for.
+        threads: usize,
+        /// What the system says.
+        reason: String,
+    },
 }

@@ -34,19 +34,25 @@ impl<H: Copy + Default + PartialEq> Contacts<H> {
             .pairs
             .outdated(&bodies.position, &bodies.turns, length, skin)
         {
-            let grains = bodies.grains;
-            let rule = PairRule {
-                diameter: &bodies.diameter,
-                length,
-                skin,
-                half_width: wall.usual_radius(),
-                admits: |i: usize, j: usize| match wall {
-                    Wall::Elastic(wall) if i >= grains => wall.may_touch(i - grains, j - grains),
-                    _ => true,
-                },
-            };
-            self.pairs.rebuild(&bodies.position, &bodies.turns, &rule);
+            self.rebuild(bodies, wall, skin);
         }
+    }
+
+    /// Makes the neighbour list anew.
+    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
+        let grains = bodies.grains;
+        let rule = PairRule {
+            diameter: &bodies.diameter,
+            length: wall.lattice().length(),
+            skin,
+            half_width: wall.usual_radius(),
+            admits_all_below: grains,
+            admits: |i: usize, j: usize| match wall {
+                Wall::Elastic(wall) => wall.may_touch(i - grains, j - grains),
+                Wall::Prescribed(_) => true,
+            },
+        };
+        self.pairs.rebuild(&bodies.position, &bodies.turns, &rule);
     }
 }
 

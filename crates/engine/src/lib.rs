@@ -17,6 +17,7 @@ pub mod wall;
 
 pub use bodies::Bodies;
 pub use error::EngineError;
+pub use fast::machine::Instructions;
 pub use integrate::Integrator;
 pub use ledger::{Ledger, Tally};
 pub use simulation::{Kernel, Parameters, Simulation};

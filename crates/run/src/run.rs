@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
-use peristalsis_engine::{Simulation, Snapshot};
+use peristalsis_engine::{Instructions, Simulation, Snapshot};
 
 use crate::RunError;
 use crate::assemble::{assemble, parameters, walls};
@@ -94,6 +94,18 @@ impl Run {
             recorder: self.recorder.clone(),
             elapsed: self.elapsed,
         }
+    }
+
+    /// Computes with the given instructions and threads from now on; neither changes a bit of the results.
+    ///
+    /// # Errors
+    /// [`RunError::Engine`] where the system gives no more threads.
+    pub fn compute_with(
+        &mut self,
+        instructions: Instructions,
+        threads: usize,
+    ) -> Result<(), RunError> {
+        Ok(self.simulation.compute_with(instructions, threads)?)
     }
 
     /// Advances to the next sample and takes it.

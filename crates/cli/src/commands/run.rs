@@ -4,9 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use peristalsis_engine::Instructions;
 use peristalsis_run::{Run, RunError, RunFolder, Status, Summary, Written, warnings};
 
-use crate::arguments::RunArguments;
+use crate::arguments::{InstructionSet, RunArguments};
 use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
@@ -25,6 +26,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(folder) => RunFolder::resume(folder)?,
         None => begin(arguments)?,
     };
+    run.compute_with(instructions(arguments)?, usize::from(arguments.threads))?;
     stop.keep_results();
     let mut display = Display::new(arguments.quiet, run.configuration().run.samples);
     let ending = advance(&mut run, &folder, &stop, &mut display);
@@ -76,6 +78,25 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             );
             Err(error.into())
         }
+    }
+}
+
+/// The instructions asked for.
+fn instructions(arguments: &RunArguments) -> Result<Instructions, Failure> {
+    let wanted = match arguments.instructions {
+        None => return Ok(Instructions::widest()),
+        Some(InstructionSet::Avx512) => Instructions::Avx512,
+        Some(InstructionSet::Avx2) => Instructions::Avx2,
+        Some(InstructionSet::Plain) => Instructions::Plain,
+    };
+    if wanted.available() {
+        Ok(wanted)
+    } else {
+        Err(Failure::Usage {
+            message: "this machine does not have the instructions that --instructions asks for"
+                .to_owned(),
+            help: Some("leave it out: the widest that there are is the default".to_owned()),
+        })
     }
 }
 

@@ -53,6 +53,19 @@ impl<M: Machine> Lanes<M> {
         M::store(self.0, window.expect("a window of LANES numbers"));
     }
 
+    /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
+    #[inline(always)]
+    pub(crate) fn of_quads(quads: [M::Quad; LANES]) -> [Self; 4] {
+        let [x, y, z, fourth] = M::lanes_of(quads);
+        [Self(x), Self(y), Self(z), Self(fourth)]
+    }
+
+    /// Lanes turned into eight quads.
+    #[inline(always)]
+    pub(crate) fn to_quads([x, y, z, fourth]: [Self; 4]) -> [M::Quad; LANES] {
+        M::quads_of([x.0, y.0, z.0, fourth.0])
+    }
+
     /// Where this is at most `other`; false where either is not a number.
     #[inline(always)]
     pub(crate) fn at_most(self, other: Self) -> Mask<M> {
@@ -120,6 +133,18 @@ impl<M: Machine> Mask<M> {
     #[inline(always)]
     pub(crate) fn to_bits(self) -> u8 {
         M::to_bits(self.0)
+    }
+
+    /// Writes down `first` + l for each lane l where it holds, in order; what stands behind them is anything.
+    #[inline(always)]
+    pub(crate) fn write_down(self, first: u32, to: &mut [u32; LANES]) {
+        M::write_set_bits(self.to_bits(), first, to);
+    }
+
+    /// Writes down the numbers of the lanes where it holds, in order; what stands behind them is anything.
+    #[inline(always)]
+    pub(crate) fn choose(self, of: &[u32; LANES], to: &mut [u32; LANES]) {
+        M::write_chosen(self.to_bits(), of, to);
     }
 
     /// Whether it holds anywhere.

@@ -89,6 +89,8 @@ pub struct ElasticWall {
     directions: Vec<(f64, f64)>,
     /// Each bond once: for each sphere its next on the ring and its two on the ring above.
     bonds: Vec<[u32; 3]>,
+    /// Whether spheres so many rings and half steps apart may touch.
+    far: Vec<bool>,
     /// Radial force that balances the springs of the reference tube; the same for all spheres.
     balance: f64,
     cycles: f64,
@@ -114,11 +116,15 @@ impl ElasticWall {
                 [around[1], around[4], around[5]].map(|sphere| lattice.index(sphere) as u32)
             })
             .collect();
+        let far = distances(&parameters)
+            .map(|distance| distance > parameters.contact_range)
+            .collect();
         let mut wall = Self {
             amplitude: parameters.force_amplitude.value(0.0),
             parameters,
             directions,
             bonds,
+            far,
             balance: 0.0,
             cycles: 0.0,
         };
@@ -153,6 +159,21 @@ impl ElasticWall {
     pub fn move_to(&mut self, time: f64) {
         self.cycles = self.parameters.frequency.integral(time);
         self.amplitude = self.parameters.force_amplitude.value(time);
+    }
+
+    /// (cos, sin) of each sphere's reference angle.
+    pub(crate) fn directions(&self) -> &[(f64, f64)] {
+        &self.directions
+    }
+
+    /// Constant radial force on each sphere \[m d/t^2\].
+    pub(crate) fn balance(&self) -> f64 {
+        self.balance
+    }
+
+    /// f^P now \[m d/t^2\].
+    pub(crate) fn amplitude(&self) -> f64 {
+        self.amplitude
     }
 
     /// The parameters.
@@ -205,11 +226,16 @@ impl ElasticWall {
     /// Whether two wall spheres may touch: those that are far apart in the reference tube.
     #[must_use]
     pub fn may_touch(&self, one: usize, other: usize) -> bool {
-        let separation = periodic(
-            self.reference(one) - self.reference(other),
-            self.parameters.lattice.length(),
+        let lattice = &self.parameters.lattice;
+        let (one, other) = (lattice.sphere(one), lattice.sphere(other));
+        let turn = 2 * lattice.spheres_per_ring;
+        let (rings, steps) = (
+            one.ring.abs_diff(other.ring),
+            lattice.half_steps(one).abs_diff(lattice.half_steps(other)),
         );
-        separation.length() > self.parameters.contact_range
+        let rings = rings.min(lattice.rings() - rings);
+        let steps = steps.min(turn - steps);
+        self.far[(rings * turn + steps) as usize]
     }
 
     /// Adds springs, tethers, drag and drive to the forces on the wall; the contact forces must be there already, for
@@ -307,6 +333,24 @@ impl ElasticWall {
                 );
         }
     }
+}
+
+/// Distances in the reference tube of spheres up to half the tube's rings apart, by half steps up to a turn \[d\].
+fn distances(parameters: &ElasticParameters) -> impl Iterator<Item = f64> {
+    let ElasticParameters {
+        lattice,
+        mean_radius: radius,
+        ..
+    } = *parameters;
+    (0..=lattice.rings() / 2).flat_map(move |rings| {
+        (0..2 * lattice.spheres_per_ring).map(move |half_steps| {
+            let half_angle = 0.5 * core::f64::consts::PI * f64::from(half_steps)
+                / f64::from(lattice.spheres_per_ring);
+            let across = 2.0 * radius * libm::sin(half_angle);
+            let along = f64::from(rings) * lattice.spacing();
+            (across * across + along * along).sqrt()
+        })
+    })
 }
 
 /// Takes the mean force of a range of spheres off each of them.

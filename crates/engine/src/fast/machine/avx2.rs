@@ -2,7 +2,7 @@
 
 use core::arch::x86_64::*;
 
-use super::{LANES, Machine};
+use super::{LANES, Machine, Plain};
 
 /// AVX2.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +20,7 @@ macro_rules! both {
 impl Machine for Avx2 {
     type Numbers = [__m256d; 2];
     type Truths = [__m256d; 2];
+    type Quad = __m256d;
 
     #[inline(always)]
     fn splat(value: f64) -> Self::Numbers {
@@ -169,5 +170,84 @@ impl Machine for Avx2 {
     #[inline(always)]
     fn to_bits(a: Self::Truths) -> u8 {
         unsafe { (_mm256_movemask_pd(a[0]) | _mm256_movemask_pd(a[1]) << 4) as u8 }
+    }
+
+    #[inline(always)]
+    fn load_quad(values: &[f64; 4]) -> Self::Quad {
+        unsafe { _mm256_loadu_pd(values.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
+    }
+
+    #[inline(always)]
+    fn splat_quad(value: f64) -> Self::Quad {
+        unsafe { _mm256_set1_pd(value) }
+    }
+
+    #[inline(always)]
+    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_add_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_sub_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_mul_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_min_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_max_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn lanes_of([a, b, c, d, e, f, g, h]: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+        let (low, high) = (transpose([a, b, c, d]), transpose([e, f, g, h]));
+        core::array::from_fn(|k| [low[k], high[k]])
+    }
+
+    #[inline(always)]
+    fn quads_of([x, y, z, w]: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+        let [a, b, c, d] = transpose([x[0], y[0], z[0], w[0]]);
+        let [e, f, g, h] = transpose([x[1], y[1], z[1], w[1]]);
+        [a, b, c, d, e, f, g, h]
+    }
+
+    #[inline(always)]
+    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
+        Plain::write_set_bits(bits, first, to);
+    }
+
+    #[inline(always)]
+    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
+        Plain::write_chosen(bits, of, to);
+    }
+}
+
+/// Rows and columns of four by four numbers exchanged.
+#[inline(always)]
+fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+    // SAFETY: see the module above; the instructions have been found before any of this runs.
+    unsafe {
+        let (ab_even, ab_odd) = (_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+        let (cd_even, cd_odd) = (_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+        [
+            _mm256_permute2f128_pd::<0x20>(ab_even, cd_even),
+            _mm256_permute2f128_pd::<0x20>(ab_odd, cd_odd),
+            _mm256_permute2f128_pd::<0x31>(ab_even, cd_even),
+            _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
+        ]
     }
 }

@@ -12,6 +12,7 @@ pub(super) struct Avx512;
 impl Machine for Avx512 {
     type Numbers = __m512d;
     type Truths = __mmask8;
+    type Quad = __m256d;
 
     #[inline(always)]
     fn splat(value: f64) -> Self::Numbers {
@@ -132,4 +133,108 @@ impl Machine for Avx512 {
     fn to_bits(a: Self::Truths) -> u8 {
         a
     }
+
+    #[inline(always)]
+    fn load_quad(values: &[f64; 4]) -> Self::Quad {
+        unsafe { _mm256_loadu_pd(values.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
+    }
+
+    #[inline(always)]
+    fn splat_quad(value: f64) -> Self::Quad {
+        unsafe { _mm256_set1_pd(value) }
+    }
+
+    #[inline(always)]
+    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_add_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_sub_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_mul_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_min_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        unsafe { _mm256_max_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn lanes_of([a, b, c, d, e, f, g, h]: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+        // In blocks of 128 bits: [x0 x1][z0 z1][x2 x3][z2 z3] and so on, whose even and odd blocks are then brought
+        // together.
+        unsafe {
+            let (ac, bd) = (both(a, c), both(b, d));
+            let (eg, fh) = (both(e, g), both(f, h));
+            let (low, high) = (_mm512_unpacklo_pd(ac, bd), _mm512_unpacklo_pd(eg, fh));
+            let (low_odd, high_odd) = (_mm512_unpackhi_pd(ac, bd), _mm512_unpackhi_pd(eg, fh));
+            [
+                _mm512_shuffle_f64x2::<0b10_00_10_00>(low, high),
+                _mm512_shuffle_f64x2::<0b10_00_10_00>(low_odd, high_odd),
+                _mm512_shuffle_f64x2::<0b11_01_11_01>(low, high),
+                _mm512_shuffle_f64x2::<0b11_01_11_01>(low_odd, high_odd),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn quads_of([x, y, z, w]: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+        unsafe {
+            let (xy_even, xy_odd) = (_mm512_unpacklo_pd(x, y), _mm512_unpackhi_pd(x, y));
+            let (zw_even, zw_odd) = (_mm512_unpacklo_pd(z, w), _mm512_unpackhi_pd(z, w));
+            let low = _mm512_setr_epi64(0, 1, 8, 9, 2, 3, 10, 11);
+            let high = _mm512_setr_epi64(4, 5, 12, 13, 6, 7, 14, 15);
+            let ac = _mm512_permutex2var_pd(xy_even, low, zw_even);
+            let bd = _mm512_permutex2var_pd(xy_odd, low, zw_odd);
+            let eg = _mm512_permutex2var_pd(xy_even, high, zw_even);
+            let fh = _mm512_permutex2var_pd(xy_odd, high, zw_odd);
+            let halves =
+                |of: __m512d| (_mm512_castpd512_pd256(of), _mm512_extractf64x4_pd::<1>(of));
+            let ((a, c), (b, d)) = (halves(ac), halves(bd));
+            let ((e, g), (f, h)) = (halves(eg), halves(fh));
+            [a, b, c, d, e, f, g, h]
+        }
+    }
+
+    #[inline(always)]
+    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
+        unsafe {
+            let numbers = _mm256_add_epi32(
+                _mm256_set1_epi32(first as i32),
+                _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7),
+            );
+            let packed = _mm256_maskz_compress_epi32(bits, numbers);
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), packed);
+        }
+    }
+
+    #[inline(always)]
+    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
+        unsafe {
+            let numbers = _mm256_loadu_si256(of.as_ptr().cast());
+            let packed = _mm256_maskz_compress_epi32(bits, numbers);
+            _mm256_storeu_si256(to.as_mut_ptr().cast(), packed);
+        }
+    }
+}
+
+#[inline(always)]
+fn both(low: __m256d, high: __m256d) -> __m512d {
+    // SAFETY: see the module above; the instructions have been found before any of this runs.
+    unsafe { _mm512_insertf64x4::<1>(_mm512_castpd256_pd512(low), high) }
 }

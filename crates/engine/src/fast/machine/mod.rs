@@ -32,6 +32,8 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     type Numbers: Copy;
     /// Eight truth values.
     type Truths: Copy;
+    /// Four numbers: a vector in space and one number more.
+    type Quad: Copy;
 
     fn splat(value: f64) -> Self::Numbers;
     fn from_array(values: [f64; LANES]) -> Self::Numbers;
@@ -64,6 +66,25 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     /// Bit l is the truth value of lane l.
     fn from_bits(bits: u8) -> Self::Truths;
     fn to_bits(a: Self::Truths) -> u8;
+
+    fn load_quad(values: &[f64; 4]) -> Self::Quad;
+    fn store_quad(values: Self::Quad, to: &mut [f64; 4]);
+    fn splat_quad(value: f64) -> Self::Quad;
+    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    /// a < b ? a : b
+    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    /// a > b ? a : b
+    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
+    fn lanes_of(quads: [Self::Quad; LANES]) -> [Self::Numbers; 4];
+    /// Lanes turned into eight quads.
+    fn quads_of(lanes: [Self::Numbers; 4]) -> [Self::Quad; LANES];
+    /// Writes down `first` + l for each set bit l, in order; what stands behind them is anything.
+    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]);
+    /// Writes down the numbers whose bits are set, in order; what stands behind them is anything.
+    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]);
 }
 
 /// Work that is compiled for each set of instructions. `run` must be `#[inline(always)]`, as must be all that it calls
@@ -73,9 +94,9 @@ pub(crate) trait Work {
     fn run<M: Machine>(self) -> Self::Answer;
 }
 
-/// Instructions that a kernel is compiled for.
+/// Instructions that the fast kernels are compiled for; all give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Instructions {
+pub enum Instructions {
     /// 512-bit registers.
     Avx512,
     /// 256-bit registers.
@@ -86,7 +107,8 @@ pub(crate) enum Instructions {
 
 impl Instructions {
     /// The widest that this machine has.
-    pub(crate) fn widest() -> Self {
+    #[must_use]
+    pub fn widest() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
             let has_avx512 = is_x86_feature_detected!("avx512f")
@@ -101,6 +123,16 @@ impl Instructions {
             }
         }
         Self::Plain
+    }
+
+    /// Whether this machine has them.
+    #[must_use]
+    pub fn available(self) -> bool {
+        match Self::widest() {
+            Self::Avx512 => true,
+            Self::Avx2 => self != Self::Avx512,
+            Self::Plain => self == Self::Plain,
+        }
     }
 
     /// Does the work with these instructions, or with the widest that there are if the machine lacks them.

@@ -19,6 +19,7 @@ fn bits(of: impl Fn(usize) -> bool) -> u8 {
 impl Machine for Plain {
     type Numbers = [f64; LANES];
     type Truths = u8;
+    type Quad = [f64; 4];
 
     #[inline(always)]
     fn splat(value: f64) -> Self::Numbers {
@@ -139,5 +140,73 @@ impl Machine for Plain {
     #[inline(always)]
     fn to_bits(a: Self::Truths) -> u8 {
         a
+    }
+
+    #[inline(always)]
+    fn load_quad(values: &[f64; 4]) -> Self::Quad {
+        *values
+    }
+
+    #[inline(always)]
+    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
+        *to = values;
+    }
+
+    #[inline(always)]
+    fn splat_quad(value: f64) -> Self::Quad {
+        [value; 4]
+    }
+
+    #[inline(always)]
+    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        core::array::from_fn(|k| a[k] + b[k])
+    }
+
+    #[inline(always)]
+    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        core::array::from_fn(|k| a[k] - b[k])
+    }
+
+    #[inline(always)]
+    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        core::array::from_fn(|k| a[k] * b[k])
+    }
+
+    #[inline(always)]
+    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        core::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
+    }
+
+    #[inline(always)]
+    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+        core::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
+    }
+
+    #[inline(always)]
+    fn lanes_of(quads: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+        core::array::from_fn(|k| quads.map(|quad| quad[k]))
+    }
+
+    #[inline(always)]
+    fn quads_of(lanes: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+        core::array::from_fn(|lane| lanes.map(|numbers| numbers[lane]))
+    }
+
+    #[inline(always)]
+    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
+        let mut at = 0;
+        for lane in 0..LANES {
+            to[at & (LANES - 1)] = first + lane as u32;
+            at += usize::from((bits >> lane) & 1);
+        }
+    }
+
+    #[inline(always)]
+    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
+        let mut at = 0;
+        for lane in 0..LANES {
+            to[at & (LANES - 1)] = of[lane];
+            at += usize::from((bits >> lane) & 1);
+        }
     }
 }

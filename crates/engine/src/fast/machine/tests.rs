@@ -40,9 +40,41 @@ impl Work for Everything {
             M::or(mask, M::less(a, b)),
             M::not(mask),
         ];
+        let quad = |start: usize| M::load_quad(self.a[start..start + 4].first_chunk().unwrap());
+        let quads = core::array::from_fn(|lane| match lane {
+            0 => M::add_quads(quad(0), quad(4)),
+            1 => M::sub_quads(quad(0), quad(4)),
+            2 => M::mul_quads(quad(0), quad(4)),
+            3 => M::lesser_quad(quad(0), quad(4)),
+            4 => M::larger_quad(quad(0), quad(4)),
+            5 => M::splat_quad(self.b[2]),
+            lane => quad(lane - 4),
+        });
+        let lanes = M::lanes_of(quads);
+        let back = M::quads_of(lanes).map(|quad| {
+            let mut values = [0.0; 4];
+            M::store_quad(quad, &mut values);
+            [values, values].as_flattened().try_into().unwrap()
+        });
+        let mut set = [0; LANES];
+        M::write_set_bits(self.mask, 5, &mut set);
+        let mut chosen = [0; LANES];
+        M::write_chosen(self.mask, &[9, 8, 7, 6, 5, 4, 3, 2], &mut chosen);
+        let number = self.mask.count_ones() as usize;
         (
-            numbers.map(|n| M::to_array(n).map(f64::to_bits)).to_vec(),
-            truths.map(M::to_bits).to_vec(),
+            numbers
+                .into_iter()
+                .chain(lanes)
+                .map(M::to_array)
+                .chain(back)
+                .map(|numbers: [f64; LANES]| numbers.map(f64::to_bits))
+                .collect(),
+            truths
+                .map(M::to_bits)
+                .into_iter()
+                .chain(set[..number].iter().map(|&number| number as u8))
+                .chain(chosen[..number].iter().map(|&number| number as u8))
+                .collect(),
         )
     }
 }
@@ -68,5 +100,17 @@ proptest! {
         prop_assert_eq!(f64::from_bits(plain.0[0][3]), a[3] + b[3]);
         prop_assert_eq!(f64::from_bits(plain.0[10][5]), if mask >> 5 & 1 == 1 { a[5] } else { b[5] });
         prop_assert_eq!(plain.1[0] >> 2 & 1 == 1, a[2] < b[2]);
+        // Lanes 6 and 7 are quads of the numbers themselves; back again they are the same.
+        let lanes = &plain.0[13..17];
+        for k in 0..4 {
+            prop_assert_eq!(lanes[k][1], (a[k] - a[k + 4]).to_bits());
+            prop_assert_eq!((lanes[k][6], lanes[k][7]), (a[k + 2].to_bits(), a[k + 3].to_bits()));
+            for lane in 0..LANES {
+                prop_assert_eq!(plain.0[17 + lane][k], lanes[k][lane]);
+            }
+        }
+        let set: Vec<u8> = (0..8).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane + 5).collect();
+        let chosen: Vec<u8> = set.iter().map(|number| 14 - number).collect();
+        prop_assert_eq!(&plain.1[5..], &[set, chosen].concat());
     }
 }

@@ -14,7 +14,10 @@ mod pairs;
 mod sums;
 mod wall;
 
+use std::sync::Arc;
+
 use peristalsis_physics::contact::NormalLaw;
+use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use self::columns::Columns;
@@ -64,7 +67,8 @@ pub(crate) struct Sorted {
     tiles: Vec<Tile>,
     scratch: order::Scratch,
     instructions: Instructions,
-    threads: usize,
+    /// Where there is to be more than one thread.
+    pool: Option<Arc<ThreadPool>>,
 }
 
 /// A stretch of places whose forces are added up together.
@@ -141,14 +145,37 @@ impl Sorted {
             tiles: Vec::new(),
             scratch: order::Scratch::default(),
             instructions: Instructions::widest(),
-            threads: 1,
+            pool: None,
         };
         sorted.load(bodies, sorting);
         sorted
     }
 
+    /// Computes with the given instructions and threads from now on; neither changes a bit of the results.
+    pub(crate) fn compute_with(
+        &mut self,
+        instructions: Instructions,
+        pool: Option<Arc<ThreadPool>>,
+    ) {
+        self.instructions = instructions;
+        self.pool = pool;
+    }
+
     /// Advances by `steps` steps; brings `bodies` up to date.
     pub(crate) fn advance<N: NormalLaw + Sync>(
+        &mut self,
+        law: &N,
+        course: Course<'_>,
+        bodies: &mut Bodies,
+        steps: u64,
+    ) -> Result<(), Runaway> {
+        match self.pool.clone() {
+            Some(pool) => pool.install(|| self.take_steps(law, course, bodies, steps)),
+            None => self.take_steps(law, course, bodies, steps),
+        }
+    }
+
+    fn take_steps<N: NormalLaw + Sync>(
         &mut self,
         law: &N,
         course: Course<'_>,
@@ -216,7 +243,7 @@ impl Sorted {
             ahead,
             tiles,
             instructions,
-            threads,
+            pool,
             ..
         } = self;
         let one = |tile: &mut Tile| {
@@ -231,7 +258,7 @@ impl Sorted {
                 tile,
             });
         };
-        if *threads > 1 {
+        if pool.is_some() {
             tiles.par_iter_mut().for_each(one);
         } else {
             tiles.iter_mut().for_each(one);

@@ -41,7 +41,7 @@ impl Sorted {
             origin,
             tiles,
             instructions,
-            threads,
+            pool,
             ..
         } = self;
         let one = |((((tile, position), velocity), acceleration), origin): (
@@ -63,7 +63,7 @@ impl Sorted {
                 limit,
             });
         };
-        if *threads > 1 {
+        if pool.is_some() {
             tiles
                 .par_iter_mut()
                 .zip(position.par_tiles())

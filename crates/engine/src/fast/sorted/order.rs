@@ -1,6 +1,7 @@
 //! The order along the tube: making it, and bringing grains into it and back.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::columns::Columns;
 use super::{Sorted, TILE, Tile};
@@ -51,7 +52,7 @@ pub(super) struct Scratch {
     /// (z, place before) in the order that is being made.
     keys: Vec<(f64, u32)>,
     above: Vec<(f64, u32)>,
-    column: Vec<f64>,
+    columns: Columns,
     order: Vec<u32>,
     turns: Vec<i32>,
 }
@@ -170,21 +171,30 @@ impl Sorted {
     fn permute(&mut self) {
         let Scratch {
             keys,
-            column,
+            columns: scratch,
             order,
             turns,
             ..
         } = &mut self.scratch;
         let grains = self.grains;
+        let one = |(values, scratch): (&mut Vec<f64>, &mut Vec<f64>)| {
+            scratch.clear();
+            scratch.extend(keys.iter().map(|&(_, place)| values[place as usize]));
+            values[..grains].copy_from_slice(scratch);
+        };
         for columns in [
             &mut self.position,
             &mut self.velocity,
             &mut self.acceleration,
         ] {
-            for values in columns.each() {
-                column.clear();
-                column.extend(keys.iter().map(|&(_, place)| values[place as usize]));
-                values[..grains].copy_from_slice(column);
+            if self.pool.is_some() {
+                columns
+                    .each()
+                    .into_par_iter()
+                    .zip(scratch.each())
+                    .for_each(one);
+            } else {
+                columns.each().into_iter().zip(scratch.each()).for_each(one);
             }
         }
         order.clear();
@@ -198,34 +208,38 @@ impl Sorted {
     /// Notes where the grains stand now and who may touch whom until they are sorted again.
     fn mark(&mut self) {
         let grains = self.grains;
+        let blocks = grains.div_ceil(LANES);
+        self.ahead.resize(blocks, 0);
         let cutoff = self.pairs.reach + self.skin;
-        let z = &self.position.z;
-        // z of a place, going on round the tube.
-        let unfolded = |place: usize| {
-            if place < grains {
-                z[place]
-            } else {
-                z[place - grains] + self.length
-            }
+        let (z, length) = (&self.position.z[..grains], self.length);
+        let tile = |(tile, ahead): (usize, &mut [u32])| {
+            count_ahead(z, length, cutoff, tile * TILE, ahead);
         };
-        self.ahead.clear();
-        let (mut end, mut last) = (0, 0);
-        for first in (0..grains).step_by(LANES) {
-            let mut most = 0;
-            for place in first..(first + LANES).min(grains) {
-                end = end.max(place + 1);
-                // A grain never meets itself.
-                while end < place + grains && unfolded(end) < unfolded(place) + cutoff {
-                    end += 1;
-                }
-                most = most.max(end - 1 - place);
-            }
-            last = last.max(first + LANES.min(grains - first) - 1 + most);
-            self.ahead.push(most as u32);
+        if self.pool.is_some() {
+            let tiles = self.ahead.par_chunks_mut(TILE / LANES);
+            tiles.enumerate().for_each(tile);
+        } else {
+            let tiles = self.ahead.chunks_mut(TILE / LANES);
+            tiles.enumerate().for_each(tile);
         }
-        self.ghosts = (last + 1).saturating_sub(grains).min(grains);
 
-        let most_ahead = self.ahead.iter().copied().max().unwrap_or(0) as usize;
+        let tiles = grains.div_ceil(TILE);
+        let (mut most_ahead, mut farthest) = (0, 0);
+        self.tiles.resize_with(tiles, Tile::empty);
+        for (index, tile) in self.tiles.iter_mut().enumerate() {
+            tile.first = index * TILE;
+            tile.end = (tile.first + TILE).min(grains);
+            let mut last = 0;
+            for place in (tile.first..tile.end).step_by(LANES) {
+                let ahead = self.ahead[place / LANES] as usize;
+                most_ahead = most_ahead.max(ahead);
+                last = last.max((place + LANES).min(grains) - 1 + ahead);
+            }
+            tile.overhang = (last + 1).saturating_sub(tile.end).min(grains);
+            farthest = farthest.max(last);
+        }
+        self.ghosts = (farthest + 1).saturating_sub(grains).min(grains);
+
         let room = grains + self.ghosts + most_ahead + 2 * LANES;
         for columns in [
             &mut self.position,
@@ -237,17 +251,7 @@ impl Sorted {
         self.position.z[grains..].fill(NOWHERE);
         self.origin.clear();
         self.origin.extend_from_slice(&self.position.z);
-
-        let tiles = grains.div_ceil(TILE);
-        self.tiles.resize_with(tiles, Tile::empty);
-        for (index, tile) in self.tiles.iter_mut().enumerate() {
-            tile.first = index * TILE;
-            tile.end = (tile.first + TILE).min(grains);
-            let reaches = (tile.first..tile.end)
-                .step_by(LANES)
-                .map(|place| (place + LANES).min(grains) - 1 + self.ahead[place / LANES] as usize);
-            let last = reaches.max().unwrap_or(0);
-            tile.overhang = (last + 1).saturating_sub(tile.end).min(grains);
+        for tile in &mut self.tiles {
             tile.force.resize(TILE + most_ahead + LANES);
         }
     }
@@ -258,6 +262,33 @@ impl Sorted {
             self.position.copy(ghost, self.grains + ghost, self.length);
             self.velocity.copy(ghost, self.grains + ghost, 0.0);
         }
+    }
+}
+
+/// For each block from place `first` on, how many grains ahead may come within `cutoff` of a grain of it.
+fn count_ahead(z: &[f64], length: f64, cutoff: f64, first: usize, ahead: &mut [u32]) {
+    let grains = z.len();
+    // z of a place, going on round the tube.
+    let unfolded = |place: usize| {
+        if place < grains {
+            z[place]
+        } else {
+            z[place - grains] + length
+        }
+    };
+    let mut end = 0;
+    for (block, ahead) in ahead.iter_mut().enumerate() {
+        let start = first + block * LANES;
+        let mut most = 0;
+        for (place, &here) in z.iter().enumerate().skip(start).take(LANES) {
+            end = end.max(place + 1);
+            // A grain never meets itself.
+            while end < place + grains && unfolded(end) < here + cutoff {
+                end += 1;
+            }
+            most = most.max(end - 1 - place);
+        }
+        *ahead = most as u32;
     }
 }
 

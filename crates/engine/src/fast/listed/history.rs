@@ -1,0 +1,85 @@
+//! What contacts remember, as the fast kernel keeps it.
+
+use peristalsis_physics::contact::{CundallStrack, Frictionless, TangentialHistory, TangentialLaw};
+use peristalsis_physics::real::Real;
+
+use super::record::{self, Quad, Record};
+use crate::fast::lanes::{LANES, Lanes};
+use crate::fast::machine::Machine;
+
+/// A history in eight numbers.
+pub(crate) type Packed = [Record; 2];
+
+/// A tangential law whose histories can be packed, and turned into lanes and back.
+pub(crate) trait Remember: TangentialLaw {
+    fn pack(history: &Self::History<f64>) -> [Record; 2];
+
+    fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
+
+    /// Packed histories side by side.
+    fn into_lanes<M: Machine>(packed: [&[Record; 2]; LANES]) -> Self::History<Lanes<M>>;
+
+    /// The histories of all lanes, packed.
+    fn from_lanes<M: Machine>(history: &Self::History<Lanes<M>>) -> [[Quad<M>; LANES]; 2];
+}
+
+impl Remember for Frictionless {
+    fn pack((): &()) -> Packed {
+        Packed::default()
+    }
+
+    fn unpack(_: &Packed) {}
+
+    #[inline(always)]
+    fn into_lanes<M: Machine>(_: [&Packed; LANES]) {}
+
+    #[inline(always)]
+    fn from_lanes<M: Machine>((): &()) -> [[Quad<M>; LANES]; 2] {
+        [[Quad::splat(0.0); LANES]; 2]
+    }
+}
+
+impl Remember for CundallStrack {
+    fn pack(history: &TangentialHistory) -> Packed {
+        [
+            Record::new(history.displacement, history.power),
+            Record::new(history.rate, f64::from(history.sliding)),
+        ]
+    }
+
+    fn unpack([first, second]: &Packed) -> TangentialHistory {
+        TangentialHistory {
+            displacement: first.vector(),
+            rate: second.vector(),
+            power: first.0[3],
+            sliding: second.0[3] > 0.0,
+        }
+    }
+
+    #[inline(always)]
+    fn into_lanes<M: Machine>(packed: [&Packed; LANES]) -> TangentialHistory<Lanes<M>> {
+        let mut first = [Quad::splat(0.0); LANES];
+        let mut second = first;
+        for lane in 0..LANES {
+            first[lane] = packed[lane][0].quad();
+            second[lane] = packed[lane][1].quad();
+        }
+        let (displacement, power) = record::into_lanes(first);
+        let (rate, sliding) = record::into_lanes(second);
+        TangentialHistory {
+            displacement,
+            rate,
+            power,
+            sliding: Lanes::splat(0.0).less(sliding),
+        }
+    }
+
+    #[inline(always)]
+    fn from_lanes<M: Machine>(history: &TangentialHistory<Lanes<M>>) -> [[Quad<M>; LANES]; 2] {
+        let sliding = Lanes::select(history.sliding, Lanes::splat(1.0), Lanes::splat(0.0));
+        [
+            record::from_lanes(history.displacement, history.power),
+            record::from_lanes(history.rate, sliding),
+        ]
+    }
+}

@@ -1,0 +1,403 @@
+//! Springs, tethers and drive of an elastic wall, eight spheres of a ring at a time.
+//!
+//! The spheres of a ring are neighbours in memory and their bonds follow from their places: next on the ring, two on the
+//! ring above. Rings are turned into lanes one by one; what a ring's bonds do to the ring above is carried on to it.
+
+use peristalsis_physics::real::{Real, Vector};
+
+use super::record::{self, Quad, Record};
+use super::sine;
+use super::spheres::Spheres;
+use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::machine::{Machine, Work};
+use crate::ledger::Tally;
+use crate::wall::elastic::{DriveAngle, ElasticWall, NetForce};
+
+/// Three components of the spheres of a ring, sphere p at p + 1; before and after them stand copies of the last and
+/// first, which are their neighbours.
+#[derive(Clone, Debug, Default)]
+struct Row {
+    x: Vec<f64>,
+    y: Vec<f64>,
+    z: Vec<f64>,
+}
+
+impl Row {
+    fn resize(&mut self, spheres: usize) {
+        let room = spheres.next_multiple_of(LANES) + 2 * LANES;
+        for component in [&mut self.x, &mut self.y, &mut self.z] {
+            component.clear();
+            component.resize(room, 0.0);
+        }
+    }
+
+    #[inline(always)]
+    fn at<M: Machine>(&self, start: usize) -> LaneVector<M> {
+        LaneVector::new(
+            Lanes::load(&self.x, start),
+            Lanes::load(&self.y, start),
+            Lanes::load(&self.z, start),
+        )
+    }
+
+    #[inline(always)]
+    fn put<M: Machine>(&mut self, start: usize, of: LaneVector<M>) {
+        of.x.store(&mut self.x, start);
+        of.y.store(&mut self.y, start);
+        of.z.store(&mut self.z, start);
+    }
+
+    /// The vectors of all spheres of a ring; answers nothing about their fourth numbers.
+    #[inline(always)]
+    fn fill<M: Machine>(&mut self, records: &[Record]) {
+        let (blocks, rest) = records.as_chunks::<LANES>();
+        for (block, records) in blocks.iter().enumerate() {
+            let mut quads = [Quad::<M>::splat(0.0); LANES];
+            for lane in 0..LANES {
+                quads[lane] = records[lane].quad();
+            }
+            self.put(block * LANES + 1, record::into_lanes(quads).0);
+        }
+        let mut quads = [Quad::<M>::splat(0.0); LANES];
+        for (quad, record) in quads.iter_mut().zip(rest) {
+            *quad = record.quad();
+        }
+        self.put(blocks.len() * LANES + 1, record::into_lanes(quads).0);
+        self.close(records.len());
+    }
+
+    /// Copies the ends round.
+    #[inline(always)]
+    fn close(&mut self, count: usize) {
+        for component in [&mut self.x, &mut self.y, &mut self.z] {
+            component[0] = component[count];
+            component[count + 1] = component[1];
+        }
+    }
+}
+
+/// Room for the rings at hand.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows {
+    place: Row,
+    velocity: Row,
+    place_above: Row,
+    velocity_above: Row,
+    turns: Vec<f64>,
+    /// Forces of the bonds: along the ring, and to the two spheres above.
+    along: Row,
+    first: Row,
+    second: Row,
+    /// Force of the bonds from the ring below.
+    carried: Row,
+    force: Row,
+    cos: [Vec<f64>; 2],
+    sin: [Vec<f64>; 2],
+}
+
+impl Rows {
+    fn resize(&mut self, wall: &ElasticWall) {
+        let spheres = wall.lattice().spheres_per_ring as usize;
+        for row in [
+            &mut self.place,
+            &mut self.velocity,
+            &mut self.place_above,
+            &mut self.velocity_above,
+            &mut self.along,
+            &mut self.first,
+            &mut self.second,
+            &mut self.carried,
+            &mut self.force,
+        ] {
+            row.resize(spheres);
+        }
+        let room = spheres.next_multiple_of(LANES);
+        self.turns.clear();
+        self.turns.resize(room, 0.0);
+        for parity in 0..2 {
+            let directions = &wall.directions()[parity * spheres..(parity + 1) * spheres];
+            self.cos[parity].clear();
+            self.cos[parity].extend(directions.iter().map(|direction| direction.0));
+            self.cos[parity].resize(room, 0.0);
+            self.sin[parity].clear();
+            self.sin[parity].extend(directions.iter().map(|direction| direction.1));
+            self.sin[parity].resize(room, 0.0);
+        }
+    }
+}
+
+/// Adds all forces on the spheres of the wall but those of contacts, which must be there already, and answers the mean
+/// force that is still to be taken off each of them.
+pub(super) struct WallForces<'a> {
+    pub(super) wall: &'a ElasticWall,
+    pub(super) rows: &'a mut Rows,
+    pub(super) spheres: &'a mut Spheres,
+    pub(super) tally: &'a mut Tally,
+}
+
+#[derive(Clone, Copy)]
+struct Sums<M: Machine> {
+    network_energy: Lanes<M>,
+    network_dissipation: Lanes<M>,
+    keep_energy: Lanes<M>,
+    drive_power: Lanes<M>,
+    drag_dissipation: Lanes<M>,
+}
+
+impl<M: Machine> Sums<M> {
+    #[inline(always)]
+    fn none() -> Self {
+        let zero = Lanes::splat(0.0);
+        Self {
+            network_energy: zero,
+            network_dissipation: zero,
+            keep_energy: zero,
+            drive_power: zero,
+            drag_dissipation: zero,
+        }
+    }
+}
+
+impl Work for WallForces<'_> {
+    type Answer = Record;
+
+    #[inline(always)]
+    fn run<M: Machine>(self) -> Record {
+        let Self {
+            wall,
+            rows,
+            spheres,
+            tally,
+        } = self;
+        let lattice = wall.lattice();
+        let (per_ring, rings) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
+        let first = spheres.grains;
+        if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
+            rows.resize(wall);
+        }
+        let net_force = wall.parameters().keep.net_force;
+        let mut sums = Sums::<M>::none();
+        let nothing = Quad::<M>::splat(0.0);
+        let (mut total_force, mut total_velocity) = (nothing, nothing);
+        let range = |ring: usize| first + ring * per_ring..first + (ring + 1) * per_ring;
+
+        // What the bonds of the last ring do to the first.
+        let last = range(rings - 1);
+        rows.place.fill::<M>(&spheres.position[last.clone()]);
+        rows.velocity.fill::<M>(&spheres.velocity[last]);
+        rows.place_above.fill::<M>(&spheres.position[range(0)]);
+        rows.velocity_above.fill::<M>(&spheres.velocity[range(0)]);
+        bonds(wall, rows, 1, &mut Sums::<M>::none());
+        for ring in 0..rings {
+            core::mem::swap(&mut rows.place, &mut rows.place_above);
+            core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);
+            let above = range(if ring + 1 == rings { 0 } else { ring + 1 });
+            rows.place_above.fill::<M>(&spheres.position[above.clone()]);
+            rows.velocity_above.fill::<M>(&spheres.velocity[above]);
+            let here = range(ring);
+            for (turns, place) in rows.turns.iter_mut().zip(&spheres.position[here.clone()]) {
+                *turns = place.0[3];
+            }
+            carry::<M>(rows, ring % 2, per_ring);
+            bonds(wall, rows, ring % 2, &mut sums);
+            keep_and_drive(wall, rows, ring, &mut sums);
+            let (mut ring_force, mut ring_velocity) = (nothing, nothing);
+            let forces = &mut spheres.force[here.clone()];
+            let velocities = &spheres.velocity[here];
+            for (k, (force, velocity)) in forces.iter_mut().zip(velocities).enumerate() {
+                let more = &rows.force;
+                let more = Record([more.x[k + 1], more.y[k + 1], more.z[k + 1], 0.0]);
+                let whole = force.quad() + more.quad();
+                *force = whole.record();
+                ring_force = ring_force + whole;
+                ring_velocity = ring_velocity + velocity.quad();
+            }
+            if net_force == NetForce::RemovedPerRing {
+                let mean = ring_force * (1.0 / per_ring as f64);
+                for force in forces.iter_mut() {
+                    *force = (force.quad() - mean).record();
+                }
+                tally.keep_power -= dot(mean, ring_velocity);
+            }
+            total_force = total_force + ring_force;
+            total_velocity = total_velocity + ring_velocity;
+        }
+        tally.network_energy += sums.network_energy.sum();
+        tally.network_dissipation += sums.network_dissipation.sum();
+        tally.keep_energy += sums.keep_energy.sum();
+        tally.drive_power += sums.drive_power.sum();
+        tally.drag_dissipation += sums.drag_dissipation.sum();
+        if net_force != NetForce::Removed {
+            return Record::ZERO;
+        }
+        let mean = total_force * (1.0 / (rings * per_ring) as f64);
+        tally.keep_power -= dot(mean, total_velocity);
+        mean.record()
+    }
+}
+
+#[inline(always)]
+fn dot<M: Machine>(one: Quad<M>, other: Quad<M>) -> f64 {
+    one.record().vector().dot(other.record().vector())
+}
+
+/// Turns the forces of the last ring's bonds into forces on this ring, whose parity is `parity`.
+#[inline(always)]
+fn carry<M: Machine>(rows: &mut Rows, parity: usize, per_ring: usize) {
+    rows.first.close(per_ring);
+    rows.second.close(per_ring);
+    // The ring below has the other parity; its place p is bound to the places p - 1 + o and p + o here, o its parity.
+    let odd = 1 - parity;
+    for start in (0..per_ring).step_by(LANES) {
+        let on_these = rows.first.at::<M>(start + 2 - odd) + rows.second.at(start + 1 - odd);
+        rows.carried.put(start + 1, -on_these);
+    }
+}
+
+/// A spring with a dashpot beside it.
+struct Bond<M: Machine> {
+    stiffness: Lanes<M>,
+    natural_length: Lanes<M>,
+    /// Of the dashpot, if there is one.
+    damping: Option<Lanes<M>>,
+    length: f64,
+}
+
+impl<M: Machine> Bond<M> {
+    /// Force on the spheres at `place` of bonds to the spheres at `place_there`.
+    #[inline(always)]
+    fn force(
+        &self,
+        (place, velocity): (LaneVector<M>, LaneVector<M>),
+        (place_there, velocity_there): (LaneVector<M>, LaneVector<M>),
+        valid: Mask<M>,
+        sums: &mut Sums<M>,
+    ) -> LaneVector<M> {
+        let zero = Lanes::splat(0.0);
+        let separation = record::periodic(place - place_there, self.length);
+        let distance = separation.squared().sqrt();
+        let inverse = Lanes::splat(1.0) / distance;
+        let stretch = distance - self.natural_length;
+        let mut pull = self.stiffness * stretch;
+        let energy = Lanes::splat(0.5) * (pull * stretch);
+        sums.network_energy += Lanes::select(valid, energy, zero);
+        if let Some(damping) = self.damping {
+            let rate = (velocity - velocity_there).dot(separation) * inverse;
+            pull += damping * rate;
+            sums.network_dissipation += Lanes::select(valid, damping * (rate * rate), zero);
+        }
+        separation * (-(pull * inverse))
+    }
+}
+
+/// Forces of the bonds of a ring of parity `parity`.
+#[inline(always)]
+fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &mut Sums<M>) {
+    let parameters = wall.parameters();
+    let per_ring = parameters.lattice.spheres_per_ring as usize;
+    let damped = parameters.spring_damping != 0.0;
+    let bond = Bond {
+        stiffness: Lanes::splat(parameters.spring_stiffness),
+        natural_length: Lanes::splat(parameters.natural_length),
+        damping: damped.then_some(Lanes::splat(parameters.spring_damping)),
+        length: parameters.lattice.length(),
+    };
+    for start in (0..per_ring).step_by(LANES) {
+        let valid = Mask::first(per_ring - start);
+        let here = (rows.place.at(start + 1), rows.velocity.at(start + 1));
+        let next = (rows.place.at(start + 2), rows.velocity.at(start + 2));
+        let first = (
+            rows.place_above.at(start + parity),
+            rows.velocity_above.at(start + parity),
+        );
+        let second = (
+            rows.place_above.at(start + parity + 1),
+            rows.velocity_above.at(start + parity + 1),
+        );
+        let along = bond.force(here, next, valid, sums);
+        let first = bond.force(here, first, valid, sums);
+        let second = bond.force(here, second, valid, sums);
+        rows.along.put(start + 1, along);
+        rows.first.put(start + 1, first);
+        rows.second.put(start + 1, second);
+    }
+    rows.along.close(per_ring);
+}
+
+/// Sums all forces on the spheres of a ring but those of contacts.
+#[inline(always)]
+fn keep_and_drive<M: Machine>(
+    wall: &ElasticWall,
+    rows: &mut Rows,
+    ring: usize,
+    sums: &mut Sums<M>,
+) {
+    let parameters = wall.parameters();
+    let lattice = &parameters.lattice;
+    let (length, wavelength) = (lattice.length(), lattice.wavelength);
+    let per_ring = lattice.spheres_per_ring as usize;
+    let (zero, half, balance) = (
+        Lanes::<M>::splat(0.0),
+        Lanes::splat(0.5),
+        Lanes::splat(wall.balance()),
+    );
+    let keep = parameters.keep;
+    let (radial, azimuthal, axial) = (
+        Lanes::splat(keep.radial),
+        Lanes::splat(keep.azimuthal),
+        Lanes::splat(keep.axial),
+    );
+    let drag = Lanes::splat(parameters.drag);
+    let radius = Lanes::splat(parameters.mean_radius);
+    let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
+    let parity = ring % 2;
+    for start in (0..per_ring).step_by(LANES) {
+        let valid = Mask::first(per_ring - start);
+        let place = rows.place.at(start + 1);
+        let velocity = rows.velocity.at(start + 1);
+        let (cos, sin) = (
+            Lanes::load(&rows.cos[parity], start),
+            Lanes::load(&rows.sin[parity], start),
+        );
+        let (x, y) = (place.x - radius * cos, place.y - radius * sin);
+        let away_radial = x * cos + y * sin;
+        let away_across = y * cos - x * sin;
+        let turns = Lanes::load(&rows.turns, start);
+        let away_axial = place.z + turns * Lanes::splat(length) - reference_z;
+        let outward = balance - radial * away_radial;
+        let across = -(azimuthal * away_across);
+        let keep_energy = half
+            * (radial * away_radial * away_radial
+                + azimuthal * away_across * away_across
+                + axial * away_axial * away_axial)
+            - balance * away_radial;
+        sums.keep_energy += Lanes::select(valid, keep_energy, zero);
+        let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
+            - Lanes::splat(wall.cycles());
+        let push = Lanes::splat(wall.amplitude()) * sine::waveform(parameters.waveform, phase);
+        let (drive_cos, drive_sin) = match parameters.angle {
+            DriveAngle::Reference => (cos, sin),
+            DriveAngle::Current => {
+                let from_axis = (place.x * place.x + place.y * place.y).sqrt();
+                let off_axis = zero.less(from_axis);
+                (
+                    Lanes::select(off_axis, place.x / from_axis, zero),
+                    Lanes::select(off_axis, place.y / from_axis, zero),
+                )
+            }
+        };
+        let (drive_x, drive_y) = (push * drive_cos, push * drive_sin);
+        let drive_power = drive_x * velocity.x + drive_y * velocity.y;
+        sums.drive_power += Lanes::select(valid, drive_power, zero);
+        sums.drag_dissipation += Lanes::select(valid, drag * velocity.squared(), zero);
+        let keep_and_drive = LaneVector::new(
+            drive_x + (outward * cos - across * sin),
+            drive_y + (outward * sin + across * cos),
+            -(axial * away_axial),
+        ) - velocity * drag;
+        let springs = (rows.along.at(start + 1) - rows.along.at(start))
+            + (rows.first.at(start + 1) + rows.second.at(start + 1))
+            + rows.carried.at(start + 1);
+        rows.force.put(start + 1, springs + keep_and_drive);
+    }
+}

@@ -1,0 +1,454 @@
+//! Contacts between moving spheres, eight at a time.
+//!
+//! One pass over the listed pairs writes down which of them touch; the law is then evaluated for those only, in lanes,
+//! in the order of the list. What touches does not depend on what else is listed, so neither do the results.
+
+use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, Frictionless, NormalLaw};
+use peristalsis_physics::real::Real;
+
+use super::history::{Packed, Remember};
+use super::record::{self, Quad, Record};
+use super::spheres::Spheres;
+use crate::bodies::Bodies;
+use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::machine::{Machine, Work};
+use crate::ledger::Tally;
+use crate::neighbours::Neighbours;
+
+/// Pairs one after the other, filled up to whole blocks with pairs that never touch.
+#[derive(Clone, Debug, Default)]
+struct Flat {
+    first: Vec<u32>,
+    second: Vec<u32>,
+    /// Distance below which a pair touches.
+    reach: Vec<f64>,
+}
+
+impl Flat {
+    fn clear(&mut self) {
+        self.first.clear();
+        self.second.clear();
+        self.reach.clear();
+    }
+
+    fn append(&mut self, i: u32, partners: &[u32], diameter: &[f64]) {
+        let size = diameter[i as usize];
+        self.first.extend(partners.iter().map(|_| i));
+        self.second.extend_from_slice(partners);
+        self.reach.extend(
+            partners
+                .iter()
+                .map(|&j| 0.5 * (size + diameter[j as usize])),
+        );
+    }
+
+    fn fill_up(&mut self) {
+        let whole = self.first.len().next_multiple_of(LANES);
+        self.first.resize(whole, 0);
+        self.second.resize(whole, 0);
+        self.reach.resize(whole, 0.0);
+    }
+
+    /// Writes down, in order, the pairs that are closer than their reach and `skin`, and those whose bits are set in
+    /// `more`, block by block.
+    #[inline(always)]
+    fn find<M: Machine>(
+        &self,
+        position: &[Record],
+        length: f64,
+        skin: f64,
+        more: Option<&[u8]>,
+        found: &mut Vec<u32>,
+    ) {
+        found.resize(self.first.len() + LANES, 0);
+        let mut end = 0;
+        let skin = Lanes::splat(skin);
+        let blocks = self.first.as_chunks::<LANES>().0.iter();
+        let blocks = blocks
+            .zip(self.second.as_chunks::<LANES>().0)
+            .zip(self.reach.as_chunks::<LANES>().0);
+        for (block, ((first, second), reach)) in blocks.enumerate() {
+            let mut apart = [Quad::<M>::splat(0.0); LANES];
+            for lane in 0..LANES {
+                let (i, j) = (first[lane] as usize, second[lane] as usize);
+                apart[lane] = position[i].quad() - position[j].quad();
+            }
+            let (separation, _) = record::into_lanes(apart);
+            let squared = record::periodic(separation, length).squared();
+            let reach = Lanes::load(reach, 0) + skin;
+            // Coincident centres have no normal.
+            let mut near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
+            if let Some(more) = more {
+                near = near | Mask::from_bits(more[block]);
+            }
+            let window = found[end..].first_chunk_mut().expect("room for a block");
+            near.write_down((block * LANES) as u32, window);
+            end += near.count() as usize;
+        }
+        found.truncate(end);
+    }
+}
+
+/// The pairs of a list that may touch before it is pruned again.
+#[derive(Clone, Debug, Default)]
+struct Pruned {
+    list: Flat,
+    near: Flat,
+    /// Which pair of `list` each pair of `near` is.
+    number: Vec<u32>,
+}
+
+impl Pruned {
+    #[inline(always)]
+    fn prune<M: Machine>(
+        &mut self,
+        position: &[Record],
+        length: f64,
+        skin: f64,
+        more: Option<&[u8]>,
+    ) {
+        let Self { list, near, number } = self;
+        list.find::<M>(position, length, skin, more, number);
+        near.clear();
+        let chosen = number.iter().map(|&k| k as usize);
+        near.first.extend(chosen.clone().map(|k| list.first[k]));
+        near.second.extend(chosen.clone().map(|k| list.second[k]));
+        near.reach.extend(chosen.map(|k| list.reach[k]));
+        near.fill_up();
+    }
+}
+
+/// The listed pairs, and which of them touch.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Pairs {
+    /// Pairs of a grain with a grain or a wall sphere, in the order of the list.
+    grains: Pruned,
+    /// Pairs of two wall spheres.
+    wall: Pruned,
+    /// What the contacts of `grains` remember.
+    histories: Vec<Packed>,
+    /// For each of them the evaluation, counted round, at which it last touched.
+    stamp: Vec<u8>,
+    now: u8,
+    /// The pairs of `grains` that touched at the last evaluation.
+    touched: Vec<u32>,
+    /// The same, bit by bit for each block.
+    remembers: Vec<u8>,
+    touching: Vec<u32>,
+}
+
+impl Pairs {
+    /// Makes the flat lists from the rows.
+    pub(super) fn load<T: Remember>(
+        &mut self,
+        list: &Neighbours<T::History<f64>>,
+        bodies: &Bodies,
+    ) {
+        self.grains.list.clear();
+        self.wall.list.clear();
+        for i in 0..list.rows() {
+            let rows = if i < bodies.grains {
+                &mut self.grains
+            } else {
+                &mut self.wall
+            };
+            rows.list
+                .append(i as u32, list.partners(i), &bodies.diameter);
+        }
+        let histories = &list.histories()[..self.grains.list.first.len()];
+        self.grains.list.fill_up();
+        self.wall.list.fill_up();
+        self.histories.clear();
+        self.touched.clear();
+        self.stamp.clear();
+        if T::ROTATES {
+            self.histories.extend(histories.iter().map(T::pack));
+            let remembered = histories.iter().enumerate();
+            let remembered =
+                remembered.filter(|(_, history)| **history != T::History::<f64>::default());
+            self.touched.extend(remembered.map(|(k, _)| k as u32));
+            self.stamp.resize(histories.len(), self.now.wrapping_sub(1));
+        }
+    }
+
+    /// Writes the histories back to the rows.
+    pub(super) fn store<T: Remember>(&self, list: &mut Neighbours<T::History<f64>>) {
+        for (history, packed) in list.histories_mut().iter_mut().zip(&self.histories) {
+            *history = T::unpack(packed);
+        }
+    }
+}
+
+/// Chooses from the list the pairs that are closer than their reach and `skin`.
+pub(super) struct Prune<'a> {
+    pub(super) pairs: &'a mut Pairs,
+    pub(super) spheres: &'a Spheres,
+    pub(super) length: f64,
+    pub(super) skin: f64,
+}
+
+impl Work for Prune<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let (pairs, position) = (self.pairs, &self.spheres.position[..]);
+        // What has touched must be seen to end.
+        let remembers = &mut pairs.remembers;
+        remembers.clear();
+        remembers.resize(pairs.grains.list.first.len() / LANES, 0);
+        for &k in &pairs.touched {
+            remembers[k as usize / LANES] |= 1 << (k as usize % LANES);
+        }
+        let (length, skin) = (self.length, self.skin);
+        pairs
+            .grains
+            .prune::<M>(position, length, skin, Some(remembers));
+        pairs.wall.prune::<M>(position, length, skin, None);
+    }
+}
+
+/// Adds the forces and torques of all contacts between moving spheres.
+pub(super) struct PairForces<'a, N, T: Remember> {
+    pub(super) law: &'a ContactLaw<N, T>,
+    pub(super) pairs: &'a mut Pairs,
+    pub(super) spheres: &'a mut Spheres,
+    pub(super) length: f64,
+    pub(super) time_step: f64,
+    pub(super) tally: &'a mut Tally,
+}
+
+impl<N: NormalLaw, T: Remember> Work for PairForces<'_, N, T> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let Pairs {
+            grains,
+            wall,
+            histories,
+            stamp,
+            now,
+            touched,
+            touching,
+            ..
+        } = self.pairs;
+        grains
+            .near
+            .find::<M>(&self.spheres.position, self.length, 0.0, None, touching);
+        add_contacts::<M, _, _>(
+            self.law,
+            grains,
+            touching,
+            self.spheres,
+            histories,
+            self.length,
+            self.time_step,
+            self.tally,
+        );
+        if T::ROTATES {
+            *now = now.wrapping_add(1);
+            for at in touching.iter_mut() {
+                *at = grains.number[*at as usize];
+                stamp[*at as usize] = *now;
+            }
+            for &k in touched.iter() {
+                if stamp[k as usize] != *now {
+                    let packed = &mut histories[k as usize];
+                    let history = T::unpack(packed);
+                    self.tally.history_reset += self.law.tangential.stored_energy::<f64>(&history);
+                    *packed = Packed::default();
+                }
+            }
+            core::mem::swap(touched, touching);
+        }
+        // Wall against wall, across a closing throat: the same normal law, no friction.
+        if !wall.near.first.is_empty() {
+            wall.near
+                .find::<M>(&self.spheres.position, self.length, 0.0, None, touching);
+            let smooth = ContactLaw {
+                normal: self.law.normal,
+                tangential: Frictionless,
+            };
+            let mut of_wall = Tally::default();
+            add_contacts::<M, _, _>(
+                &smooth,
+                wall,
+                touching,
+                self.spheres,
+                &mut [],
+                self.length,
+                self.time_step,
+                &mut of_wall,
+            );
+            self.tally.contact_energy += of_wall.contact_energy;
+            self.tally.normal_dissipation += of_wall.normal_dissipation;
+        }
+    }
+}
+
+/// Sums over the contacts, lane by lane.
+#[derive(Clone, Copy)]
+struct Sums<M: Machine> {
+    energy: Lanes<M>,
+    normal_dissipation: Lanes<M>,
+    damped: Lanes<M>,
+    slid: Lanes<M>,
+    overlap: Lanes<M>,
+    largest_overlap: Lanes<M>,
+    wall_axial_force: Lanes<M>,
+    wall_contacts: u64,
+    sliding_contacts: u64,
+}
+
+impl<M: Machine> Sums<M> {
+    #[inline(always)]
+    fn none() -> Self {
+        let zero = Lanes::splat(0.0);
+        Self {
+            energy: zero,
+            normal_dissipation: zero,
+            damped: zero,
+            slid: zero,
+            overlap: zero,
+            largest_overlap: zero,
+            wall_axial_force: zero,
+            wall_contacts: 0,
+            sliding_contacts: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn add(
+        &mut self,
+        answer: &ContactForce<Lanes<M>>,
+        overlap: Lanes<M>,
+        with_wall: Mask<M>,
+        valid: Mask<M>,
+    ) {
+        let zero = Lanes::splat(0.0);
+        let overlap = Lanes::select(valid, overlap, zero);
+        self.energy += Lanes::select(valid, answer.energy, zero);
+        self.normal_dissipation += Lanes::select(valid, answer.normal_dissipation, zero);
+        self.damped += Lanes::select(valid, answer.tangential.damped, zero);
+        self.slid += Lanes::select(valid, answer.tangential.slid, zero);
+        self.overlap += overlap;
+        self.largest_overlap = self.largest_overlap.larger(overlap);
+        self.wall_axial_force += Lanes::select(valid & with_wall, answer.force.z, zero);
+        self.wall_contacts += (valid & with_wall).count();
+        self.sliding_contacts += (valid & answer.tangential.sliding).count();
+    }
+
+    #[inline(always)]
+    fn add_to(&self, tally: &mut Tally, contacts: u64) {
+        tally.contact_energy += self.energy.sum();
+        tally.normal_dissipation += self.normal_dissipation.sum();
+        tally.tangential_lost += self.damped.sum();
+        tally.sliding_lost += self.slid.sum();
+        tally.total_overlap += self.overlap.sum();
+        tally.largest_overlap = tally.largest_overlap.max(self.largest_overlap.largest());
+        tally.wall_axial_force += self.wall_axial_force.sum();
+        tally.wall_contacts += self.wall_contacts;
+        tally.grain_contacts += contacts - self.wall_contacts;
+        tally.sliding_contacts += self.sliding_contacts;
+    }
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn add_contacts<M: Machine, N: NormalLaw, T: Remember>(
+    law: &ContactLaw<N, T>,
+    pairs: &Pruned,
+    touching: &[u32],
+    spheres: &mut Spheres,
+    histories: &mut [Packed],
+    length: f64,
+    time_step: f64,
+    tally: &mut Tally,
+) {
+    let grains = spheres.grains;
+    let position = &spheres.position[..];
+    let velocity = &spheres.velocity[..];
+    let spin = &spheres.spin[..];
+    let force = &mut spheres.force[..];
+    let torque = &mut spheres.torque[..];
+    let (half, zero) = (Lanes::<M>::splat(0.5), Lanes::<M>::splat(0.0));
+    let mut sums = Sums::<M>::none();
+    for block in touching.chunks(LANES) {
+        let lanes = block.len();
+        let (mut pair, mut i, mut j) = ([0; LANES], [0; LANES], [0; LANES]);
+        let nothing = Quad::<M>::splat(0.0);
+        let (mut apart, mut relative) = ([nothing; LANES], [nothing; LANES]);
+        let (mut spins_i, mut spins_j) = ([nothing; LANES], [nothing; LANES]);
+        let mut with_wall = 0;
+        for lane in 0..LANES {
+            // Lanes to spare do the last contact again, to no effect.
+            let k = block[lane.min(lanes - 1)] as usize;
+            pair[lane] = pairs.number[k] as usize;
+            i[lane] = pairs.near.first[k] as usize;
+            j[lane] = pairs.near.second[k] as usize;
+            let (i, j) = (i[lane], j[lane]);
+            apart[lane] = position[i].quad() - position[j].quad();
+            relative[lane] = velocity[i].quad() - velocity[j].quad();
+            spins_i[lane] = spin[i].quad();
+            spins_j[lane] = spin[j].quad();
+            with_wall |= u8::from(j >= grains) << lane;
+        }
+        let separation = record::periodic(record::into_lanes(apart).0, length);
+        let (relative_velocity, _) = record::into_lanes(relative);
+        let (spin_i, diameter_i) = record::into_lanes(spins_i);
+        let (spin_j, diameter_j) = record::into_lanes(spins_j);
+        let distance = separation.squared().sqrt();
+        let diameters = diameter_i + diameter_j;
+        let overlap = half * diameters - distance;
+        let arms = (half * (diameter_i - overlap), half * (diameter_j - overlap));
+        let contact = Contact {
+            overlap,
+            distance,
+            normal: separation * (Lanes::splat(1.0) / distance),
+            relative_velocity,
+            reduced_radius: diameter_i * diameter_j / (diameters + diameters),
+            spin: if T::ROTATES {
+                spin_i * arms.0 + spin_j * arms.1
+            } else {
+                LaneVector::default()
+            },
+        };
+        let mut history = T::History::<Lanes<M>>::default();
+        if T::ROTATES {
+            let [a, b, c, d, e, f, g, h] = pair;
+            history = T::into_lanes::<M>([
+                &histories[a],
+                &histories[b],
+                &histories[c],
+                &histories[d],
+                &histories[e],
+                &histories[f],
+                &histories[g],
+                &histories[h],
+            ]);
+        }
+        let answer = law.force(&contact, &mut history, time_step);
+        let valid = Mask::first(lanes);
+        sums.add(&answer, overlap, Mask::from_bits(with_wall), valid);
+        let forces = record::from_lanes(answer.force, zero);
+        let twists = record::from_lanes(answer.twist, zero);
+        let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
+        for lane in 0..lanes {
+            let (i, j) = (i[lane], j[lane]);
+            force[i] = (force[i].quad() + forces[lane]).record();
+            force[j] = (force[j].quad() - forces[lane]).record();
+            if T::ROTATES {
+                torque[i] = (torque[i].quad() + twists[lane] * arms_i[lane]).record();
+                torque[j] = (torque[j].quad() + twists[lane] * arms_j[lane]).record();
+            }
+        }
+        if T::ROTATES {
+            let [first, second] = T::from_lanes::<M>(&history);
+            for lane in 0..lanes {
+                histories[pair[lane]] = [first[lane].record(), second[lane].record()];
+            }
+        }
+    }
+    sums.add_to(tally, touching.len() as u64);
+}

@@ -1,0 +1,103 @@
+//! The moving spheres as records, for as long as an advance lasts.
+
+use glam::DVec3;
+
+use super::record::Record;
+use crate::bodies::Bodies;
+use crate::integrate::Past;
+
+/// The spheres of [`Bodies`] in records of four numbers.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Spheres {
+    pub(super) grains: usize,
+    /// Place, and turns round the tube.
+    pub(super) position: Vec<Record>,
+    /// Velocity, and 0.
+    pub(super) velocity: Vec<Record>,
+    /// Angular velocity, and the diameter.
+    pub(super) spin: Vec<Record>,
+    /// Force, and 0; between advances the acceleration.
+    pub(super) force: Vec<Record>,
+    /// Torque, and 0; between advances the angular acceleration.
+    pub(super) torque: Vec<Record>,
+    /// Of the step before, as the integrator's [`Past`] has them.
+    pub(super) velocity_before: Vec<Record>,
+    pub(super) spin_before: Vec<Record>,
+    pub(super) acceleration_before: Vec<Record>,
+    pub(super) angular_acceleration_before: Vec<Record>,
+    pub(super) inverse_mass: Vec<f64>,
+    pub(super) inverse_inertia: Vec<f64>,
+}
+
+fn fill(records: &mut Vec<Record>, vectors: &[DVec3]) {
+    records.clear();
+    records.extend(vectors.iter().map(|&vector| Record::new(vector, 0.0)));
+}
+
+fn empty(vectors: &mut Vec<DVec3>, records: &[Record]) {
+    vectors.clear();
+    vectors.extend(records.iter().map(|record| record.vector()));
+}
+
+impl Spheres {
+    pub(super) fn number(&self) -> usize {
+        self.position.len()
+    }
+
+    pub(super) fn load(&mut self, bodies: &Bodies, past: &Past) {
+        self.grains = bodies.grains;
+        self.position.clear();
+        let places = bodies.position.iter().zip(&bodies.turns);
+        self.position
+            .extend(places.map(|(&place, &turns)| Record::new(place, f64::from(turns))));
+        self.spin.clear();
+        let spins = bodies.angular_velocity.iter().zip(&bodies.diameter);
+        self.spin
+            .extend(spins.map(|(&spin, &diameter)| Record::new(spin, diameter)));
+        fill(&mut self.velocity, &bodies.velocity);
+        fill(&mut self.force, &bodies.acceleration);
+        fill(&mut self.torque, &bodies.angular_acceleration);
+        fill(&mut self.velocity_before, &past.velocity);
+        fill(&mut self.spin_before, &past.angular_velocity);
+        fill(&mut self.acceleration_before, &past.acceleration);
+        fill(
+            &mut self.angular_acceleration_before,
+            &past.angular_acceleration,
+        );
+        self.inverse_mass.clear();
+        self.inverse_mass
+            .extend(bodies.mass.iter().map(|mass| 1.0 / mass));
+        self.inverse_inertia.clear();
+        self.inverse_inertia
+            .extend(bodies.inertia.iter().map(|inertia| 1.0 / inertia));
+    }
+
+    /// Writes the places down.
+    pub(super) fn store_places(&self, bodies: &mut Bodies) {
+        for ((place, turns), record) in bodies
+            .position
+            .iter_mut()
+            .zip(&mut bodies.turns)
+            .zip(&self.position)
+        {
+            *place = record.vector();
+            *turns = record.0[3] as i32;
+        }
+    }
+
+    /// Writes everything down; `force` and `torque` must hold accelerations.
+    pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
+        self.store_places(bodies);
+        empty(&mut bodies.velocity, &self.velocity);
+        empty(&mut bodies.angular_velocity, &self.spin);
+        empty(&mut bodies.acceleration, &self.force);
+        empty(&mut bodies.angular_acceleration, &self.torque);
+        empty(&mut past.velocity, &self.velocity_before);
+        empty(&mut past.angular_velocity, &self.spin_before);
+        empty(&mut past.acceleration, &self.acceleration_before);
+        empty(
+            &mut past.angular_acceleration,
+            &self.angular_acceleration_before,
+        );
+    }
+}
