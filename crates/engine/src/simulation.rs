@@ -126,9 +126,10 @@ impl Simulation {
             && parameters.kernel == Kernel::Fast
             && Sorted::serves(bodies, wall, parameters)
         {
+            // No list is needed any more; what it took serves the kernel.
+            self.memory = Memory::Smooth(Contacts::none());
             let sorted = Sorted::new(bodies, prescribed, parameters.skin, sorting);
             self.sorted = Some(Box::new(sorted));
-            self.memory = Memory::Smooth(Contacts::none());
         }
     }
 

@@ -153,7 +153,13 @@ fn a_wave_without_height_drives_no_flow() {
             Simulation::new(packed(80, 1.0, &wall, LINEAR, 6), wall.clone(), parameters);
         let before = still.bodies().position.clone();
         still.advance(400).unwrap();
-        assert_eq!(still.bodies().position, before);
+        // The packing is balanced to a part in a million of a contact force.
+        for (after, before) in still.bodies().position.iter().zip(before) {
+            assert!(
+                (*after - before).length() < 1e-5,
+                "{before} moves to {after}"
+            );
+        }
 
         let mut moving = Simulation::new(
             moving(80, LINEAR, 0.2, 0.0, &wall),

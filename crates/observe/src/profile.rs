@@ -41,12 +41,13 @@ impl Sums {
         self.looks += other.looks;
     }
 
-    fn look_at(&mut self, slice: crate::shape::Slice) {
+    /// Adds what is seen of the tube at `places` places that are alike.
+    fn look_at(&mut self, slice: crate::shape::Slice, places: f64) {
         self.add(&Self {
-            radius: slice.mean,
+            radius: places * slice.mean,
             least_radius: slice.least,
             largest_radius: slice.largest,
-            looks: 1.0,
+            looks: places,
             ..Self::default()
         });
     }
@@ -124,16 +125,16 @@ impl WaveFrameProfile {
             let folded = position - position.floor();
             ((folded * bins as f64) as usize).min(bins - 1)
         };
-        let different_waves = if shape.is_periodic() {
-            1
+        let (different_waves, alike) = if shape.is_periodic() {
+            (1, lattice.waves)
         } else {
-            lattice.waves
+            (lattice.waves, 1)
         };
         for wave in 0..different_waves {
             for (bin, sums) in last.iter_mut().enumerate() {
                 let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;
                 let z = (heading * position * lattice.wavelength).rem_euclid(lattice.length());
-                sums.look_at(shape.slice(z));
+                sums.look_at(shape.slice(z), f64::from(alike));
             }
         }
         let bodies = simulation.bodies();

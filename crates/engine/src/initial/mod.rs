@@ -80,7 +80,8 @@ fn uniform(random: &mut ChaCha8Rng) -> f64 {
 /// appended to the grains.
 ///
 /// Random sequential insertion without overlap; where it stalls, the rest is put at random places and all grains grow to
-/// their size while the elastic energy is minimised. Velocities are set afterwards. The same seed gives the same state.
+/// their size while the elastic energy is minimised. Velocities are set afterwards. The grains are numbered along the
+/// tube. The same seed gives the same state.
 ///
 /// # Errors
 /// [`EngineError::DoesNotFit`] where the mean overlap stays above [`LARGEST_MEAN_OVERLAP`] largest diameters, or where
@@ -105,6 +106,10 @@ pub fn pack(
         &mut random(packing.seed, Stream::Positions),
     );
 
+    // Numbered along the tube: grains that meet then lie close in memory as well.
+    let mut grains: Vec<(DVec3, f64)> = position.into_iter().zip(diameter).collect();
+    grains.sort_by(|a, b| a.0.z.total_cmp(&b.0.z));
+    let (position, diameter) = grains.into_iter().unzip();
     let mut bodies = Bodies::grains_at_rest(position, diameter);
     if let Wall::Elastic(elastic) = wall {
         for sphere in 0..elastic.lattice().spheres() {

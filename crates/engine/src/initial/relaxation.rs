@@ -6,7 +6,9 @@ use peristalsis_physics::contact::{ContactLaw, Frictionless, NormalLaw};
 use super::{LARGEST_MEAN_OVERLAP, PackingReport};
 use crate::bodies::Bodies;
 use crate::error::EngineError;
+use crate::fast::sorted::Sorted;
 use crate::forces::{Contacts, evaluate};
+use crate::ledger::Tally;
 use crate::wall::Wall;
 
 /// Sizes that the grains grow through, in units of their own.
@@ -35,30 +37,32 @@ pub(super) fn grow<N: NormalLaw>(
     };
     let full: Vec<f64> = bodies.diameter.clone();
     let largest = full[..bodies.grains].iter().copied().fold(0.0, f64::max);
+    let grains = bodies.grains;
     let does_not_fit = |mean_overlap: f64, outside: usize| EngineError::DoesNotFit {
-        grains: bodies.grains,
+        grains,
         mean_overlap,
         limit: LARGEST_MEAN_OVERLAP * largest,
         outside,
     };
-    let mut bodies_now = bodies.clone();
+    let mut bodies_now = core::mem::take(bodies);
     let mut descent = Descent::new(&law, &bodies_now, largest);
     for scale in STAGES {
         for (diameter, full) in bodies_now.diameter[..bodies.grains].iter_mut().zip(&full) {
             *diameter = scale * full;
         }
         descent.restart();
+        descent.forces = Forces::between(&bodies_now, wall);
         descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS);
     }
     let overlap = descent.report.mean_overlap;
     let outside = pressed_out(&bodies_now, wall);
-    if overlap > HOPELESS * largest || too_many(outside, bodies) {
+    if overlap > HOPELESS * largest || too_many(outside, grains) {
         return Err(does_not_fit(overlap, outside));
     }
     descent.run(&law, &mut bodies_now, wall, LAST_ITERATIONS);
     let report = descent.report;
     let outside = pressed_out(&bodies_now, wall);
-    if report.mean_overlap > LARGEST_MEAN_OVERLAP * largest || too_many(outside, bodies) {
+    if report.mean_overlap > LARGEST_MEAN_OVERLAP * largest || too_many(outside, grains) {
         return Err(does_not_fit(report.mean_overlap, outside));
     }
     bodies_now.turns.fill(0);
@@ -83,14 +87,54 @@ fn pressed_out(bodies: &Bodies, wall: &Wall) -> usize {
         .count()
 }
 
-fn too_many(outside: usize, bodies: &Bodies) -> bool {
-    outside as f64 > LARGEST_PART_OUTSIDE * bodies.grains as f64
+fn too_many(outside: usize, grains: usize) -> bool {
+    outside as f64 > LARGEST_PART_OUTSIDE * grains as f64
+}
+
+/// What finds the forces: the kernel for equal grains in a narrow tube where it serves, else the reference.
+enum Forces {
+    Listed(Box<Contacts<()>>),
+    Sorted(Box<Sorted>),
+}
+
+/// Skin of the neighbour search \[d\].
+const SKIN: f64 = 0.3;
+
+impl Forces {
+    fn between(bodies: &Bodies, wall: &Wall) -> Self {
+        match wall {
+            Wall::Prescribed(prescribed) if Sorted::serves_tube(bodies, wall, SKIN) => {
+                Self::Sorted(Box::new(Sorted::new(bodies, prescribed, SKIN, None)))
+            }
+            _ => Self::Listed(Box::new(Contacts::none())),
+        }
+    }
+
+    fn evaluate<N: NormalLaw>(
+        &mut self,
+        law: &ContactLaw<N, Frictionless>,
+        bodies: &mut Bodies,
+        wall: &Wall,
+    ) -> Tally {
+        match (self, wall) {
+            (Self::Sorted(sorted), Wall::Prescribed(wall)) => {
+                sorted.evaluate(&law.normal, wall, bodies)
+            }
+            (Self::Listed(contacts), _) => {
+                contacts.refresh(bodies, wall, SKIN);
+                evaluate(law, bodies, wall, contacts, 0.0)
+            }
+            (Self::Sorted(_), Wall::Elastic(_)) => {
+                unreachable!("the sorted kernel serves prescribed walls only")
+            }
+        }
+    }
 }
 
 /// Damped descent in energy: motion under the elastic forces whose velocity is turned towards the force and stopped when
 /// it runs uphill (FIRE; Bitzek et al., Phys. Rev. Lett. 97, 170201 (2006)).
 struct Descent {
-    contacts: Contacts<()>,
+    forces: Forces,
     velocity: Vec<DVec3>,
     time_step: f64,
     longest_step: f64,
@@ -111,7 +155,7 @@ impl Descent {
         let stiffness = law.normal.stiffness(overlap, 0.25 * largest);
         let longest_step = 1.0 / (12.0 * stiffness).sqrt();
         Self {
-            contacts: Contacts::none(),
+            forces: Forces::Listed(Box::new(Contacts::none())),
             velocity: vec![DVec3::ZERO; bodies.grains],
             time_step: 0.2 * longest_step,
             longest_step,
@@ -137,10 +181,8 @@ impl Descent {
         wall: &Wall,
         iterations: usize,
     ) {
-        const SKIN: f64 = 0.3;
         for _ in 0..iterations {
-            self.contacts.refresh(bodies, wall, SKIN);
-            let tally = evaluate(law, bodies, wall, &mut self.contacts, 0.0);
+            let tally = self.forces.evaluate(law, bodies, wall);
             self.report.iterations += 1;
             self.report.stored_energy = tally.contact_energy;
             self.report.largest_overlap = tally.largest_overlap;

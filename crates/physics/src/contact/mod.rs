@@ -70,7 +70,7 @@ pub struct TangentialForce<R: Real = f64> {
 }
 
 /// A force along the line of centres.
-pub trait NormalLaw: Copy {
+pub trait NormalLaw: Copy + Sync {
     /// Force at overlap xi > 0, normal velocity v_n (positive when parting) and reduced radius R_ij.
     fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R>;
 

@@ -204,8 +204,8 @@ impl Machine for Plain {
     #[inline(always)]
     fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
         let mut at = 0;
-        for lane in 0..LANES {
-            to[at & (LANES - 1)] = of[lane];
+        for (lane, &number) in of.iter().enumerate() {
+            to[at & (LANES - 1)] = number;
             at += usize::from((bits >> lane) & 1);
         }
     }

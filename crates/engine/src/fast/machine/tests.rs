@@ -105,8 +105,8 @@ proptest! {
         for k in 0..4 {
             prop_assert_eq!(lanes[k][1], (a[k] - a[k + 4]).to_bits());
             prop_assert_eq!((lanes[k][6], lanes[k][7]), (a[k + 2].to_bits(), a[k + 3].to_bits()));
-            for lane in 0..LANES {
-                prop_assert_eq!(plain.0[17 + lane][k], lanes[k][lane]);
+            for (lane, &number) in lanes[k].iter().enumerate() {
+                prop_assert_eq!(plain.0[17 + lane][k], number);
             }
         }
         let set: Vec<u8> = (0..8).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane + 5).collect();

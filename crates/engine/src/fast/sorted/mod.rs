@@ -97,6 +97,13 @@ pub(crate) struct Course<'a> {
 impl Sorted {
     /// Whether this kernel serves such a simulation, and well.
     pub(crate) fn serves(bodies: &Bodies, wall: &Wall, parameters: &Parameters) -> bool {
+        parameters.contact.friction.is_none()
+            && parameters.integrator == Integrator::Verlet
+            && Self::serves_tube(bodies, wall, parameters.skin)
+    }
+
+    /// Whether it serves smooth grains in this tube.
+    pub(crate) fn serves_tube(bodies: &Bodies, wall: &Wall, skin: f64) -> bool {
         let Wall::Prescribed(wall) = wall else {
             return false;
         };
@@ -104,10 +111,8 @@ impl Sorted {
         let equal = bodies.diameter.windows(2).all(|pair| pair[0] == pair[1])
             && bodies.mass.windows(2).all(|pair| pair[0] == pair[1]);
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
-        let cutoff = diameter + parameters.skin;
-        parameters.contact.friction.is_none()
-            && parameters.integrator == Integrator::Verlet
-            && equal
+        let cutoff = diameter + skin;
+        equal
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
@@ -161,8 +166,25 @@ impl Sorted {
         self.pool = pool;
     }
 
+    /// Forces of contacts at rest: takes the positions of `bodies` as they are and answers with their accelerations.
+    pub(crate) fn evaluate<N: NormalLaw>(
+        &mut self,
+        law: &N,
+        wall: &PrescribedWall,
+        bodies: &mut Bodies,
+    ) -> Tally {
+        self.take_positions(bodies);
+        self.wall.follow(wall);
+        let tally = self.forces::<N, true>(law);
+        for (place, &grain) in self.order.iter().enumerate() {
+            let force = self.tiles[place / TILE].force.get(place % TILE);
+            bodies.acceleration[grain as usize] = force / self.mass;
+        }
+        tally
+    }
+
     /// Advances by `steps` steps; brings `bodies` up to date.
-    pub(crate) fn advance<N: NormalLaw + Sync>(
+    pub(crate) fn advance<N: NormalLaw>(
         &mut self,
         law: &N,
         course: Course<'_>,
@@ -175,7 +197,7 @@ impl Sorted {
         }
     }
 
-    fn take_steps<N: NormalLaw + Sync>(
+    fn take_steps<N: NormalLaw>(
         &mut self,
         law: &N,
         course: Course<'_>,
@@ -233,7 +255,7 @@ impl Sorted {
     }
 
     /// All forces, left in the tiles, and what they add up to.
-    fn forces<N: NormalLaw + Sync, const FULL: bool>(&mut self, law: &N) -> Tally {
+    fn forces<N: NormalLaw, const FULL: bool>(&mut self, law: &N) -> Tally {
         let Self {
             grains,
             pairs,

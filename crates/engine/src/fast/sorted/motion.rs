@@ -44,24 +44,18 @@ impl Sorted {
             pool,
             ..
         } = self;
-        let one = |((((tile, position), velocity), acceleration), origin): (
-            (
-                ((&mut Tile, ColumnsMut<'_>), ColumnsMut<'_>),
-                ColumnsMut<'_>,
-            ),
-            &[f64],
-        )| {
-            instructions.run(MoveTile {
-                tile,
-                position,
-                velocity,
-                acceleration,
-                origin,
-                phase,
-                time_step,
-                per_mass: 1.0 / *mass,
-                limit,
-            });
+        let (per_mass, instructions) = (1.0 / *mass, *instructions);
+        // The columns of a tile, as they come zipped.
+        let work = move |((((tile, position), velocity), acceleration), origin)| MoveTile {
+            tile,
+            position,
+            velocity,
+            acceleration,
+            origin,
+            phase,
+            time_step,
+            per_mass,
+            limit,
         };
         if pool.is_some() {
             tiles
@@ -70,7 +64,8 @@ impl Sorted {
                 .zip(velocity.par_tiles())
                 .zip(acceleration.par_tiles())
                 .zip(origin.par_chunks(TILE))
-                .for_each(one);
+                .map(work)
+                .for_each(|work| instructions.run(work));
         } else {
             tiles
                 .iter_mut()
@@ -78,7 +73,8 @@ impl Sorted {
                 .zip(velocity.tiles())
                 .zip(acceleration.tiles())
                 .zip(origin.chunks(TILE))
-                .for_each(one);
+                .map(work)
+                .for_each(|work| instructions.run(work));
         }
         if phase == Phase::Kick {
             return Ok(());

@@ -111,6 +111,27 @@ impl Sorted {
         }
     }
 
+    /// Takes over where the grains are; makes the order anew where it no longer holds.
+    pub(super) fn take_positions(&mut self, bodies: &Bodies) {
+        let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (place, &grain) in self.order.iter().enumerate() {
+            let grain = grain as usize;
+            let DVec3 { x, y, z } = bodies.position[grain];
+            let turned = f64::from(bodies.turns[grain] - self.turns[place]);
+            let unfolded = z + turned * self.length;
+            self.position.x[place] = x;
+            self.position.y[place] = y;
+            self.position.z[place] = unfolded;
+            least = least.min(unfolded - self.origin[place]);
+            largest = largest.max(unfolded - self.origin[place]);
+        }
+        if largest - least > self.skin {
+            self.sort();
+        } else {
+            self.copy_ghosts();
+        }
+    }
+
     /// Brings the grains back to where the rest of the program looks for them.
     pub(super) fn store(&self, bodies: &mut Bodies) {
         for (place, &grain) in self.order.iter().enumerate() {
