@@ -21,5 +21,5 @@ pub use fast::machine::Instructions;
 pub use integrate::Integrator;
 pub use ledger::{Ledger, Tally};
 pub use simulation::{Kernel, Parameters, Simulation};
-pub use snapshot::Snapshot;
+pub use snapshot::{Snapshot, SnapshotView};
 pub use wall::Wall;

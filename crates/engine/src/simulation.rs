@@ -14,7 +14,7 @@ use crate::fast::sorted::{Course, Sorted, Sorting};
 use crate::forces::{Contacts, evaluate};
 use crate::integrate::{Integrator, Past, Runaway};
 use crate::ledger::{Ledger, Tally};
-use crate::snapshot::Snapshot;
+use crate::snapshot::{Snapshot, SnapshotView};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
 
@@ -233,6 +233,12 @@ impl Simulation {
     /// Everything that a restart needs to go on with the same bits.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
+        self.snapshot_view().into_owned()
+    }
+
+    /// The same, to be written down at once.
+    #[must_use]
+    pub fn snapshot_view(&self) -> SnapshotView<'_> {
         let (pair_histories, wall_histories) = match &self.memory {
             Memory::Smooth(_) => (Vec::new(), Vec::new()),
             Memory::Frictional(_, contacts) => (
@@ -249,12 +255,12 @@ impl Simulation {
                     .collect(),
             ),
         };
-        Snapshot {
+        SnapshotView {
             step: self.system.step,
-            bodies: self.system.bodies.clone(),
-            past: self.system.past.clone(),
-            tally: self.system.tally,
-            ledger: self.system.ledger,
+            bodies: &self.system.bodies,
+            past: &self.system.past,
+            tally: &self.system.tally,
+            ledger: &self.system.ledger,
             pair_histories,
             wall_histories,
             sorting: self.sorted.as_ref().map(|sorted| sorted.sorting()),

@@ -4,7 +4,7 @@ use peristalsis_physics::contact::TangentialHistory;
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
-pub use crate::fast::sorted::Sorting;
+pub use crate::fast::sorted::{Sorting, SortingView};
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::simulation::Parameters;
@@ -32,6 +32,36 @@ pub struct Snapshot {
     pub wall_histories: Vec<(u32, u32, TangentialHistory)>,
     /// The order of the grains along the tube, where the kernel keeps one.
     pub sorting: Option<Sorting>,
+}
+
+/// A [`Snapshot`] of a simulation that still holds it all: written down, it gives the same bytes, without a copy.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct SnapshotView<'a> {
+    pub(crate) step: u64,
+    pub(crate) bodies: &'a Bodies,
+    pub(crate) past: &'a Past,
+    pub(crate) tally: &'a Tally,
+    pub(crate) ledger: &'a Ledger,
+    pub(crate) pair_histories: Vec<(u32, u32, TangentialHistory)>,
+    pub(crate) wall_histories: Vec<(u32, u32, TangentialHistory)>,
+    pub(crate) sorting: Option<SortingView<'a>>,
+}
+
+impl SnapshotView<'_> {
+    /// A snapshot of its own.
+    #[must_use]
+    pub fn into_owned(self) -> Snapshot {
+        Snapshot {
+            step: self.step,
+            bodies: self.bodies.clone(),
+            past: self.past.clone(),
+            tally: *self.tally,
+            ledger: *self.ledger,
+            pair_histories: self.pair_histories,
+            wall_histories: self.wall_histories,
+            sorting: self.sorting.map(SortingView::into_owned),
+        }
+    }
 }
 
 impl Snapshot {
@@ -104,7 +134,9 @@ impl Snapshot {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
         }
         if let Some(sorting) = &self.sorting {
-            sorting.check(bodies.grains).or_else(mismatch)?;
+            sorting
+                .check(bodies.grains, wall.lattice().length())
+                .or_else(mismatch)?;
         }
         Ok(())
     }

@@ -19,11 +19,13 @@
 //! detects every error within 32 neighbouring bits, and others but for one in 2^32. It guards against accidents, not
 //! against forgery; a forged length cannot exhaust the memory, since no more than [`MAXIMUM_STATE_BYTES`] are unpacked.
 
+mod stream;
+
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::{Cursor, Read};
 use std::path::Path;
 
-use lz4_flex::frame::{FrameDecoder, FrameEncoder};
+use lz4_flex::frame::FrameDecoder;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -33,7 +35,7 @@ use crate::error::FormatError;
 /// The container version that this crate writes, and the only one that it reads.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// The most bytes that an encoded state may have: 1 GiB, some ten million grains.
+/// The most bytes that an encoded state may have: 1 GiB, some five million grains.
 pub const MAXIMUM_STATE_BYTES: u64 = 1 << 30;
 
 const SIGNATURE: [u8; 8] = *b"\x89PSTL\r\n\x1a";
@@ -79,26 +81,10 @@ pub fn encode<State: Serialize>(
     identity: &CheckpointIdentity,
     state: &State,
 ) -> Result<Vec<u8>, FormatError> {
-    let plain = postcard::to_allocvec(state).map_err(FormatError::Serialize)?;
-    let payload = compress(&plain);
-    // Compression enlarges noise by a little: both lengths stay within what `decode` accepts.
-    let bytes = plain.len().max(payload.len()) as u64;
-    if bytes > MAXIMUM_STATE_BYTES {
-        return Err(FormatError::StateTooLarge {
-            bytes,
-            limit: MAXIMUM_STATE_BYTES,
-        });
-    }
-    let header = Header {
-        identity: *identity,
-        payload_bytes: payload.len() as u64,
-        state_bytes: plain.len() as u64,
-        payload_checksum: crc32fast::hash(&payload),
-    };
-    let mut bytes = Vec::with_capacity(HEADER_BYTES + payload.len());
-    bytes.extend(header.to_bytes());
-    bytes.extend(payload);
-    Ok(bytes)
+    let mut bytes = Cursor::new(Vec::new());
+    stream::write(identity, state, &mut bytes)
+        .map_err(|error| error.into_format(FormatError::io("write", Path::new("memory"))))?;
+    Ok(bytes.into_inner())
 }
 
 /// The state in the bytes of a checkpoint.
@@ -136,7 +122,7 @@ pub fn identify(bytes: &[u8]) -> Result<CheckpointIdentity, FormatError> {
     Header::from_bytes(bytes).map(|header| header.identity)
 }
 
-/// Writes the state to a checkpoint file, whole or not at all.
+/// Writes the state to a checkpoint file, whole or not at all; piece by piece, so that it takes no memory to speak of.
 ///
 /// # Errors
 /// As [`encode`] and [`atomic::write`](fn@atomic::write).
@@ -145,7 +131,11 @@ pub fn write<State: Serialize>(
     identity: &CheckpointIdentity,
     state: &State,
 ) -> Result<(), FormatError> {
-    atomic::write(path, &encode(identity, state)?)
+    let mut refused = None;
+    let written = atomic::write_with(path, |file| {
+        stream::write(identity, state, file).map_err(|error| error.into_io(&mut refused))
+    });
+    refused.map_or(written, Err)
 }
 
 /// Reads the state from a checkpoint file.
@@ -268,17 +258,6 @@ fn field<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
     bytes[offset..offset + N]
         .try_into()
         .expect("the range is N bytes long")
-}
-
-/// LZ4 leaves a real state a tenth larger than stronger methods do: most of the rest are mantissas, which none compresses.
-fn compress(plain: &[u8]) -> Vec<u8> {
-    let mut encoder = FrameEncoder::new(Vec::new());
-    encoder
-        .write_all(plain)
-        .expect("writing to a vector cannot fail");
-    encoder
-        .finish()
-        .expect("the frame header announces no length to miss")
 }
 
 fn decompress(header: &Header, payload: &[u8]) -> Result<Vec<u8>, FormatError> {

@@ -143,8 +143,12 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Format`] where the file cannot be written; an older state stays.
     pub fn save_state(&self, run: &Run) -> Result<(), RunError> {
-        let bytes = checkpoint::encode(&identity(run.configuration()), &run.state())?;
-        Ok(atomic::write(&self.file(STATE), &bytes)?)
+        let identity = identity(run.configuration());
+        Ok(checkpoint::write(
+            &self.file(STATE),
+            &identity,
+            &run.state_view(),
+        )?)
     }
 
     /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.

@@ -20,7 +20,7 @@ pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use peristalsis_configuration::Configuration;
 pub use recorder::Recorder;
-pub use run::{Progress, Run, RunState};
+pub use run::{Progress, Run, RunState, RunStateView};
 pub use summary::{Status, Summary};
 pub use tables::{profile_table, timeseries_table};
 

@@ -255,10 +255,14 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
     let speed = configuration.wave_speed();
     // Drawn with the wave running to the right.
     let along = |z: f64| if heading > 0.0 { z } else { tube - z };
-    // A grain that has flown off must not stretch the picture.
+    let length =
+        configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
+    // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
     let shows = |body: &usize| {
         let position = bodies.position[*body];
+        let (place, margin) = (along(position.z), bodies.diameter[*body]);
         position.x.hypot(position.y) < SNAPSHOT_RADII * configuration.tube.radius
+            && (place < length + margin || place > tube - margin)
     };
     let grains: Vec<SnapshotGrain> = (0..bodies.grains)
         .filter(shows)
@@ -276,8 +280,6 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
             },
         })
         .collect();
-    let length =
-        configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
     let points = 400;
     let shape = TubeShape::of(simulation);
     let outline: (Vec<f64>, Vec<f64>) = (0..=points)

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
-use peristalsis_engine::{Instructions, Simulation, Snapshot};
+use peristalsis_engine::{Instructions, Simulation, Snapshot, SnapshotView};
 
 use crate::RunError;
 use crate::assemble::{assemble, parameters, walls};
@@ -27,6 +27,15 @@ pub struct RunState {
     snapshot: Snapshot,
     packing: PackingReport,
     recorder: Recorder,
+    elapsed: Duration,
+}
+
+/// A [`RunState`] of a run that still holds it all: written down, it gives the same bytes, without a copy.
+#[derive(Clone, Debug, serde::Serialize)]
+pub struct RunStateView<'a> {
+    snapshot: SnapshotView<'a>,
+    packing: PackingReport,
+    recorder: &'a Recorder,
     elapsed: Duration,
 }
 
@@ -92,6 +101,17 @@ impl Run {
             snapshot: self.simulation.snapshot(),
             packing: self.packing,
             recorder: self.recorder.clone(),
+            elapsed: self.elapsed,
+        }
+    }
+
+    /// The state, to be written down at once.
+    #[must_use]
+    pub fn state_view(&self) -> RunStateView<'_> {
+        RunStateView {
+            snapshot: self.simulation.snapshot_view(),
+            packing: self.packing,
+            recorder: &self.recorder,
             elapsed: self.elapsed,
         }
     }

@@ -1,3 +1,5 @@
+use std::io::{self, Seek, SeekFrom, Write};
+
 use serde::Deserialize;
 
 use super::*;
@@ -199,7 +201,9 @@ fn forged_lengths_are_refused() {
 
 #[test]
 fn a_payload_that_unpacks_to_more_than_claimed_is_stopped() {
-    let payload = compress(&vec![0; 64 << 20]);
+    let mut encoder = lz4_flex::frame::FrameEncoder::new(Vec::new());
+    encoder.write_all(&vec![0; 64 << 20]).unwrap();
+    let payload = encoder.finish().unwrap();
     let header = Header {
         identity: IDENTITY,
         payload_bytes: payload.len() as u64,
@@ -239,6 +243,10 @@ fn a_file_is_read_as_its_bytes_are() {
     ));
     write(&path, &IDENTITY, &state()).unwrap();
     assert_eq!(read::<State>(&path, &IDENTITY).unwrap(), state());
+    assert_eq!(
+        std::fs::read(&path).unwrap(),
+        encode(&IDENTITY, &state()).unwrap()
+    );
 
     let mut bytes = std::fs::read(&path).unwrap();
     bytes.push(0);
@@ -257,4 +265,76 @@ fn a_file_is_read_as_its_bytes_are() {
         read::<State>(&path, &IDENTITY),
         Err(FormatError::NotACheckpoint)
     ));
+}
+
+/// A disk with room for so many bytes.
+struct Disk {
+    room: usize,
+}
+
+impl Write for Disk {
+    fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
+        if buffer.len() > self.room {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.room -= buffer.len();
+        Ok(buffer.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Seek for Disk {
+    fn seek(&mut self, _: SeekFrom) -> io::Result<u64> {
+        Ok(0)
+    }
+}
+
+#[test]
+fn a_full_disk_is_called_so() {
+    // Noise, so that its compressed form is as long.
+    let noise: Vec<u64> = (1..400_000_u64)
+        .map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) | 1 << 63)
+        .collect();
+    let length = encode(&IDENTITY, &noise).unwrap().len();
+    for room in [0, 50, 79, 10_000, 1 << 20, length - 1, length + 79] {
+        match stream::write(&IDENTITY, &noise, &mut Disk { room }) {
+            Err(stream::StreamError::Io(error)) => {
+                assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room}");
+            }
+            other => panic!("with room for {room} of {length} bytes: {other:?}"),
+        }
+    }
+    // The header is written twice.
+    let room = length + 80;
+    stream::write(&IDENTITY, &noise, &mut Disk { room }).unwrap();
+}
+
+#[test]
+fn a_state_that_is_too_large_is_refused_before_it_has_been_written() {
+    struct Endless;
+    impl Serialize for Endless {
+        fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            use serde::ser::SerializeTuple;
+            let mut tuple = serializer.serialize_tuple(usize::MAX)?;
+            let piece = String::from_utf8(vec![b' '; 1 << 24]).expect("spaces");
+            loop {
+                tuple.serialize_element(&piece)?;
+            }
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("state.checkpoint");
+    for outcome in [
+        write(&path, &IDENTITY, &Endless),
+        encode(&IDENTITY, &Endless).map(drop),
+    ] {
+        assert!(
+            matches!(outcome, Err(FormatError::StateTooLarge { bytes, .. }) if bytes < 2 * MAXIMUM_STATE_BYTES),
+            "{outcome:?}"
+        );
+    }
+    assert!(!path.exists());
 }

@@ -34,7 +34,7 @@ use crate::ledger::{Ledger, Tally};
 use crate::simulation::Parameters;
 use crate::wall::{PrescribedWall, Wall};
 
-pub use self::order::Sorting;
+pub use self::order::{Sorting, SortingView};
 
 /// Grains in a tile, a multiple of the number of lanes.
 const TILE: usize = 128;

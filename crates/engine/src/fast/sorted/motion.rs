@@ -4,6 +4,7 @@ use peristalsis_physics::real::Real;
 use rayon::prelude::*;
 
 use super::columns::{Columns, ColumnsMut};
+use super::order::MOST_DRIFT;
 use super::{Sorted, TILE, Tile};
 use crate::fast::lanes::{LANES, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
@@ -90,7 +91,8 @@ impl Sorted {
             least = least.min(tile.moved.least);
             largest = largest.max(tile.moved.largest);
         }
-        if largest - least > self.skin {
+        let drift = largest.max(-least);
+        if largest - least > self.skin || drift > MOST_DRIFT * self.length {
             self.sort();
         }
         Ok(())

@@ -3,7 +3,6 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::columns::Columns;
 use super::{Sorted, TILE, Tile};
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
@@ -19,9 +18,27 @@ pub struct Sorting {
     pub unfolded: Vec<f64>,
 }
 
+/// A [`Sorting`] in the hands of its kernel.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct SortingView<'a> {
+    order: &'a [u32],
+    origin: &'a [f64],
+    unfolded: &'a [f64],
+}
+
+impl SortingView<'_> {
+    pub(crate) fn into_owned(self) -> Sorting {
+        Sorting {
+            order: self.order.to_vec(),
+            origin: self.origin.to_vec(),
+            unfolded: self.unfolded.to_vec(),
+        }
+    }
+}
+
 impl Sorting {
-    /// Whether this can be the order of so many grains; else why not.
-    pub(crate) fn check(&self, grains: usize) -> Result<(), String> {
+    /// Whether this can be the order of so many grains in a tube of this length; else why not.
+    pub(crate) fn check(&self, grains: usize, length: f64) -> Result<(), String> {
         if [self.order.len(), self.origin.len(), self.unfolded.len()] != [grains; 3] {
             return Err("its order holds another number of grains".to_owned());
         }
@@ -32,27 +49,25 @@ impl Sorting {
                 _ => return Err("its order does not hold each grain once".to_owned()),
             }
         }
-        if !self
-            .origin
-            .iter()
-            .chain(&self.unfolded)
-            .all(|z| z.abs() < FARTHEST)
-        {
+        let in_tube = |z: f64| (0.0..length).contains(&z);
+        let near = |drift: f64| drift.abs() <= (MOST_DRIFT + 1.0) * length;
+        let mut places = self.origin.iter().zip(&self.unfolded);
+        if !places.all(|(&origin, &unfolded)| in_tube(origin) && near(unfolded - origin)) {
             return Err("its order holds places that are not in the tube".to_owned());
         }
         Ok(())
     }
 }
 
-/// No tube reaches as far as this \[d\].
-const FARTHEST: f64 = 1e12;
+/// The order is made anew when a grain has drifted by so many lengths of the tube: z loses digits far from 0.
+pub(super) const MOST_DRIFT: f64 = 1.0;
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     /// (z, place before) in the order that is being made.
     keys: Vec<(f64, u32)>,
     above: Vec<(f64, u32)>,
-    columns: Columns,
+    column: Vec<f64>,
     order: Vec<u32>,
     turns: Vec<i32>,
 }
@@ -145,11 +160,11 @@ impl Sorted {
     }
 
     /// What a restart needs.
-    pub(crate) fn sorting(&self) -> Sorting {
-        Sorting {
-            order: self.order.clone(),
-            origin: self.origin[..self.grains].to_vec(),
-            unfolded: self.position.z[..self.grains].to_vec(),
+    pub(crate) fn sorting(&self) -> SortingView<'_> {
+        SortingView {
+            order: &self.order,
+            origin: &self.origin[..self.grains],
+            unfolded: &self.position.z[..self.grains],
         }
     }
 
@@ -192,37 +207,29 @@ impl Sorted {
     fn permute(&mut self) {
         let Scratch {
             keys,
-            columns: scratch,
+            column,
             order,
             turns,
             ..
         } = &mut self.scratch;
-        let grains = self.grains;
-        let one = |(values, scratch): (&mut Vec<f64>, &mut Vec<f64>)| {
-            scratch.clear();
-            scratch.extend(keys.iter().map(|&(_, place)| values[place as usize]));
-            values[..grains].copy_from_slice(scratch);
-        };
+        let parallel = self.pool.is_some();
         for columns in [
             &mut self.position,
             &mut self.velocity,
             &mut self.acceleration,
         ] {
-            if self.pool.is_some() {
-                columns
-                    .each()
-                    .into_par_iter()
-                    .zip(scratch.each())
-                    .for_each(one);
-            } else {
-                columns.each().into_iter().zip(scratch.each()).for_each(one);
+            for values in columns.each() {
+                // What stands behind the grains is made anew by `mark`.
+                column.resize(values.len(), 0.0);
+                gather(keys, values, column, parallel);
+                core::mem::swap(values, column);
             }
         }
-        order.clear();
-        order.extend(keys.iter().map(|&(_, place)| self.order[place as usize]));
+        order.resize(self.grains, 0);
+        gather(keys, &self.order, order, parallel);
         core::mem::swap(&mut self.order, order);
-        turns.clear();
-        turns.extend(keys.iter().map(|&(_, place)| self.turns[place as usize]));
+        turns.resize(self.grains, 0);
+        gather(keys, &self.turns, turns, parallel);
         core::mem::swap(&mut self.turns, turns);
     }
 
@@ -318,11 +325,32 @@ impl Tile {
         Self {
             first: 0,
             end: 0,
-            force: Columns::default(),
+            force: super::Columns::default(),
             overhang: 0,
             tally: super::Tally::default(),
             moved: super::Moved::default(),
         }
+    }
+}
+
+/// Copies values into the order of the keys.
+fn gather<T: Copy + Send + Sync>(
+    keys: &[(f64, u32)],
+    values: &[T],
+    gathered: &mut [T],
+    parallel: bool,
+) {
+    let one = |(gathered, keys): (&mut [T], &[(f64, u32)])| {
+        for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
+            *gathered = values[place as usize];
+        }
+    };
+    const PIECE: usize = 16 * TILE;
+    if parallel {
+        let pieces = gathered.par_chunks_mut(PIECE);
+        pieces.zip(keys.par_chunks(PIECE)).for_each(one);
+    } else {
+        one((gathered, keys));
     }
 }
 
