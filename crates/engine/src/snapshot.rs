@@ -4,7 +4,8 @@ use peristalsis_physics::contact::TangentialHistory;
 
 use crate::bodies::Bodies;
 use crate::error::EngineError;
-pub use crate::fast::sorted::{Sorting, SortingView};
+use crate::fast::sorted::Sorted;
+pub use crate::fast::sorted::Sorting;
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::simulation::Parameters;
@@ -44,7 +45,7 @@ pub struct SnapshotView<'a> {
     pub(crate) ledger: &'a Ledger,
     pub(crate) pair_histories: Vec<(u32, u32, TangentialHistory)>,
     pub(crate) wall_histories: Vec<(u32, u32, TangentialHistory)>,
-    pub(crate) sorting: Option<SortingView<'a>>,
+    pub(crate) sorting: Option<Sorting>,
 }
 
 impl SnapshotView<'_> {
@@ -59,7 +60,7 @@ impl SnapshotView<'_> {
             ledger: *self.ledger,
             pair_histories: self.pair_histories,
             wall_histories: self.wall_histories,
-            sorting: self.sorting.map(SortingView::into_owned),
+            sorting: self.sorting,
         }
     }
 }
@@ -133,9 +134,10 @@ impl Snapshot {
         {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
         }
-        if let Some(sorting) = &self.sorting {
+        if let (Some(sorting), Wall::Prescribed(wall)) = (&self.sorting, wall) {
+            let strips = Sorted::strips(bodies, wall, parameters.skin);
             sorting
-                .check(bodies.grains, wall.lattice().length())
+                .check(bodies.grains, strips, wall.lattice().length())
                 .or_else(mismatch)?;
         }
         Ok(())

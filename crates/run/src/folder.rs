@@ -13,7 +13,7 @@ use crate::summary::Summary;
 use crate::tables::{profile_table, timeseries_table};
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 2;
+const STATE_LAYOUT: u32 = 3;
 
 const CONFIGURATION: &str = "config.toml";
 const SUMMARY: &str = "summary.json";

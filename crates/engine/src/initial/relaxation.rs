@@ -51,6 +51,8 @@ pub(super) fn grow<N: NormalLaw>(
             *diameter = scale * full;
         }
         descent.restart();
+        // What served the last stage makes room first.
+        descent.forces = Forces::Listed(Box::new(Contacts::none()));
         descent.forces = Forces::between(&bodies_now, wall);
         descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS);
     }

@@ -21,14 +21,6 @@ pub(super) struct ColumnsMut<'a> {
 }
 
 impl Columns {
-    pub(super) fn with_capacity(capacity: usize) -> Self {
-        Self {
-            x: Vec::with_capacity(capacity),
-            y: Vec::with_capacity(capacity),
-            z: Vec::with_capacity(capacity),
-        }
-    }
-
     pub(super) fn each(&mut self) -> [&mut Vec<f64>; 3] {
         [&mut self.x, &mut self.y, &mut self.z]
     }
@@ -47,6 +39,12 @@ impl Columns {
 
     pub(super) fn get(&self, place: usize) -> DVec3 {
         DVec3::new(self.x[place], self.y[place], self.z[place])
+    }
+
+    pub(super) fn set(&mut self, place: usize, vector: DVec3) {
+        self.x[place] = vector.x;
+        self.y[place] = vector.y;
+        self.z[place] = vector.z;
     }
 
     /// Copies entry `from` to entry `to`, moved by `shift` along z.

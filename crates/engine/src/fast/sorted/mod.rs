@@ -1,16 +1,19 @@
-//! The fast kernel for equal smooth grains in a narrow tube with a prescribed wall.
+//! The fast kernel for equal smooth grains in a tube with a prescribed wall.
 //!
-//! The grains are kept in the order of z. A grain's neighbours are then the few that follow it, at the same offsets for
-//! eight grains at a time, so that there is no list of pairs and nothing to gather; copies of the first grains, one
-//! period on, close the tube. The order is made anew when grains may have come closer along z by more than the skin.
+//! The grains are kept in the order of z, in a wide tube strip by strip along it. A grain's partners are then few places
+//! that follow one another, so that eight grains meet eight partners at a time without gathering: a list for each eight
+//! grains says where their partners begin. Copies of the grains near the ends, one period on, close the tube. Order and
+//! list are made anew when grains may have come closer by more than the skin.
 //!
-//! Forces are added up tile by tile, each with room for what it exerts on the next, so that neither the number of
-//! threads nor the set of instructions changes a bit.
+//! Forces are added up tile by tile, and the tiles in their order, so that neither the number of threads nor the set of
+//! instructions changes a bit.
 
 mod columns;
+mod listing;
 mod motion;
 mod order;
 mod pairs;
+mod strips;
 mod sums;
 mod wall;
 
@@ -21,8 +24,11 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use self::columns::Columns;
+use self::listing::Tile;
 use self::motion::{Moved, Phase};
+use self::order::Row;
 use self::pairs::{Block, PairConstants};
+use self::strips::{Strips, WIDE_SKIN};
 use self::sums::Sums;
 use self::wall::WallTable;
 use super::lanes::LANES;
@@ -34,13 +40,13 @@ use crate::ledger::{Ledger, Tally};
 use crate::simulation::Parameters;
 use crate::wall::{PrescribedWall, Wall};
 
-pub use self::order::{Sorting, SortingView};
+pub use self::order::Sorting;
 
 /// Grains in a tile, a multiple of the number of lanes.
 const TILE: usize = 128;
 
-/// More grains ahead than this on average are served better by a list of neighbours.
-const MOST_AHEAD: f64 = 24.0;
+/// Tiles whose forces threads work out before they are added up.
+const BATCH: usize = 128;
 
 /// Grains in the order of z, with all that their motion needs.
 #[derive(Clone, Debug)]
@@ -51,37 +57,37 @@ pub(crate) struct Sorted {
     mass: f64,
     pairs: PairConstants,
     wall: WallTable,
-    /// Which grain stands at each place.
+    strips: Strips,
+    /// The places of each strip.
+    rows: Vec<Row>,
+    /// Which grain stands at each place, itself or its copy.
     order: Vec<u32>,
     /// Times round the tube up to the last sorting; since then z runs on beyond the ends of the tube.
     turns: Vec<i32>,
     position: Columns,
     velocity: Columns,
     acceleration: Columns,
+    /// Zero but while forces are worked out.
+    force: Columns,
     /// z at the last sorting.
     origin: Vec<f64>,
-    /// For each block of grains, how many that follow a grain may touch it.
-    ahead: Vec<u32>,
-    /// Number of first grains that are repeated behind the last.
-    ghosts: usize,
+    /// Bound of the distance that a grain has gone across the tube since then.
+    lateral: f64,
     tiles: Vec<Tile>,
+    /// Forces of a tile, or of as many as threads work on at a time.
+    of_tiles: Vec<OfTile>,
+    moved: Vec<Moved>,
     scratch: order::Scratch,
     instructions: Instructions,
     /// Where there is to be more than one thread.
     pool: Option<Arc<ThreadPool>>,
 }
 
-/// A stretch of places whose forces are added up together.
-#[derive(Clone, Debug)]
-struct Tile {
-    first: usize,
-    end: usize,
-    /// Forces on the grains of the tile, and behind them those on the grains that follow.
+/// What the contacts of a tile's grains exert, window after window, and add up to.
+#[derive(Clone, Debug, Default)]
+struct OfTile {
     force: Columns,
-    /// How many grains that follow can feel the tile.
-    overhang: usize,
     tally: Tally,
-    moved: Moved,
 }
 
 /// The parts of a simulation that an advance works on.
@@ -107,16 +113,26 @@ impl Sorted {
         let Wall::Prescribed(wall) = wall else {
             return false;
         };
-        let (lattice, grains) = (wall.lattice(), bodies.grains as f64);
+        let lattice = wall.lattice();
         let equal = bodies.diameter.windows(2).all(|pair| pair[0] == pair[1])
             && bodies.mass.windows(2).all(|pair| pair[0] == pair[1]);
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
-        let cutoff = diameter + skin;
+        let cutoff = diameter + WIDE_SKIN * skin;
         equal
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
-            && grains / lattice.length() * cutoff <= MOST_AHEAD
+    }
+
+    /// How many strips the grains stand in.
+    pub(crate) fn strips(bodies: &Bodies, wall: &PrescribedWall, skin: f64) -> usize {
+        Self::strips_of(bodies, wall, skin).number()
+    }
+
+    fn strips_of(bodies: &Bodies, wall: &PrescribedWall, skin: f64) -> Strips {
+        let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
+        let (length, radius) = (wall.lattice().length(), wall.wave().mean_radius);
+        Strips::new(bodies.grains, length, radius, diameter, skin)
     }
 
     /// The grains of `bodies`, which must be as [`Sorted::serves`] wants them; in the order that `sorting` holds.
@@ -128,26 +144,30 @@ impl Sorted {
     ) -> Self {
         let grains = bodies.grains;
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
-        let room = grains + grains.min(TILE) + 3 * LANES;
+        let strips = Self::strips_of(bodies, wall, skin);
         let mut sorted = Self {
             grains,
             length: wall.lattice().length(),
-            skin,
+            skin: strips.skin,
             mass: bodies.mass.first().copied().unwrap_or(1.0),
             pairs: PairConstants {
                 reach: diameter,
                 reduced_radius: 0.25 * diameter,
             },
             wall: WallTable::new(wall, diameter),
-            order: Vec::with_capacity(grains),
-            turns: Vec::with_capacity(grains),
-            position: Columns::with_capacity(room),
-            velocity: Columns::with_capacity(room),
-            acceleration: Columns::with_capacity(room),
-            origin: Vec::with_capacity(room),
-            ahead: Vec::with_capacity(grains.div_ceil(LANES)),
-            ghosts: 0,
+            strips,
+            rows: Vec::new(),
+            order: Vec::new(),
+            turns: Vec::new(),
+            position: Columns::default(),
+            velocity: Columns::default(),
+            acceleration: Columns::default(),
+            force: Columns::default(),
+            origin: Vec::new(),
+            lateral: 0.0,
             tiles: Vec::new(),
+            of_tiles: vec![OfTile::default()],
+            moved: Vec::new(),
             scratch: order::Scratch::default(),
             instructions: Instructions::widest(),
             pool: None,
@@ -163,6 +183,8 @@ impl Sorted {
         pool: Option<Arc<ThreadPool>>,
     ) {
         self.instructions = instructions;
+        let at_a_time = if pool.is_some() { BATCH } else { 1 };
+        self.of_tiles.resize_with(at_a_time, OfTile::default);
         self.pool = pool;
     }
 
@@ -176,10 +198,11 @@ impl Sorted {
         self.take_positions(bodies);
         self.wall.follow(wall);
         let tally = self.forces::<N, true>(law);
-        for (place, &grain) in self.order.iter().enumerate() {
-            let force = self.tiles[place / TILE].force.get(place % TILE);
-            bodies.acceleration[grain as usize] = force / self.mass;
+        for place in self.rows.iter().flat_map(Row::own) {
+            let grain = self.order[place] as usize;
+            bodies.acceleration[grain] = self.force.get(place) / self.mass;
         }
+        self.forget_forces();
         tally
     }
 
@@ -226,13 +249,14 @@ impl Sorted {
             if outcome.is_err() {
                 break;
             }
-            self.copy_ghosts();
 
             // A wall that jumps does work on the contacts that it finds: what they store after the jump but not before.
             let jumps = wall.move_without_jump(time - time_step, time);
             let stored_before_jump = jumps.then(|| {
                 self.wall.follow(wall);
-                self.forces::<N, true>(law).contact_energy
+                let stored = self.forces::<N, true>(law).contact_energy;
+                self.forget_forces();
+                stored
             });
             wall.move_to(time);
             self.wall.follow(wall);
@@ -254,83 +278,69 @@ impl Sorted {
         outcome
     }
 
-    /// All forces, left in the tiles, and what they add up to.
+    /// Adds up all forces, from zero, and answers what they add up to.
     fn forces<N: NormalLaw, const FULL: bool>(&mut self, law: &N) -> Tally {
         let Self {
-            grains,
             pairs,
             wall,
             position,
             velocity,
-            ahead,
+            force,
             tiles,
+            of_tiles,
             instructions,
             pool,
             ..
         } = self;
-        let one = |tile: &mut Tile| {
-            instructions.run(ForcesOnTile::<N, FULL> {
+        let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
+            instructions.run(ForcesOfTile::<N, FULL> {
                 law,
                 pairs,
                 wall,
                 position,
                 velocity,
-                ahead,
-                grains: *grains,
                 tile,
+                of_tile,
             });
         };
-        if pool.is_some() {
-            tiles.par_iter_mut().for_each(one);
-        } else {
-            tiles.iter_mut().for_each(one);
-        }
-        self.add_overhangs();
         let mut tally = Tally::default();
-        for tile in &self.tiles {
-            tally.merge(&tile.tally);
+        for batch in tiles.chunks(of_tiles.len()) {
+            if pool.is_some() {
+                of_tiles.par_iter_mut().zip(batch).for_each(one);
+            } else {
+                of_tiles.iter_mut().zip(batch).for_each(one);
+            }
+            for (of_tile, tile) in of_tiles.iter().zip(batch) {
+                instructions.run(AddUp {
+                    tile,
+                    of_tile,
+                    force,
+                });
+                tally.merge(&of_tile.tally);
+            }
         }
+        self.gather_from_copies();
         tally
     }
 
-    /// Adds what each tile exerts on grains behind it to the forces there.
-    fn add_overhangs(&mut self) {
-        for from in 0..self.tiles.len() {
-            let Tile {
-                first,
-                end,
-                overhang,
-                ..
-            } = self.tiles[from];
-            for beyond in end..end + overhang {
-                let pushed = self.tiles[from].force.get(beyond - first);
-                let place = if beyond < self.grains {
-                    beyond
-                } else {
-                    beyond - self.grains
-                };
-                let (to, within) = (place / TILE, place % TILE);
-                let force = &mut self.tiles[to].force;
-                force.x[within] += pushed.x;
-                force.y[within] += pushed.y;
-                force.z[within] += pushed.z;
-            }
+    fn forget_forces(&mut self) {
+        for column in self.force.each() {
+            column.fill(0.0);
         }
     }
 }
 
-struct ForcesOnTile<'a, N, const FULL: bool> {
+struct ForcesOfTile<'a, N, const FULL: bool> {
     law: &'a N,
     pairs: &'a PairConstants,
     wall: &'a WallTable,
     position: &'a Columns,
     velocity: &'a Columns,
-    ahead: &'a [u32],
-    grains: usize,
-    tile: &'a mut Tile,
+    tile: &'a Tile,
+    of_tile: &'a mut OfTile,
 }
 
-impl<N: NormalLaw, const FULL: bool> Work for ForcesOnTile<'_, N, FULL> {
+impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
     type Answer = ();
 
     #[inline(always)]
@@ -341,29 +351,54 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOnTile<'_, N, FULL> {
             wall,
             position,
             velocity,
-            ahead,
-            grains,
             tile,
+            of_tile: OfTile { force, tally },
         } = self;
-        let (first, end) = (tile.first, tile.end);
-        let force = &mut tile.force;
         for column in force.each() {
-            column.fill(0.0);
+            column.clear();
+            column.resize(tile.room(), 0.0);
         }
         let mut sums = Sums::<M>::zero();
-        for place in (first..end).step_by(LANES) {
-            let block = Block::load(position, velocity, place, grains);
-            let ahead = ahead[place / LANES] as usize;
-            block.add_pairs::<N, FULL>(
-                law, pairs, position, velocity, ahead, first, force, &mut sums,
-            );
+        for place in (tile.first..tile.end).step_by(LANES) {
+            let block = Block::load(position, velocity, place, tile.end);
+            block.add_pairs::<N, FULL>(law, pairs, position, velocity, tile, force, &mut sums);
         }
-        for place in (first..end).step_by(LANES) {
-            let block = Block::load(position, velocity, place, grains);
+        for place in (tile.first..tile.end).step_by(LANES) {
+            let block = Block::load(position, velocity, place, tile.end);
             if let Some(pushed) = wall.force::<M, N, FULL>(law, &block, &mut sums) {
-                force.add(place - first, pushed);
+                force.add(place - tile.first, pushed);
             }
         }
-        tile.tally = sums.tally();
+        *tally = sums.tally();
+    }
+}
+
+/// Adds the forces of a tile to all.
+struct AddUp<'a> {
+    tile: &'a Tile,
+    of_tile: &'a OfTile,
+    force: &'a mut Columns,
+}
+
+impl Work for AddUp<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let of_tile = &self.of_tile.force;
+        for window in self.tile.windows() {
+            let (first, base) = (window.first, window.base);
+            for (to, from) in [
+                (&mut self.force.x, &of_tile.x),
+                (&mut self.force.y, &of_tile.y),
+                (&mut self.force.z, &of_tile.z),
+            ] {
+                let to = &mut to[first..first + window.length];
+                let from = &from[base..base + window.length];
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to += from;
+                }
+            }
+        }
     }
 }

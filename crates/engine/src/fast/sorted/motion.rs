@@ -4,9 +4,9 @@ use peristalsis_physics::real::Real;
 use rayon::prelude::*;
 
 use super::columns::{Columns, ColumnsMut};
-use super::order::MOST_DRIFT;
-use super::{Sorted, TILE, Tile};
-use crate::fast::lanes::{LANES, Lanes, Mask};
+use super::order::NOWHERE;
+use super::{Sorted, TILE};
+use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
 use crate::integrate::Runaway;
 
@@ -27,7 +27,9 @@ pub(super) struct Moved {
     /// Least and largest displacement along z since the last sorting \[d\].
     least: f64,
     largest: f64,
-    /// Place of a grain that moved too far, and how far.
+    /// Largest squared displacement across the tube in this step \[d^2\].
+    lateral_squared: f64,
+    /// Place in the stretch of a grain that moved too far, and how far.
     runaway: Option<(usize, f64)>,
 }
 
@@ -39,19 +41,22 @@ impl Sorted {
             position,
             velocity,
             acceleration,
+            force,
             origin,
-            tiles,
+            moved,
             instructions,
             pool,
             ..
         } = self;
+        moved.resize(origin.len().div_ceil(TILE), Moved::default());
         let (per_mass, instructions) = (1.0 / *mass, *instructions);
-        // The columns of a tile, as they come zipped.
-        let work = move |((((tile, position), velocity), acceleration), origin)| MoveTile {
-            tile,
+        // The columns of a stretch of places, as they come zipped.
+        let work = move |(((((moved, position), velocity), acceleration), force), origin)| Move {
+            moved,
             position,
             velocity,
             acceleration,
+            force,
             origin,
             phase,
             time_step,
@@ -59,20 +64,22 @@ impl Sorted {
             limit,
         };
         if pool.is_some() {
-            tiles
+            moved
                 .par_iter_mut()
                 .zip(position.par_tiles())
                 .zip(velocity.par_tiles())
                 .zip(acceleration.par_tiles())
+                .zip(force.par_tiles())
                 .zip(origin.par_chunks(TILE))
                 .map(work)
                 .for_each(|work| instructions.run(work));
         } else {
-            tiles
+            moved
                 .iter_mut()
                 .zip(position.tiles())
                 .zip(velocity.tiles())
                 .zip(acceleration.tiles())
+                .zip(force.tiles())
                 .zip(origin.chunks(TILE))
                 .map(work)
                 .for_each(|work| instructions.run(work));
@@ -81,18 +88,22 @@ impl Sorted {
             return Ok(());
         }
         let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for tile in &self.tiles {
-            if let Some((place, displacement)) = tile.moved.runaway {
+        let mut lateral_squared = 0.0_f64;
+        for (stretch, moved) in self.moved.iter().enumerate() {
+            if let Some((place, displacement)) = moved.runaway {
                 return Err(Runaway {
-                    body: self.order[place] as usize,
+                    body: self.order[stretch * TILE + place] as usize,
                     displacement,
                 });
             }
-            least = least.min(tile.moved.least);
-            largest = largest.max(tile.moved.largest);
+            least = least.min(moved.least);
+            largest = largest.max(moved.largest);
+            lateral_squared = lateral_squared.max(moved.lateral_squared);
         }
-        let drift = largest.max(-least);
-        if largest - least > self.skin || drift > MOST_DRIFT * self.length {
+        self.lateral += lateral_squared.sqrt();
+        if self.order_holds(least, largest) {
+            self.copy_grains();
+        } else {
             self.sort();
         }
         Ok(())
@@ -113,11 +124,14 @@ impl Columns {
     }
 }
 
-struct MoveTile<'a> {
-    tile: &'a mut Tile,
+/// A stretch of places, copies of grains and places without one among them.
+struct Move<'a> {
+    moved: &'a mut Moved,
     position: ColumnsMut<'a>,
     velocity: ColumnsMut<'a>,
     acceleration: ColumnsMut<'a>,
+    /// Left at zero, for the forces that come.
+    force: ColumnsMut<'a>,
     origin: &'a [f64],
     phase: Phase,
     time_step: f64,
@@ -125,7 +139,7 @@ struct MoveTile<'a> {
     limit: f64,
 }
 
-impl Work for MoveTile<'_> {
+impl Work for Move<'_> {
     type Answer = ();
 
     #[inline(always)]
@@ -138,22 +152,23 @@ impl Work for MoveTile<'_> {
     }
 }
 
-impl MoveTile<'_> {
+impl Move<'_> {
     #[inline(always)]
     fn go<M: Machine, const KICK: bool, const DRIFT: bool>(mut self) {
         let step = Lanes::<M>::splat(self.time_step);
         let half_step = Lanes::splat(0.5 * self.time_step);
         let per_mass = Lanes::splat(self.per_mass);
         let limit_squared = Lanes::splat(self.limit * self.limit);
-        let (first, end) = (self.tile.first, self.tile.end);
         let mut least = Lanes::splat(f64::INFINITY);
         let mut largest = Lanes::splat(f64::NEG_INFINITY);
+        let mut most_lateral = Lanes::splat(0.0);
         let mut runaway = None;
-        for at in (0..end - first).step_by(LANES) {
+        for at in (0..self.origin.len()).step_by(LANES) {
             let mut velocity = self.velocity.load(at);
             let mut acceleration = self.acceleration.load(at);
             if KICK {
-                let now = self.tile.force.load(at) * per_mass;
+                let now = self.force.load(at) * per_mass;
+                self.force.store(at, LaneVector::<M>::default());
                 velocity += (now - acceleration) * half_step;
                 acceleration = now;
                 self.acceleration.store(at, acceleration);
@@ -163,25 +178,28 @@ impl MoveTile<'_> {
                 let position = self.position.load(at) + by;
                 velocity += acceleration * step;
                 self.position.store(at, position);
-                let holds = Mask::first(end - first - at);
-                let apart = !by.squared().at_most(limit_squared) & holds;
+                let lateral = by.x * by.x + by.y * by.y;
+                let squared = lateral + by.z * by.z;
+                most_lateral = most_lateral.larger(lateral);
+                let apart = !squared.at_most(limit_squared);
                 if apart.any() {
                     let lane = apart.to_bits().trailing_zeros() as usize;
-                    runaway = runaway.or(Some((
-                        first + at + lane,
-                        by.squared().to_array()[lane].sqrt(),
-                    )));
+                    let by = squared.to_array()[lane].sqrt();
+                    runaway = runaway.or(Some((at + lane, by)));
                 }
-                let displacement = position.z - Lanes::load(self.origin, at);
+                let origin = Lanes::load(self.origin, at);
+                let holds = origin.less(Lanes::splat(0.5 * NOWHERE));
+                let displacement = position.z - origin;
                 least = least.lesser(Lanes::select(holds, displacement, least));
                 largest = largest.larger(Lanes::select(holds, displacement, largest));
             }
             self.velocity.store(at, velocity);
         }
         if DRIFT {
-            self.tile.moved = Moved {
+            *self.moved = Moved {
                 least: -(-least).largest(),
                 largest: largest.largest(),
+                lateral_squared: most_lateral.largest(),
                 runaway,
             };
         }

@@ -1,44 +1,29 @@
-//! The order along the tube: making it, and bringing grains into it and back.
+//! The order of the grains, strip by strip and along each strip: making it, and bringing grains into it and back.
 
 use glam::DVec3;
-use rayon::prelude::*;
 
-use super::{Sorted, TILE, Tile};
+use super::Sorted;
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
 
 /// What a restart needs to go on in the same order, and so with the same bits.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sorting {
-    /// Which grain stands at each place.
+    /// The grains in their order.
     pub order: Vec<u32>,
-    /// z at the last sorting, by place \[d\].
+    /// z at the last sorting, in this order \[d\].
     pub origin: Vec<f64>,
-    /// z now, running on beyond the ends of the tube since then, by place \[d\].
+    /// z now, running on beyond the ends of the tube since then, in this order \[d\].
     pub unfolded: Vec<f64>,
-}
-
-/// A [`Sorting`] in the hands of its kernel.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct SortingView<'a> {
-    order: &'a [u32],
-    origin: &'a [f64],
-    unfolded: &'a [f64],
-}
-
-impl SortingView<'_> {
-    pub(crate) fn into_owned(self) -> Sorting {
-        Sorting {
-            order: self.order.to_vec(),
-            origin: self.origin.to_vec(),
-            unfolded: self.unfolded.to_vec(),
-        }
-    }
+    /// How many grains stand in each strip along the tube.
+    pub strips: Vec<u32>,
+    /// Bound of the distance across the tube that grains have gone since the last sorting \[d\].
+    pub lateral: f64,
 }
 
 impl Sorting {
     /// Whether this can be the order of so many grains in a tube of this length; else why not.
-    pub(crate) fn check(&self, grains: usize, length: f64) -> Result<(), String> {
+    pub(crate) fn check(&self, grains: usize, strips: usize, length: f64) -> Result<(), String> {
         if [self.order.len(), self.origin.len(), self.unfolded.len()] != [grains; 3] {
             return Err("its order holds another number of grains".to_owned());
         }
@@ -48,6 +33,13 @@ impl Sorting {
                 Some(seen) if !*seen => *seen = true,
                 _ => return Err("its order does not hold each grain once".to_owned()),
             }
+        }
+        let standing: u64 = self.strips.iter().map(|&number| u64::from(number)).sum();
+        if self.strips.len() != strips || standing != grains as u64 {
+            return Err("its order belongs to other strips".to_owned());
+        }
+        if !(0.0..f64::INFINITY).contains(&self.lateral) {
+            return Err("its grains have gone no distance that there is".to_owned());
         }
         let in_tube = |z: f64| (0.0..length).contains(&z);
         let near = |drift: f64| drift.abs() <= (MOST_DRIFT + 1.0) * length;
@@ -62,95 +54,156 @@ impl Sorting {
 /// The order is made anew when a grain has drifted by so many lengths of the tube: z loses digits far from 0.
 pub(super) const MOST_DRIFT: f64 = 1.0;
 
+/// z of places that hold no grain: out of reach of everything.
+pub(super) const NOWHERE: f64 = 1e30;
+
+/// The places of a strip: its grains in the order of z, between copies of its last and first grains, a period away.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Row {
+    /// Place of the first grain.
+    pub(super) first: usize,
+    pub(super) grains: usize,
+    /// Copies before the grains.
+    before: usize,
+    /// Copies behind them.
+    behind: usize,
+}
+
+impl Row {
+    /// Places of the grains.
+    pub(super) fn own(&self) -> core::ops::Range<usize> {
+        self.first..self.first + self.grains
+    }
+
+    /// Places of grains and copies.
+    pub(super) fn places(&self) -> core::ops::Range<usize> {
+        self.first - self.before..self.first + self.grains + self.behind
+    }
+
+    /// Each copy: which place it is a copy of, its own, and how far it is from there along z.
+    fn copies(&self, length: f64) -> impl Iterator<Item = (usize, usize, f64)> {
+        let (first, end) = (self.first, self.first + self.grains);
+        let before = (first - self.before..first).map(move |to| (to + end - first, to, -length));
+        let behind = (end..end + self.behind).map(move |to| (to + first - end, to, length));
+        before.chain(behind)
+    }
+}
+
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
     /// (z, place before) in the order that is being made.
     keys: Vec<(f64, u32)>,
-    above: Vec<(f64, u32)>,
+    /// How many grains of each strip come from beyond the end of the tube, from within, from before its beginning; then
+    /// where the next of them goes.
+    counts: Vec<[u32; 3]>,
     column: Vec<f64>,
     order: Vec<u32>,
     turns: Vec<i32>,
 }
 
-/// z of places that hold no grain: out of reach of everything.
-const NOWHERE: f64 = 1e30;
-
 impl Sorted {
     /// Takes over all grains.
     pub(super) fn load(&mut self, bodies: &Bodies, sorting: Option<&Sorting>) {
-        self.order.clear();
-        match sorting {
-            Some(sorting) => self.order.extend(&sorting.order),
-            None => self.order.extend(0..self.grains as u32),
-        }
-        for &grain in &self.order {
-            let grain = grain as usize;
+        // For a start they stand in one row as they come.
+        let first = self.first_place();
+        let mut add = |grain: usize, z: f64| {
+            let mut position = bodies.position[grain];
+            position.z = z;
+            self.order.push(grain as u32);
             self.turns.push(bodies.turns[grain]);
-            self.position.push(bodies.position[grain]);
+            self.position.push(position);
             self.velocity.push(bodies.velocity[grain]);
             self.acceleration.push(bodies.acceleration[grain]);
+        };
+        for _ in 0..first {
+            if self.grains > 0 {
+                add(0, NOWHERE);
+            }
         }
         match sorting {
             Some(sorting) => {
-                for (place, &unfolded) in sorting.unfolded.iter().enumerate() {
-                    self.turns[place] -= fold(unfolded, self.length).1;
+                for (&grain, &z) in sorting.order.iter().zip(&sorting.origin) {
+                    add(grain as usize, z);
                 }
-                // What depends on where the grains were sorted is made from there.
-                self.position.z.copy_from_slice(&sorting.origin);
-                self.mark();
-                self.position.z[..self.grains].copy_from_slice(&sorting.unfolded);
-                self.copy_ghosts();
             }
             None => {
-                self.position
-                    .z
-                    .iter_mut()
-                    .zip(&mut self.turns)
-                    .for_each(|(z, turns)| {
-                        let (folded, count) = fold(*z, self.length);
-                        *z = folded;
-                        *turns += count;
-                    });
-                self.scratch.keys.clear();
-                let places = self.position.z.iter().zip(0..);
-                self.scratch
-                    .keys
-                    .extend(places.map(|(&z, place)| (z, place)));
-                self.scratch
-                    .keys
-                    .sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-                self.permute();
-                self.mark();
-                self.copy_ghosts();
+                for grain in 0..self.grains {
+                    add(grain, bodies.position[grain].z);
+                }
             }
         }
+        let place = if self.grains > 0 { first } else { 0 };
+        self.rows = vec![Row {
+            first: place,
+            grains: self.grains,
+            ..Row::default()
+        }];
+        let Some(sorting) = sorting else {
+            self.sort();
+            return;
+        };
+        // What depends on where the grains were sorted is made from there.
+        let keys = sorting.origin.iter().copied().zip(place as u32..);
+        self.scratch.keys.extend(keys);
+        self.arrange(sorting.strips.iter().map(|&number| number as usize));
+        self.lateral = sorting.lateral;
+        let mut unfolded = sorting.unfolded.iter();
+        for row in &self.rows {
+            for (place, &z) in row.own().zip(&mut unfolded) {
+                self.position.z[place] = z;
+                self.turns[place] -= fold(z, self.length).1;
+            }
+        }
+        self.copy_grains();
+    }
+
+    /// The first place that can hold a grain or a copy: before it stand as many that hold none.
+    fn first_place(&self) -> usize {
+        if self.strips.several() { LANES } else { 0 }
     }
 
     /// Takes over where the grains are; makes the order anew where it no longer holds.
     pub(super) fn take_positions(&mut self, bodies: &Bodies) {
         let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
-        for (place, &grain) in self.order.iter().enumerate() {
-            let grain = grain as usize;
+        let mut lateral_squared = 0.0_f64;
+        for place in self.rows.iter().flat_map(Row::own) {
+            let grain = self.order[place] as usize;
             let DVec3 { x, y, z } = bodies.position[grain];
             let turned = f64::from(bodies.turns[grain] - self.turns[place]);
             let unfolded = z + turned * self.length;
+            let (by_x, by_y) = (x - self.position.x[place], y - self.position.y[place]);
+            lateral_squared = lateral_squared.max(by_x * by_x + by_y * by_y);
             self.position.x[place] = x;
             self.position.y[place] = y;
             self.position.z[place] = unfolded;
             least = least.min(unfolded - self.origin[place]);
             largest = largest.max(unfolded - self.origin[place]);
         }
-        if largest - least > self.skin {
-            self.sort();
+        self.lateral += lateral_squared.sqrt();
+        if self.order_holds(least, largest) {
+            self.copy_grains();
         } else {
-            self.copy_ghosts();
+            self.sort();
         }
+    }
+
+    /// Whether all pairs that can touch are still listed, grains having moved along z by so much at least and at most.
+    pub(super) fn order_holds(&self, least: f64, largest: f64) -> bool {
+        let spread = largest - least;
+        let across = if self.strips.several() {
+            2.0 * self.lateral
+        } else {
+            0.0
+        };
+        let drift = largest.max(-least);
+        spread * spread + across * across <= self.skin * self.skin
+            && drift <= MOST_DRIFT * self.length
     }
 
     /// Brings the grains back to where the rest of the program looks for them.
     pub(super) fn store(&self, bodies: &mut Bodies) {
-        for (place, &grain) in self.order.iter().enumerate() {
-            let grain = grain as usize;
+        for place in self.rows.iter().flat_map(Row::own) {
+            let grain = self.order[place] as usize;
             let (z, turns) = fold(self.position.z[place], self.length);
             bodies.position[grain] = DVec3::new(self.position.x[place], self.position.y[place], z);
             bodies.turns[grain] = self.turns[place] + turns;
@@ -160,51 +213,72 @@ impl Sorted {
     }
 
     /// What a restart needs.
-    pub(crate) fn sorting(&self) -> SortingView<'_> {
-        SortingView {
-            order: &self.order,
-            origin: &self.origin[..self.grains],
-            unfolded: &self.position.z[..self.grains],
+    pub(crate) fn sorting(&self) -> Sorting {
+        let places = || self.rows.iter().flat_map(Row::own);
+        Sorting {
+            order: places().map(|place| self.order[place]).collect(),
+            origin: places().map(|place| self.origin[place]).collect(),
+            unfolded: places().map(|place| self.position.z[place]).collect(),
+            strips: self.rows.iter().map(|row| row.grains as u32).collect(),
+            lateral: self.lateral,
         }
     }
 
     /// Makes the order anew.
     pub(super) fn sort(&mut self) {
-        let Scratch { keys, above, .. } = &mut self.scratch;
-        // Grains that left the tube at its end come first, those that left at its beginning last: what then remains to
-        // be done is little.
+        let Self {
+            strips,
+            length,
+            rows,
+            turns,
+            position,
+            scratch: Scratch { keys, counts, .. },
+            ..
+        } = self;
+        // In each strip those come first that left the tube at its end, and those last that left it at its beginning:
+        // what then remains to be done is little.
+        let side = |z: f64| match z {
+            z if z >= *length => 0,
+            z if z < 0.0 => 2,
+            _ => 1,
+        };
+        let strip = |place: usize| strips.at(position.x[place], position.y[place]);
+        counts.clear();
+        counts.resize(strips.number(), [0; 3]);
+        for place in rows.iter().flat_map(Row::own) {
+            counts[strip(place)][side(position.z[place])] += 1;
+        }
+        let mut end = 0;
+        for count in counts.iter_mut().flatten() {
+            (*count, end) = (end, end + *count);
+        }
         keys.clear();
-        above.clear();
-        let places = || self.position.z[..self.grains].iter().zip(0_u32..);
-        for (&z, place) in places() {
-            if z >= self.length {
-                keys.push((z, place));
-            } else if z < 0.0 {
-                above.push((z, place));
-            }
+        keys.resize(end as usize, (0.0, 0));
+        for place in rows.iter().flat_map(Row::own) {
+            let z = position.z[place];
+            let (folded, more) = fold(z, *length);
+            turns[place] += more;
+            let next = &mut counts[strip(place)][side(z)];
+            keys[*next as usize] = (folded, place as u32);
+            *next += 1;
         }
-        for (&z, place) in places() {
-            if (0.0..self.length).contains(&z) {
-                keys.push((z, place));
-            }
+        // By now each count stands where the next begins.
+        let mut begin = 0;
+        for count in counts.iter_mut() {
+            let end = count[2] as usize;
+            put_in_order(&mut keys[begin..end]);
+            (count[0], begin) = ((end - begin) as u32, end);
         }
-        keys.append(above);
-        for (z, place) in keys.iter_mut() {
-            let (folded, turns) = fold(*z, self.length);
-            *z = folded;
-            self.turns[*place as usize] += turns;
-        }
-        for (z, &mut place) in keys.iter_mut().map(|(z, place)| (*z, place)) {
-            self.position.z[place as usize] = z;
-        }
-        insertion_sort(keys);
-        self.permute();
-        self.mark();
-        self.copy_ghosts();
+        let counts = core::mem::take(counts);
+        self.arrange(counts.iter().map(|count| count[0] as usize));
+        self.scratch.counts = counts;
     }
 
-    /// Brings all columns into the order of the keys.
-    fn permute(&mut self) {
+    /// Brings all columns into the order of the keys, so many of which belong to each strip.
+    fn arrange(&mut self, strips: impl Iterator<Item = usize>) {
+        let several = self.strips.several();
+        let cutoff = self.pairs.reach + self.skin;
+        let mut place = self.first_place();
         let Scratch {
             keys,
             column,
@@ -212,150 +286,106 @@ impl Sorted {
             turns,
             ..
         } = &mut self.scratch;
-        let parallel = self.pool.is_some();
+        self.rows.clear();
+        let mut rest = &keys[..];
+        for grains in strips {
+            let row;
+            (row, rest) = rest.split_at(grains);
+            let near_end = row.partition_point(|key| key.0 <= self.length - cutoff);
+            let row = Row {
+                first: place,
+                grains,
+                // One row alone looks ahead only.
+                before: if several { grains - near_end } else { 0 },
+                behind: row.partition_point(|key| key.0 < cutoff),
+            };
+            let row = Row {
+                first: place + row.before,
+                ..row
+            };
+            place = row.places().end + LANES;
+            self.rows.push(row);
+        }
+        let (rows, places) = (&self.rows, place.next_multiple_of(LANES));
         for columns in [
             &mut self.position,
             &mut self.velocity,
             &mut self.acceleration,
         ] {
             for values in columns.each() {
-                // What stands behind the grains is made anew by `mark`.
-                column.resize(values.len(), 0.0);
-                gather(keys, values, column, parallel);
-                core::mem::swap(values, column);
+                gather(rows, keys, values, 0.0, column, places);
             }
         }
-        order.resize(self.grains, 0);
-        gather(keys, &self.order, order, parallel);
-        core::mem::swap(&mut self.order, order);
-        turns.resize(self.grains, 0);
-        gather(keys, &self.turns, turns, parallel);
-        core::mem::swap(&mut self.turns, turns);
+        gather(rows, keys, &mut self.order, u32::MAX, order, places);
+        gather(rows, keys, &mut self.turns, 0, turns, places);
+
+        let z = &mut self.position.z;
+        z.fill(NOWHERE);
+        for (place, key) in rows.iter().flat_map(Row::own).zip(keys) {
+            z[place] = key.0;
+        }
+        self.force.resize(places);
+        for row in &self.rows {
+            for (from, to, _) in row.copies(self.length) {
+                self.order[to] = self.order[from];
+                self.acceleration.copy(from, to, 0.0);
+            }
+        }
+        self.copy_grains();
+        self.origin.clone_from(&self.position.z);
+        self.lateral = 0.0;
+        self.list();
     }
 
-    /// Notes where the grains stand now and who may touch whom until they are sorted again.
-    fn mark(&mut self) {
-        let grains = self.grains;
-        let blocks = grains.div_ceil(LANES);
-        self.ahead.resize(blocks, 0);
-        let cutoff = self.pairs.reach + self.skin;
-        let (z, length) = (&self.position.z[..grains], self.length);
-        let tile = |(tile, ahead): (usize, &mut [u32])| {
-            count_ahead(z, length, cutoff, tile * TILE, ahead);
-        };
-        if self.pool.is_some() {
-            let tiles = self.ahead.par_chunks_mut(TILE / LANES);
-            tiles.enumerate().for_each(tile);
-        } else {
-            let tiles = self.ahead.chunks_mut(TILE / LANES);
-            tiles.enumerate().for_each(tile);
-        }
-
-        let tiles = grains.div_ceil(TILE);
-        let (mut most_ahead, mut farthest) = (0, 0);
-        self.tiles.resize_with(tiles, Tile::empty);
-        for (index, tile) in self.tiles.iter_mut().enumerate() {
-            tile.first = index * TILE;
-            tile.end = (tile.first + TILE).min(grains);
-            let mut last = 0;
-            for place in (tile.first..tile.end).step_by(LANES) {
-                let ahead = self.ahead[place / LANES] as usize;
-                most_ahead = most_ahead.max(ahead);
-                last = last.max((place + LANES).min(grains) - 1 + ahead);
+    /// Repeats the grains near the ends of the tube, one period on or back.
+    pub(super) fn copy_grains(&mut self) {
+        for row in &self.rows {
+            for (from, to, shift) in row.copies(self.length) {
+                self.position.copy(from, to, shift);
+                self.velocity.copy(from, to, 0.0);
             }
-            tile.overhang = (last + 1).saturating_sub(tile.end).min(grains);
-            farthest = farthest.max(last);
-        }
-        self.ghosts = (farthest + 1).saturating_sub(grains).min(grains);
-
-        let room = grains + self.ghosts + most_ahead + 2 * LANES;
-        for columns in [
-            &mut self.position,
-            &mut self.velocity,
-            &mut self.acceleration,
-        ] {
-            columns.resize(room);
-        }
-        self.position.z[grains..].fill(NOWHERE);
-        self.origin.clear();
-        self.origin.extend_from_slice(&self.position.z);
-        for tile in &mut self.tiles {
-            tile.force.resize(TILE + most_ahead + LANES);
         }
     }
 
-    /// Repeats the first grains behind the last, one period on.
-    pub(super) fn copy_ghosts(&mut self) {
-        for ghost in 0..self.ghosts {
-            self.position.copy(ghost, self.grains + ghost, self.length);
-            self.velocity.copy(ghost, self.grains + ghost, 0.0);
+    /// Adds what was exerted on copies to the forces on the grains, and moves the copies along with them.
+    pub(super) fn gather_from_copies(&mut self) {
+        for row in &self.rows {
+            for (from, to, _) in row.copies(self.length) {
+                let force = self.force.get(from) + self.force.get(to);
+                self.force.set(from, force);
+            }
+            for (from, to, _) in row.copies(self.length) {
+                self.force.copy(from, to, 0.0);
+            }
         }
     }
 }
 
-/// For each block from place `first` on, how many grains ahead may come within `cutoff` of a grain of it.
-fn count_ahead(z: &[f64], length: f64, cutoff: f64, first: usize, ahead: &mut [u32]) {
-    let grains = z.len();
-    // z of a place, going on round the tube.
-    let unfolded = |place: usize| {
-        if place < grains {
-            z[place]
-        } else {
-            z[place - grains] + length
-        }
-    };
-    let mut end = 0;
-    for (block, ahead) in ahead.iter_mut().enumerate() {
-        let start = first + block * LANES;
-        let mut most = 0;
-        for (place, &here) in z.iter().enumerate().skip(start).take(LANES) {
-            end = end.max(place + 1);
-            // A grain never meets itself.
-            while end < place + grains && unfolded(end) < here + cutoff {
-                end += 1;
-            }
-            most = most.max(end - 1 - place);
-        }
-        *ahead = most as u32;
-    }
-}
-
-impl Tile {
-    fn empty() -> Self {
-        Self {
-            first: 0,
-            end: 0,
-            force: super::Columns::default(),
-            overhang: 0,
-            tally: super::Tally::default(),
-            moved: super::Moved::default(),
-        }
-    }
-}
-
-/// Copies values into the order of the keys.
-fn gather<T: Copy + Send + Sync>(
+/// Brings values into the order of the keys, row by row; `filler` stands where there is no grain.
+fn gather<T: Copy>(
+    rows: &[Row],
     keys: &[(f64, u32)],
-    values: &[T],
-    gathered: &mut [T],
-    parallel: bool,
+    values: &mut Vec<T>,
+    filler: T,
+    scratch: &mut Vec<T>,
+    places: usize,
 ) {
-    let one = |(gathered, keys): (&mut [T], &[(f64, u32)])| {
-        for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
+    scratch.clear();
+    scratch.resize(places, filler);
+    let mut keys = keys;
+    for row in rows {
+        let own;
+        (own, keys) = keys.split_at(row.grains);
+        for (gathered, &(_, place)) in scratch[row.own()].iter_mut().zip(own) {
             *gathered = values[place as usize];
         }
-    };
-    const PIECE: usize = 16 * TILE;
-    if parallel {
-        let pieces = gathered.par_chunks_mut(PIECE);
-        pieces.zip(keys.par_chunks(PIECE)).for_each(one);
-    } else {
-        one((gathered, keys));
     }
+    core::mem::swap(values, scratch);
 }
 
-/// Sorts what is nearly sorted.
-fn insertion_sort(keys: &mut [(f64, u32)]) {
+/// Sorts what is nearly sorted, or else as one does.
+fn put_in_order(keys: &mut [(f64, u32)]) {
+    let mut steps_left = 64 * keys.len();
     for unsorted in 1..keys.len() {
         let key = keys[unsorted];
         let mut hole = unsorted;
@@ -364,5 +394,10 @@ fn insertion_sort(keys: &mut [(f64, u32)]) {
             hole -= 1;
         }
         keys[hole] = key;
+        steps_left = steps_left.saturating_sub(unsorted - hole);
+        if steps_left == 0 {
+            keys.sort_by(|one, other| one.0.total_cmp(&other.0));
+            return;
+        }
     }
 }

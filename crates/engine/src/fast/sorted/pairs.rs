@@ -1,10 +1,11 @@
-//! Contacts between grains: each block of grains against the grains ahead of it, offset by offset.
+//! Contacts between grains: each block of grains against eight partners at a time.
 
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::{Real, Vector};
 
 use super::Sums;
 use super::columns::Columns;
+use super::listing::{Partners, Tile};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 
@@ -54,8 +55,7 @@ impl<M: Machine> Block<M> {
         block
     }
 
-    /// Adds the forces between these grains and the `ahead` grains that follow each; `force` holds those from place
-    /// `first` on.
+    /// Adds the forces between these grains and their partners in the tile to `force`, which counts places as it does.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     pub(super) fn add_pairs<N: NormalLaw, const FULL: bool>(
@@ -64,41 +64,43 @@ impl<M: Machine> Block<M> {
         constants: &PairConstants,
         position: &Columns,
         velocity: &Columns,
-        ahead: usize,
-        first: usize,
+        tile: &Tile,
         force: &mut Columns,
         sums: &mut Sums<M>,
     ) {
-        let (block, place) = (self, self.place);
+        let block = self;
         let reach = Lanes::splat(constants.reach);
         let reach_squared = reach * reach;
         let reduced_radius = Lanes::splat(constants.reduced_radius);
         let zero = Lanes::splat(0.0);
         let mut on_block = LaneVector::default();
-        for offset in 1..=ahead {
-            let separation = block.position - position.load(place + offset);
-            let distance_squared = separation.squared();
-            let touches = distance_squared.less(reach_squared)
-                & Lanes::splat(COINCIDENT).less(distance_squared)
-                & block.holds;
-            if !touches.any() {
-                continue;
-            }
-            let inverse = distance_squared.reciprocal_sqrt();
-            let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
-            let away = block.velocity - velocity.load(place + offset);
-            let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
-            let answer = law.force(overlap, normal_velocity, reduced_radius);
-            let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
-            on_block += pushed;
-            force.add(place + offset - first, -pushed);
+        for Partners { starts, shift } in tile.partners(self.place) {
+            for &start in starts {
+                let start = start as usize;
+                let separation = block.position - position.load(start);
+                let distance_squared = separation.squared();
+                let touches = distance_squared.less(reach_squared)
+                    & Lanes::splat(COINCIDENT).less(distance_squared)
+                    & block.holds;
+                if !touches.any() {
+                    continue;
+                }
+                let inverse = distance_squared.reciprocal_sqrt();
+                let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
+                let away = block.velocity - velocity.load(start);
+                let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
+                let answer = law.force(overlap, normal_velocity, reduced_radius);
+                let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
+                on_block += pushed;
+                force.add(start.wrapping_add(shift), -pushed);
 
-            let lost = (answer.elastic_force - answer.force) * normal_velocity;
-            sums.add_contact::<FULL>(overlap, answer.energy, lost);
-            if FULL {
-                sums.grain_contacts += touches.count();
+                let lost = (answer.elastic_force - answer.force) * normal_velocity;
+                sums.add_contact::<FULL>(overlap, answer.energy, lost);
+                if FULL {
+                    sums.grain_contacts += touches.count();
+                }
             }
         }
-        force.add(place - first, on_block);
+        force.add(self.place - tile.first, on_block);
     }
 }
