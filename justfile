@@ -6,10 +6,18 @@ check:
 test:
     cargo test --workspace
 
-# The checks and the long validation runs (about half an hour on two cores).
-full-check: check
+# The checks, the long validation runs and the audit of unsafe code (about three quarters of an hour on two cores).
+full-check: check audit
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
+
+# Miri, AddressSanitizer and memcheck over the module with unsafe code, as far as this machine has them.
+audit:
+    bash scripts/audit_unsafe.sh
+
+# The fast kernels' instructions against those on record (see benchmarks/instructions/README.md); --record
+count-instructions *options:
+    python3 scripts/instruction_counts.py {{options}}
 
 # Speed of the kernels (see BENCHMARKS.md).
 bench:

@@ -14,6 +14,13 @@ cargo clippy --workspace --all-targets --locked -- -D warnings
 step "tests (the README's command)"
 cargo test --workspace --locked
 
+if command -v python3 >/dev/null; then
+    step "instructions of the kernels"
+    python3 scripts/instruction_counts.py
+else
+    step "skipped: instructions of the kernels (there is no python3)"
+fi
+
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
 

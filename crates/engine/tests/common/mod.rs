@@ -3,6 +3,9 @@
 // Each test program uses its own part.
 #![allow(dead_code)]
 
+pub(crate) mod apart;
+pub(crate) mod states;
+
 use glam::DVec3;
 use peristalsis_engine::initial::{InitialState, Packing, pack};
 use peristalsis_engine::wall::{
@@ -69,12 +72,23 @@ pub(crate) fn coarse(waves: u32) -> Lattice {
 
 /// A strain-controlled tube of mean radius 1.5.
 pub(crate) fn strained(lattice: Lattice, heading: f64, width: f64, strain_rate: f64) -> Wall {
+    prescribed(lattice, 1.5, heading, 1.5 - 0.5 * width, strain_rate)
+}
+
+/// A strain-controlled tube.
+pub(crate) fn prescribed(
+    lattice: Lattice,
+    mean_radius: f64,
+    heading: f64,
+    amplitude: f64,
+    strain_rate: f64,
+) -> Wall {
     Wall::Prescribed(PrescribedWall::new(
         lattice,
-        1.5,
+        mean_radius,
         Waveform::Sine,
         heading,
-        Schedule::constant(1.5 - 0.5 * width),
+        Schedule::constant(amplitude),
         Schedule::constant(strain_rate),
     ))
 }
@@ -88,14 +102,7 @@ pub(crate) fn wide(length: f64) -> Wall {
         wavelength: length,
         sphere_diameter: 1.0,
     };
-    Wall::Prescribed(PrescribedWall::new(
-        lattice,
-        10.0,
-        Waveform::Sine,
-        -1.0,
-        Schedule::constant(0.0),
-        Schedule::constant(0.1),
-    ))
+    prescribed(lattice, 10.0, -1.0, 0.0, 0.1)
 }
 
 /// A small elastic tube, with all that keeps the one of the frictional preset.

@@ -3,6 +3,7 @@
 #![allow(dead_code, reason = "each test takes what it needs")]
 
 use peristalsis_configuration::Sources;
+use peristalsis_engine::Kernel;
 use peristalsis_run::{Configuration, Run, Status, Summary};
 
 /// The configuration of a preset with settings over it.
@@ -25,11 +26,37 @@ pub(crate) struct Outcome {
     pub(crate) summary: Summary,
 }
 
-/// Runs to the end.
-pub(crate) fn run(preset: &str, settings: &[&str], seed: u64) -> Outcome {
-    let seed = format!("run.seed={seed}");
-    let mut run = Run::new(configuration(preset, &[settings, &[&seed]].concat()))
+/// Checks a claim on each kernel, in a thread of the kernel's name, which stands in the message of what fails.
+pub(crate) fn on_both_kernels(claim: impl Fn(Kernel) + Sync) {
+    let claim = &claim;
+    std::thread::scope(|scope| {
+        for kernel in [Kernel::Fast, Kernel::Reference] {
+            std::thread::Builder::new()
+                .name(format!("kernel {}", name(kernel)))
+                .spawn_scoped(scope, move || claim(kernel))
+                .expect("the system gives two threads");
+        }
+    });
+}
+
+/// The name of a kernel in a configuration.
+fn name(kernel: Kernel) -> &'static str {
+    match kernel {
+        Kernel::Fast => "fast",
+        Kernel::Reference => "reference",
+    }
+}
+
+/// Runs to the end on a kernel.
+pub(crate) fn run(kernel: Kernel, preset: &str, settings: &[&str], seed: u64) -> Outcome {
+    let more = [
+        format!("run.kernel={}", name(kernel)),
+        format!("run.seed={seed}"),
+    ];
+    let more = more.each_ref().map(String::as_str);
+    let mut run = Run::new(configuration(preset, &[settings, &more].concat()))
         .expect("the grains of each case fit");
+    assert_eq!(run.simulation().parameters().kernel, kernel);
     while !run.is_complete() {
         run.advance().expect("no case diverges");
     }

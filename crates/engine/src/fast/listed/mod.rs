@@ -131,7 +131,8 @@ fn move_through<N: NormalLaw, T: Remember>(
         let jumped = course.wall.move_without_jump(time - time_step, time);
         let stored_before_jump = jumped.then(|| {
             let (mut bodies, mut contacts) = (course.bodies.clone(), contacts.clone());
-            spheres.store_places(&mut bodies);
+            // With their velocities: what slides stores less.
+            spheres.store(&mut bodies, &mut Past::default());
             pairs.store::<T>(&mut contacts.pairs);
             contacts.refresh(&bodies, course.wall, skin);
             evaluate(law, &mut bodies, course.wall, &mut contacts, 0.0).contact_energy

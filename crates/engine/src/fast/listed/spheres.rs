@@ -85,7 +85,7 @@ impl Spheres {
         }
     }
 
-    /// Writes everything down; `force` and `torque` must hold accelerations.
+    /// Writes everything down; accelerations are what `force` and `torque` hold.
     pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
         self.store_places(bodies);
         empty(&mut bodies.velocity, &self.velocity);
