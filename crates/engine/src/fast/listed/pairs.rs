@@ -49,17 +49,9 @@ impl Flat {
         self.reach.resize(whole, 0.0);
     }
 
-    /// Writes down, in order, the pairs that are closer than their reach and `skin`, and those whose bits are set in
-    /// `more`, block by block.
+    /// Writes down, in order, the pairs that are closer than their reach and `skin`.
     #[inline(always)]
-    fn find<M: Machine>(
-        &self,
-        position: &[Record],
-        length: f64,
-        skin: f64,
-        more: Option<&[u8]>,
-        found: &mut Vec<u32>,
-    ) {
+    fn find<M: Machine>(&self, position: &[Record], length: f64, skin: f64, found: &mut Vec<u32>) {
         found.resize(self.first.len() + LANES, 0);
         let mut end = 0;
         let skin = Lanes::splat(skin);
@@ -77,10 +69,7 @@ impl Flat {
             let squared = record::periodic(separation, length).squared();
             let reach = Lanes::load(reach, 0) + skin;
             // Coincident centres have no normal.
-            let mut near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
-            if let Some(more) = more {
-                near = near | Mask::from_bits(more[block]);
-            }
+            let near = squared.less(reach * reach) & Lanes::splat(0.0).less(squared);
             let window = found[end..].first_chunk_mut().expect("room for a block");
             near.write_down((block * LANES) as u32, window);
             end += near.count() as usize;
@@ -100,15 +89,9 @@ struct Pruned {
 
 impl Pruned {
     #[inline(always)]
-    fn prune<M: Machine>(
-        &mut self,
-        position: &[Record],
-        length: f64,
-        skin: f64,
-        more: Option<&[u8]>,
-    ) {
+    fn prune<M: Machine>(&mut self, position: &[Record], length: f64, skin: f64) {
         let Self { list, near, number } = self;
-        list.find::<M>(position, length, skin, more, number);
+        list.find::<M>(position, length, skin, number);
         near.clear();
         let chosen = number.iter().map(|&k| k as usize);
         near.first.extend(chosen.clone().map(|k| list.first[k]));
@@ -132,8 +115,6 @@ pub(super) struct Pairs {
     now: u8,
     /// The pairs of `grains` that touched at the last evaluation.
     touched: Vec<u32>,
-    /// The same, bit by bit for each block.
-    remembers: Vec<u8>,
     touching: Vec<u32>,
 }
 
@@ -193,18 +174,9 @@ impl Work for Prune<'_> {
     #[inline(always)]
     fn run<M: Machine>(self) {
         let (pairs, position) = (self.pairs, &self.spheres.position[..]);
-        // What has touched must be seen to end.
-        let remembers = &mut pairs.remembers;
-        remembers.clear();
-        remembers.resize(pairs.grains.list.first.len() / LANES, 0);
-        for &k in &pairs.touched {
-            remembers[k as usize / LANES] |= 1 << (k as usize % LANES);
-        }
         let (length, skin) = (self.length, self.skin);
-        pairs
-            .grains
-            .prune::<M>(position, length, skin, Some(remembers));
-        pairs.wall.prune::<M>(position, length, skin, None);
+        pairs.grains.prune::<M>(position, length, skin);
+        pairs.wall.prune::<M>(position, length, skin);
     }
 }
 
@@ -235,7 +207,7 @@ impl<N: NormalLaw, T: Remember> Work for PairForces<'_, N, T> {
         } = self.pairs;
         grains
             .near
-            .find::<M>(&self.spheres.position, self.length, 0.0, None, touching);
+            .find::<M>(&self.spheres.position, self.length, 0.0, touching);
         add_contacts::<M, _, _>(
             self.law,
             grains,
@@ -265,7 +237,7 @@ impl<N: NormalLaw, T: Remember> Work for PairForces<'_, N, T> {
         // Wall against wall, across a closing throat: the same normal law, no friction.
         if !wall.near.first.is_empty() {
             wall.near
-                .find::<M>(&self.spheres.position, self.length, 0.0, None, touching);
+                .find::<M>(&self.spheres.position, self.length, 0.0, touching);
             let smooth = ContactLaw {
                 normal: self.law.normal,
                 tangential: Frictionless,
