@@ -22,14 +22,12 @@ pub(super) struct Tile {
     pub(super) end: usize,
     /// The stretches that its forces fall on: its own, and those in the strips ahead.
     windows: [Window; 1 + AHEAD],
-    /// Where eight partners of a block begin: window after window, block after block.
-    starts: Vec<u32>,
-    /// Ends of the starts of each window of each block.
+    /// The partners of its blocks, window after window, block after block.
+    partners: Vec<Partners>,
+    /// Ends of the partners of each block.
     ends: Vec<u32>,
     /// Windows that are in use.
     used: usize,
-    /// Starts in a window that a block needs, a bit each.
-    marks: Vec<u64>,
 }
 
 /// A stretch of places, and where its forces stand among those of the tile.
@@ -40,12 +38,13 @@ pub(super) struct Window {
     pub(super) base: usize,
 }
 
-/// Starts that stand in a window.
-#[derive(Clone, Copy)]
-pub(super) struct Partners<'a> {
-    pub(super) starts: &'a [u32],
-    /// Add this to a place to get to its force.
-    pub(super) shift: usize,
+/// Eight partners of a block.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Partners {
+    /// Their first place.
+    pub(super) start: u32,
+    /// Where its force stands among those of the tile.
+    pub(super) force: u32,
 }
 
 impl Tile {
@@ -60,22 +59,17 @@ impl Tile {
         &self.windows[..self.used]
     }
 
+    /// How many partners are listed.
+    pub(super) fn listed(&self) -> usize {
+        self.partners.len()
+    }
+
     /// The partners of the block that begins at `place`.
     #[inline(always)]
-    pub(super) fn partners(&self, place: usize) -> impl Iterator<Item = Partners<'_>> {
+    pub(super) fn partners(&self, place: usize) -> &[Partners] {
         let block = (place - self.first) / LANES;
-        let begin = block * self.used;
-        let before = if block == 0 { 0 } else { self.ends[begin - 1] };
-        let ends = &self.ends[begin..begin + self.used];
-        let windows = self.windows[..self.used].iter().zip(ends);
-        windows.scan(before as usize, |from, (window, &end)| {
-            let starts = &self.starts[*from..end as usize];
-            *from = end as usize;
-            Some(Partners {
-                starts,
-                shift: window.base.wrapping_sub(window.first),
-            })
-        })
+        let begin = if block == 0 { 0 } else { self.ends[block - 1] };
+        &self.partners[begin as usize..self.ends[block] as usize]
     }
 }
 
@@ -126,11 +120,11 @@ impl Sorted {
             tiles[..used].iter_mut().for_each(one);
         }
         // Room for later lists, so that they seldom ask for more.
-        let most = tiles.iter().map(|tile| tile.starts.len()).max();
+        let most = tiles.iter().map(|tile| tile.partners.len()).max();
         let room = most.map_or(0, |most| most + most / 4);
         for tile in tiles {
-            let missing = room.saturating_sub(tile.starts.len());
-            tile.starts.reserve_exact(missing);
+            let missing = room.saturating_sub(tile.partners.len());
+            tile.partners.reserve_exact(missing);
         }
     }
 }
@@ -163,8 +157,13 @@ impl Work for List<'_> {
         let (reach, reach_squared) = (Lanes::splat(cutoff), Lanes::splat(cutoff * cutoff));
         let ahead = strips.ahead(tile.strip);
         tile.used = if strips.several() { 1 + AHEAD } else { 1 };
-        tile.starts.clear();
         tile.ends.clear();
+        let room = tile.partners.capacity();
+        tile.partners.resize(room, Partners::default());
+        let mut listed = Listed {
+            partners: &mut tile.partners,
+            end: 0,
+        };
         let mut spans = [(usize::MAX, 0); 1 + AHEAD];
         spans[0] = (first, first + (end - first).next_multiple_of(LANES));
         // Where the search in each strip ahead begins.
@@ -177,59 +176,52 @@ impl Work for List<'_> {
         for block in (first..end).step_by(LANES) {
             let here = position.load::<M>(block);
             let holds = Mask::first(end - block);
+            let begin = listed.end;
             for start in block + 1.. {
                 let away = here - position.load(start);
                 // Partners only get farther from here on.
                 if !((-away.z).less(reach) & holds).any() {
                     break;
                 }
-                if (squared(away, across).less(reach_squared) & holds).any() {
-                    tile.starts.push(start as u32);
-                    spans[0].1 = spans[0].1.max(start + LANES);
+                let near = squared(away, across).less(reach_squared) & holds;
+                listed.note(start, 0, near.any());
+            }
+            if listed.end > begin {
+                spans[0].1 = spans[0].1.max(listed.start(listed.end - 1) + LANES);
+            }
+            let (lowest, highest) = (z[block] - cutoff, z[(block + LANES).min(end) - 1] + cutoff);
+            for (window, (strip, cursor)) in ahead.iter().zip(&mut cursors).enumerate() {
+                let Some(strip) = *strip else { continue };
+                let stop = rows[strip].places().end;
+                while *cursor < stop && z[*cursor] <= lowest {
+                    *cursor += 1;
+                }
+                let mut last = *cursor;
+                while last < stop && z[last] < highest {
+                    last += 1;
+                }
+                // Each of these places may be met by any of the lanes.
+                let first = if last > *cursor {
+                    *cursor + 1 - LANES
+                } else {
+                    last
+                };
+                let begin = listed.end;
+                for start in first..last {
+                    let away = here - position.load(start);
+                    let near = squared(away, across).less(reach_squared) & holds;
+                    listed.note(start, window + 1, near.any());
+                }
+                if listed.end > begin {
+                    let span = &mut spans[window + 1];
+                    span.0 = span.0.min(listed.start(begin));
+                    span.1 = span.1.max(listed.start(listed.end - 1) + LANES);
                 }
             }
-            tile.ends.push(tile.starts.len() as u32);
-            if !strips.several() {
-                continue;
-            }
-            for ((strip, cursor), span) in ahead.iter().zip(&mut cursors).zip(&mut spans[1..]) {
-                if let Some(strip) = *strip {
-                    let stop = rows[strip].places().end;
-                    // The least start at which a lane can meet the place of the cursor.
-                    let least = *cursor + 1 - LANES;
-                    tile.marks.clear();
-                    for lane in 0..(end - block).min(LANES) {
-                        let here = position.get(block + lane);
-                        while *cursor < stop && z[*cursor] <= here.z - cutoff {
-                            *cursor += 1;
-                        }
-                        let highest = here.z + cutoff;
-                        let here = LaneVector::<M>::new(
-                            Lanes::splat(here.x),
-                            Lanes::splat(here.y),
-                            Lanes::splat(here.z),
-                        );
-                        let mut place = *cursor;
-                        while place < stop && z[place] < highest {
-                            let away = here - position.load(place);
-                            let near = squared(away, across).less(reach_squared);
-                            mark(&mut tile.marks, place - lane - least, near.to_bits());
-                            place += LANES;
-                        }
-                    }
-                    for (word, &marks) in tile.marks.iter().enumerate() {
-                        let mut marks = marks;
-                        while marks != 0 {
-                            let start = least + 64 * word + marks.trailing_zeros() as usize;
-                            marks &= marks - 1;
-                            tile.starts.push(start as u32);
-                            *span = (span.0.min(start), span.1.max(start + LANES));
-                        }
-                    }
-                }
-                tile.ends.push(tile.starts.len() as u32);
-            }
+            tile.ends.push(listed.end as u32);
         }
+        let end = listed.end;
+        tile.partners.truncate(end);
         let mut base = 0;
         for (window, (from, to)) in tile.windows.iter_mut().zip(spans) {
             let length = to.saturating_sub(from);
@@ -241,19 +233,39 @@ impl Work for List<'_> {
             };
             base += length;
         }
+        for partners in &mut tile.partners {
+            let window = &tile.windows[partners.force as usize];
+            partners.force = partners.start - window.first as u32 + window.base as u32;
+        }
     }
 }
 
-/// Marks the eight bits from `first` on that `bits` has.
-#[inline(always)]
-fn mark(marks: &mut Vec<u64>, first: usize, bits: u8) {
-    let (word, shift) = (first / 64, first % 64);
-    if marks.len() < word + 2 {
-        marks.resize(word + 2, 0);
+/// Partners that are being listed, and room for more; for the time being the number of their window stands in the place
+/// of their force.
+struct Listed<'a> {
+    partners: &'a mut Vec<Partners>,
+    end: usize,
+}
+
+impl Listed<'_> {
+    /// Lists partners if they are to be, without a branch that could not be foreseen.
+    #[inline(always)]
+    fn note(&mut self, start: usize, window: usize, wanted: bool) {
+        if self.end == self.partners.len() {
+            let room = (2 * self.end).max(8 * LANES);
+            self.partners.resize(room, Partners::default());
+        }
+        self.partners[self.end] = Partners {
+            start: start as u32,
+            force: window as u32,
+        };
+        self.end += usize::from(wanted);
     }
-    let both = u128::from(bits) << shift;
-    marks[word] |= both as u64;
-    marks[word + 1] |= (both >> 64) as u64;
+
+    #[inline(always)]
+    fn start(&self, index: usize) -> usize {
+        self.partners[index].start as usize
+    }
 }
 
 /// Squared distance, with so much of that across the tube.

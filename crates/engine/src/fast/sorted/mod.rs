@@ -24,7 +24,7 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use self::columns::Columns;
-use self::listing::Tile;
+use self::listing::{Partners, Tile};
 use self::motion::{Moved, Phase};
 use self::order::Row;
 use self::pairs::{Block, PairConstants};
@@ -88,6 +88,8 @@ pub(crate) struct Sorted {
 struct OfTile {
     force: Columns,
     tally: Tally,
+    /// Room to write down who touches.
+    touching: Vec<Partners>,
 }
 
 /// The parts of a simulation that an advance works on.
@@ -352,16 +354,26 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
             position,
             velocity,
             tile,
-            of_tile: OfTile { force, tally },
+            of_tile:
+                OfTile {
+                    force,
+                    tally,
+                    touching,
+                },
         } = self;
         for column in force.each() {
             column.clear();
             column.resize(tile.room(), 0.0);
         }
+        if touching.len() < tile.listed() {
+            touching.resize(tile.listed(), Partners::default());
+        }
         let mut sums = Sums::<M>::zero();
         for place in (tile.first..tile.end).step_by(LANES) {
             let block = Block::load(position, velocity, place, tile.end);
-            block.add_pairs::<N, FULL>(law, pairs, position, velocity, tile, force, &mut sums);
+            block.add_pairs::<N, FULL>(
+                law, pairs, position, velocity, tile, touching, force, &mut sums,
+            );
         }
         for place in (tile.first..tile.end).step_by(LANES) {
             let block = Block::load(position, velocity, place, tile.end);

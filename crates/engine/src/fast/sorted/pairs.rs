@@ -65,6 +65,7 @@ impl<M: Machine> Block<M> {
         position: &Columns,
         velocity: &Columns,
         tile: &Tile,
+        touching: &mut [Partners],
         force: &mut Columns,
         sums: &mut Sums<M>,
     ) {
@@ -74,31 +75,35 @@ impl<M: Machine> Block<M> {
         let reduced_radius = Lanes::splat(constants.reduced_radius);
         let zero = Lanes::splat(0.0);
         let mut on_block = LaneVector::default();
-        for Partners { starts, shift } in tile.partners(self.place) {
-            for &start in starts {
-                let start = start as usize;
-                let separation = block.position - position.load(start);
-                let distance_squared = separation.squared();
-                let touches = distance_squared.less(reach_squared)
-                    & Lanes::splat(COINCIDENT).less(distance_squared)
-                    & block.holds;
-                if !touches.any() {
-                    continue;
-                }
-                let inverse = distance_squared.reciprocal_sqrt();
-                let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
-                let away = block.velocity - velocity.load(start);
-                let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
-                let answer = law.force(overlap, normal_velocity, reduced_radius);
-                let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
-                on_block += pushed;
-                force.add(start.wrapping_add(shift), -pushed);
+        let listed = tile.partners(self.place);
+        // First who touches, so that the branches of what follows can be foreseen.
+        let mut number = 0;
+        for partners in listed {
+            let separation = block.position - position.load(partners.start as usize);
+            let touches = separation.squared().less(reach_squared) & block.holds;
+            touching[number] = *partners;
+            number += usize::from(touches.any());
+        }
+        for partners in &touching[..number] {
+            let start = partners.start as usize;
+            let separation = block.position - position.load(start);
+            let distance_squared = separation.squared();
+            let touches = distance_squared.less(reach_squared)
+                & Lanes::splat(COINCIDENT).less(distance_squared)
+                & block.holds;
+            let inverse = distance_squared.reciprocal_sqrt();
+            let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
+            let away = block.velocity - velocity.load(start);
+            let normal_velocity = Lanes::select(touches, away.dot(separation) * inverse, zero);
+            let answer = law.force(overlap, normal_velocity, reduced_radius);
+            let pushed = separation * Lanes::select(touches, answer.force * inverse, zero);
+            on_block += pushed;
+            force.add(partners.force as usize, -pushed);
 
-                let lost = (answer.elastic_force - answer.force) * normal_velocity;
-                sums.add_contact::<FULL>(overlap, answer.energy, lost);
-                if FULL {
-                    sums.grain_contacts += touches.count();
-                }
+            let lost = (answer.elastic_force - answer.force) * normal_velocity;
+            sums.add_contact::<FULL>(overlap, answer.energy, lost);
+            if FULL {
+                sums.grain_contacts += touches.count();
             }
         }
         force.add(self.place - tile.first, on_block);
