@@ -7,25 +7,38 @@
 
 mod autocorrelation;
 mod blocks;
+mod bootstrap;
 mod ensemble;
 mod error;
+mod family;
+mod lifetime;
+mod numerics;
 mod period;
+mod shifted;
 mod stationarity;
+mod survival;
 mod transition;
+mod uncertain;
 
 #[cfg(test)]
 mod synthetic;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
+pub use bootstrap::Bootstrap;
 pub use ensemble::{
     Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
     susceptibility_peak, transition_time_moments,
 };
 pub use error::Error;
+pub use family::Family;
+pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use period::{PeriodMeans, period_means};
+pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
+pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
 pub use transition::{
     CONFIRMATION_PERIODS, DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector,
     transition_time,
 };
+pub use uncertain::{Interval, Uncertain};

@@ -1,0 +1,115 @@
+//! Resampling with replacement, the same at every run.
+
+use crate::error::Error;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Fewest resamples from which an interval is read.
+pub(crate) const LEAST_RESAMPLES: usize = 20;
+
+/// How often to resample, and with which random numbers.
+///
+/// Resample k draws from its own stream of the generator (`ChaCha8`, stream k of the seed), so that more resamples leave
+/// the first ones as they were. 200 give a standard error to 5 per cent; the ends of a 95 per cent interval need 1000.
+/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6 and 13.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Bootstrap {
+    /// Number of resamples.
+    pub resamples: usize,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+impl Bootstrap {
+    /// Random numbers of every resample, in order.
+    pub(crate) fn streams(self) -> Result<impl Iterator<Item = Randomness>, Error> {
+        if self.resamples < LEAST_RESAMPLES {
+            return Err(Error::TooFewResamples {
+                needed: LEAST_RESAMPLES,
+                found: self.resamples,
+            });
+        }
+        Ok((0..self.resamples as u64).map(move |stream| Randomness::new(self.seed, stream)))
+    }
+}
+
+/// Random numbers of one stream.
+pub(crate) struct Randomness {
+    generator: ChaCha8Rng,
+}
+
+impl Randomness {
+    pub(crate) fn new(seed: u64, stream: u64) -> Self {
+        let mut generator = ChaCha8Rng::seed_from_u64(seed);
+        generator.set_stream(stream);
+        Self { generator }
+    }
+
+    /// Uniform number in the open interval from 0 to 1.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        ((self.generator.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    }
+
+    /// Uniform integer below `count`.
+    pub(crate) fn index(&mut self, count: usize) -> usize {
+        ((u128::from(self.generator.next_u64()) * count as u128) >> 64) as usize
+    }
+
+    /// Normal number of mean 0 and variance 1 (Box-Muller).
+    pub(crate) fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * libm::log(self.uniform())).sqrt();
+        radius * libm::cos(TAU * self.uniform())
+    }
+
+    /// As many elements drawn with replacement.
+    pub(crate) fn resample<T: Copy>(&mut self, sample: &[T]) -> Vec<T> {
+        (0..sample.len())
+            .map(|_| sample[self.index(sample.len())])
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_resample_does_not_depend_on_how_many_follow() {
+        let draw = |resamples| -> Vec<Vec<u32>> {
+            let sample: Vec<u32> = (0..50).collect();
+            Bootstrap { resamples, seed: 7 }
+                .streams()
+                .unwrap()
+                .map(|mut randomness| randomness.resample(&sample))
+                .collect()
+        };
+        assert_eq!(draw(20)[..], draw(30)[..20]);
+        assert_ne!(draw(20)[0], draw(20)[1]);
+        let few = Bootstrap {
+            resamples: 19,
+            seed: 7,
+        };
+        assert!(matches!(
+            few.streams().err(),
+            Some(Error::TooFewResamples { found: 19, .. })
+        ));
+    }
+
+    #[test]
+    fn uniform_and_normal_numbers_have_their_moments() {
+        let mut randomness = Randomness::new(1, 0);
+        let n = 40_000;
+        let (mut sum, mut squares, mut counts) = (0.0, 0.0, [0_u32; 5]);
+        for _ in 0..n {
+            let normal = randomness.normal();
+            sum += normal;
+            squares += normal * normal;
+            counts[randomness.index(5)] += 1;
+        }
+        assert!((sum / f64::from(n)).abs() < 0.02);
+        assert!((squares / f64::from(n) - 1.0).abs() < 0.03);
+        assert!(counts.iter().all(|&count| count.abs_diff(8000) < 330));
+    }
+}
