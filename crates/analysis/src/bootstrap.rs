@@ -1,6 +1,7 @@
 //! Resampling with replacement, the same at every run.
 
 use crate::error::Error;
+use crate::uncertain::Uncertain;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde::{Deserialize, Serialize};
@@ -35,6 +36,85 @@ impl Bootstrap {
     }
 }
 
+/// Estimates from resampled data.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Resampled {
+    /// The estimates with their bootstrap errors and percentile intervals.
+    pub estimates: Vec<Uncertain>,
+    /// Resamples that gave estimates.
+    pub succeeded: usize,
+    /// Resamples that did not, such as those left without a transition. Where these are more than a few, the intervals
+    /// are too short.
+    pub failed: usize,
+}
+
+/// Bootstrap errors of any N numbers computed from groups of independent things.
+///
+/// Things are drawn with replacement within their group, as many as it has: runs within a width, replicas within an
+/// ensemble. `statistic` gives the numbers for a set of groups, first for the data themselves, or `None` where they
+/// cannot be had; an infinite number counts in the intervals, so that they end there.
+///
+/// # Errors
+/// [`Error::TooFewResamples`] below 20 resamples, or where fewer than 20 succeed; [`Error::Undetermined`] where the data
+/// themselves give no estimate.
+///
+/// ```
+/// use peristalsis_analysis::{Bootstrap, bootstrap_errors};
+/// let groups = [vec![1.0, 2.0, 3.0, 4.0], vec![10.0, 12.0]];
+/// let mean = |group: &Vec<f64>| group.iter().sum::<f64>() / group.len() as f64;
+/// let bootstrap = Bootstrap { resamples: 200, seed: 1 };
+/// let found = bootstrap_errors(&groups, bootstrap, |groups| {
+///     Some([mean(&groups[1]) - mean(&groups[0])])
+/// })?;
+/// assert_eq!(found.estimates[0].value, 8.5);
+/// // sqrt(5/16 + 1/2), the variances of the means with divisor n.
+/// assert!((found.estimates[0].error - 0.9).abs() < 0.1);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn bootstrap_errors<T: Clone, const N: usize>(
+    groups: &[Vec<T>],
+    bootstrap: Bootstrap,
+    mut statistic: impl FnMut(&[Vec<T>]) -> Option<[f64; N]>,
+) -> Result<Resampled, Error> {
+    let values = statistic(groups).ok_or(Error::Undetermined {
+        points: groups.iter().map(Vec::len).sum(),
+        parameters: N,
+    })?;
+    let mut columns: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
+    let mut failed = 0;
+    for mut randomness in bootstrap.streams()? {
+        let drawn: Vec<Vec<T>> = groups
+            .iter()
+            .map(|group| randomness.resample(group))
+            .collect();
+        match statistic(&drawn) {
+            Some(numbers) => {
+                for (column, number) in columns.iter_mut().zip(numbers) {
+                    column.push(number);
+                }
+            }
+            None => failed += 1,
+        }
+    }
+    let too_few = Error::TooFewResamples {
+        needed: LEAST_RESAMPLES,
+        found: bootstrap.resamples - failed,
+    };
+    if bootstrap.resamples - failed < LEAST_RESAMPLES {
+        return Err(too_few);
+    }
+    let estimates = values
+        .iter()
+        .zip(&columns)
+        .map(|(&value, column)| Uncertain::from_bootstrap(value, column).ok_or(too_few))
+        .collect::<Result<_, _>>()?;
+    Ok(Resampled {
+        estimates,
+        succeeded: bootstrap.resamples - failed,
+        failed,
+    })
+}
+
 /// Random numbers of one stream.
 pub(crate) struct Randomness {
     generator: ChaCha8Rng,
@@ -64,9 +144,9 @@ impl Randomness {
     }
 
     /// As many elements drawn with replacement.
-    pub(crate) fn resample<T: Copy>(&mut self, sample: &[T]) -> Vec<T> {
+    pub(crate) fn resample<T: Clone>(&mut self, sample: &[T]) -> Vec<T> {
         (0..sample.len())
-            .map(|_| sample[self.index(sample.len())])
+            .map(|_| sample[self.index(sample.len())].clone())
             .collect()
     }
 }

@@ -134,6 +134,14 @@ pub enum Error {
         /// Parameters sought.
         parameters: usize,
     },
+    /// A width at which a law that ends at the critical width has no value.
+    #[error("a finite value at width {width} contradicts a critical width of {critical}")]
+    BeyondCritical {
+        /// The width.
+        width: f64,
+        /// The critical width given.
+        critical: f64,
+    },
     /// A number of bootstrap resamples too small for an interval.
     #[error("{found} resamples are too few for an interval: at least {needed} are needed")]
     TooFewResamples {

@@ -11,9 +11,14 @@ mod bootstrap;
 mod ensemble;
 mod error;
 mod family;
+mod law;
+mod law_fit;
+mod law_runs;
 mod lifetime;
+mod line;
 mod numerics;
 mod period;
+mod regression;
 mod shifted;
 mod stationarity;
 mod survival;
@@ -25,14 +30,21 @@ mod synthetic;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
-pub use bootstrap::Bootstrap;
+pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
 pub use ensemble::{
     Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
     susceptibility_peak, transition_time_moments,
 };
 pub use error::Error;
 pub use family::Family;
+pub use law::Law;
+pub use law_fit::{LawFit, WindowFit, fit_law, fit_law_in_windows};
+pub use law_runs::{
+    LawBootstrap, LawRunsFit, WindowRunsFit, bootstrap_law, fit_law_to_runs,
+    fit_law_to_runs_in_windows,
+};
 pub use lifetime::{LifetimeFit, fit_lifetime};
+pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
 pub use period::{PeriodMeans, period_means};
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};

@@ -57,6 +57,50 @@ impl<const N: usize> Cholesky<N> {
     }
 }
 
+/// Coefficients of a weighted linear least-squares fit.
+pub(crate) struct LeastSquares<const N: usize> {
+    pub(crate) coefficients: [f64; N],
+    /// Their covariance, where the weights are inverse squares of standard errors.
+    pub(crate) covariance: [[f64; N]; N],
+    pub(crate) chi_squared: f64,
+}
+
+/// Minimum of `sum_i weight_i (y_i - sum_k c_k basis_i,k)^2` over c; `None` where the basis is degenerate.
+pub(crate) fn least_squares<const N: usize>(
+    basis: impl Fn(usize) -> [f64; N],
+    y: &[f64],
+    weight: &[f64],
+) -> Option<LeastSquares<N>> {
+    let mut information = [[0.0; N]; N];
+    let mut right = [0.0; N];
+    for (index, (&y, &weight)) in y.iter().zip(weight).enumerate() {
+        let functions = basis(index);
+        for row in 0..N {
+            right[row] += weight * functions[row] * y;
+            for column in 0..N {
+                information[row][column] += weight * functions[row] * functions[column];
+            }
+        }
+    }
+    let factor = Cholesky::new(&information)?;
+    let coefficients = factor.solve(&right);
+    let chi_squared = y
+        .iter()
+        .zip(weight)
+        .enumerate()
+        .map(|(index, (&y, &weight))| {
+            let functions = basis(index);
+            let model: f64 = (0..N).map(|k| coefficients[k] * functions[k]).sum();
+            weight * (y - model) * (y - model)
+        })
+        .sum();
+    Some(LeastSquares {
+        coefficients,
+        covariance: factor.inverse(),
+        chi_squared,
+    })
+}
+
 /// Second derivatives of a function by central differences with the given steps.
 pub(crate) fn curvature<const N: usize>(
     function: impl Fn(&[f64; N]) -> f64,
