@@ -1,5 +1,6 @@
 //! Families of distributions of transition times, and their likelihood under censoring.
 
+use crate::bootstrap::Randomness;
 use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use serde::{Deserialize, Serialize};
 
@@ -39,6 +40,18 @@ impl Family {
         }
     }
 
+    /// A time drawn from the distribution with mean 1.
+    pub(crate) fn draw(self, shape: f64, randomness: &mut Randomness) -> f64 {
+        match self {
+            Self::Exponential => -libm::log(randomness.uniform()),
+            Self::Weibull => {
+                let scale = libm::exp(-ln_gamma(1.0 + 1.0 / shape));
+                scale * libm::pow(-libm::log(randomness.uniform()), 1.0 / shape)
+            }
+            Self::Gamma => gamma_number(shape, randomness) / shape,
+        }
+    }
+
     /// Probability of no transition up to a time, at a mean and a shape (any value for the exponential).
     pub fn survival(self, time: f64, mean: f64, shape: f64) -> f64 {
         if time <= 0.0 {
@@ -51,6 +64,28 @@ impl Family {
                 let scaled = libm::log(time / mean) + ln_gamma(1.0 + 1.0 / shape);
                 libm::exp(-libm::exp(shape * scaled))
             }
+        }
+    }
+}
+
+/// Gamma number of unit scale: Marsaglia & Tsang, ACM Trans. Math. Softw. 26, 363 (2000).
+fn gamma_number(shape: f64, randomness: &mut Randomness) -> f64 {
+    if shape < 1.0 {
+        let boost = libm::pow(randomness.uniform(), 1.0 / shape);
+        return gamma_number(shape + 1.0, randomness) * boost;
+    }
+    let reduced = shape - 1.0 / 3.0;
+    let slope = 1.0 / (9.0 * reduced).sqrt();
+    loop {
+        let normal = randomness.normal();
+        let root = 1.0 + slope * normal;
+        let cube = root * root * root;
+        if cube <= 0.0 {
+            continue;
+        }
+        let bound = 0.5 * normal * normal + reduced * (1.0 - cube + libm::log(cube));
+        if libm::log(randomness.uniform()) < bound {
+            return reduced * cube;
         }
     }
 }
@@ -285,6 +320,29 @@ mod tests {
                 assert!((found.curvature - curvature).abs() < 1e-6);
                 assert!(found.curvature < 0.0);
             }
+        }
+    }
+
+    #[test]
+    fn numbers_are_drawn_with_mean_and_variance() {
+        let mut randomness = Randomness::new(4, 0);
+        let cases = [
+            (Family::Exponential, 1.0),
+            (Family::Gamma, 0.6),
+            (Family::Gamma, 4.0),
+            (Family::Weibull, 2.5),
+        ];
+        for (family, shape) in cases {
+            let draws: Vec<f64> = (0..20_000)
+                .map(|_| family.draw(shape, &mut randomness))
+                .collect();
+            let found = crate::moments(&draws).unwrap();
+            assert!(
+                (found.mean - 1.0).abs() < 4.0 * found.mean_error,
+                "{family:?}"
+            );
+            let expected = family.relative_variance(shape);
+            assert!((found.variance - expected).abs() < 4.0 * found.variance_error);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Critical width and exponent straight from the runs at all widths, censored ones included.
 
-use crate::bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+use crate::bootstrap::{Bootstrap, Randomness, Resampled, bootstrap_errors};
 use crate::error::{Error, checked, checked_positive, same_length};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::law::{CriticalRange, Law};
@@ -267,6 +267,47 @@ impl LawLikelihood {
         })
     }
 
+    /// Best w_c; infinite where it has run away.
+    pub(crate) fn critical_width(&self, best: &Largest) -> f64 {
+        if best.is_beyond {
+            f64::INFINITY
+        } else {
+            self.range.critical(best.ln_distance)
+        }
+    }
+
+    /// Runs drawn from a fit, watched for the given times: one list a width.
+    pub(crate) fn simulate(
+        &self,
+        best: &Largest,
+        horizons: &[Vec<f64>],
+        randomness: &mut Randomness,
+    ) -> Vec<Vec<(f64, bool)>> {
+        let shape = libm::exp(best.ln_shape);
+        let critical = self.range.critical(best.ln_distance);
+        self.places
+            .iter()
+            .zip(horizons)
+            .map(|(&place, horizons)| {
+                let mean = if self.law.is_critical() && place >= critical {
+                    f64::INFINITY
+                } else {
+                    let x = self.law.covariate(place, critical);
+                    libm::exp(best.ln_amplitude + best.exponent * x)
+                };
+                let one = |&horizon: &f64| {
+                    let time = mean * self.family.draw(shape, randomness);
+                    if time < horizon {
+                        (time, true)
+                    } else {
+                        (horizon, false)
+                    }
+                };
+                horizons.iter().map(one).collect()
+            })
+            .collect()
+    }
+
     /// Parameters with the intervals where their profile likelihood stays within 1/2 and 1.92 of the largest.
     fn profiles(&self, best: &Largest) -> (Option<Uncertain>, Uncertain, Option<Uncertain>) {
         let observed: usize = self.groups.iter().map(Group::observed).sum();
@@ -436,12 +477,12 @@ pub fn bootstrap_law(
         let likelihood = LawLikelihood::new(law, family, &table.places, runs).ok()?;
         let best = likelihood.largest(bounds)?;
         let shape = libm::exp(best.ln_shape);
-        Some(if best.is_beyond {
-            [f64::INFINITY, f64::INFINITY, shape]
+        let exponent = if best.is_beyond {
+            f64::INFINITY
         } else {
-            let critical = likelihood.range.critical(best.ln_distance);
-            [critical, best.exponent, shape]
-        })
+            best.exponent
+        };
+        Some([likelihood.critical_width(&best), exponent, shape])
     })?;
     // The search over fewer shapes ends within its tolerance of the fit, whose values stand.
     let with_value = |estimate: Uncertain, value: f64| Uncertain { value, ..estimate };

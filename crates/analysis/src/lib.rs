@@ -8,7 +8,9 @@
 mod autocorrelation;
 mod blocks;
 mod bootstrap;
+mod divergence;
 mod ensemble;
+mod ensembles;
 mod error;
 mod family;
 mod law;
@@ -19,10 +21,12 @@ mod line;
 mod numerics;
 mod period;
 mod regression;
+mod second_moment;
 mod shifted;
 mod stationarity;
 mod survival;
 mod transition;
+mod truncation;
 mod uncertain;
 
 #[cfg(test)]
@@ -31,10 +35,14 @@ mod synthetic;
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
 pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+pub use divergence::{
+    LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
+};
 pub use ensemble::{
     Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
     susceptibility_peak, transition_time_moments,
 };
+pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
 pub use family::Family;
 pub use law::Law;
@@ -46,6 +54,7 @@ pub use law_runs::{
 pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
 pub use period::{PeriodMeans, period_means};
+pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
 pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
@@ -53,4 +62,5 @@ pub use transition::{
     CONFIRMATION_PERIODS, DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector,
     transition_time,
 };
+pub use truncation::{StationaryMean, Truncation, stationary_mean, truncation};
 pub use uncertain::{Interval, Uncertain};
