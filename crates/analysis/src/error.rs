@@ -160,6 +160,12 @@ pub enum Error {
         /// Largest fraction found.
         found: f64,
     },
+    /// Runs that all ended alike, so that there is no width at which they change.
+    #[error("all {runs} runs end alike: widths with either outcome are needed")]
+    OneOutcome {
+        /// Runs given.
+        runs: usize,
+    },
     /// A fraction that must lie between 0 and 1.
     #[error("a fraction of {value} does not lie between 0 and 1")]
     Fraction {

@@ -8,16 +8,21 @@
 mod autocorrelation;
 mod blocks;
 mod bootstrap;
+mod dip;
 mod divergence;
 mod ensemble;
 mod ensembles;
 mod error;
 mod family;
+mod hysteresis;
+mod jump;
 mod law;
 mod law_fit;
 mod law_runs;
 mod lifetime;
 mod line;
+mod logistic;
+mod mixture;
 mod numerics;
 mod period;
 mod regression;
@@ -35,6 +40,7 @@ mod synthetic;
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
 pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+pub use dip::{DipTest, dip_test};
 pub use divergence::{
     LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
 };
@@ -45,6 +51,8 @@ pub use ensemble::{
 pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
 pub use family::Family;
+pub use hysteresis::{Hysteresis, hysteresis};
+pub use jump::{Jump, jump_height};
 pub use law::Law;
 pub use law_fit::{LawFit, WindowFit, fit_law, fit_law_in_windows};
 pub use law_runs::{
@@ -53,6 +61,8 @@ pub use law_runs::{
 };
 pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
+pub use logistic::{FractionCrossing, fraction_crossing};
+pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
 pub use period::{PeriodMeans, period_means};
 pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
