@@ -80,15 +80,27 @@ pub fn bootstrap_errors<T: Clone, const N: usize>(
         points: groups.iter().map(Vec::len).sum(),
         parameters: N,
     })?;
-    let mut columns: [Vec<f64>; N] = std::array::from_fn(|_| Vec::new());
-    let mut failed = 0;
-    for mut randomness in bootstrap.streams()? {
+    let estimates = bootstrap.streams()?.map(|mut randomness| {
         let drawn: Vec<Vec<T>> = groups
             .iter()
             .map(|group| randomness.resample(group))
             .collect();
-        match statistic(&drawn) {
+        statistic(&drawn).map(|numbers| numbers.to_vec())
+    });
+    summarise(&values, estimates)
+}
+
+/// Errors of values from estimates of the same numbers; those that failed are `None`.
+pub(crate) fn summarise(
+    values: &[f64],
+    estimates: impl Iterator<Item = Option<Vec<f64>>>,
+) -> Result<Resampled, Error> {
+    let mut columns: Vec<Vec<f64>> = vec![Vec::new(); values.len()];
+    let (mut succeeded, mut failed) = (0, 0);
+    for estimate in estimates {
+        match estimate {
             Some(numbers) => {
+                succeeded += 1;
                 for (column, number) in columns.iter_mut().zip(numbers) {
                     column.push(number);
                 }
@@ -98,9 +110,9 @@ pub fn bootstrap_errors<T: Clone, const N: usize>(
     }
     let too_few = Error::TooFewResamples {
         needed: LEAST_RESAMPLES,
-        found: bootstrap.resamples - failed,
+        found: succeeded,
     };
-    if bootstrap.resamples - failed < LEAST_RESAMPLES {
+    if succeeded < LEAST_RESAMPLES {
         return Err(too_few);
     }
     let estimates = values
@@ -110,7 +122,7 @@ pub fn bootstrap_errors<T: Clone, const N: usize>(
         .collect::<Result<_, _>>()?;
     Ok(Resampled {
         estimates,
-        succeeded: bootstrap.resamples - failed,
+        succeeded,
         failed,
     })
 }

@@ -8,6 +8,8 @@
 mod autocorrelation;
 mod blocks;
 mod bootstrap;
+mod collapse;
+mod collapse_fit;
 mod dip;
 mod divergence;
 mod ensemble;
@@ -26,6 +28,7 @@ mod mixture;
 mod numerics;
 mod period;
 mod regression;
+mod scaling;
 mod second_moment;
 mod shifted;
 mod stationarity;
@@ -40,6 +43,8 @@ mod synthetic;
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
 pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
+pub use collapse_fit::{Collapse, CollapseFit, LEAST_OVERLAP};
 pub use dip::{DipTest, dip_test};
 pub use divergence::{
     LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
@@ -64,6 +69,7 @@ pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
 pub use logistic::{FractionCrossing, fraction_crossing};
 pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
 pub use period::{PeriodMeans, period_means};
+pub use scaling::Scaling;
 pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
