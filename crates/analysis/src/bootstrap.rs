@@ -24,6 +24,25 @@ pub struct Bootstrap {
 }
 
 impl Bootstrap {
+    /// Groups of independent things drawn anew with replacement within each group, one set of groups a resample.
+    ///
+    /// For estimates that [`bootstrap_errors`] has no place for, such as the curves of a scaling collapse made from
+    /// resampled runs ([`Collapse::bootstrap_tables`](crate::Collapse::bootstrap_tables)).
+    ///
+    /// # Errors
+    /// [`Error::TooFewResamples`] below 20.
+    pub fn resampled<T: Clone>(
+        self,
+        groups: &[Vec<T>],
+    ) -> Result<impl Iterator<Item = Vec<Vec<T>>>, Error> {
+        Ok(self.streams()?.map(|mut randomness| {
+            groups
+                .iter()
+                .map(|group| randomness.resample(group))
+                .collect()
+        }))
+    }
+
     /// Random numbers of every resample, in order.
     pub(crate) fn streams(self) -> Result<impl Iterator<Item = Randomness>, Error> {
         if self.resamples < LEAST_RESAMPLES {
@@ -80,13 +99,9 @@ pub fn bootstrap_errors<T: Clone, const N: usize>(
         points: groups.iter().map(Vec::len).sum(),
         parameters: N,
     })?;
-    let estimates = bootstrap.streams()?.map(|mut randomness| {
-        let drawn: Vec<Vec<T>> = groups
-            .iter()
-            .map(|group| randomness.resample(group))
-            .collect();
-        statistic(&drawn).map(|numbers| numbers.to_vec())
-    });
+    let estimates = bootstrap
+        .resampled(groups)?
+        .map(|drawn| statistic(&drawn).map(|numbers| numbers.to_vec()));
     summarise(&values, estimates)
 }
 

@@ -23,6 +23,9 @@ const GAIN: f64 = 1e-3;
 /// Most evaluations of one search, for each parameter.
 const EVALUATIONS: usize = 300;
 
+/// A scaling: parameters, place of the curve among all, its own value, and a point, to the scaled point.
+pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 'a;
+
 /// Curves with a scaling to try on them.
 ///
 /// `transform(parameters, curve, parameter, point)` gives the scaled point; `curve` is the curve's place among all,
@@ -39,7 +42,7 @@ const EVALUATIONS: usize = 300;
 /// let collapse = Collapse {
 ///     curves: &curves,
 ///     transform: &|parameters, _, p, point| CurvePoint {
-///         y: point.y * p.powf(-parameters[0]),
+///         y: point.y * libm::pow(p, -parameters[0]),
 ///         ..point
 ///     },
 ///     least_overlap: LEAST_OVERLAP,
@@ -53,7 +56,7 @@ pub struct Collapse<'a> {
     /// Curves as measured.
     pub curves: &'a [Curve],
     /// The scaling.
-    pub transform: &'a dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint,
+    pub transform: &'a Transform<'a>,
     /// Least fraction of points that must be compared, 0 to 1; see [`LEAST_OVERLAP`]. At 0 a search is free to win by
     /// pulling the curves apart.
     pub least_overlap: f64,

@@ -5,7 +5,7 @@ use crate::error::{Error, checked_positive, same_length};
 use crate::family::{Family, LN_SHAPE_BOUNDS};
 use crate::law::Law;
 use crate::law_fit::{LawFit, fit_law};
-use crate::law_runs::{Largest, LawLikelihood, RunTable};
+use crate::law_likelihood::{Largest, LawLikelihood, RunTable};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
@@ -108,7 +108,7 @@ fn fitted(law: Law, family: Family, table: &RunTable) -> Result<(LawLikelihood, 
     let best = likelihood
         .largest(LN_SHAPE_BOUNDS)
         .ok_or(Error::Undetermined {
-            points: table.runs.iter().map(Vec::len).sum(),
+            points: table.count(),
             parameters: law.parameters() + family.parameters() - 1,
         })?;
     Ok((likelihood, best))

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::family::Family;
-use crate::law_runs::RunTable;
+use crate::law_likelihood::RunTable;
 use crate::lifetime::{LifetimeFit, fit_lifetime};
 use crate::survival::{RestrictedMoments, restricted_moments};
 use crate::transition::Transition;

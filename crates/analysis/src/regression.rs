@@ -54,8 +54,7 @@ impl<'a> Regression<'a> {
             let gain = 0.5 * (step[0] * here.slope[0] + step[1] * here.slope[1]);
             let mut fraction = 1.0;
             let mut there = self.at(a + step[0], b + step[1]);
-            // A not-a-number far out is not an ascent either.
-            while !(there.value >= here.value - TOLERANCE) && fraction > 1e-9 {
+            while !is_ascent(&here, &there) && fraction > 1e-9 {
                 fraction *= 0.5;
                 there = self.at(a + fraction * step[0], b + fraction * step[1]);
             }
@@ -91,7 +90,7 @@ impl<'a> Regression<'a> {
             let gain = 0.5 * step * here.slope[0];
             let mut there = self.at(a + step, b);
             let mut halvings = 0;
-            while !(there.value >= here.value - TOLERANCE) && halvings < 30 {
+            while !is_ascent(&here, &there) && halvings < 30 {
                 step *= 0.5;
                 there = self.at(a + step, b);
                 halvings += 1;
@@ -149,6 +148,11 @@ struct Total {
     value: f64,
     slope: [f64; 2],
     information: [[f64; 2]; 2],
+}
+
+/// Whether a step does not lead downhill; one to a value that is not a number does.
+fn is_ascent(here: &Total, there: &Total) -> bool {
+    there.value >= here.value - TOLERANCE
 }
 
 #[cfg(test)]

@@ -145,11 +145,11 @@ mod tests {
             assert!((found - expected).abs() < 1e-13);
         }
         let inverse = factor.inverse();
-        for row in 0..3 {
-            for column in 0..3 {
-                let product: f64 = (0..3).map(|k| matrix[row][k] * inverse[k][column]).sum();
-                assert!((product - f64::from(u8::from(row == column))).abs() < 1e-13);
-            }
+        for (row, entries) in matrix.iter().enumerate() {
+            let times_inverse =
+                |column: usize| -> f64 { (0..3).map(|k| entries[k] * inverse[k][column]).sum() };
+            let expected = |column: usize| f64::from(u8::from(row == column));
+            assert!((0..3).all(|k| (times_inverse(k) - expected(k)).abs() < 1e-13));
         }
     }
 

@@ -135,7 +135,7 @@ pub(crate) fn minimise_from_grid(
 ///
 /// Steps of growing length look for the crossing, bisection finds it to a tolerance relative to the first step. `None`
 /// where the function stays at or below 0 as far as `limit`: an interval open to that side. A value that is not a number
-/// counts as positive.
+/// counts as positive; places that are not numbers have no crossing.
 pub(crate) fn crossing(
     mut function: impl FnMut(f64) -> f64,
     inside: f64,
@@ -146,6 +146,9 @@ pub(crate) fn crossing(
         let value = function(place);
         value > 0.0 || value.is_nan()
     };
+    if inside.is_nan() || limit.is_nan() {
+        return None;
+    }
     let toward = (limit - inside).signum();
     let mut step = first_step.abs().max(1e-12 * inside.abs().max(1e-12));
     let mut far = inside;
