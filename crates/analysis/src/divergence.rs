@@ -197,7 +197,8 @@ pub fn likelihood_ratio(
 /// Claims F2 and F4 together imply `chi_tau/tau^2 ~ (w_c - w)^(2 alpha - beta) = 1/(w_c - w)`, which grows without bound;
 /// nucleation by chance at a constant rate has exactly 1, at any width; a deterministic approach less than 1. `ratio` with
 /// `error`: chi_tau/tau^2 at each width, as from [`LifetimeFit::relative_variance`](crate::LifetimeFit::relative_variance);
-/// reckoned in logarithms. `critical`: w_c from elsewhere.
+/// reckoned in logarithms. `critical`: w_c from elsewhere. [`fit_law_with_scatter`](crate::fit_law_with_scatter) asks the
+/// same of all runs at once, without an estimate at each width.
 ///
 /// # Errors
 /// [`Error::BeyondCritical`] for a width at or above w_c, else as for [`fit_law`].

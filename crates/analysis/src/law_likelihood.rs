@@ -63,7 +63,7 @@ pub(crate) struct LawLikelihood {
 /// Largest likelihood of a law and family.
 #[derive(Clone, Copy)]
 pub(crate) struct Largest {
-    ln_distance: f64,
+    pub(crate) ln_distance: f64,
     pub(crate) ln_shape: f64,
     pub(crate) ln_amplitude: f64,
     pub(crate) exponent: f64,
@@ -113,6 +113,11 @@ impl LawLikelihood {
             groups,
             range: CriticalRange::new(&seen, top),
         })
+    }
+
+    /// Widths, groups of runs and range of w_c.
+    pub(crate) fn parts(&self) -> (&[f64], &[Group], CriticalRange) {
+        (&self.places, &self.groups, self.range)
     }
 
     /// Likelihoods of all widths at one shape.

@@ -10,7 +10,7 @@
 //! | is a series stationary, and its mean? | [`truncation`], [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
 //! | how are transition times distributed? | [`Survival`], [`restricted_moments`], [`fit_lifetime`], [`fit_shifted_exponential`], [`ensembles_by_width`] |
 //! | where and how does the time diverge? | [`fit_law_to_runs`], [`bootstrap_law`], [`fit_law`], windows of either |
-//! | does it diverge at all? | [`compare_laws`], [`likelihood_ratio`], [`scatter_test`], [`power_exponent`] |
+//! | does it diverge at all? | [`compare_laws`], [`likelihood_ratio`], [`scatter_test`], [`fit_law_with_scatter`], [`power_exponent`] |
 //! | how does the flow rate fluctuate? | [`ensemble_moments`], [`second_moment`], [`second_moment_peak`] |
 //! | do the curves collapse? | [`Collapse`], [`Scaling`], [`collapse_quality`] |
 //! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
@@ -43,6 +43,7 @@ mod numerics;
 mod period;
 mod regression;
 mod scaling;
+mod scatter_law;
 mod second_moment;
 mod shifted;
 mod stationarity;
@@ -84,6 +85,7 @@ pub use logistic::{FractionCrossing, fraction_crossing};
 pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
 pub use period::{PeriodMeans, period_means};
 pub use scaling::Scaling;
+pub use scatter_law::{ScatterLawFit, fit_law_with_scatter};
 pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};

@@ -75,6 +75,7 @@ proptest! {
             }
             let _ = fit_law_to_runs_in_windows(law, Family::Exponential, &width, &runs);
         }
+        let _ = fit_law_with_scatter(&width, &runs);
         let _ = bootstrap_law(Law::Power, Family::Exponential, &width, &runs, FEW);
         let _ = compare_laws(&laws, Family::Exponential, &width, &runs);
         let horizons: Vec<f64> = rows.iter().map(|row| row.2).collect();
