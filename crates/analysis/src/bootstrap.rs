@@ -12,9 +12,9 @@ pub(crate) const LEAST_RESAMPLES: usize = 20;
 
 /// How often to resample, and with which random numbers.
 ///
-/// Resample k draws from its own stream of the generator (`ChaCha8`, stream k of the seed), so that more resamples leave
-/// the first ones as they were. 200 give a standard error to 5 per cent; the ends of a 95 per cent interval need 1000.
-/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6 and 13.
+/// Resample k draws from its own stream of the generator (`ChaCha8`, stream k of the seed), so that more resamples
+/// leave the first ones as they were. 200 give a standard error to 5 per cent; the ends of a 95 per cent interval need
+/// 1000. Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapters 6 and 13.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Bootstrap {
     /// Number of resamples.
@@ -74,8 +74,8 @@ pub struct Resampled {
 /// cannot be had; an infinite number counts in the intervals, so that they end there.
 ///
 /// # Errors
-/// [`Error::TooFewResamples`] below 20 resamples, or where fewer than 20 succeed; [`Error::Undetermined`] where the data
-/// themselves give no estimate.
+/// [`Error::TooFewResamples`] below 20 resamples, or where fewer than 20 succeed; [`Error::Undetermined`] where the
+/// data themselves give no estimate.
 ///
 /// ```
 /// use peristalsis_analysis::{Bootstrap, bootstrap_errors};

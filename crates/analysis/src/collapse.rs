@@ -42,12 +42,12 @@ pub struct CollapseQuality {
 ///
 /// `S = 1/N sum_ij (y_ij - Y_ij)^2/(error_ij^2 + dY_ij^2)`
 ///
-/// over the N points j of curves i that lie within the abscissas of another curve. Y_ij +- dY_ij is the master curve there:
-/// the weighted straight line through the two points of every other curve that enclose x_ij, evaluated at x_ij. The grids
-/// need not agree. S becomes small also where curves are pulled apart until little is left to compare: hence the overlap.
-/// A master curve that bends between two points of a curve raises S: give ordinates in which it is nearly straight, such
-/// as logarithms of a power law. Source: Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004), appendix A; after Kawashima
-/// & Ito, J. Phys. Soc. Jpn. 62, 435 (1993).
+/// over the N points j of curves i that lie within the abscissas of another curve. Y_ij +- dY_ij is the master curve
+/// there: the weighted straight line through the two points of every other curve that enclose x_ij, evaluated at x_ij.
+/// The grids need not agree. S becomes small also where curves are pulled apart until little is left to compare: hence
+/// the overlap. A master curve that bends between two points of a curve raises S: give ordinates in which it is nearly
+/// straight, such as logarithms of a power law. Source: Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004), appendix
+/// A; after Kawashima & Ito, J. Phys. Soc. Jpn. 62, 435 (1993).
 ///
 /// # Errors
 /// [`Error::TooFew`] below 2 curves, [`Error::NoOverlap`] where no point can be compared.

@@ -69,7 +69,8 @@ pub struct CollapseFit {
     pub parameters: Vec<f64>,
     /// Quality and overlap of the collapse.
     pub quality: CollapseQuality,
-    /// Starts whose search ended at this minimum to within 1 per cent of S, of all starts: few say that there are others.
+    /// Starts whose search ended at this minimum to within 1 per cent of S, of all starts: few say that there are
+    /// others.
     pub agreeing: usize,
     /// Searches made.
     pub starts: usize,
@@ -160,12 +161,13 @@ impl Collapse<'_> {
     /// Parameters of the smallest S with enough overlap, by downhill simplex from several starts.
     ///
     /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of
-    /// it, by random numbers of `seed`. Collapses with less than `least_overlap`, and ones in which groups of curves part,
-    /// are rejected. Look at the overlap and at `agreeing` beside S.
+    /// it, by random numbers of `seed`. Collapses with less than `least_overlap`, and ones in which groups of curves
+    /// part, are rejected. Look at the overlap and at `agreeing` beside S.
     ///
     /// # Errors
-    /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves or without
-    /// starts, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`] for a step, [`Error::Fraction`].
+    /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves or
+    /// without starts, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`] for a step,
+    /// [`Error::Fraction`].
     pub fn fit(
         &self,
         start: &[f64],
@@ -242,9 +244,9 @@ impl Collapse<'_> {
     /// Errors of the best parameters from their scatter when every ordinate is moved by its error.
     ///
     /// Each resample adds a normal number times the error to every y and searches anew from the best parameters: a
-    /// parametric bootstrap, right where the errors are normal, independent and S is near 1. A scaling that does not hold
-    /// (S well above 1) has errors beyond these. For errors from the runs themselves resample those, make curves of each
-    /// resample and see [`bootstrap_tables`](Self::bootstrap_tables).
+    /// parametric bootstrap, right where the errors are normal, independent and S is near 1. A scaling that does not
+    /// hold (S well above 1) has errors beyond these. For errors from the runs themselves resample those, make curves
+    /// of each resample and see [`bootstrap_tables`](Self::bootstrap_tables).
     ///
     /// # Errors
     /// [`Error::TooFewResamples`], [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
@@ -266,8 +268,8 @@ impl Collapse<'_> {
 
     /// Errors of the best parameters from curves made of resampled runs, one set of curves a resample.
     ///
-    /// Searches begin at the best parameters with half of the steps; sets that are `None`, or that do not overlap enough,
-    /// count as failed.
+    /// Searches begin at the best parameters with half of the steps; sets that are `None`, or that do not overlap
+    /// enough, count as failed.
     ///
     /// # Errors
     /// [`Error::TooFewResamples`] where fewer than 20 succeed, [`Error::LengthMismatch`], [`Error::NotPositive`] for a
@@ -297,8 +299,8 @@ impl Collapse<'_> {
     /// Range of each parameter in which S, minimal over the others, stays within 1 of its minimum.
     ///
     /// The customary error of a collapse. With N points compared N S is a chi^2, so that this is some sqrt(N) standard
-    /// errors where S is near 1: a safe outer bound, no 68 per cent interval. Ends not found within 50 steps are infinite;
-    /// where the overlap falls short counts as an end.
+    /// errors where S is near 1: a safe outer bound, no 68 per cent interval. Ends not found within 50 steps are
+    /// infinite; where the overlap falls short counts as an end.
     ///
     /// # Errors
     /// [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
@@ -343,8 +345,8 @@ impl Collapse<'_> {
 
     /// Fits with one curve left out in turn, in the order of the curves: exponents that hang on one curve move.
     ///
-    /// Arguments as for [`fit`](Self::fit). A parameter that belongs to the curve left out keeps whatever value the search
-    /// began with.
+    /// Arguments as for [`fit`](Self::fit). A parameter that belongs to the curve left out keeps whatever value the
+    /// search began with.
     ///
     /// # Errors
     /// [`Error::TooFew`] below 3 curves; those of [`fit`](Self::fit) for any of the fits.

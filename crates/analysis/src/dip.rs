@@ -13,7 +13,8 @@ pub struct DipTest {
     /// Largest distance of the empirical distribution from the nearest one with a single peak: 1/(2n) at least, 1/4 at
     /// most (two equal atoms).
     pub dip: f64,
-    /// Probability of a dip at least as large in as many uniform numbers, the single-peaked case that is hardest to tell.
+    /// Probability of a dip at least as large in as many uniform numbers, the single-peaked case that is hardest to
+    /// tell.
     pub probability: f64,
     /// Simulated samples behind it.
     pub simulations: usize,
@@ -98,7 +99,8 @@ fn dip(sample: &mut [f64]) -> f64 {
     0.5 * doubled / sample.len() as f64
 }
 
-/// Corners of the greatest convex minorant (`side` 1) or least concave majorant (`side` -1) of a height over the places.
+/// Corners of the greatest convex minorant (`side` 1) or least concave majorant (`side` -1) of a height over the
+/// places.
 fn hull(
     places: &[Place],
     first: usize,

@@ -58,9 +58,9 @@ pub struct ScatterTest {
 
 /// Compares laws of the mean transition time by their likelihood under censoring.
 ///
-/// A law that diverges at w_c (power, barrier) against one that grows without end but does not diverge (exponential); all
-/// with the same `family` about the mean and a common shape. Akaike's criterion charges each parameter 2. On widths that
-/// stay far from w_c the laws look alike, and the excess says so. Source: Burnham & Anderson, Model Selection and
+/// A law that diverges at w_c (power, barrier) against one that grows without end but does not diverge (exponential);
+/// all with the same `family` about the mean and a common shape. Akaike's criterion charges each parameter 2. On widths
+/// that stay far from w_c the laws look alike, and the excess says so. Source: Burnham & Anderson, Model Selection and
 /// Multimodel Inference (2002), section 2.6 and 2.9.
 ///
 /// # Errors
@@ -116,11 +116,11 @@ fn fitted(law: Law, family: Family, table: &RunTable) -> Result<(LawLikelihood, 
 
 /// Tests two laws, neither a special case of the other, by simulating data sets from the best fit of each.
 ///
-/// The ratio of the likelihoods is compared with its distribution over data sets simulated under the first and under the
-/// second law, with the same widths and run lengths and both laws fitted again to each: the runs may reject one, both or
-/// neither. `horizon`: the time for which each run was or would have been watched, one a run (for a censored run the time
-/// of censoring). Simulated sets to which a law cannot be fitted are left out. Sources: Cox, J. R. Stat. Soc. B 24, 406
-/// (1962); by simulation: Williams, Biometrics 26, 23 (1970).
+/// The ratio of the likelihoods is compared with its distribution over data sets simulated under the first and under
+/// the second law, with the same widths and run lengths and both laws fitted again to each: the runs may reject one,
+/// both or neither. `horizon`: the time for which each run was or would have been watched, one a run (for a censored
+/// run the time of censoring). Simulated sets to which a law cannot be fitted are left out. Sources: Cox, J. R. Stat.
+/// Soc. B 24, 406 (1962); by simulation: Williams, Biometrics 26, 23 (1970).
 ///
 /// # Errors
 /// Those of [`compare_laws`]; [`Error::NotPositive`] for a horizon, [`Error::TooFewResamples`].
@@ -194,11 +194,12 @@ pub fn likelihood_ratio(
 
 /// Tests the relative variance of the transition times against 1 and against 1/(w_c - w).
 ///
-/// Claims F2 and F4 together imply `chi_tau/tau^2 ~ (w_c - w)^(2 alpha - beta) = 1/(w_c - w)`, which grows without bound;
-/// nucleation by chance at a constant rate has exactly 1, at any width; a deterministic approach less than 1. `ratio` with
-/// `error`: chi_tau/tau^2 at each width, as from [`LifetimeFit::relative_variance`](crate::LifetimeFit::relative_variance);
-/// reckoned in logarithms. `critical`: w_c from elsewhere. [`fit_law_with_scatter`](crate::fit_law_with_scatter) asks the
-/// same of all runs at once, without an estimate at each width.
+/// Claims F2 and F4 together imply `chi_tau/tau^2 ~ (w_c - w)^(2 alpha - beta) = 1/(w_c - w)`, which grows without
+/// bound; nucleation by chance at a constant rate has exactly 1, at any width; a deterministic approach less than 1.
+/// `ratio` with `error`: chi_tau/tau^2 at each width, as from
+/// [`LifetimeFit::relative_variance`](crate::LifetimeFit::relative_variance); reckoned in logarithms. `critical`: w_c
+/// from elsewhere. [`fit_law_with_scatter`](crate::fit_law_with_scatter) asks the same of all runs at once, without an
+/// estimate at each width.
 ///
 /// # Errors
 /// [`Error::BeyondCritical`] for a width at or above w_c, else as for [`fit_law`].

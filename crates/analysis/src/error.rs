@@ -174,7 +174,7 @@ pub enum Error {
     },
     /// A series that has not come to rest: its average would be over a transient.
     #[error(
-        "the series drifts: its halves differ by {score} standard errors after {discarded} of {samples} samples are left out"
+        "the series drifts: without {discarded} of {samples} samples its halves differ by {score} standard errors"
     )]
     NotStationary {
         /// Difference of the halves in standard errors; infinite where no stationary part was found at all.

@@ -21,14 +21,16 @@ pub struct Jump {
 /// `upper`, `lower`: columns width, mean of the stationary J/Jmax and its error, of the jammed branch (w < w_c) and the
 /// unjammed one (w > w_c); a few widths next to w_c. With w_c = `critical`,
 ///
-/// `height = upper(w_c) - lower(w_c)`,   `error^2 = error_upper^2 + error_lower^2 + (slope_upper - slope_lower)^2 error_w^2`
+/// `height = upper(w_c) - lower(w_c)`,
+/// `error^2 = error_upper^2 + error_lower^2 + (slope_upper - slope_lower)^2 error_w^2`
 ///
-/// A branch with a single width counts with its weighted mean as if it were level. A height of many errors that does not
-/// shrink with the strain rate or the length of the tube speaks for a discontinuous transition; a steep continuous rise
-/// between two widths looks the same, so that the widths must close in on w_c.
+/// A branch with a single width counts with its weighted mean as if it were level. A height of many errors that does
+/// not shrink with the strain rate or the length of the tube speaks for a discontinuous transition; a steep continuous
+/// rise between two widths looks the same, so that the widths must close in on w_c.
 ///
 /// # Errors
-/// [`Error::TooFew`] for a branch without points, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`].
+/// [`Error::TooFew`] for a branch without points, [`Error::LengthMismatch`], [`Error::NonFinite`],
+/// [`Error::NotPositive`].
 ///
 /// ```
 /// use peristalsis_analysis::{Uncertain, jump_height};

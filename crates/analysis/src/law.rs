@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub enum Law {
     /// `y = A (w_c - w)^-B`: a divergence as of a critical point or the end of a branch (a spinodal). Claim F2.
     Power,
-    /// `y = A exp(B/(w_c - w)^power)`: nucleation over a barrier that diverges where the two flows coexist. A droplet of
-    /// d dimensions has power d - 1: 2 in bulk, 1 in a plane.
+    /// `y = A exp(B/(w_c - w)^power)`: nucleation over a barrier that diverges where the two flows coexist. A droplet
+    /// of d dimensions has power d - 1: 2 in bulk, 1 in a plane.
     Barrier {
         /// Power of the barrier, positive.
         power: f64,

@@ -16,8 +16,8 @@ const TOLERANCE: f64 = 1e-6;
 pub struct LawFit {
     /// The law.
     pub law: Law,
-    /// Critical width w_c, with intervals by the profile of chi^2; `None` for a law without one. An upper end of infinity
-    /// says that the points do not tell the law from an exponential.
+    /// Critical width w_c, with intervals by the profile of chi^2; `None` for a law without one. An upper end of
+    /// infinity says that the points do not tell the law from an exponential.
     pub critical_width: Option<Uncertain>,
     /// Exponent, or coefficient of the barrier, B, with intervals by the profile of chi^2.
     pub exponent: Uncertain,
@@ -149,18 +149,18 @@ impl Points<'_> {
 /// Fits a law to values with errors at several widths.
 ///
 /// Minimum over ln A, B and w_c of `chi^2 = sum_i (ln y_i - ln A - B x_i(w_c))^2 y_i^2/error_i^2` (+ ((w_c -
-/// known)/error)^2); x as [`Law`] states. At given w_c this is a straight line, solved exactly; what remains is a search
-/// in ln(w_c - w_max) from a grid, so that the least of several minima is found. `known`: a critical width from elsewhere
-/// with its error (0 to hold it fixed), as for the exponent of chi_tau or of a peak at the w_c of tau; `None` to fit it.
-/// Intervals of w_c and B by the profile of chi^2 (+1 and +3.84), standard errors from its curvature. w_c and B are
-/// strongly correlated, and errors of some 20 per cent or more bias ln y: prefer
+/// known)/error)^2); x as [`Law`] states. At given w_c this is a straight line, solved exactly; what remains is a
+/// search in ln(w_c - w_max) from a grid, so that the least of several minima is found. `known`: a critical width from
+/// elsewhere with its error (0 to hold it fixed), as for the exponent of chi_tau or of a peak at the w_c of tau; `None`
+/// to fit it. Intervals of w_c and B by the profile of chi^2 (+1 and +3.84), standard errors from its curvature. w_c
+/// and B are strongly correlated, and errors of some 20 per cent or more bias ln y: prefer
 /// [`fit_law_to_runs`](crate::fit_law_to_runs) where the runs are at hand. Source: Seber & Wild, Nonlinear Regression
 /// (1989), sections 5.4 and 14.7.
 ///
 /// # Errors
-/// [`Error::TooFewPlaces`] with fewer distinct widths than free parameters, [`Error::BeyondCritical`] for a width above a
-/// known w_c without error, [`Error::Undetermined`] where the best w_c lies at infinity (the points follow an exponential
-/// law), [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`].
+/// [`Error::TooFewPlaces`] with fewer distinct widths than free parameters, [`Error::BeyondCritical`] for a width above
+/// a known w_c without error, [`Error::Undetermined`] where the best w_c lies at infinity (the points follow an
+/// exponential law), [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`].
 ///
 /// ```
 /// use peristalsis_analysis::{Law, fit_law};
@@ -318,8 +318,8 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
 
 /// Fits a law in windows that leave out the smallest, then the largest widths one by one.
 ///
-/// The first window holds all widths. An asymptotic law fits ever better as small widths, far from w_c, are left out, and
-/// its exponent settles; a trend beyond the errors says that the exponent is not the asymptotic one. The fits share
+/// The first window holds all widths. An asymptotic law fits ever better as small widths, far from w_c, are left out,
+/// and its exponent settles; a trend beyond the errors says that the exponent is not the asymptotic one. The fits share
 /// their points and do not scatter independently. Windows without a fit are left out.
 ///
 /// # Errors

@@ -87,17 +87,16 @@ pub struct LawBootstrap {
 ///
 /// `ln L = sum_observed ln f(t_i; tau(w_i), k) + sum_censored ln S(t_i; tau(w_i), k)`
 ///
-/// f and S of a [`Family`] with mean tau(w) by a [`Law`] and a shape k common to all widths; one row a run, `width` beside
-/// `transitions`. Censored runs count with the time that they were watched, so that w_c is not drawn toward the widths
-/// where few runs were long enough; runs at w >= w_c say nothing, and w_c lies above every width that saw a transition.
-/// At given w_c and k the likelihood is concave in (ln A, B) and solved by Newton's method; w_c is searched from a grid.
-/// Intervals by profile likelihood (1/2 and 1.92 below the largest), the standard error being half of the narrow one
-/// (infinite where that is open).
-/// All of it assumes the family. A wrong one biases w_c and B where runs are censored (its tail stands for the times that
-/// were not seen): compare families by [`akaike`](LawRunsFit::akaike). Without censoring below w_c it only misjudges the
-/// errors, and [`bootstrap_law`] does not.
-/// Source: Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3 (regression under
-/// censoring); Venzon & Moolgavkar, Appl. Stat. 37, 87 (1988) (profile likelihood).
+/// f and S of a [`Family`] with mean tau(w) by a [`Law`] and a shape k common to all widths; one row a run, `width`
+/// beside `transitions`. Censored runs count with the time that they were watched, so that w_c is not drawn toward the
+/// widths where few runs were long enough; runs at w >= w_c say nothing, and w_c lies above every width that saw a
+/// transition. At given w_c and k the likelihood is concave in (ln A, B) and solved by Newton's method; w_c is searched
+/// from a grid. Intervals by profile likelihood (1/2 and 1.92 below the largest), the standard error being half of the
+/// narrow one (infinite where that is open). All of it assumes the family. A wrong one biases w_c and B where runs are
+/// censored (its tail stands for the times that were not seen): compare families by [`akaike`](LawRunsFit::akaike).
+/// Without censoring below w_c it only misjudges the errors, and [`bootstrap_law`] does not. Source: Kalbfleisch &
+/// Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3 (regression under censoring); Venzon &
+/// Moolgavkar, Appl. Stat. 37, 87 (1988) (profile likelihood).
 ///
 /// # Errors
 /// [`Error::TooFewPlaces`] where fewer widths saw a transition than the law has parameters, [`Error::NoScatter`],
@@ -141,8 +140,9 @@ pub fn fit_law_to_runs(
 ///
 /// Resamples whose best w_c lies at infinity count with w_c and B infinite, so that the intervals end there; those with
 /// transitions at too few widths fail and are counted. With the gamma family each distinct time of censoring costs an
-/// incomplete gamma function: some hundredths of a second a resample, where the others take a few thousandths. Percentile intervals: with few runs at the largest width that saw
-/// a transition they are too short to that side, as no resample puts w_c below what it saw.
+/// incomplete gamma function: some hundredths of a second a resample, where the others take a few thousandths.
+/// Percentile intervals: with few runs at the largest width that saw a transition they are too short to that side, as
+/// no resample puts w_c below what it saw.
 ///
 /// # Errors
 /// Those of [`fit_law_to_runs`] and [`bootstrap_errors`].

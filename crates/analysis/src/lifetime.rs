@@ -118,15 +118,15 @@ pub(crate) fn best_mean(likelihood: &GroupLikelihood<'_>, start: f64) -> (f64, f
 /// `ln L = sum_observed ln f(t_i) + sum_censored ln S(t_i)`,   f = -dS/dt
 ///
 /// Errors from the observed information in (ln m, ln k); intervals by profile likelihood, ln L(max) - ln L = 1/2 and
-/// 1.92, asymmetric where the data are. They hold from some ten transitions on; the shape of fewer is biased upward, and
-/// a mean far beyond the time watched rests on the family being right: compare families, and compare with
+/// 1.92, asymmetric where the data are. They hold from some ten transitions on; the shape of fewer is biased upward,
+/// and a mean far beyond the time watched rests on the family being right: compare families, and compare with
 /// [`restricted_moments`](crate::restricted_moments). Source: Kalbfleisch & Prentice, The Statistical Analysis of
 /// Failure Time Data (2002), chapter 3.
 ///
 /// # Errors
-/// [`Error::TooFewObserved`] below 1 transition (exponential) or 3 (others), [`Error::NoScatter`] where the times are so
-/// nearly equal that the shape has no upper end, [`Error::Undetermined`], [`Error::NotPositive`] for a transition at 0,
-/// [`Error::NonFinite`], [`Error::Negative`].
+/// [`Error::TooFewObserved`] below 1 transition (exponential) or 3 (others), [`Error::NoScatter`] where the times are
+/// so nearly equal that the shape has no upper end, [`Error::Undetermined`], [`Error::NotPositive`] for a transition at
+/// 0, [`Error::NonFinite`], [`Error::Negative`].
 ///
 /// ```
 /// use peristalsis_analysis::{Family, Transition, fit_lifetime};

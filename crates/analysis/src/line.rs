@@ -93,8 +93,8 @@ fn centre(x: &[f64], weight: &[f64]) -> f64 {
 /// Straight line y = intercept + slope x through points with known errors of y.
 ///
 /// Minimum of `chi^2 = sum_i (y_i - intercept - slope x_i)^2/error_i^2`. Errors from the errors of the points, not from
-/// their scatter; normal intervals, exact for normal errors. Serves w_c(epsdot) = slope epsdot + w_max. Source: Bevington
-/// & Robinson, Data Reduction and Error Analysis (2003), chapter 6.
+/// their scatter; normal intervals, exact for normal errors. Serves w_c(epsdot) = slope epsdot + w_max. Source:
+/// Bevington & Robinson, Data Reduction and Error Analysis (2003), chapter 6.
 ///
 /// # Errors
 /// [`Error::TooFewPlaces`] below 2 distinct x, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`]
@@ -131,8 +131,8 @@ pub fn fit_line(x: &[f64], y: &[f64], error: &[f64]) -> Result<LineFit, Error> {
 ///
 /// `y = constant + linear x + quadratic x^2`
 ///
-/// `linearity` is the two-sided probability of quadratic/error(quadratic), which equals the chi^2 test of the difference
-/// between line and parabola with one degree of freedom. Errors as for [`fit_line`].
+/// `linearity` is the two-sided probability of quadratic/error(quadratic), which equals the chi^2 test of the
+/// difference between line and parabola with one degree of freedom. Errors as for [`fit_line`].
 ///
 /// # Errors
 /// [`Error::TooFewPlaces`] below 3 distinct x, else as for [`fit_line`].

@@ -13,14 +13,15 @@ const PLACES: usize = 121;
 pub struct FractionCrossing {
     /// The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
     pub width: Uncertain,
-    /// Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are separated.
+    /// Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are
+    /// separated.
     pub spread: f64,
     /// Largest width at which all runs jam, with all below it doing so; `None` where already at the least some do not.
     pub last_all: Option<f64>,
     /// Smallest width at which none jams, nor above it; `None` where at the largest some still do.
     pub first_none: Option<f64>,
-    /// Whether the fraction falls from 1 to 0 between two neighbouring widths, or at a single one between: the data then
-    /// bracket the width and say nothing of the spread.
+    /// Whether the fraction falls from 1 to 0 between two neighbouring widths, or at a single one between: the data
+    /// then bracket the width and say nothing of the spread.
     pub is_separated: bool,
     /// Largest log-likelihood.
     pub log_likelihood: f64,
@@ -135,13 +136,14 @@ impl Fractions {
 ///
 /// One row a run; `jammed`: how the run ended, whatever it started from, so that the fraction falls with the width from
 /// either start. Intervals by profile likelihood. Where all runs jam up to one width and none from the next on, the
-/// likelihood has no maximum: the width is then the middle of the bracket, both intervals are the bracket, and the error
-/// is its length over sqrt(12); with mixed runs at one width between, that width, with its neighbours as the bracket.
-/// Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson, Biometrika 71, 1 (1984).
+/// likelihood has no maximum: the width is then the middle of the bracket, both intervals are the bracket, and the
+/// error is its length over sqrt(12); with mixed runs at one width between, that width, with its neighbours as the
+/// bracket. Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson, Biometrika
+/// 71, 1 (1984).
 ///
 /// # Errors
-/// [`Error::OneOutcome`], [`Error::TooFewPlaces`] at a single width, [`Error::Undetermined`] where the fraction does not
-/// fall with the width, [`Error::TooFew`], [`Error::LengthMismatch`], [`Error::NonFinite`].
+/// [`Error::OneOutcome`], [`Error::TooFewPlaces`] at a single width, [`Error::Undetermined`] where the fraction does
+/// not fall with the width, [`Error::TooFew`], [`Error::LengthMismatch`], [`Error::NonFinite`].
 ///
 /// ```
 /// use peristalsis_analysis::fraction_crossing;

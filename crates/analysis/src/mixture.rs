@@ -48,7 +48,8 @@ pub struct TwoPeaks {
     pub upper: Peak,
     /// Schwarz's criterion of one peak less that of two: positive for two peaks, beyond 10 very clearly so.
     pub criterion_gain: f64,
-    /// Distance of the peaks over their widths, sqrt(2) |m_2 - m_1|/sqrt(s_1^2 + s_2^2): two peaks can be seen beyond 2.
+    /// Distance of the peaks over their widths, sqrt(2) |m_2 - m_1|/sqrt(s_1^2 + s_2^2): two peaks can be seen beyond
+    /// 2.
     pub separation: f64,
 }
 
@@ -71,8 +72,8 @@ impl TwoPeaks {
 /// Counts values in bins of equal width between two bounds.
 ///
 /// # Errors
-/// [`Error::NonFinite`] for a value or a bound, [`Error::TooFew`] without bins, [`Error::NotPositive`] for bounds that are
-/// not in order (index 1).
+/// [`Error::NonFinite`] for a value or a bound, [`Error::TooFew`] without bins, [`Error::NotPositive`] for bounds that
+/// are not in order (index 1).
 ///
 /// ```
 /// use peristalsis_analysis::histogram;
@@ -121,9 +122,9 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
 ///
 /// Expectation-maximisation from nine splits of the sorted values, the best of which counts; no peak is narrower than 1
 /// per cent of the deviation of all values. The criterion favours two peaks also for one skew peak: read it beside the
-/// separation and the [`dip_test`](crate::dip_test), which assumes no form. Give one value a run. Sources: Dempster, Laird
-/// & Rubin, J. R. Stat. Soc. B 39, 1 (1977); Schwarz, Ann. Stat. 6, 461 (1978); the separation: Ashman, Bird & Zepf,
-/// Astron. J. 108, 2348 (1994).
+/// separation and the [`dip_test`](crate::dip_test), which assumes no form. Give one value a run. Sources: Dempster,
+/// Laird & Rubin, J. R. Stat. Soc. B 39, 1 (1977); Schwarz, Ann. Stat. 6, 461 (1978); the separation: Ashman, Bird &
+/// Zepf, Astron. J. 108, 2348 (1994).
 ///
 /// # Errors
 /// [`Error::TooFew`] below 8 values, [`Error::NonFinite`], [`Error::NoScatter`] for equal values.

@@ -10,8 +10,8 @@ const TOLERANCE: f64 = 1e-11;
 
 /// Groups of runs with `ln mean = a + b x`, at one shape.
 ///
-/// The log-likelihood is concave in (a, b) for every family, so that Newton's method with halved steps finds its maximum
-/// from anywhere.
+/// The log-likelihood is concave in (a, b) for every family, so that Newton's method with halved steps finds its
+/// maximum from anywhere.
 pub(crate) struct Regression<'a> {
     /// Covariate less its centre.
     x: Vec<f64>,

@@ -72,7 +72,8 @@ struct ScatterLikelihood<'a> {
 }
 
 impl ScatterLikelihood<'_> {
-    /// Minus the log-likelihood, a and b at (ln(w_c - top), ln k at one span, q); at a given exponent where there is one.
+    /// Minus the log-likelihood, a and b at (ln(w_c - top), ln k at one span, q); at a given exponent where there is
+    /// one.
     fn at(&self, [place, ln_shape, q]: [f64; 3], exponent: Option<f64>) -> (f64, f64, f64) {
         let critical = self.range.critical(place);
         let below = self.places.partition_point(|&place| place < critical);
@@ -127,15 +128,15 @@ impl ScatterLikelihood<'_> {
 /// `tau = A (w_c - w)^-alpha`,   `chi_tau/tau^2 = C (w_c - w)^-q`,   gamma distributions of shape tau^2/chi_tau
 ///
 /// Maximum likelihood under censoring, one row a run. Where the scatter grows toward w_c a common shape as in
-/// [`fit_law_to_runs`](crate::fit_law_to_runs) is wrong just where runs are censored and moves w_c and alpha; here it is
-/// fitted along. Standard errors from the observed information; intervals in the normal approximation, that of w_c in its
-/// logarithmic distance. The three probabilities are of likelihood ratios against chi^2 with 2 (chance), 1 and 1 degrees
-/// of freedom, and hold from some hundred transitions on. Source: Kalbfleisch & Prentice, The Statistical Analysis of
-/// Failure Time Data (2002), chapter 3.
+/// [`fit_law_to_runs`](crate::fit_law_to_runs) is wrong just where runs are censored and moves w_c and alpha; here it
+/// is fitted along. Standard errors from the observed information; intervals in the normal approximation, that of w_c
+/// in its logarithmic distance. The three probabilities are of likelihood ratios against chi^2 with 2 (chance), 1 and 1
+/// degrees of freedom, and hold from some hundred transitions on. Source: Kalbfleisch & Prentice, The Statistical
+/// Analysis of Failure Time Data (2002), chapter 3.
 ///
 /// # Errors
-/// [`Error::TooFewPlaces`] where fewer than 3 widths saw a transition, [`Error::NoScatter`], [`Error::Undetermined`] where
-/// the likelihood has no maximum inside (w_c at infinity, no curvature), and those of a table of runs.
+/// [`Error::TooFewPlaces`] where fewer than 3 widths saw a transition, [`Error::NoScatter`], [`Error::Undetermined`]
+/// where the likelihood has no maximum inside (w_c at infinity, no curvature), and those of a table of runs.
 pub fn fit_law_with_scatter(
     width: &[f64],
     transitions: &[Transition],

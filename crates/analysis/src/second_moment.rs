@@ -50,8 +50,9 @@ pub struct MomentPeak {
 ///
 /// `chi_J(t) = (<j^2> - <j>^2) n/(n - 1)` over the n runs that have a value at t, up to the end of the longest run
 ///
-/// A run's end is treated as `after_end` says. The series ends before its first time with fewer than 3 runs, so that all
-/// of it has a variance. [`ensemble_moments`](crate::ensemble_moments) gives errors at each time for runs of equal length.
+/// A run's end is treated as `after_end` says. The series ends before its first time with fewer than 3 runs, so that
+/// all of it has a variance. [`ensemble_moments`](crate::ensemble_moments) gives errors at each time for runs of equal
+/// length.
 ///
 /// # Errors
 /// [`Error::TooFew`] below 3 runs or where fewer than 3 have a first sample, [`Error::NonFiniteReplica`].
@@ -85,8 +86,8 @@ pub fn second_moment<S: AsRef<[f64]>>(
 /// Peak over time of chi_J(t), with errors by resampling whole runs.
 ///
 /// The earliest time counts where several share the largest value. Runs and `after_end` as for [`second_moment`]. The
-/// percentile intervals are pulled upward by the bias that is reported beside them; near the transition, where j is near
-/// 0 or 1 in each run, the height cannot exceed 1/4 by much, and its growth toward w_c ends there.
+/// percentile intervals are pulled upward by the bias that is reported beside them; near the transition, where j is
+/// near 0 or 1 in each run, the height cannot exceed 1/4 by much, and its growth toward w_c ends there.
 ///
 /// # Errors
 /// Those of [`second_moment`]; [`Error::TooFewResamples`].

@@ -42,12 +42,12 @@ impl ShiftedExponentialFit {
 ///
 /// `S(t) = 1` for t < t_0, `exp(-(t - t_0)/theta)` beyond
 ///
-/// With t_1 the first of d transitions, n runs at risk then and T the time that all runs were watched after t_1: theta =
-/// T/(d - 1), t_0 = t_1 - theta/n, both without bias. Interval of t_0 from the exact law of n (t_1 - t_0)/theta (F with 2
-/// and 2 (d - 1) degrees of freedom), one-sided as t_0 <= t_1; that of theta from the likelihood of the times after t_1,
-/// `-(d - 1) ln theta - T/theta`; that of the mean from theta, whose error is the larger by sqrt(n). Exact without
-/// censoring and for runs that are all ended at one transition; else nearly so. Source: Lawless, Statistical Models and
-/// Methods for Lifetime Data (2003), section 4.5.
+/// With t_1 the first of d transitions, n runs at risk then and T the time that all runs were watched after t_1: theta
+/// = T/(d - 1), t_0 = t_1 - theta/n, both without bias. Interval of t_0 from the exact law of n (t_1 - t_0)/theta (F
+/// with 2 and 2 (d - 1) degrees of freedom), one-sided as t_0 <= t_1; that of theta from the likelihood of the times
+/// after t_1, `-(d - 1) ln theta - T/theta`; that of the mean from theta, whose error is the larger by sqrt(n). Exact
+/// without censoring and for runs that are all ended at one transition; else nearly so. Source: Lawless, Statistical
+/// Models and Methods for Lifetime Data (2003), section 4.5.
 ///
 /// # Errors
 /// [`Error::TooFewObserved`] below 3 transitions, [`Error::NoScatter`] where all of them are at one time,

@@ -116,12 +116,12 @@ impl Survival {
     ///
     /// `S(t) = prod_(t_j <= t) (1 - d_j/n_j)`
     ///
-    /// d_j transitions at t_j among n_j runs still watched. Greenwood's error is `S sqrt(sum d_j/(n_j (n_j - d_j)))`; the
-    /// intervals are those of `ln(-ln S)`, which stay between 0 and 1 and hold from some ten runs on. After the last
-    /// transition of uncensored runs S is 0 with error 0, the interval reaching up to that of the step before. Assumes
-    /// that a run's end is unrelated to its transition: true of runs of a set length, not of runs that were ended because
-    /// they were about to change. Sources: Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); the intervals: Kalbfleisch
-    /// & Prentice, The Statistical Analysis of Failure Time Data (2002), section 1.4.
+    /// d_j transitions at t_j among n_j runs still watched. Greenwood's error is `S sqrt(sum d_j/(n_j (n_j - d_j)))`;
+    /// the intervals are those of `ln(-ln S)`, which stay between 0 and 1 and hold from some ten runs on. After the
+    /// last transition of uncensored runs S is 0 with error 0, the interval reaching up to that of the step before.
+    /// Assumes that a run's end is unrelated to its transition: true of runs of a set length, not of runs that were
+    /// ended because they were about to change. Sources: Kaplan & Meier, J. Am. Stat. Assoc. 53, 457 (1958); the
+    /// intervals: Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), section 1.4.
     ///
     /// # Errors
     /// [`Error::TooFew`] without runs, [`Error::NonFinite`], [`Error::Negative`].
@@ -208,9 +208,9 @@ impl Survival {
     ///
     /// `m = int_0^h S dt`,   `error^2 = d/(d - 1) sum_j A_j^2 d_j/(n_j (n_j - d_j))`,   `A_j = int_(t_j)^h S dt`
     ///
-    /// d observed transitions. It lies below the true mean by `int_h^inf S dt`: near w_c, where the horizon is no longer
-    /// large against tau, this is most of it. Source: Kaplan & Meier (1958), section 6; Royston & Parmar, BMC Med. Res.
-    /// Methodol. 13, 152 (2013).
+    /// d observed transitions. It lies below the true mean by `int_h^inf S dt`: near w_c, where the horizon is no
+    /// longer large against tau, this is most of it. Source: Kaplan & Meier (1958), section 6; Royston & Parmar, BMC
+    /// Med. Res. Methodol. 13, 152 (2013).
     ///
     /// # Errors
     /// [`Error::TooFewObserved`] below 2 transitions, [`Error::Horizon`] for a horizon that is not positive or at which
@@ -300,8 +300,8 @@ fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
 ///
 /// `<t> = int_0^h S dt`,   `<t^2> = int_0^h 2 t S dt`,   variance = (`<t^2> - <t>^2`) n/(n - 1)
 ///
-/// with the Kaplan-Meier curve S of n runs: without censoring before the horizon the sample variance of the cut-off times.
-/// The error of the mean is that of [`Survival::restricted_mean`], that of the variance the jackknife's.
+/// with the Kaplan-Meier curve S of n runs: without censoring before the horizon the sample variance of the cut-off
+/// times. The error of the mean is that of [`Survival::restricted_mean`], that of the variance the jackknife's.
 ///
 /// # Errors
 /// [`Error::TooFewObserved`] below 3 transitions, [`Error::Horizon`], [`Error::NonFinite`], [`Error::Negative`],

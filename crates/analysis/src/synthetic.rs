@@ -46,7 +46,8 @@ pub(crate) fn assert_coverage(covered: usize, trials: usize, level: f64, slack: 
     );
 }
 
-/// Weeks in remission under 6-mercaptopurine, some patients still in remission (Freireich et al., Blood 21, 699 (1963)).
+/// Weeks in remission under 6-mercaptopurine, some patients still in remission (Freireich et al., Blood 21, 699
+/// (1963)).
 pub(crate) fn remission() -> Vec<Transition> {
     let relapsed = [6.0, 6.0, 6.0, 7.0, 10.0, 13.0, 16.0, 22.0, 23.0];
     let censored = [

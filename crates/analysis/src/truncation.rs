@@ -17,8 +17,8 @@ const LIMIT: f64 = 3.0;
 pub struct Truncation {
     /// Samples to leave out at the beginning.
     pub discard: usize,
-    /// Whether the best place lies within the first half of the series. If not, the series is still in its transient, or
-    /// too short to tell.
+    /// Whether the best place lies within the first half of the series. If not, the series is still in its transient,
+    /// or too short to tell.
     pub is_settled: bool,
 }
 
@@ -37,10 +37,10 @@ pub struct StationaryMean {
 ///
 /// `d* = argmin_d sum_(i >= d) (y_i - <y>_d)^2/(m - d)^2`
 ///
-/// over averages y_i of 5 samples each, `<y>_d` being the mean of those from d on: leaving samples out is worth it as long
-/// as it makes the mean's (uncorrelated) standard error smaller. The last 5 batches are never tried as starts. A `discard`
-/// in the second half means that the rule found no stationary part. Sources: White, Simulation 69, 323 (1997); White,
-/// Cobb & Spratt, Proc. 2000 Winter Simulation Conference, 755.
+/// over averages y_i of 5 samples each, `<y>_d` being the mean of those from d on: leaving samples out is worth it as
+/// long as it makes the mean's (uncorrelated) standard error smaller. The last 5 batches are never tried as starts. A
+/// `discard` in the second half means that the rule found no stationary part. Sources: White, Simulation 69, 323
+/// (1997); White, Cobb & Spratt, Proc. 2000 Winter Simulation Conference, 755.
 ///
 /// # Errors
 /// [`Error::TooFew`] below 32 samples, [`Error::NonFinite`].

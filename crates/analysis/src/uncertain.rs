@@ -70,8 +70,8 @@ impl Uncertain {
 
     /// Percentile bootstrap: standard deviation and quantiles of the estimates from resampled data.
     ///
-    /// `None` with fewer than two finite estimates. Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993),
-    /// chapters 6 and 13.
+    /// `None` with fewer than two finite estimates. Source: Efron & Tibshirani, An Introduction to the Bootstrap
+    /// (1993), chapters 6 and 13.
     pub fn from_bootstrap(value: f64, resampled: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = resampled.iter().copied().filter(|x| !x.is_nan()).collect();
         sorted.sort_by(f64::total_cmp);

@@ -5,7 +5,8 @@ use proptest::prelude::*;
 
 const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];
 
-/// tau = 10 (2.8 - w)^-1, watched for 300 in most tests: all censored at 2.81 and 2.85, a third or so at 2.75 and more at 2.78.
+/// tau = 10 (2.8 - w)^-1, watched for 300 in most tests: all censored at 2.81 and 2.85, a third or so at 2.75 and more
+/// at 2.78.
 fn runs(
     seed: u64,
     replicas: usize,

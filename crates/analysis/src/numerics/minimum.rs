@@ -134,8 +134,8 @@ pub(crate) fn minimise_from_grid(
 /// Place where a function, at most 0 at `inside`, becomes positive on the way to `limit`.
 ///
 /// Steps of growing length look for the crossing, bisection finds it to a tolerance relative to the first step. `None`
-/// where the function stays at or below 0 as far as `limit`: an interval open to that side. A value that is not a number
-/// counts as positive; places that are not numbers have no crossing.
+/// where the function stays at or below 0 as far as `limit`: an interval open to that side. A value that is not a
+/// number counts as positive; places that are not numbers have no crossing.
 pub(crate) fn crossing(
     mut function: impl FnMut(f64) -> f64,
     inside: f64,
