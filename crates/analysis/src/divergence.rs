@@ -66,6 +66,17 @@ pub struct ScatterTest {
 /// # Errors
 /// [`Error::TooFewPlaces`] where fewer widths saw a transition than a law has parameters, [`Error::Undetermined`] for a
 /// law without a maximum, else as for [`fit_law_to_runs`](crate::fit_law_to_runs).
+///
+/// ```
+/// use peristalsis_analysis::{Family, Law, Transition, compare_laws};
+/// let width = [2.0, 2.5, 2.75, 2.875];
+/// let runs = [1.0, 2.0, 4.0, 8.0].map(|time| Transition::At { time, period: 0 });
+/// let evidence = compare_laws(&[Law::Power, Law::Exponential], Family::Exponential, &width, &runs)?;
+/// // Four runs: the power law fits better, yet not by what its third parameter costs.
+/// assert!(evidence[0].log_likelihood > evidence[1].log_likelihood);
+/// assert!(evidence[1].excess == 0.0 && evidence[0].excess < 2.0);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn compare_laws(
     laws: &[Law],
     family: Family,
@@ -203,6 +214,20 @@ pub fn likelihood_ratio(
 ///
 /// # Errors
 /// [`Error::BeyondCritical`] for a width at or above w_c, else as for [`fit_law`].
+///
+/// ```
+/// use peristalsis_analysis::{Uncertain, scatter_test};
+/// // chi_tau/tau^2 = 1/(3 - w), each to 10 per cent.
+/// let found = scatter_test(
+///     &[2.5, 2.75, 2.875],
+///     &[2.0, 4.0, 8.0],
+///     &[0.2, 0.4, 0.8],
+///     Uncertain::normal(3.0, 0.0),
+/// )?;
+/// assert!(found.inverse < 1e-9 && found.chance_probability < 1e-9);
+/// assert!((found.power.exponent.value - 1.0).abs() < 1e-9);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn scatter_test(
     width: &[f64],
     ratio: &[f64],

@@ -33,6 +33,17 @@ pub struct Hysteresis {
 ///
 /// # Errors
 /// Those of [`fraction_crossing`] for either start.
+///
+/// ```
+/// use peristalsis_analysis::hysteresis;
+/// let width = [2.6, 2.7, 2.8, 2.9, 3.0];
+/// let rest = [true, true, false, false, false];
+/// let jammed = [true, true, true, true, false];
+/// let found = hysteresis((&width, &rest), (&width, &jammed))?;
+/// // Brackets 2.7 to 2.8 and 2.9 to 3.0.
+/// assert!((found.loop_width.value - 0.2).abs() < 1e-12);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<Hysteresis, Error> {
     let from_rest = fraction_crossing(rest.0, rest.1)?;
     let from_jammed = fraction_crossing(jammed.0, jammed.1)?;

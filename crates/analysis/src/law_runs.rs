@@ -102,6 +102,18 @@ pub struct LawBootstrap {
 /// [`Error::TooFewPlaces`] where fewer widths saw a transition than the law has parameters, [`Error::NoScatter`],
 /// [`Error::Undetermined`] where the best w_c lies at infinity or the shape at its bounds, [`Error::LengthMismatch`],
 /// [`Error::NonFinite`], [`Error::NotPositive`], [`Error::Negative`].
+///
+/// ```
+/// use peristalsis_analysis::{Family, Law, Transition, fit_law_to_runs};
+/// // tau = 1/(3 - w), one run a width; the last one saw no end in its time.
+/// let width = [2.0, 2.5, 2.75, 2.875, 3.1];
+/// let mut runs = [1.0, 2.0, 4.0, 8.0].map(|time| Transition::At { time, period: 0 }).to_vec();
+/// runs.push(Transition::Censored { time: 50.0 });
+/// let fit = fit_law_to_runs(Law::Power, Family::Exponential, &width, &runs)?;
+/// assert!((fit.critical_width.unwrap().value - 3.0).abs() < 0.01);
+/// assert!((fit.exponent.value - 1.0).abs() < 0.05);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn fit_law_to_runs(
     law: Law,
     family: Family,

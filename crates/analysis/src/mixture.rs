@@ -128,6 +128,14 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
 ///
 /// # Errors
 /// [`Error::TooFew`] below 8 values, [`Error::NonFinite`], [`Error::NoScatter`] for equal values.
+///
+/// ```
+/// use peristalsis_analysis::two_peaks;
+/// let found = two_peaks(&[0.1, 0.2, 0.3, 0.2, 0.9, 1.0, 0.9, 1.0, 0.95, 0.95])?;
+/// assert!(found.is_double() && (found.lower.weight - 0.4).abs() < 1e-6);
+/// assert!((found.distance().0 - 0.75).abs() < 1e-6);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn two_peaks(values: &[f64]) -> Result<TwoPeaks, Error> {
     let mut sorted = checked(values, LEAST_VALUES)?.to_vec();
     sorted.sort_by(f64::total_cmp);

@@ -85,6 +85,15 @@ pub fn truncation(series: &[f64]) -> Result<Truncation, Error> {
 ///
 /// # Errors
 /// [`Error::NotStationary`], [`Error::TooFew`] below 32 samples, [`Error::NonFinite`].
+///
+/// ```
+/// use peristalsis_analysis::{Error, stationary_mean};
+/// let settled: Vec<f64> = (0..80).map(|k| f64::from(k % 2)).collect();
+/// assert_eq!(stationary_mean(&settled)?.estimate.mean, 0.5);
+/// let drifting: Vec<f64> = (0..80).map(f64::from).collect();
+/// assert!(matches!(stationary_mean(&drifting), Err(Error::NotStationary { .. })));
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
 pub fn stationary_mean(series: &[f64]) -> Result<StationaryMean, Error> {
     let Truncation {
         discard,
