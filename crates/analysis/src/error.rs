@@ -68,6 +68,122 @@ pub enum Error {
         /// First period given, from 0.
         first: u64,
     },
+    /// A value that must be positive is not: a time, a strain rate, a standard error.
+    #[error("value {index} is {value}, but must be positive")]
+    NotPositive {
+        /// Position in the column, from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A time below 0.
+    #[error("value {index} is {value}, but must not be negative")]
+    Negative {
+        /// Position in the column, from 0.
+        index: usize,
+        /// The value.
+        value: f64,
+    },
+    /// Too few runs with an observed transition: the others were censored.
+    #[error("{observed} of {runs} runs show a transition: at least {needed} are needed")]
+    TooFewObserved {
+        /// Observed transitions needed.
+        needed: usize,
+        /// Observed transitions given.
+        observed: usize,
+        /// Runs given, censored ones included.
+        runs: usize,
+    },
+    /// Too few distinct places, such as widths, for the parameters of a fit.
+    #[error("{found} distinct places are too few for this fit: at least {needed} are needed")]
+    TooFewPlaces {
+        /// Distinct places needed.
+        needed: usize,
+        /// Distinct places given.
+        found: usize,
+    },
+    /// A survival curve that has not fallen to the level asked for when the last run ends.
+    #[error("the survival curve ends at {survival}, above {level}: watch the runs for longer")]
+    LevelNotReached {
+        /// Level asked for.
+        level: f64,
+        /// Survival at the end.
+        survival: f64,
+    },
+    /// A horizon at which no run is watched any more.
+    #[error("a horizon of {horizon} lies outside the time watched, 0 to {watched}")]
+    Horizon {
+        /// Horizon given.
+        horizon: f64,
+        /// Longest time watched.
+        watched: f64,
+    },
+    /// Times so nearly equal that a distribution cannot be fitted: its shape would be infinite.
+    #[error("{observed} transition times scatter too little for a distribution to be fitted")]
+    NoScatter {
+        /// Observed transitions.
+        observed: usize,
+    },
+    /// A fit whose likelihood or sum of squares has no minimum that can be told from its surroundings.
+    #[error(
+        "the fit does not settle: {points} points do not determine its {parameters} parameters"
+    )]
+    Undetermined {
+        /// Points or runs given.
+        points: usize,
+        /// Parameters sought.
+        parameters: usize,
+    },
+    /// A width at which a law that ends at the critical width has no value.
+    #[error("a finite value at width {width} contradicts a critical width of {critical}")]
+    BeyondCritical {
+        /// The width.
+        width: f64,
+        /// The critical width given.
+        critical: f64,
+    },
+    /// A number of bootstrap resamples too small for an interval.
+    #[error("{found} resamples are too few for an interval: at least {needed} are needed")]
+    TooFewResamples {
+        /// Resamples needed.
+        needed: usize,
+        /// Resamples given, or left after the failed ones.
+        found: usize,
+    },
+    /// Curves that share too little of the abscissa to be compared.
+    #[error(
+        "a fraction of {found} of the points overlaps with another curve: at least {needed} is needed"
+    )]
+    NoOverlap {
+        /// Least fraction accepted.
+        needed: f64,
+        /// Largest fraction found.
+        found: f64,
+    },
+    /// Runs that all ended alike, so that there is no width at which they change.
+    #[error("all {runs} runs end alike: widths with either outcome are needed")]
+    OneOutcome {
+        /// Runs given.
+        runs: usize,
+    },
+    /// A fraction that must lie between 0 and 1.
+    #[error("a fraction of {value} does not lie between 0 and 1")]
+    Fraction {
+        /// The value given.
+        value: f64,
+    },
+    /// A series that has not come to rest: its average would be over a transient.
+    #[error(
+        "the series drifts: without {discarded} of {samples} samples its halves differ by {score} standard errors"
+    )]
+    NotStationary {
+        /// Difference of the halves in standard errors; infinite where no stationary part was found at all.
+        score: f64,
+        /// Samples left out at the beginning.
+        discarded: usize,
+        /// Samples in the series.
+        samples: usize,
+    },
 }
 
 /// The series, unless it is shorter than `needed` or has a value that is not finite.
@@ -85,6 +201,35 @@ pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
         }),
         None => Ok(series),
     }
+}
+
+/// Refuses columns of different length.
+pub(crate) fn same_length(expected: usize, found: usize) -> Result<(), Error> {
+    if expected == found {
+        Ok(())
+    } else {
+        Err(Error::LengthMismatch { expected, found })
+    }
+}
+
+/// Refuses values that are not finite and positive.
+pub(crate) fn checked_positive(column: &[f64]) -> Result<&[f64], Error> {
+    checked(column, 0)?;
+    match column.iter().position(|&value| value <= 0.0) {
+        Some(index) => Err(Error::NotPositive {
+            index,
+            value: column[index],
+        }),
+        None => Ok(column),
+    }
+}
+
+/// Number of distinct values.
+pub(crate) fn distinct(column: &[f64]) -> usize {
+    let mut sorted = column.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted.len()
 }
 
 /// Arithmetic mean, summed in order; the series must not be empty.

@@ -1,31 +1,98 @@
 //! Estimators with error bars, on plain slices of numbers.
 //!
-//! Tables come in as columns and answers go out with their uncertainties: period averages and transition times with
-//! censoring, means of correlated series, moments across an ensemble. One estimator is one file. This crate knows
-//! nothing of grains, engines or file formats, and every sum is taken in the order of its input, so that an answer is
-//! the same on every machine.
+//! Tables come in as columns and answers go out with their uncertainties. One estimator is one file. This crate knows
+//! nothing of grains, engines or file formats; every sum is taken in the order of its input and every random number
+//! comes from a given seed, so that an answer is the same on every machine.
+//!
+//! | question | estimators |
+//! |---|---|
+//! | when does a run change? | [`period_means`], [`TransitionDetector`] |
+//! | is a series stationary, and its mean? | [`truncation`], [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
+//! | how are transition times distributed? | [`Survival`], [`restricted_moments`], [`fit_lifetime`], [`fit_shifted_exponential`], [`ensembles_by_width`] |
+//! | where and how does the time diverge? | [`fit_law_to_runs`], [`bootstrap_law`], [`fit_law`], windows of either |
+//! | does it diverge at all? | [`compare_laws`], [`likelihood_ratio`], [`scatter_test`], [`fit_law_with_scatter`], [`power_exponent`] |
+//! | how does the flow rate fluctuate? | [`ensemble_moments`], [`second_moment`], [`second_moment_peak`] |
+//! | do the curves collapse? | [`Collapse`], [`Scaling`], [`collapse_quality`] |
+//! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
+//! | how does w_c depend on the strain rate? | [`fit_line`], [`fit_parabola`] |
+//!
+//! Numbers with uncertainties are [`Uncertain`]: value, standard error, and intervals of 68 and 95 per cent.
 
 mod autocorrelation;
 mod blocks;
+mod bootstrap;
+mod collapse;
+mod collapse_fit;
+mod dip;
+mod divergence;
 mod ensemble;
+mod ensembles;
 mod error;
+mod family;
+mod hysteresis;
+mod jump;
+mod law;
+mod law_fit;
+mod law_likelihood;
+mod law_runs;
+mod lifetime;
+mod line;
+mod logistic;
+mod mixture;
+mod numerics;
 mod period;
+mod regression;
+mod scaling;
+mod scatter_law;
+mod second_moment;
+mod shifted;
 mod stationarity;
+mod survival;
 mod transition;
+mod truncation;
+mod uncertain;
 
 #[cfg(test)]
 mod synthetic;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
+pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
+pub use collapse_fit::{Collapse, CollapseFit, LEAST_OVERLAP, Transform};
+pub use dip::{DipTest, dip_test};
+pub use divergence::{
+    LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
+};
 pub use ensemble::{
     Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
     susceptibility_peak, transition_time_moments,
 };
+pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
+pub use family::Family;
+pub use hysteresis::{Hysteresis, hysteresis};
+pub use jump::{Jump, jump_height};
+pub use law::Law;
+pub use law_fit::{LawFit, WindowFit, fit_law, fit_law_in_windows};
+pub use law_runs::{
+    LawBootstrap, LawRunsFit, WindowRunsFit, bootstrap_law, fit_law_to_runs,
+    fit_law_to_runs_in_windows,
+};
+pub use lifetime::{LifetimeFit, fit_lifetime};
+pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
+pub use logistic::{FractionCrossing, fraction_crossing};
+pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
 pub use period::{PeriodMeans, period_means};
+pub use scaling::Scaling;
+pub use scatter_law::{ScatterLawFit, fit_law_with_scatter};
+pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};
+pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
+pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
 pub use transition::{
     CONFIRMATION_PERIODS, DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector,
     transition_time,
 };
+pub use truncation::{StationaryMean, Truncation, stationary_mean, truncation};
+pub use uncertain::{Interval, Uncertain};

@@ -1,16 +1,12 @@
-//! Series with known statistics, the same at every test run.
+//! Data with known statistics, the same at every test run.
 
-use rand_chacha::ChaCha8Rng;
-use rand_core::{Rng, SeedableRng};
-use std::f64::consts::TAU;
+use crate::bootstrap::Randomness;
+use crate::transition::Transition;
 
-/// Independent normal numbers of mean 0 and variance 1 (Box-Muller).
+/// Independent normal numbers of mean 0 and variance 1.
 pub(crate) fn white_noise(seed: u64, samples: usize) -> Vec<f64> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    let mut uniform = || ((generator.next_u64() >> 11) as f64 + 0.5) / (1_u64 << 53) as f64;
-    (0..samples)
-        .map(|_| (-2.0 * libm::log(uniform())).sqrt() * libm::cos(TAU * uniform()))
-        .collect()
+    let mut randomness = Randomness::new(seed, 0);
+    (0..samples).map(|_| randomness.normal()).collect()
 }
 
 /// Stationary autoregressive series x_(t+1) = a x_t + noise of mean 0 and variance 1.
@@ -23,4 +19,41 @@ pub(crate) fn autoregressive(memory: f64, seed: u64, samples: usize) -> Vec<f64>
         series[k] = memory * series[k - 1] + innovation * series[k];
     }
     series
+}
+
+/// Exponential number of mean 1.
+pub(crate) fn exponential(randomness: &mut Randomness) -> f64 {
+    -libm::log(randomness.uniform())
+}
+
+/// A transition at a time, unless the run is watched for less.
+pub(crate) fn watched(time: f64, until: f64) -> Transition {
+    if time < until {
+        Transition::At { time, period: 0 }
+    } else {
+        Transition::Censored { time: until }
+    }
+}
+
+/// Asserts that so many of so many intervals covered the truth as their level promises, within three binomial standard
+/// deviations and a bias of the level of `slack`.
+pub(crate) fn assert_coverage(covered: usize, trials: usize, level: f64, slack: f64, what: &str) {
+    let share = covered as f64 / trials as f64;
+    let scatter = (level * (1.0 - level) / trials as f64).sqrt();
+    assert!(
+        (share - level).abs() < 3.0 * scatter + slack,
+        "{what}: {share} of {trials} intervals cover, {level} should"
+    );
+}
+
+/// Weeks in remission under 6-mercaptopurine, some patients still in remission (Freireich et al., Blood 21, 699
+/// (1963)).
+pub(crate) fn remission() -> Vec<Transition> {
+    let relapsed = [6.0, 6.0, 6.0, 7.0, 10.0, 13.0, 16.0, 22.0, 23.0];
+    let censored = [
+        6.0, 9.0, 10.0, 11.0, 17.0, 19.0, 20.0, 25.0, 32.0, 32.0, 34.0, 35.0,
+    ];
+    let relapsed = relapsed.map(|time| Transition::At { time, period: 0 });
+    let censored = censored.map(|time| Transition::Censored { time });
+    relapsed.into_iter().chain(censored).collect()
 }

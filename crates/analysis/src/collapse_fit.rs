@@ -1,0 +1,373 @@
+//! The scaling under which curves collapse best, with errors.
+
+use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
+use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
+use crate::error::{Error, checked, checked_positive, same_length};
+use crate::numerics::minimum::crossing;
+use crate::numerics::simplex::nelder_mead;
+use crate::uncertain::Interval;
+use serde::{Deserialize, Serialize};
+
+/// Least fraction of overlapping points that a collapse must keep, unless another is asked for.
+pub const LEAST_OVERLAP: f64 = 0.5;
+
+/// Value of the objective where the overlap falls short; it grows with what is missing, so that a search finds its way
+/// back.
+const SHORT: f64 = 1e6;
+/// Tolerance of the search, relative to its first steps.
+const TOLERANCE: f64 = 1e-3;
+/// Most fresh beginnings of a search, the number without gain that ends it, and what counts as gain.
+const MOST_ROUNDS: u32 = 12;
+const IDLE_ROUNDS: u32 = 3;
+const GAIN: f64 = 1e-3;
+/// Most evaluations of one search, for each parameter.
+const EVALUATIONS: usize = 300;
+
+/// A scaling: parameters, place of the curve among all, its own value, and a point, to the scaled point.
+pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 'a;
+
+/// Curves with a scaling to try on them.
+///
+/// `transform(parameters, curve, parameter, point)` gives the scaled point; `curve` is the curve's place among all,
+/// `parameter` its own value. [`Scaling::apply`](crate::Scaling::apply) provides the common ones, any function will do.
+///
+/// ```
+/// use peristalsis_analysis::{Collapse, Curve, CurvePoint, LEAST_OVERLAP};
+/// // y = p x: curves of p = 1 and 2 collapse as y/p^a with a = 1.
+/// let curve = |p: f64| Curve {
+///     parameter: p,
+///     points: (0..9).map(|k| CurvePoint { x: f64::from(k), y: p * f64::from(k), error: 0.1 }).collect(),
+/// };
+/// let curves = [curve(1.0), curve(2.0)];
+/// let collapse = Collapse {
+///     curves: &curves,
+///     transform: &|parameters, _, p, point| CurvePoint {
+///         y: point.y * libm::pow(p, -parameters[0]),
+///         ..point
+///     },
+///     least_overlap: LEAST_OVERLAP,
+/// };
+/// let fit = collapse.fit(&[0.5], &[0.2], 1, 0)?;
+/// assert!((fit.parameters[0] - 1.0).abs() < 1e-3);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+#[derive(Clone, Copy)]
+pub struct Collapse<'a> {
+    /// Curves as measured.
+    pub curves: &'a [Curve],
+    /// The scaling.
+    pub transform: &'a Transform<'a>,
+    /// Least fraction of points that must be compared, 0 to 1; see [`LEAST_OVERLAP`]. At 0 a search is free to win by
+    /// pulling the curves apart.
+    pub least_overlap: f64,
+}
+
+/// Best parameters of a scaling.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CollapseFit {
+    /// Parameters, in the order of the scaling.
+    pub parameters: Vec<f64>,
+    /// Quality and overlap of the collapse.
+    pub quality: CollapseQuality,
+    /// Starts whose search ended at this minimum to within 1 per cent of S, of all starts: few say that there are
+    /// others.
+    pub agreeing: usize,
+    /// Searches made.
+    pub starts: usize,
+    /// Whether the best search converged.
+    pub converged: bool,
+}
+
+impl Collapse<'_> {
+    /// Quality of the collapse at given parameters.
+    ///
+    /// # Errors
+    /// Those of [`collapse_quality`].
+    pub fn quality(&self, parameters: &[f64]) -> Result<CollapseQuality, Error> {
+        self.quality_without(parameters, None)
+    }
+
+    fn quality_without(
+        &self,
+        parameters: &[f64],
+        left_out: Option<usize>,
+    ) -> Result<CollapseQuality, Error> {
+        let scaled: Vec<Vec<CurvePoint>> = self
+            .curves
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| Some(*index) != left_out)
+            .map(|(index, curve)| {
+                let scale = |&point| (self.transform)(parameters, index, curve.parameter, point);
+                curve.points.iter().map(scale).collect()
+            })
+            .collect();
+        collapse_quality(&scaled)
+    }
+
+    /// S where enough points overlap; else a wall that leans toward more overlap.
+    fn objective(&self, parameters: &[f64], left_out: Option<usize>) -> f64 {
+        match self.quality_without(parameters, left_out) {
+            Err(_) => 3.0 * SHORT,
+            Ok(found) if found.overlap < self.least_overlap || !found.is_connected => {
+                let missing = (self.least_overlap - found.overlap).max(0.0);
+                SHORT * (1.0 + missing + f64::from(u8::from(!found.is_connected)))
+            }
+            Ok(found) => found.quality,
+        }
+    }
+
+    fn search(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        left_out: Option<usize>,
+    ) -> (Vec<f64>, f64, bool) {
+        let objective = |parameters: &[f64]| self.objective(parameters, left_out);
+        let evaluations = EVALUATIONS * start.len();
+        let mut best = nelder_mead(objective, start, steps, TOLERANCE, evaluations);
+        // S jumps wherever a point passes one of another curve, so that it has many shallow minima: a search begins
+        // afresh, to either side and in other proportions, until that no longer helps.
+        let mut idle = 0;
+        for round in 0..MOST_ROUNDS {
+            let fresh: Vec<f64> = steps
+                .iter()
+                .enumerate()
+                .map(|(axis, step)| {
+                    let sign = if (round >> (axis % 2)) & 1 == 0 {
+                        -1.0
+                    } else {
+                        1.0
+                    };
+                    sign * step / f64::from(1 + round / 4)
+                })
+                .collect();
+            let again = nelder_mead(objective, &best.place, &fresh, TOLERANCE, evaluations);
+            idle = if again.value < best.value * (1.0 - GAIN) {
+                0
+            } else {
+                idle + 1
+            };
+            if again.value < best.value {
+                best = again;
+            }
+            if idle == IDLE_ROUNDS {
+                break;
+            }
+        }
+        (best.place, best.value, best.converged)
+    }
+
+    /// Parameters of the smallest S with enough overlap, by downhill simplex from several starts.
+    ///
+    /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of
+    /// it, by random numbers of `seed`. Collapses with less than `least_overlap`, and ones in which groups of curves
+    /// part, are rejected. Look at the overlap and at `agreeing` beside S.
+    ///
+    /// # Errors
+    /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves or
+    /// without starts, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`] for a step,
+    /// [`Error::Fraction`].
+    pub fn fit(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        starts: usize,
+        seed: u64,
+    ) -> Result<CollapseFit, Error> {
+        self.fit_without(start, steps, starts, seed, None)
+    }
+
+    fn fit_without(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        starts: usize,
+        seed: u64,
+        left_out: Option<usize>,
+    ) -> Result<CollapseFit, Error> {
+        same_length(start.len(), steps.len())?;
+        checked(start, 1)?;
+        checked_positive(steps)?;
+        if !(0.0..=1.0).contains(&self.least_overlap) {
+            return Err(Error::Fraction {
+                value: self.least_overlap,
+            });
+        }
+        if starts == 0 {
+            return Err(Error::TooFew {
+                needed: 1,
+                found: 0,
+            });
+        }
+        let found: Vec<(Vec<f64>, f64, bool)> = (0..starts as u64)
+            .map(|number| {
+                let mut randomness = Randomness::new(seed, number);
+                let place: Vec<f64> = start
+                    .iter()
+                    .zip(steps)
+                    .map(|(&start, &step)| match number {
+                        0 => start,
+                        _ => start + step * (4.0 * randomness.uniform() - 2.0),
+                    })
+                    .collect();
+                self.search(&place, steps, left_out)
+            })
+            .collect();
+        let (parameters, value, converged) = found
+            .iter()
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .cloned()
+            .ok_or(Error::TooFew {
+                needed: 1,
+                found: 0,
+            })?;
+        let quality = self.quality_without(&parameters, left_out);
+        if value >= SHORT {
+            return Err(match quality {
+                Err(too_few @ Error::TooFew { .. }) => too_few,
+                other => Error::NoOverlap {
+                    needed: self.least_overlap,
+                    found: other.map_or(0.0, |quality| quality.overlap),
+                },
+            });
+        }
+        Ok(CollapseFit {
+            parameters,
+            quality: quality?,
+            agreeing: found.iter().filter(|other| other.1 <= value * 1.01).count(),
+            starts,
+            converged,
+        })
+    }
+
+    /// Errors of the best parameters from their scatter when every ordinate is moved by its error.
+    ///
+    /// Each resample adds a normal number times the error to every y and searches anew from the best parameters: a
+    /// parametric bootstrap, right where the errors are normal, independent and S is near 1. A scaling that does not
+    /// hold (S well above 1) has errors beyond these. For errors from the runs themselves resample those, make curves
+    /// of each resample and see [`bootstrap_tables`](Self::bootstrap_tables).
+    ///
+    /// # Errors
+    /// [`Error::TooFewResamples`], [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
+    pub fn bootstrap(
+        &self,
+        fit: &CollapseFit,
+        steps: &[f64],
+        bootstrap: Bootstrap,
+    ) -> Result<Resampled, Error> {
+        let tables = bootstrap.streams()?.map(|mut randomness| {
+            let mut curves = self.curves.to_vec();
+            for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
+                point.y += point.error * randomness.normal();
+            }
+            Some(curves)
+        });
+        self.bootstrap_tables(fit, steps, tables)
+    }
+
+    /// Errors of the best parameters from curves made of resampled runs, one set of curves a resample.
+    ///
+    /// Searches begin at the best parameters with half of the steps; sets that are `None`, or that do not overlap
+    /// enough, count as failed.
+    ///
+    /// # Errors
+    /// [`Error::TooFewResamples`] where fewer than 20 succeed, [`Error::LengthMismatch`], [`Error::NotPositive`] for a
+    /// step.
+    pub fn bootstrap_tables(
+        &self,
+        fit: &CollapseFit,
+        steps: &[f64],
+        tables: impl Iterator<Item = Option<Vec<Curve>>>,
+    ) -> Result<Resampled, Error> {
+        same_length(fit.parameters.len(), steps.len())?;
+        let steps: Vec<f64> = checked_positive(steps)?
+            .iter()
+            .map(|step| 0.5 * step)
+            .collect();
+        let estimates = tables.map(|curves| {
+            let resampled = Collapse {
+                curves: &curves?,
+                ..*self
+            };
+            let (parameters, value, _) = resampled.search(&fit.parameters, &steps, None);
+            (value < SHORT).then_some(parameters)
+        });
+        summarise(&fit.parameters, estimates)
+    }
+
+    /// Range of each parameter in which S, minimal over the others, stays within 1 of its minimum.
+    ///
+    /// The customary error of a collapse. With N points compared N S is a chi^2, so that this is some sqrt(N) standard
+    /// errors where S is near 1: a safe outer bound, no 68 per cent interval. Ends not found within 50 steps are
+    /// infinite; where the overlap falls short counts as an end.
+    ///
+    /// # Errors
+    /// [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
+    pub fn contour(&self, fit: &CollapseFit, steps: &[f64]) -> Result<Vec<Interval>, Error> {
+        same_length(fit.parameters.len(), steps.len())?;
+        checked_positive(steps)?;
+        let best = fit.quality.quality;
+        let without = |column: &[f64], left_out: usize| -> Vec<f64> {
+            let mut rest = column.to_vec();
+            rest.remove(left_out);
+            rest
+        };
+        let end = |axis: usize, side: f64| {
+            let rest_steps = without(steps, axis);
+            // Each search begins where the one before has ended.
+            let mut rest = without(&fit.parameters, axis);
+            let excess = |value: f64| {
+                let all = |rest: &[f64]| {
+                    let mut parameters = rest.to_vec();
+                    parameters.insert(axis, value);
+                    self.objective(&parameters, None)
+                };
+                let smaller: Vec<f64> = rest_steps.iter().map(|step| 0.3 * step).collect();
+                let evaluations = EVALUATIONS * rest.len().max(1);
+                let found = nelder_mead(all, &rest, &smaller, TOLERANCE, evaluations);
+                if found.value < SHORT {
+                    rest = found.place;
+                }
+                found.value - best - 1.0
+            };
+            let centre = fit.parameters[axis];
+            let limit = centre + side * 50.0 * steps[axis];
+            crossing(excess, centre, 0.25 * steps[axis], limit).unwrap_or(side * f64::INFINITY)
+        };
+        Ok((0..steps.len())
+            .map(|axis| Interval {
+                lower: end(axis, -1.0),
+                upper: end(axis, 1.0),
+            })
+            .collect())
+    }
+
+    /// Fits with one curve left out in turn, in the order of the curves: exponents that hang on one curve move.
+    ///
+    /// Arguments as for [`fit`](Self::fit). A parameter that belongs to the curve left out keeps whatever value the
+    /// search began with.
+    ///
+    /// # Errors
+    /// [`Error::TooFew`] below 3 curves; those of [`fit`](Self::fit) for any of the fits.
+    pub fn leave_one_out(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        starts: usize,
+        seed: u64,
+    ) -> Result<Vec<CollapseFit>, Error> {
+        if self.curves.len() < 3 {
+            return Err(Error::TooFew {
+                needed: 3,
+                found: self.curves.len(),
+            });
+        }
+        (0..self.curves.len())
+            .map(|left_out| self.fit_without(start, steps, starts, seed, Some(left_out)))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests;

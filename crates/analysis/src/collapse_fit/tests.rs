@@ -1,0 +1,319 @@
+use super::*;
+use crate::Scaling;
+use crate::synthetic::{assert_coverage, white_noise};
+use proptest::prelude::*;
+
+const RATES: [f64; 5] = [0.03, 0.05, 0.08, 0.12, 0.2];
+
+fn critical(rate: f64) -> f64 {
+    3.02 - 3.75 * rate
+}
+
+/// tau = rate^-7/2 f((w_c - w)/rate^3/2), f(x) = 1/(x (1 + x)), with errors of 6 per cent, on unequal grids.
+fn transition_times(seed: u64) -> Vec<Curve> {
+    RATES
+        .iter()
+        .enumerate()
+        .map(|(k, &rate)| {
+            let noise = white_noise(seed * 10 + k as u64, 12);
+            let points = (0..12)
+                .map(|j| {
+                    // x from 0.1 to 6, the grids shifted against each other.
+                    let x = 0.1 * libm::exp(0.37 * (j as f64 + 0.19 * k as f64));
+                    let tau = libm::pow(rate, -3.5) / (x * (1.0 + x));
+                    let y = tau * libm::exp(0.06 * noise[j]);
+                    CurvePoint {
+                        x: critical(rate) - x * libm::pow(rate, 1.5),
+                        y,
+                        error: 0.06 * y,
+                    }
+                })
+                .collect();
+            Curve {
+                parameter: rate,
+                points,
+            }
+        })
+        .collect()
+}
+
+fn known() -> Scaling {
+    Scaling::CriticalKnown(RATES.map(critical).to_vec())
+}
+
+#[test]
+fn exponents_are_found_with_bootstrap_errors_that_cover() {
+    let scaling = known();
+    let transform = |p: &[f64], k: usize, rate: f64, point| scaling.apply(p, k, rate, point);
+    let steps = [0.3, 0.2];
+    let trials = 32;
+    let mut covered = [0; 4];
+    let mut mean_quality = 0.0;
+    for seed in 0..trials {
+        let curves = transition_times(seed);
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &transform,
+            least_overlap: LEAST_OVERLAP,
+        };
+        let fit = collapse.fit(&[3.0, 1.2], &steps, 2, 1).unwrap();
+        assert!(fit.quality.overlap > 0.8, "{fit:?}");
+        mean_quality += fit.quality.quality / trials as f64;
+        let bootstrap = Bootstrap {
+            resamples: 40,
+            seed,
+        };
+        let errors = collapse.bootstrap(&fit, &steps, bootstrap).unwrap();
+        for (k, truth) in [3.5, 1.5].into_iter().enumerate() {
+            let found = errors.estimates[k];
+            covered[2 * k] += usize::from(found.interval_68.contains(truth));
+            covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
+            assert!(found.error < 0.2, "{found:?}");
+        }
+    }
+    assert!((mean_quality - 1.0).abs() < 0.15, "{mean_quality}");
+    for (k, what) in ["a", "b"].iter().enumerate() {
+        // Percentiles of 40 resamples; the noise of the data counts twice in a resample.
+        assert_coverage(covered[2 * k], trials as usize, 0.6827, 0.05, what);
+        assert_coverage(covered[2 * k + 1], trials as usize, 0.95, 0.05, what);
+    }
+}
+
+#[test]
+fn exponents_and_the_line_of_critical_widths_are_found_together() {
+    let curves = transition_times(7);
+    let transform =
+        |p: &[f64], k: usize, rate: f64, point| Scaling::CriticalLine.apply(p, k, rate, point);
+    let collapse = Collapse {
+        curves: &curves,
+        transform: &transform,
+        least_overlap: 0.7,
+    };
+    let steps = [0.3, 0.2, 0.1, 0.01];
+    let fit = collapse
+        .fit(&[3.2, 1.3, -3.7, 3.022], &steps, 4, 5)
+        .unwrap();
+    assert!(
+        fit.quality.quality < 1.6 && fit.quality.overlap >= 0.7,
+        "{fit:?}"
+    );
+    for (found, truth) in fit.parameters.iter().zip([3.5, 1.5, -3.75, 3.02]) {
+        assert!((found - truth).abs() < 0.08 * truth.abs(), "{fit:?}");
+    }
+    let contour = collapse.contour(&fit, &steps).unwrap();
+    for (ends, truth) in contour.iter().zip([3.5, 1.5, -3.75, 3.02]) {
+        assert!(ends.contains(truth), "{contour:?}");
+    }
+    // The critical widths are sharp; the exponents hang together and are less so.
+    assert!(contour[3].length() < 0.01 && contour[0].length() > 0.5);
+}
+
+#[test]
+fn resampled_runs_give_errors_like_those_of_their_means() {
+    // The same curves from 30 exponential runs a point, errors of the means 18 per cent.
+    let exact = transition_times(0);
+    let mut randomness = Randomness::new(12, 0);
+    let mut places = Vec::new();
+    let mut runs: Vec<Vec<f64>> = Vec::new();
+    for (k, curve) in exact.iter().enumerate() {
+        for point in &curve.points {
+            let x = (critical(RATES[k]) - point.x) / libm::pow(RATES[k], 1.5);
+            let tau = libm::pow(RATES[k], -3.5) / (x * (1.0 + x));
+            places.push((k, point.x));
+            runs.push(
+                (0..30)
+                    .map(|_| -tau * libm::log(randomness.uniform()))
+                    .collect(),
+            );
+        }
+    }
+    let table = |runs: &[Vec<f64>]| -> Option<Vec<Curve>> {
+        let mut curves: Vec<Curve> = RATES
+            .iter()
+            .map(|&parameter| Curve {
+                parameter,
+                points: Vec::new(),
+            })
+            .collect();
+        for (&(k, x), sample) in places.iter().zip(runs) {
+            let found = crate::moments(sample).ok()?;
+            curves[k].points.push(CurvePoint {
+                x,
+                y: found.mean,
+                error: found.mean_error,
+            });
+        }
+        Some(curves)
+    };
+    let curves = table(&runs).unwrap();
+    let scaling = known();
+    let transform = |p: &[f64], k: usize, rate: f64, point| scaling.apply(p, k, rate, point);
+    let collapse = Collapse {
+        curves: &curves,
+        transform: &transform,
+        least_overlap: LEAST_OVERLAP,
+    };
+    let steps = [0.3, 0.2];
+    let fit = collapse.fit(&[3.2, 1.3], &steps, 2, 0).unwrap();
+    let bootstrap = Bootstrap {
+        resamples: 60,
+        seed: 3,
+    };
+    let tables = bootstrap.resampled(&runs).unwrap().map(|runs| table(&runs));
+    let by_runs = collapse.bootstrap_tables(&fit, &steps, tables).unwrap();
+    let by_points = collapse.bootstrap(&fit, &steps, bootstrap).unwrap();
+    assert_eq!(by_runs.succeeded, 60);
+    for k in 0..2 {
+        let ratio = by_runs.estimates[k].error / by_points.estimates[k].error;
+        assert!((0.5..2.0).contains(&ratio), "{ratio}");
+        let truth = [3.5, 1.5][k];
+        assert!(
+            by_runs.estimates[k].deviations_from(truth).abs() < 3.0,
+            "{by_runs:?}"
+        );
+    }
+}
+
+#[test]
+fn leaving_a_curve_out_changes_little_unless_it_is_a_stray() {
+    let scaling = known();
+    let transform = |p: &[f64], k: usize, rate: f64, point| scaling.apply(p, k, rate, point);
+    let mut curves = transition_times(8);
+    let exponents = |curves: &[Curve]| -> Vec<f64> {
+        let collapse = Collapse {
+            curves,
+            transform: &transform,
+            least_overlap: LEAST_OVERLAP,
+        };
+        let fits = collapse
+            .leave_one_out(&[3.2, 1.3], &[0.3, 0.2], 1, 0)
+            .unwrap();
+        fits.iter().map(|fit| fit.parameters[0]).collect()
+    };
+    let found = exponents(&curves);
+    assert!(found.iter().all(|a| (a - 3.5).abs() < 0.3), "{found:?}");
+    // The fastest curve five times too slow: only without it are the exponents right.
+    for point in &mut curves[4].points {
+        point.y *= 5.0;
+        point.error *= 5.0;
+    }
+    let found = exponents(&curves);
+    assert!((found[4] - 3.5).abs() < 0.3, "{found:?}");
+    assert!((found[0] - 3.5).abs() > 0.4, "{found:?}");
+}
+
+/// Arches of different height, which no shift collapses but which all end at 0.
+fn misfits() -> Vec<Curve> {
+    (1..5)
+        .map(|k| {
+            let parameter = f64::from(k);
+            let points = (0..10)
+                .map(|j| {
+                    let x = f64::from(j);
+                    CurvePoint {
+                        x,
+                        y: parameter * x * (9.0 - x),
+                        error: 0.5,
+                    }
+                })
+                .collect();
+            Curve { parameter, points }
+        })
+        .collect()
+}
+
+#[test]
+fn a_search_cannot_win_by_pulling_the_curves_apart() {
+    let curves = misfits();
+    let shift = |p: &[f64], _: usize, parameter: f64, point: CurvePoint| CurvePoint {
+        x: point.x + p[0] * parameter,
+        ..point
+    };
+    let fit = |least_overlap| {
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &shift,
+            least_overlap,
+        };
+        collapse.fit(&[0.0], &[3.0], 12, 3)
+    };
+    let free = fit(0.0).unwrap();
+    let held = fit(0.6).unwrap();
+    assert!(free.quality.overlap < 0.5, "{free:?}");
+    assert!(free.quality.quality < held.quality.quality);
+    assert!(
+        held.quality.overlap >= 0.6 && held.quality.is_connected,
+        "{held:?}"
+    );
+}
+
+#[test]
+fn overlap_that_cannot_be_had_is_refused() {
+    let mut curves = misfits();
+    for point in &mut curves[3].points {
+        point.x += 1000.0;
+    }
+    let plain = |_: &[f64], _: usize, _: f64, point: CurvePoint| point;
+    let collapse = Collapse {
+        curves: &curves,
+        transform: &plain,
+        least_overlap: 0.9,
+    };
+    let refused = collapse.fit(&[0.0], &[1.0], 1, 0);
+    assert!(
+        matches!(refused, Err(Error::NoOverlap { needed: 0.9, found }) if found > 0.5),
+        "{refused:?}"
+    );
+    let one = Collapse {
+        curves: &curves[..1],
+        ..collapse
+    };
+    assert!(matches!(
+        one.fit(&[0.0], &[1.0], 1, 0),
+        Err(Error::TooFew {
+            needed: 2,
+            found: 1
+        })
+    ));
+    assert!(matches!(
+        one.leave_one_out(&[0.0], &[1.0], 1, 0),
+        Err(Error::TooFew { needed: 3, .. })
+    ));
+    assert!(collapse.fit(&[0.0], &[0.0], 1, 0).is_err());
+    assert!(collapse.fit(&[0.0], &[1.0], 0, 0).is_err());
+    let beyond = Collapse {
+        least_overlap: 1.5,
+        ..collapse
+    };
+    assert_eq!(
+        beyond.fit(&[0.0], &[1.0], 1, 0),
+        Err(Error::Fraction { value: 1.5 })
+    );
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn any_curves_give_a_fit_or_an_error(
+        curves in prop::collection::vec(
+            (0.01..1.0_f64, prop::collection::vec((2.0..3.0_f64, -1.0..9.0_f64), 0..6)), 0..4),
+    ) {
+        let curves: Vec<Curve> = curves
+            .iter()
+            .map(|(parameter, points)| Curve {
+                parameter: *parameter,
+                points: points.iter().map(|&(x, y)| CurvePoint { x, y, error: 0.2 }).collect(),
+            })
+            .collect();
+        let transform = |p: &[f64], k: usize, rate: f64, point| {
+            Scaling::CriticalLine.apply(p, k, rate, point)
+        };
+        let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.3 };
+        let steps = [0.3, 0.3, 0.3, 0.1];
+        if let Ok(fit) = collapse.fit(&[1.0, 1.0, 0.0, 3.1], &steps, 1, 0) {
+            prop_assert!(fit.quality.overlap >= 0.3);
+            let bootstrap = Bootstrap { resamples: 20, seed: 0 };
+            let _ = collapse.bootstrap(&fit, &steps, bootstrap);
+        }
+    }
+}

@@ -1,0 +1,362 @@
+//! Critical width and exponent from values with errors at several widths.
+
+use crate::error::{Error, checked, checked_positive, distinct, same_length};
+use crate::law::{CriticalRange, Law, windows};
+use crate::numerics::gamma::chi_squared_tail;
+use crate::numerics::linear::{Cholesky, least_squares};
+use crate::numerics::minimum::{crossing, minimise_from_grid};
+use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use serde::{Deserialize, Serialize};
+
+/// Tolerance of the minimum in ln(w_c - w).
+const TOLERANCE: f64 = 1e-6;
+
+/// A law fitted to values with errors at several widths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LawFit {
+    /// The law.
+    pub law: Law,
+    /// Critical width w_c, with intervals by the profile of chi^2; `None` for a law without one. An upper end of
+    /// infinity says that the points do not tell the law from an exponential.
+    pub critical_width: Option<Uncertain>,
+    /// Exponent, or coefficient of the barrier, B, with intervals by the profile of chi^2.
+    pub exponent: Uncertain,
+    /// ln A, in the normal approximation.
+    pub ln_amplitude: Uncertain,
+    /// Sum of the squared deviations of ln y in units of their errors, that of a known w_c included.
+    pub chi_squared: f64,
+    /// Points less free parameters.
+    pub degrees_of_freedom: usize,
+    /// Probability of a chi^2 at least as large if the law and the errors are right.
+    pub probability: f64,
+}
+
+/// A fit to the points in one window of widths.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WindowFit {
+    /// Least width in the window.
+    pub least: f64,
+    /// Largest width in the window.
+    pub largest: f64,
+    /// Points in the window.
+    pub points: usize,
+    /// The fit.
+    pub fit: LawFit,
+}
+
+/// Points with everything that a fit needs of them.
+struct Points<'a> {
+    law: Law,
+    width: &'a [f64],
+    ln_value: Vec<f64>,
+    weight: Vec<f64>,
+    known: Option<Uncertain>,
+    range: CriticalRange,
+}
+
+/// chi^2 at one w_c, with ln A and B.
+#[derive(Clone, Copy)]
+struct AtCritical {
+    chi_squared: f64,
+    ln_amplitude: f64,
+    exponent: f64,
+}
+
+impl Points<'_> {
+    /// Squared deviation of a w_c from its known value in units of its error.
+    fn deviation(&self, critical: f64) -> f64 {
+        match self.known {
+            Some(known) if known.error > 0.0 => {
+                let score = known.deviations_from(critical);
+                score * score
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The best line at a w_c; `None` where it has none.
+    fn line(&self, critical: f64) -> Option<AtCritical> {
+        let x: Vec<f64> = self
+            .width
+            .iter()
+            .map(|&width| self.law.covariate(width, critical))
+            .collect();
+        let centre = x.iter().sum::<f64>() / x.len() as f64;
+        let fit = least_squares(|i| [1.0, x[i] - centre], &self.ln_value, &self.weight)?;
+        let [middle, exponent] = fit.coefficients;
+        Some(AtCritical {
+            chi_squared: fit.chi_squared + self.deviation(critical),
+            ln_amplitude: middle - exponent * centre,
+            exponent,
+        })
+    }
+
+    /// chi^2 at a w_c and an exponent, over all amplitudes.
+    fn at_exponent(&self, critical: f64, exponent: f64) -> f64 {
+        let rest =
+            |i: usize| self.ln_value[i] - exponent * self.law.covariate(self.width[i], critical);
+        let total: f64 = self.weight.iter().sum();
+        let mean = (0..self.width.len())
+            .map(|i| self.weight[i] * rest(i))
+            .sum::<f64>()
+            / total;
+        let scatter: f64 = (0..self.width.len())
+            .map(|i| self.weight[i] * (rest(i) - mean) * (rest(i) - mean))
+            .sum();
+        scatter + self.deviation(critical)
+    }
+
+    fn chi_squared(&self, critical: f64) -> f64 {
+        self.line(critical)
+            .map_or(f64::INFINITY, |line| line.chi_squared)
+    }
+
+    /// Grid of ln(w_c - top), the known value among it.
+    fn grid(&self) -> Vec<f64> {
+        let mut grid = self.range.grid();
+        if let Some(known) = self.known.filter(|known| known.value > self.range.top) {
+            grid.push(self.range.ln_distance(known.value));
+            grid.sort_by(f64::total_cmp);
+        }
+        grid
+    }
+
+    /// Covariance of (ln A, B, w_c) from the information of the linearised law.
+    fn covariance(&self, critical: f64, exponent: f64) -> Option<[[f64; 3]; 3]> {
+        let mut information = [[0.0; 3]; 3];
+        for (&width, &weight) in self.width.iter().zip(&self.weight) {
+            let slopes = [
+                1.0,
+                self.law.covariate(width, critical),
+                exponent * self.law.covariate_slope(width, critical),
+            ];
+            for row in 0..3 {
+                for column in 0..3 {
+                    information[row][column] += weight * slopes[row] * slopes[column];
+                }
+            }
+        }
+        match self.known {
+            Some(known) if known.error > 0.0 => {
+                information[2][2] += 1.0 / (known.error * known.error);
+            }
+            _ => {}
+        }
+        Cholesky::new(&information).map(|factor| factor.inverse())
+    }
+}
+
+/// Fits a law to values with errors at several widths.
+///
+/// Minimum over ln A, B and w_c of `chi^2 = sum_i (ln y_i - ln A - B x_i(w_c))^2 y_i^2/error_i^2` (+ ((w_c -
+/// known)/error)^2); x as [`Law`] states. At given w_c this is a straight line, solved exactly; what remains is a
+/// search in ln(w_c - w_max) from a grid, so that the least of several minima is found. `known`: a critical width from
+/// elsewhere with its error (0 to hold it fixed), as for the exponent of chi_tau or of a peak at the w_c of tau; `None`
+/// to fit it. Intervals of w_c and B by the profile of chi^2 (+1 and +3.84), standard errors from its curvature. w_c
+/// and B are strongly correlated, and errors of some 20 per cent or more bias ln y: prefer
+/// [`fit_law_to_runs`](crate::fit_law_to_runs) where the runs are at hand. Source: Seber & Wild, Nonlinear Regression
+/// (1989), sections 5.4 and 14.7.
+///
+/// # Errors
+/// [`Error::TooFewPlaces`] with fewer distinct widths than free parameters, [`Error::BeyondCritical`] for a width above
+/// a known w_c without error, [`Error::Undetermined`] where the best w_c lies at infinity (the points follow an
+/// exponential law), [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`].
+///
+/// ```
+/// use peristalsis_analysis::{Law, fit_law};
+/// let width = [2.0, 2.5, 2.75, 2.875];
+/// let time = [1.0, 2.0, 4.0, 8.0];
+/// let fit = fit_law(Law::Power, &width, &time, &[0.1, 0.2, 0.4, 0.8], None)?;
+/// assert!((fit.critical_width.unwrap().value - 3.0).abs() < 1e-4);
+/// assert!((fit.exponent.value - 1.0).abs() < 1e-3);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fit_law(
+    law: Law,
+    width: &[f64],
+    value: &[f64],
+    error: &[f64],
+    known: Option<Uncertain>,
+) -> Result<LawFit, Error> {
+    same_length(width.len(), value.len())?;
+    same_length(width.len(), error.len())?;
+    checked(width, 0)?;
+    checked_positive(value)?;
+    checked_positive(error)?;
+    if let Law::Barrier { power } = law {
+        checked_positive(&[power])?;
+    }
+    if let Some(known) = known {
+        checked(&[known.value, known.error], 2)?;
+    }
+    let fixed = known.filter(|known| known.error <= 0.0);
+    let free = match fixed {
+        Some(_) => 2,
+        None => law.parameters(),
+    };
+    // A known w_c with an error is a point beside the others.
+    let needed = if known.is_some() { 2 } else { law.parameters() };
+    let found = distinct(width);
+    if found < needed {
+        return Err(Error::TooFewPlaces { needed, found });
+    }
+    let top = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let points = Points {
+        law,
+        width,
+        ln_value: value.iter().map(|&value| libm::log(value)).collect(),
+        weight: value
+            .iter()
+            .zip(error)
+            .map(|(value, error)| (value / error) * (value / error))
+            .collect(),
+        known: known.filter(|_| law.is_critical()),
+        range: CriticalRange::new(width, top),
+    };
+    let counted = width.len() + usize::from(known.is_some() && fixed.is_none());
+    let undetermined = Error::Undetermined {
+        points: width.len(),
+        parameters: free,
+    };
+    match (law.is_critical(), fixed) {
+        (false, _) => at_fixed(&points, 0.0).ok_or(undetermined),
+        (true, Some(known)) if known.value <= top => Err(Error::BeyondCritical {
+            width: top,
+            critical: known.value,
+        }),
+        (true, Some(known)) => at_fixed(&points, known.value).ok_or(undetermined),
+        (true, None) => at_best(&points, counted - free).ok_or(undetermined),
+    }
+}
+
+/// The fit at a w_c that is fixed or does not matter.
+fn at_fixed(points: &Points<'_>, critical: f64) -> Option<LawFit> {
+    let line = points.line(critical)?;
+    let x = |i: usize| points.law.covariate(points.width[i], critical);
+    let fit = least_squares(|i| [1.0, x(i)], &points.ln_value, &points.weight)?;
+    let degrees_of_freedom = points.width.len() - 2;
+    let [[amplitude_variance, _], [_, exponent_variance]] = fit.covariance;
+    Some(LawFit {
+        law: points.law,
+        critical_width: points.known,
+        exponent: Uncertain::normal(line.exponent, exponent_variance.sqrt()),
+        ln_amplitude: Uncertain::normal(line.ln_amplitude, amplitude_variance.sqrt()),
+        chi_squared: line.chi_squared,
+        degrees_of_freedom,
+        probability: chi_squared_tail(line.chi_squared, degrees_of_freedom),
+    })
+}
+
+/// The fit at the best w_c.
+fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
+    let range = points.range;
+    let grid = points.grid();
+    let at_distance = |ln_distance: f64| points.chi_squared(range.critical(ln_distance));
+    let best = minimise_from_grid(at_distance, &grid, TOLERANCE)?;
+    if range.is_beyond(best.place) {
+        return None;
+    }
+    let critical = range.critical(best.place);
+    let line = points.line(critical)?;
+    let covariance = points.covariance(critical, line.exponent)?;
+    let [amplitude_error, exponent_error, critical_error] =
+        [0, 1, 2].map(|k| covariance[k][k].max(0.0).sqrt());
+    let excess = |chi_squared: f64, deviations: f64| {
+        chi_squared - line.chi_squared - deviations * deviations
+    };
+    let ends_of_critical = |deviations: f64| {
+        let outside = |place: f64| excess(at_distance(place), deviations);
+        let step = (deviations * critical_error / (critical - range.top)).clamp(1e-6, 1.0);
+        let (nearest, farthest) = range.bounds();
+        // A w_c within round-off of the largest width is as good as that width.
+        let lower = crossing(outside, best.place, step, nearest.min(best.place) - 7.0);
+        let upper = crossing(outside, best.place, step, farthest);
+        Interval {
+            lower: lower.map_or(range.top, |place| range.critical(place)),
+            upper: upper.map_or(f64::INFINITY, |place| range.critical(place)),
+        }
+    };
+    let ends_of_exponent = |deviations: f64| {
+        let outside = |exponent: f64| {
+            let least = minimise_from_grid(
+                |place| points.at_exponent(range.critical(place), exponent),
+                &grid,
+                1e-4,
+            );
+            excess(least.map_or(f64::INFINITY, |least| least.value), deviations)
+        };
+        let step = deviations * exponent_error;
+        let end = |side: f64| {
+            let limit = line.exponent + side * 200.0 * step;
+            crossing(outside, line.exponent, step, limit).unwrap_or(side * f64::INFINITY)
+        };
+        Interval {
+            lower: end(-1.0),
+            upper: end(1.0),
+        }
+    };
+    Some(LawFit {
+        law: points.law,
+        critical_width: Some(Uncertain {
+            value: critical,
+            error: critical_error,
+            interval_68: ends_of_critical(NARROW),
+            interval_95: ends_of_critical(WIDE),
+        }),
+        exponent: Uncertain {
+            value: line.exponent,
+            error: exponent_error,
+            interval_68: ends_of_exponent(NARROW),
+            interval_95: ends_of_exponent(WIDE),
+        },
+        ln_amplitude: Uncertain::normal(line.ln_amplitude, amplitude_error),
+        chi_squared: line.chi_squared,
+        degrees_of_freedom,
+        probability: chi_squared_tail(line.chi_squared, degrees_of_freedom),
+    })
+}
+
+/// Fits a law in windows that leave out the smallest, then the largest widths one by one.
+///
+/// The first window holds all widths. An asymptotic law fits ever better as small widths, far from w_c, are left out,
+/// and its exponent settles; a trend beyond the errors says that the exponent is not the asymptotic one. The fits share
+/// their points and do not scatter independently. Windows without a fit are left out.
+///
+/// # Errors
+/// Those of [`fit_law`] for all points.
+pub fn fit_law_in_windows(
+    law: Law,
+    width: &[f64],
+    value: &[f64],
+    error: &[f64],
+    known: Option<Uncertain>,
+) -> Result<Vec<WindowFit>, Error> {
+    let whole = fit_law(law, width, value, error, known)?;
+    let mut places = width.to_vec();
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    let mut found = Vec::new();
+    for (least, largest) in windows(&places) {
+        let inside: Vec<usize> = (0..width.len())
+            .filter(|&i| least <= width[i] && width[i] <= largest)
+            .collect();
+        let pick = |column: &[f64]| -> Vec<f64> { inside.iter().map(|&i| column[i]).collect() };
+        let fit = if inside.len() == width.len() {
+            Ok(whole)
+        } else {
+            fit_law(law, &pick(width), &pick(value), &pick(error), known)
+        };
+        if let Ok(fit) = fit {
+            found.push(WindowFit {
+                least,
+                largest,
+                points: inside.len(),
+                fit,
+            });
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,162 @@
+use super::*;
+use crate::synthetic::{assert_coverage, white_noise};
+use proptest::prelude::*;
+
+const WIDTHS: [f64; 10] = [2.3, 2.4, 2.5, 2.55, 2.6, 2.65, 2.7, 2.73, 2.76, 2.78];
+
+/// tau = 5 (2.82 - w)^-alpha with relative errors of 8 per cent.
+fn noisy(seed: u64, alpha: f64) -> ([f64; 10], [f64; 10]) {
+    let noise = white_noise(seed, WIDTHS.len());
+    let mut value = WIDTHS.map(|width| 5.0 * libm::pow(2.82 - width, -alpha));
+    for (value, noise) in value.iter_mut().zip(noise) {
+        *value *= libm::exp(0.08 * noise);
+    }
+    // The relative error is what is known.
+    (value, value.map(|value| 0.08 * value))
+}
+
+#[test]
+fn intervals_of_critical_width_and_exponent_cover() {
+    let trials = 300;
+    let mut covered = [0; 5];
+    for seed in 0..trials {
+        let (value, error) = noisy(seed, 1.0);
+        let fit = fit_law(Law::Power, &WIDTHS, &value, &error, None).unwrap();
+        let critical = fit.critical_width.unwrap();
+        covered[0] += usize::from(critical.interval_68.contains(2.82));
+        covered[1] += usize::from(critical.interval_95.contains(2.82));
+        covered[2] += usize::from(fit.exponent.interval_68.contains(1.0));
+        covered[3] += usize::from(fit.exponent.interval_95.contains(1.0));
+        covered[4] += usize::from(fit.probability < 0.1);
+    }
+    let trials = trials as usize;
+    assert_coverage(covered[0], trials, 0.6827, 0.01, "w_c");
+    assert_coverage(covered[1], trials, 0.95, 0.01, "w_c");
+    assert_coverage(covered[2], trials, 0.6827, 0.01, "exponent");
+    assert_coverage(covered[3], trials, 0.95, 0.01, "exponent");
+    assert_coverage(covered[4], trials, 0.1, 0.01, "probability of chi^2");
+}
+
+#[test]
+fn a_known_critical_width_sharpens_the_exponent_and_its_error_enters() {
+    let trials = 300;
+    let mut covered = [0; 2];
+    let (mut free_error, mut known_error, mut fixed_error) = (0.0, 0.0, 0.0);
+    for seed in 0..trials {
+        let (value, error) = noisy(seed, 3.0);
+        // A measurement of w_c elsewhere, wrong by its own error.
+        let elsewhere = 2.82 + 0.004 * white_noise(seed + 10_000, 1)[0];
+        let known = Uncertain::normal(elsewhere, 0.004);
+        let fit = |known| fit_law(Law::Power, &WIDTHS, &value, &error, known).unwrap();
+        let exponent = fit(Some(known)).exponent;
+        covered[0] += usize::from(exponent.interval_68.contains(3.0));
+        covered[1] += usize::from(exponent.interval_95.contains(3.0));
+        known_error += exponent.error;
+        free_error += fit(None).exponent.error;
+        fixed_error += fit(Some(Uncertain::normal(2.82, 0.0))).exponent.error;
+    }
+    assert_coverage(covered[0], trials as usize, 0.6827, 0.01, "exponent");
+    assert_coverage(covered[1], trials as usize, 0.95, 0.01, "exponent");
+    assert!(fixed_error < known_error && known_error < free_error);
+}
+
+#[test]
+fn barrier_and_exponential_laws_are_found_exactly() {
+    let barrier = Law::Barrier { power: 1.0 };
+    let value = WIDTHS.map(|width| 3.0 * libm::exp(0.2 / (2.9 - width)));
+    let error = value.map(|value| 0.05 * value);
+    let fit = fit_law(barrier, &WIDTHS, &value, &error, None).unwrap();
+    assert!((fit.critical_width.unwrap().value - 2.9).abs() < 1e-4);
+    assert!((fit.exponent.value - 0.2).abs() < 1e-3);
+    assert!((fit.ln_amplitude.value - 3.0_f64.ln()).abs() < 1e-2);
+    let value = WIDTHS.map(|width| libm::exp(4.0 * width - 2.0));
+    let error = value.map(|value| 0.05 * value);
+    let fit = fit_law(Law::Exponential, &WIDTHS, &value, &error, None).unwrap();
+    assert!((fit.exponent.value - 4.0).abs() < 1e-10);
+    assert_eq!((fit.critical_width, fit.degrees_of_freedom), (None, 8));
+    // Its critical width lies at infinity.
+    assert_eq!(
+        fit_law(Law::Power, &WIDTHS, &value, &error, None),
+        Err(Error::Undetermined {
+            points: 10,
+            parameters: 3
+        })
+    );
+}
+
+#[test]
+fn windows_show_a_law_that_holds_only_near_the_critical_width() {
+    // A correction that dies out: tau = (w_c - w)^-1 (1 + 3 (w_c - w)^2).
+    let value = WIDTHS.map(|width| {
+        let distance = 2.82 - width;
+        (1.0 + 3.0 * distance * distance) / distance
+    });
+    let error = value.map(|value| 0.02 * value);
+    let known = Some(Uncertain::normal(2.82, 0.0));
+    let windows = fit_law_in_windows(Law::Power, &WIDTHS, &value, &error, known).unwrap();
+    assert_eq!((windows[0].points, windows[1].points), (10, 9));
+    let deviation = |window: &WindowFit| (window.fit.exponent.value - 1.0).abs();
+    assert!(deviation(&windows[0]) > 0.08);
+    // Without the six smallest widths.
+    assert_eq!((windows[6].least, windows[6].largest), (2.7, 2.78));
+    assert!(deviation(&windows[6]) < 0.05);
+    // Without the largest widths it grows worse.
+    let last = windows.last().unwrap();
+    assert_eq!((last.least, last.largest, last.points), (2.3, 2.4, 2));
+    assert!(deviation(last) > deviation(&windows[0]));
+}
+
+#[test]
+fn what_does_not_determine_a_law_is_refused() {
+    let few = fit_law(Law::Power, &[2.0, 2.1, 2.1], &[1.0; 3], &[0.1; 3], None);
+    assert_eq!(
+        few,
+        Err(Error::TooFewPlaces {
+            needed: 3,
+            found: 2
+        })
+    );
+    let known = Some(Uncertain::normal(2.05, 0.0));
+    assert_eq!(
+        fit_law(Law::Power, &[2.0, 2.1], &[1.0, 2.0], &[0.1; 2], known),
+        Err(Error::BeyondCritical {
+            width: 2.1,
+            critical: 2.05
+        })
+    );
+    let barrier = Law::Barrier { power: -1.0 };
+    assert!(fit_law(barrier, &WIDTHS, &[1.0; 10], &[0.1; 10], None).is_err());
+    assert!(matches!(
+        fit_law(Law::Power, &WIDTHS, &[0.0; 10], &[0.1; 10], None),
+        Err(Error::NotPositive { index: 0, .. })
+    ));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(48))]
+    #[test]
+    fn any_points_give_a_fit_or_an_error(
+        points in prop::collection::vec((2.0..3.0_f64, -3.0..6.0_f64, -4.0..2.0_f64), 0..9),
+        known in prop::option::of((1.5..3.5_f64, prop_oneof![Just(0.0), 0.001..0.5_f64])),
+        equal in any::<bool>(),
+        odd in prop::option::of(any::<f64>()),
+    ) {
+        let width: Vec<f64> = points.iter().map(|p| if equal { 2.5 } else { p.0 }).collect();
+        let mut value: Vec<f64> = points.iter().map(|p| libm::exp(p.1)).collect();
+        let error: Vec<f64> = points.iter().map(|p| libm::exp(p.1 + p.2)).collect();
+        if let (Some(odd), Some(last)) = (odd, value.last_mut()) {
+            *last = odd;
+        }
+        let known = known.map(|(value, error)| Uncertain::normal(value, error));
+        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
+            if let Ok(fit) = fit_law(law, &width, &value, &error, known) {
+                prop_assert!(fit.exponent.value.is_finite() && fit.exponent.error >= 0.0);
+                prop_assert!(fit.exponent.interval_68.contains(fit.exponent.value));
+                if let Some(critical) = fit.critical_width {
+                    prop_assert!(critical.interval_95.contains(critical.value));
+                }
+            }
+        }
+        let _ = fit_law_in_windows(Law::Power, &width, &value, &error, known);
+    }
+}

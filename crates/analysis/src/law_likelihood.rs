@@ -1,0 +1,328 @@
+//! Likelihood of the runs at all widths under a law of their mean transition time.
+
+use crate::bootstrap::Randomness;
+use crate::error::{Error, checked, checked_positive, same_length};
+use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
+use crate::law::{CriticalRange, Law};
+use crate::numerics::minimum::{Minimum, crossing, minimise, minimise_from_grid};
+use crate::regression::Regression;
+use crate::survival::times;
+use crate::transition::Transition;
+use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+
+/// Tolerance of the maximum in ln(w_c - w).
+const TOLERANCE: f64 = 1e-5;
+
+/// Runs of all widths, grouped by width in increasing order.
+pub(crate) struct RunTable {
+    pub(crate) places: Vec<f64>,
+    pub(crate) runs: Vec<Vec<(f64, bool)>>,
+}
+
+impl RunTable {
+    /// Columns of one row a run, in any order.
+    pub(crate) fn new(width: &[f64], transitions: &[Transition]) -> Result<Self, Error> {
+        same_length(width.len(), transitions.len())?;
+        checked(width, 0)?;
+        let times = times(transitions)?;
+        let at_0 = |&(time, observed): &(f64, bool)| observed && time == 0.0;
+        if let Some(index) = times.iter().position(at_0) {
+            return Err(Error::NotPositive { index, value: 0.0 });
+        }
+        let mut places = width.to_vec();
+        places.sort_by(f64::total_cmp);
+        // -0 and 0 are one width.
+        places.dedup_by(|a, b| a == b);
+        let runs = places
+            .iter()
+            .map(|&place| {
+                let here = width
+                    .iter()
+                    .zip(&times)
+                    .filter(|(width, _)| **width == place);
+                here.map(|(_, &run)| run).collect()
+            })
+            .collect();
+        Ok(Self { places, runs })
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.runs.iter().map(Vec::len).sum()
+    }
+}
+
+/// The likelihood of one law and family, as a function of w_c and shape.
+pub(crate) struct LawLikelihood {
+    law: Law,
+    family: Family,
+    places: Vec<f64>,
+    groups: Vec<Group>,
+    range: CriticalRange,
+}
+
+/// Largest likelihood of a law and family.
+#[derive(Clone, Copy)]
+pub(crate) struct Largest {
+    pub(crate) ln_distance: f64,
+    pub(crate) ln_shape: f64,
+    pub(crate) ln_amplitude: f64,
+    pub(crate) exponent: f64,
+    pub(crate) log_likelihood: f64,
+    /// Whether w_c has run away to infinity.
+    pub(crate) is_beyond: bool,
+}
+
+impl LawLikelihood {
+    /// Checks that transitions were seen at as many widths as the law has parameters.
+    pub(crate) fn new(
+        law: Law,
+        family: Family,
+        places: &[f64],
+        runs: &[Vec<(f64, bool)>],
+    ) -> Result<Self, Error> {
+        if let Law::Barrier { power } = law {
+            checked_positive(&[power])?;
+        }
+        let groups: Vec<Group> = runs
+            .iter()
+            .map(|runs| Group::new(runs.iter().copied()))
+            .collect();
+        let with_transition = |(_, group): &(&f64, &Group)| group.observed() > 0;
+        let seen: Vec<f64> = places
+            .iter()
+            .zip(&groups)
+            .filter(with_transition)
+            .map(|(&place, _)| place)
+            .collect();
+        if seen.len() < law.parameters() {
+            return Err(Error::TooFewPlaces {
+                needed: law.parameters(),
+                found: seen.len(),
+            });
+        }
+        if family != Family::Exponential && !groups.iter().any(Group::scatters) {
+            return Err(Error::NoScatter {
+                observed: groups.iter().map(Group::observed).sum(),
+            });
+        }
+        let top = seen[seen.len() - 1];
+        Ok(Self {
+            law,
+            family,
+            places: places.to_vec(),
+            groups,
+            range: CriticalRange::new(&seen, top),
+        })
+    }
+
+    /// Widths, groups of runs and range of w_c.
+    pub(crate) fn parts(&self) -> (&[f64], &[Group], CriticalRange) {
+        (&self.places, &self.groups, self.range)
+    }
+
+    /// Likelihoods of all widths at one shape.
+    fn at_shape(&self, ln_shape: f64) -> Vec<GroupLikelihood<'_>> {
+        let shape = libm::exp(ln_shape);
+        self.groups
+            .iter()
+            .map(|group| group.at_shape(self.family, shape))
+            .collect()
+    }
+
+    /// Regression of the mean on the law at a w_c.
+    fn regression<'a>(
+        &'a self,
+        likelihoods: &'a [GroupLikelihood<'a>],
+        ln_distance: f64,
+    ) -> Regression<'a> {
+        let critical = self.range.critical(ln_distance);
+        // Runs at w >= w_c never change: they are certain to be censored and say nothing.
+        let below = if self.law.is_critical() {
+            self.places.partition_point(|&place| place < critical)
+        } else {
+            self.places.len()
+        };
+        let x = self.places[..below]
+            .iter()
+            .map(|&place| self.law.covariate(place, critical))
+            .collect();
+        Regression::new(x, &self.groups[..below], &likelihoods[..below])
+    }
+
+    /// Best w_c at one shape; `value` is minus the log-likelihood.
+    fn best_distance(&self, ln_shape: f64) -> Option<Minimum> {
+        let likelihoods = self.at_shape(ln_shape);
+        let value = |place: f64| -self.regression(&likelihoods, place).largest().2;
+        if self.law.is_critical() {
+            minimise_from_grid(value, &self.range.grid(), TOLERANCE)
+        } else {
+            let value = value(0.0);
+            value.is_finite().then_some(Minimum { place: 0.0, value })
+        }
+    }
+
+    /// Smallest value of a function of ln k over the shapes that the family has.
+    fn over_shapes(&self, bounds: (f64, f64), value: impl FnMut(f64) -> f64) -> Minimum {
+        let mut value = value;
+        if self.family == Family::Exponential {
+            Minimum {
+                place: 0.0,
+                value: value(0.0),
+            }
+        } else {
+            minimise(value, bounds, 1e-4)
+        }
+    }
+
+    /// The largest likelihood with the shape between two bounds of ln k; `None` where it has none.
+    pub(crate) fn largest(&self, bounds: (f64, f64)) -> Option<Largest> {
+        let best = self.over_shapes(bounds, |ln_shape| {
+            self.best_distance(ln_shape)
+                .map_or(f64::INFINITY, |best| best.value)
+        });
+        let ln_shape = best.place;
+        let ln_distance = self.best_distance(ln_shape)?.place;
+        let (ln_amplitude, exponent, log_likelihood) = self
+            .regression(&self.at_shape(ln_shape), ln_distance)
+            .largest();
+        let shape_is_inside =
+            ln_shape > LN_SHAPE_BOUNDS.0 + 0.01 && ln_shape < LN_SHAPE_BOUNDS.1 - 0.01;
+        (log_likelihood.is_finite() && exponent.is_finite() && shape_is_inside).then_some(Largest {
+            ln_distance,
+            ln_shape,
+            ln_amplitude,
+            exponent,
+            log_likelihood,
+            is_beyond: self.law.is_critical() && self.range.is_beyond(ln_distance),
+        })
+    }
+
+    /// Best w_c; infinite where it has run away.
+    pub(crate) fn critical_width(&self, best: &Largest) -> f64 {
+        if best.is_beyond {
+            f64::INFINITY
+        } else {
+            self.range.critical(best.ln_distance)
+        }
+    }
+
+    /// Runs drawn from a fit, watched for the given times: one list a width.
+    pub(crate) fn simulate(
+        &self,
+        best: &Largest,
+        horizons: &[Vec<f64>],
+        randomness: &mut Randomness,
+    ) -> Vec<Vec<(f64, bool)>> {
+        let shape = libm::exp(best.ln_shape);
+        let critical = self.range.critical(best.ln_distance);
+        self.places
+            .iter()
+            .zip(horizons)
+            .map(|(&place, horizons)| {
+                let mean = if self.law.is_critical() && place >= critical {
+                    f64::INFINITY
+                } else {
+                    let x = self.law.covariate(place, critical);
+                    libm::exp(best.ln_amplitude + best.exponent * x)
+                };
+                let one = |&horizon: &f64| {
+                    let time = mean * self.family.draw(shape, randomness);
+                    if time < horizon {
+                        (time, true)
+                    } else {
+                        (horizon, false)
+                    }
+                };
+                horizons.iter().map(one).collect()
+            })
+            .collect()
+    }
+
+    /// Parameters with the intervals where their profile likelihood stays within 1/2 and 1.92 of the largest.
+    pub(crate) fn profiles(
+        &self,
+        best: &Largest,
+    ) -> (Option<Uncertain>, Uncertain, Option<Uncertain>) {
+        let observed: usize = self.groups.iter().map(Group::observed).sum();
+        let first_step = 1.0 / (observed as f64).sqrt();
+        let bounds = (
+            (best.ln_shape - 10.0 * first_step).max(LN_SHAPE_BOUNDS.0),
+            (best.ln_shape + 10.0 * first_step).min(LN_SHAPE_BOUNDS.1),
+        );
+        let ends = |value: f64, step: f64, limits: (f64, f64), profile: &dyn Fn(f64) -> f64| {
+            [NARROW, WIDE].map(|deviations| {
+                let outside = |place: f64| {
+                    profile(place) + best.log_likelihood - 0.5 * deviations * deviations
+                };
+                let end = |limit: f64| crossing(outside, value, deviations * step, limit);
+                (end(limits.0), end(limits.1))
+            })
+        };
+        let critical = self.law.is_critical().then(|| {
+            let value = best.ln_distance;
+            let (nearest, farthest) = self.range.bounds();
+            let limits = (nearest.min(value) - 7.0, farthest);
+            let found = ends(value, first_step, limits, &|place| {
+                let value = |k| -self.regression(&self.at_shape(k), place).largest().2;
+                self.over_shapes(bounds, value).value
+            });
+            let critical = |place: f64| self.range.critical(place);
+            assembled(
+                critical(value),
+                found.map(|(lower, upper)| Interval {
+                    lower: lower.map_or(self.range.top, critical),
+                    upper: upper.map_or(f64::INFINITY, critical),
+                }),
+            )
+        });
+        let grid = self.range.grid();
+        let exponent_step = first_step * best.exponent.abs().max(1e-3);
+        let far = 1e3 * exponent_step;
+        let limits = (best.exponent - far, best.exponent + far);
+        let found = ends(best.exponent, exponent_step, limits, &|exponent| {
+            let least = self.over_shapes(bounds, |ln_shape| {
+                let likelihoods = self.at_shape(ln_shape);
+                let value = |place: f64| -self.regression(&likelihoods, place).at_slope(exponent);
+                if self.law.is_critical() {
+                    minimise_from_grid(value, &grid, 1e-4).map_or(f64::INFINITY, |m| m.value)
+                } else {
+                    value(0.0)
+                }
+            });
+            least.value
+        });
+        let exponent = assembled(best.exponent, found.map(open_ended));
+        let shape = (self.family != Family::Exponential).then(|| {
+            let found = ends(best.ln_shape, first_step, LN_SHAPE_BOUNDS, &|ln_shape| {
+                self.best_distance(ln_shape)
+                    .map_or(f64::INFINITY, |best| best.value)
+            });
+            let in_logarithm = found.map(open_ended);
+            assembled(
+                libm::exp(best.ln_shape),
+                in_logarithm.map(|interval| Interval {
+                    lower: libm::exp(interval.lower),
+                    upper: libm::exp(interval.upper),
+                }),
+            )
+        });
+        (critical, exponent, shape)
+    }
+}
+
+fn open_ended((lower, upper): (Option<f64>, Option<f64>)) -> Interval {
+    Interval {
+        lower: lower.unwrap_or(f64::NEG_INFINITY),
+        upper: upper.unwrap_or(f64::INFINITY),
+    }
+}
+
+/// A value with its narrow and wide interval; the standard error is half of the narrow one.
+fn assembled(value: f64, [narrow, wide]: [Interval; 2]) -> Uncertain {
+    Uncertain {
+        value,
+        error: 0.5 * narrow.length(),
+        interval_68: narrow,
+        interval_95: wide,
+    }
+}

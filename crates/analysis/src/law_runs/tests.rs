@@ -1,0 +1,241 @@
+use super::*;
+use crate::bootstrap::Randomness;
+use crate::synthetic::{assert_coverage, exponential, watched};
+use proptest::prelude::*;
+
+const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];
+
+/// tau = 10 (2.8 - w)^-1, watched for 300 in most tests: all censored at 2.81 and 2.85, a third or so at 2.75 and more
+/// at 2.78.
+fn runs(
+    seed: u64,
+    replicas: usize,
+    until: f64,
+    draw: impl Fn(&mut Randomness) -> f64,
+) -> (Vec<f64>, Vec<Transition>) {
+    let mut randomness = Randomness::new(seed, 3);
+    let mut width = Vec::new();
+    let mut transitions = Vec::new();
+    for place in WIDTHS {
+        for _ in 0..replicas {
+            let mean = if place < 2.8 {
+                10.0 / (2.8 - place)
+            } else {
+                f64::INFINITY
+            };
+            width.push(place);
+            transitions.push(watched(mean * draw(&mut randomness), until));
+        }
+    }
+    (width, transitions)
+}
+
+#[test]
+fn profile_intervals_of_critical_width_and_exponent_cover() {
+    let trials = 200;
+    let mut covered = [0; 4];
+    for seed in 0..trials {
+        let (width, transitions) = runs(seed, 15, 300.0, exponential);
+        let fit = fit_law_to_runs(Law::Power, Family::Exponential, &width, &transitions).unwrap();
+        let critical = fit.critical_width.unwrap();
+        covered[0] += usize::from(critical.interval_68.contains(2.8));
+        covered[1] += usize::from(critical.interval_95.contains(2.8));
+        covered[2] += usize::from(fit.exponent.interval_68.contains(1.0));
+        covered[3] += usize::from(fit.exponent.interval_95.contains(1.0));
+    }
+    let trials = trials as usize;
+    assert_coverage(covered[0], trials, 0.6827, 0.02, "w_c");
+    assert_coverage(covered[1], trials, 0.95, 0.02, "w_c");
+    assert_coverage(covered[2], trials, 0.6827, 0.02, "exponent");
+    assert_coverage(covered[3], trials, 0.95, 0.02, "exponent");
+}
+
+#[test]
+fn the_shape_is_found_with_the_law() {
+    let sharp = |randomness: &mut Randomness| {
+        // Weibull of shape 3 and mean 1.
+        libm::pow(exponential(randomness), 1.0 / 3.0) / libm::tgamma(4.0 / 3.0)
+    };
+    let trials = 24;
+    let mut covered = [0; 3];
+    for seed in 0..trials {
+        let (width, transitions) = runs(seed, 12, 300.0, sharp);
+        let fit = fit_law_to_runs(Law::Power, Family::Weibull, &width, &transitions).unwrap();
+        covered[0] += usize::from(fit.critical_width.unwrap().interval_95.contains(2.8));
+        covered[1] += usize::from(fit.exponent.interval_95.contains(1.0));
+        covered[2] += usize::from(fit.shape.unwrap().interval_95.contains(3.0));
+    }
+    for (covered, what) in covered.into_iter().zip(["w_c", "exponent", "shape"]) {
+        assert_coverage(covered, trials as usize, 0.95, 0.01, what);
+    }
+    let (width, transitions) = runs(1, 12, 300.0, sharp);
+    let fit = |family| fit_law_to_runs(Law::Power, family, &width, &transitions).unwrap();
+    let (weibull, plain) = (fit(Family::Weibull), fit(Family::Exponential));
+    assert!(weibull.akaike() < plain.akaike() - 20.0);
+    assert_eq!((weibull.parameters(), plain.parameters()), (4, 3));
+    assert_eq!(weibull.observed + weibull.censored, 108);
+    let expected = 10.0 / 0.3;
+    assert!((weibull.mean(2.5) / expected - 1.0).abs() < 0.25);
+    assert_eq!(weibull.mean(2.85), f64::INFINITY);
+}
+
+#[test]
+fn the_gamma_family_finds_the_same_critical_width() {
+    let steps =
+        |randomness: &mut Randomness| (exponential(randomness) + exponential(randomness)) / 2.0;
+    let (width, transitions) = runs(4, 20, 300.0, steps);
+    let fit = fit_law_to_runs(Law::Power, Family::Gamma, &width, &transitions).unwrap();
+    assert!(fit.critical_width.unwrap().interval_95.contains(2.8));
+    assert!(fit.exponent.interval_95.contains(1.0));
+    assert!(fit.shape.unwrap().interval_95.contains(2.0));
+}
+
+#[test]
+fn dropping_censored_runs_moves_the_critical_width() {
+    let (width, transitions) = runs(11, 60, 300.0, exponential);
+    let honest = fit_law_to_runs(Law::Power, Family::Exponential, &width, &transitions).unwrap();
+    let observed: Vec<usize> = (0..width.len())
+        .filter(|&i| transitions[i].observed().is_some())
+        .collect();
+    let kept_width: Vec<f64> = observed.iter().map(|&i| width[i]).collect();
+    let kept: Vec<Transition> = observed.iter().map(|&i| transitions[i]).collect();
+    let naive = fit_law_to_runs(Law::Power, Family::Exponential, &kept_width, &kept);
+    assert!(honest.exponent.interval_95.contains(1.0));
+    // Without its long runs the growth of tau is gone.
+    let naive_critical = naive.map(|fit| fit.critical_width.unwrap().value);
+    let is_off = naive_critical.is_err() || naive_critical.unwrap() > 2.84;
+    assert!(is_off, "{naive_critical:?}");
+}
+
+/// Coverage of the bootstrap's intervals of w_c and B, and the mean errors of B by profile and by bootstrap.
+fn bootstrap_coverage(until: f64, draw: impl Fn(&mut Randomness) -> f64) -> (f64, f64) {
+    let trials = 100;
+    let bootstrap = Bootstrap {
+        resamples: 100,
+        seed: 5,
+    };
+    let mut covered = [0; 4];
+    let (mut profile_error, mut bootstrap_error) = (0.0, 0.0);
+    for seed in 0..trials {
+        let (width, transitions) = runs(seed, 15, until, &draw);
+        let found = bootstrap_law(
+            Law::Power,
+            Family::Exponential,
+            &width,
+            &transitions,
+            bootstrap,
+        )
+        .unwrap();
+        let critical = found.critical_width.unwrap();
+        covered[0] += usize::from(critical.interval_68.contains(2.8));
+        covered[1] += usize::from(critical.interval_95.contains(2.8));
+        covered[2] += usize::from(found.exponent.interval_68.contains(1.0));
+        covered[3] += usize::from(found.exponent.interval_95.contains(1.0));
+        profile_error += found.fit.exponent.error;
+        bootstrap_error += found.exponent.error;
+        assert_eq!(found.succeeded + found.failed, 100);
+    }
+    // Percentiles of 100 resamples of 15 runs a width: 0.65 and 0.93 in longer tests.
+    for (k, what) in ["w_c", "exponent"].iter().enumerate() {
+        assert_coverage(covered[2 * k], trials as usize, 0.6827, 0.03, what);
+        assert_coverage(covered[2 * k + 1], trials as usize, 0.95, 0.04, what);
+    }
+    (profile_error, bootstrap_error)
+}
+
+#[test]
+fn bootstrap_intervals_cover_with_censored_runs() {
+    let (profile_error, bootstrap_error) = bootstrap_coverage(300.0, exponential);
+    assert!((bootstrap_error / profile_error - 1.0).abs() < 0.25);
+}
+
+#[test]
+fn bootstrap_intervals_cover_for_the_wrong_family_where_nothing_below_the_critical_width_is_censored()
+ {
+    // Relative variance 1/4: the profile of an exponential likelihood is twice as wide as it should be.
+    let sharp =
+        |randomness: &mut Randomness| (0..4).map(|_| exponential(randomness)).sum::<f64>() / 4.0;
+    let (profile_error, bootstrap_error) = bootstrap_coverage(1e5, sharp);
+    assert!((bootstrap_error / profile_error - 0.5).abs() < 0.1);
+}
+
+#[test]
+fn windows_begin_with_all_widths_and_agree_where_the_law_holds() {
+    let (width, transitions) = runs(2, 30, 300.0, exponential);
+    let windows =
+        fit_law_to_runs_in_windows(Law::Power, Family::Exponential, &width, &transitions).unwrap();
+    assert!(windows.len() > 5);
+    assert_eq!((windows[0].least, windows[0].largest), (2.4, 2.85));
+    assert_eq!((windows[1].least, windows[1].largest), (2.5, 2.85));
+    for window in &windows {
+        assert!(window.fit.exponent.interval_95.lower < 1.3, "{window:?}");
+    }
+}
+
+#[test]
+fn what_does_not_determine_a_law_is_refused() {
+    let at = |time| Transition::At { time, period: 0 };
+    let censored = Transition::Censored { time: 9.0 };
+    let fit = |width: &[f64], runs: &[Transition]| {
+        fit_law_to_runs(Law::Power, Family::Exponential, width, runs)
+    };
+    assert_eq!(
+        fit(&[2.0, 2.1, 2.2], &[at(1.0), at(2.0), censored]),
+        Err(Error::TooFewPlaces {
+            needed: 3,
+            found: 2
+        })
+    );
+    assert!(fit(&[], &[]).is_err());
+    assert!(fit(&[2.0; 4], &[at(1.0); 4]).is_err());
+    assert!(matches!(
+        fit(&[2.0, 2.1], &[at(1.0)]),
+        Err(Error::LengthMismatch { .. })
+    ));
+    // Shrinking with the width: w_c at infinity, and B below 0.
+    let falling = fit(&[2.0, 2.1, 2.2, 2.3], &[at(8.0), at(4.0), at(2.0), at(1.0)]);
+    assert!(
+        matches!(falling, Err(Error::Undetermined { .. })),
+        "{falling:?}"
+    );
+    let equal = fit_law_to_runs(
+        Law::Power,
+        Family::Weibull,
+        &[2.0, 2.1, 2.2],
+        &[at(1.0), at(2.0), at(4.0)],
+    );
+    assert_eq!(equal, Err(Error::NoScatter { observed: 3 }));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+    #[test]
+    fn any_runs_give_a_fit_or_an_error(
+        rows in prop::collection::vec((0_u8..6, -3.0..6.0_f64, any::<bool>()), 0..25),
+        odd in prop::option::of(prop_oneof![Just(f64::NAN), Just(-1.0), Just(0.0)]),
+        spread in prop_oneof![Just(0.0), Just(0.1), Just(1e-9), Just(1e8)],
+    ) {
+        let width: Vec<f64> = rows.iter().map(|row| 2.0 + spread * f64::from(row.0)).collect();
+        let mut transitions: Vec<Transition> = rows
+            .iter()
+            .map(|&(_, log, observed)| {
+                let time = libm::exp(log);
+                if observed { Transition::At { time, period: 0 } } else { Transition::Censored { time } }
+            })
+            .collect();
+        if let (Some(time), Some(last)) = (odd, transitions.last_mut()) {
+            *last = Transition::At { time, period: 0 };
+        }
+        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
+            for family in [Family::Exponential, Family::Weibull] {
+                if let Ok(fit) = fit_law_to_runs(law, family, &width, &transitions) {
+                    prop_assert!(fit.log_likelihood.is_finite() && fit.exponent.value.is_finite());
+                    prop_assert!(fit.exponent.interval_95.contains(fit.exponent.value));
+                    if let Some(critical) = fit.critical_width {
+                        prop_assert!(critical.interval_95.contains(critical.value));
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,222 @@
+use super::*;
+use crate::bootstrap::Randomness;
+use crate::synthetic::{assert_coverage, exponential as unit_exponential, remission, watched};
+use proptest::prelude::*;
+
+fn weibull(randomness: &mut Randomness, mean: f64, shape: f64) -> f64 {
+    let scale = mean / libm::tgamma(1.0 + 1.0 / shape);
+    scale * libm::pow(unit_exponential(randomness), 1.0 / shape)
+}
+
+/// Sum of three exponential steps: gamma of shape 3.
+fn three_steps(randomness: &mut Randomness, mean: f64) -> f64 {
+    (0..3).map(|_| unit_exponential(randomness)).sum::<f64>() * mean / 3.0
+}
+
+struct Coverage {
+    name: &'static str,
+    truth: f64,
+    narrow: usize,
+    wide: usize,
+    pull_squares: f64,
+}
+
+impl Coverage {
+    fn new(name: &'static str, truth: f64) -> Self {
+        Self {
+            name,
+            truth,
+            narrow: 0,
+            wide: 0,
+            pull_squares: 0.0,
+        }
+    }
+
+    fn count(&mut self, found: Uncertain) {
+        self.narrow += usize::from(found.interval_68.contains(self.truth));
+        self.wide += usize::from(found.interval_95.contains(self.truth));
+        let pull = libm::log(found.value / self.truth) * found.value / found.error;
+        self.pull_squares += pull * pull;
+    }
+
+    fn judge(&self, trials: usize, slack: f64) {
+        assert_coverage(self.narrow, trials, 0.6827, slack, self.name);
+        assert_coverage(self.wide, trials, 0.95, slack, self.name);
+        let spread = (self.pull_squares / trials as f64).sqrt();
+        assert!((0.85..1.2).contains(&spread), "{}: {spread}", self.name);
+    }
+}
+
+fn coverage(family: Family, shape: f64, until: f64, draw: impl Fn(&mut Randomness) -> f64) {
+    let (trials, runs, mean) = (300, 50, 10.0);
+    let variance = mean * mean * family.relative_variance(shape);
+    let mut means = Coverage::new("mean", mean);
+    let mut variances = Coverage::new("variance", variance);
+    let mut shapes = Coverage::new("shape", shape);
+    for seed in 0..trials {
+        let mut randomness = Randomness::new(seed, 9);
+        let sample: Vec<Transition> = (0..runs)
+            .map(|_| watched(draw(&mut randomness), until))
+            .collect();
+        let fit = fit_lifetime(family, &sample).unwrap();
+        means.count(fit.mean);
+        variances.count(fit.variance);
+        if let Some(shape) = fit.shape {
+            shapes.count(shape);
+        }
+    }
+    // Profile intervals of 50 runs fall short of their level by up to a hundredth or two.
+    means.judge(trials as usize, 0.015);
+    variances.judge(trials as usize, 0.015);
+    if family != Family::Exponential {
+        shapes.judge(trials as usize, 0.015);
+    }
+}
+
+#[test]
+fn exponential_intervals_cover_with_a_third_censored() {
+    coverage(Family::Exponential, 1.0, 11.0, |randomness| {
+        10.0 * unit_exponential(randomness)
+    });
+}
+
+#[test]
+fn weibull_intervals_cover_with_a_third_censored() {
+    coverage(Family::Weibull, 1.8, 12.0, |randomness| {
+        weibull(randomness, 10.0, 1.8)
+    });
+}
+
+#[test]
+fn gamma_intervals_cover_with_a_third_censored() {
+    coverage(Family::Gamma, 3.0, 11.5, |randomness| {
+        three_steps(randomness, 10.0)
+    });
+}
+
+#[test]
+fn the_textbook_example_as_other_programs_fit_it() {
+    let fit = |family| fit_lifetime(family, &remission()).unwrap();
+    let exponential = fit(Family::Exponential);
+    assert!((exponential.mean.value - 359.0 / 9.0).abs() < 1e-9);
+    // lifelines 0.30 (Weibull), a direct minimisation with scipy (gamma).
+    let expected = [
+        (Family::Weibull, 30.947_171, 1.353_731_6, -41.658_678_5),
+        (Family::Gamma, 31.094_068, 1.677_008_9, -41.439_416_2),
+    ];
+    for (family, mean, shape, log_likelihood) in expected {
+        let found = fit(family);
+        assert!((found.mean.value / mean - 1.0).abs() < 1e-5);
+        assert!((found.shape.unwrap().value / shape - 1.0).abs() < 1e-5);
+        assert!((found.log_likelihood - log_likelihood).abs() < 1e-7);
+        assert_eq!((found.observed, found.censored), (9, 12));
+    }
+    let shape_error = fit(Family::Weibull).shape.unwrap().error;
+    assert!(
+        (shape_error - 0.142_036_f64.sqrt()).abs() < 0.01,
+        "{shape_error}"
+    );
+}
+
+#[test]
+fn the_shape_tells_chance_from_determinism_and_the_criterion_finds_the_family() {
+    let mut randomness = Randomness::new(2, 0);
+    let mut sample = |shape: f64| -> Vec<Transition> {
+        (0..300)
+            .map(|_| watched(weibull(&mut randomness, 5.0, shape), 8.0))
+            .collect()
+    };
+    let (chance, sharp) = (sample(1.0), sample(6.0));
+    let shape = |runs: &[Transition]| fit_lifetime(Family::Weibull, runs).unwrap().shape.unwrap();
+    assert!(shape(&chance).interval_95.contains(1.0));
+    assert!(shape(&sharp).deviations_from(6.0).abs() < 3.0);
+    assert!(shape(&sharp).interval_95.lower > 4.0);
+    let akaike = |family, runs: &[Transition]| fit_lifetime(family, runs).unwrap().akaike();
+    let exponential = akaike(Family::Exponential, &sharp);
+    assert!(akaike(Family::Weibull, &sharp) < akaike(Family::Gamma, &sharp));
+    assert!(akaike(Family::Gamma, &sharp) < exponential - 100.0);
+    assert!(akaike(Family::Weibull, &chance) > akaike(Family::Exponential, &chance) - 4.0);
+    let relative = fit_lifetime(Family::Weibull, &sharp)
+        .unwrap()
+        .relative_variance();
+    let expected = Family::Weibull.relative_variance(6.0);
+    assert!(relative.deviations_from(expected).abs() < 3.0);
+    assert!(relative.interval_68.contains(relative.value) && relative.error < 0.02);
+}
+
+#[test]
+fn the_fit_follows_the_kaplan_meier_curve() {
+    let mut randomness = Randomness::new(8, 0);
+    let sample: Vec<Transition> = (0..500)
+        .map(|_| watched(three_steps(&mut randomness, 4.0), 7.0))
+        .collect();
+    let fit = fit_lifetime(Family::Gamma, &sample).unwrap();
+    let curve = crate::Survival::new(&sample).unwrap();
+    for time in [1.0, 3.0, 5.0, 6.5] {
+        assert!((fit.survival(time) - curve.at(time)).abs() < 0.05);
+    }
+    assert_eq!(fit.observed + fit.censored, 500);
+}
+
+#[test]
+fn what_cannot_be_fitted_is_refused() {
+    let at = |time| Transition::At { time, period: 0 };
+    let censored = Transition::Censored { time: 3.0 };
+    for family in [Family::Exponential, Family::Gamma, Family::Weibull] {
+        let refused = fit_lifetime(family, &[censored; 5]);
+        assert!(matches!(
+            refused,
+            Err(Error::TooFewObserved {
+                observed: 0,
+                runs: 5,
+                ..
+            })
+        ));
+        assert!(fit_lifetime(family, &[]).is_err());
+        assert!(matches!(
+            fit_lifetime(family, &[at(0.0), at(1.0), at(2.0)]),
+            Err(Error::NotPositive { index: 0, .. })
+        ));
+    }
+    for family in [Family::Gamma, Family::Weibull] {
+        assert_eq!(
+            fit_lifetime(family, &[at(2.0); 6]),
+            Err(Error::NoScatter { observed: 6 })
+        );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(60))]
+    #[test]
+    fn any_runs_give_finite_estimates_or_an_error(
+        times in prop::collection::vec((-4.0..4.0_f64, any::<bool>()), 0..20),
+        odd in prop::option::of(prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1.0)]),
+    ) {
+        let mut runs: Vec<Transition> = times
+            .iter()
+            .map(|&(log, observed)| {
+                let time = libm::exp(2.0 * log);
+                if observed {
+                    Transition::At { time, period: 0 }
+                } else {
+                    Transition::Censored { time }
+                }
+            })
+            .collect();
+        if let Some(time) = odd {
+            runs.push(Transition::Censored { time });
+        }
+        for family in [Family::Exponential, Family::Gamma, Family::Weibull] {
+            if let Ok(fit) = fit_lifetime(family, &runs) {
+                prop_assert!(odd.is_none());
+                for number in [Some(fit.mean), Some(fit.variance), fit.shape].into_iter().flatten() {
+                    prop_assert!(number.value > 0.0 && number.value.is_finite());
+                    prop_assert!(number.error > 0.0 && number.error.is_finite());
+                    prop_assert!(number.interval_68.contains(number.value));
+                    prop_assert!(number.interval_95.lower <= number.interval_68.lower * 1.001);
+                }
+            }
+        }
+    }
+}

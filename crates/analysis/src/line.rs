@@ -1,0 +1,324 @@
+//! Straight lines, parabolas and powers through points with errors.
+
+use crate::error::{Error, checked, checked_positive, distinct, same_length};
+use crate::numerics::gamma::{chi_squared_tail, two_sided_tail};
+use crate::numerics::linear::{LeastSquares, least_squares};
+use crate::uncertain::Uncertain;
+use serde::{Deserialize, Serialize};
+
+/// A straight line through points with errors.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct LineFit {
+    /// Value at x = 0.
+    pub intercept: Uncertain,
+    /// Slope.
+    pub slope: Uncertain,
+    /// Covariance of intercept and slope.
+    pub covariance: f64,
+    /// Sum of the squared deviations in units of their errors.
+    pub chi_squared: f64,
+    /// Points less parameters.
+    pub degrees_of_freedom: usize,
+    /// Probability of a chi^2 at least as large if the line and the errors are right; 1 without degrees of freedom.
+    pub probability: f64,
+}
+
+/// A parabola through points with errors, beside the straight line.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CurveFit {
+    /// Value of the parabola at x = 0.
+    pub constant: Uncertain,
+    /// Its slope at x = 0.
+    pub linear: Uncertain,
+    /// Coefficient of x^2.
+    pub quadratic: Uncertain,
+    /// chi^2 of the parabola.
+    pub chi_squared: f64,
+    /// Points less parameters.
+    pub degrees_of_freedom: usize,
+    /// Probability of a chi^2 at least as large if the parabola and the errors are right.
+    pub probability: f64,
+    /// The straight line through the same points.
+    pub line: LineFit,
+    /// Probability of a quadratic term at least as large, of either sign, if the points lie on a line.
+    pub linearity: f64,
+}
+
+impl LineFit {
+    /// Value of the line at x with its error.
+    pub fn at(&self, x: f64) -> Uncertain {
+        let variance = self.intercept.error * self.intercept.error
+            + 2.0 * x * self.covariance
+            + x * x * self.slope.error * self.slope.error;
+        Uncertain::normal(
+            self.intercept.value + self.slope.value * x,
+            variance.max(0.0).sqrt(),
+        )
+    }
+
+    /// Factor by which the errors of the points would have to grow for chi^2 to equal its expectation; 1 at least.
+    ///
+    /// Errors of the parameters grow alike: Birge, Phys. Rev. 40, 207 (1932).
+    pub fn scale_factor(&self) -> f64 {
+        (self.chi_squared / self.degrees_of_freedom.max(1) as f64)
+            .sqrt()
+            .max(1.0)
+    }
+}
+
+/// Weights of checked columns with at least so many distinct places.
+fn weights(x: &[f64], y: &[f64], error: &[f64], parameters: usize) -> Result<Vec<f64>, Error> {
+    same_length(x.len(), y.len())?;
+    same_length(x.len(), error.len())?;
+    checked(x, 0)?;
+    checked(y, 0)?;
+    checked_positive(error)?;
+    let found = distinct(x);
+    if found < parameters {
+        return Err(Error::TooFewPlaces {
+            needed: parameters,
+            found,
+        });
+    }
+    Ok(error.iter().map(|error| 1.0 / (error * error)).collect())
+}
+
+/// Weighted mean of the places, from which powers are reckoned so that their sums stay well conditioned.
+fn centre(x: &[f64], weight: &[f64]) -> f64 {
+    let total: f64 = weight.iter().sum();
+    let sum: f64 = x.iter().zip(weight).map(|(x, weight)| x * weight).sum();
+    sum / total
+}
+
+/// Straight line y = intercept + slope x through points with known errors of y.
+///
+/// Minimum of `chi^2 = sum_i (y_i - intercept - slope x_i)^2/error_i^2`. Errors from the errors of the points, not from
+/// their scatter; normal intervals, exact for normal errors. Serves w_c(epsdot) = slope epsdot + w_max. Source:
+/// Bevington & Robinson, Data Reduction and Error Analysis (2003), chapter 6.
+///
+/// # Errors
+/// [`Error::TooFewPlaces`] below 2 distinct x, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`]
+/// for an error, [`Error::Undetermined`] for places or errors beyond floating point.
+///
+/// ```
+/// use peristalsis_analysis::fit_line;
+/// let fit = fit_line(&[0.0, 1.0, 2.0], &[1.0, 2.0, 6.0], &[1.0, 1.0, 1.0])?;
+/// assert!((fit.slope.value - 2.5).abs() < 1e-12 && (fit.intercept.value - 0.5).abs() < 1e-12);
+/// // Deviations 1/2, -1, 1/2.
+/// assert!((fit.chi_squared - 1.5).abs() < 1e-12);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fit_line(x: &[f64], y: &[f64], error: &[f64]) -> Result<LineFit, Error> {
+    let weight = weights(x, y, error, 2)?;
+    let centre = centre(x, &weight);
+    let fit = solved(least_squares(|i| [1.0, x[i] - centre], y, &weight), x.len())?;
+    let [middle, slope] = fit.coefficients;
+    let [[middle_variance, mixed], [_, slope_variance]] = fit.covariance;
+    let intercept_variance =
+        middle_variance - 2.0 * centre * mixed + centre * centre * slope_variance;
+    let degrees_of_freedom = x.len() - 2;
+    Ok(LineFit {
+        intercept: Uncertain::normal(middle - slope * centre, intercept_variance.sqrt()),
+        slope: Uncertain::normal(slope, slope_variance.sqrt()),
+        covariance: mixed - centre * slope_variance,
+        chi_squared: fit.chi_squared,
+        degrees_of_freedom,
+        probability: chi_squared_tail(fit.chi_squared, degrees_of_freedom),
+    })
+}
+
+/// Parabola through points with known errors of y, and whether its quadratic term is needed.
+///
+/// `y = constant + linear x + quadratic x^2`
+///
+/// `linearity` is the two-sided probability of quadratic/error(quadratic), which equals the chi^2 test of the
+/// difference between line and parabola with one degree of freedom. Errors as for [`fit_line`].
+///
+/// # Errors
+/// [`Error::TooFewPlaces`] below 3 distinct x, else as for [`fit_line`].
+pub fn fit_parabola(x: &[f64], y: &[f64], error: &[f64]) -> Result<CurveFit, Error> {
+    let weight = weights(x, y, error, 3)?;
+    let centre = centre(x, &weight);
+    let basis = |i: usize| {
+        let from_centre: f64 = x[i] - centre;
+        [1.0, from_centre, from_centre * from_centre]
+    };
+    let fit = solved(least_squares(basis, y, &weight), x.len())?;
+    let [a, b, c] = fit.coefficients;
+    // Row k: coefficient of x^k in terms of the centred ones.
+    let back = [
+        [1.0, -centre, centre * centre],
+        [0.0, 1.0, -2.0 * centre],
+        [0.0, 0.0, 1.0],
+    ];
+    let coefficient = |row: usize| {
+        let [p, q, r] = back[row];
+        let mut variance = 0.0;
+        for i in 0..3 {
+            for j in 0..3 {
+                variance += back[row][i] * fit.covariance[i][j] * back[row][j];
+            }
+        }
+        Uncertain::normal(p * a + q * b + r * c, variance.max(0.0).sqrt())
+    };
+    let quadratic = coefficient(2);
+    let degrees_of_freedom = x.len() - 3;
+    Ok(CurveFit {
+        constant: coefficient(0),
+        linear: coefficient(1),
+        quadratic,
+        chi_squared: fit.chi_squared,
+        degrees_of_freedom,
+        probability: chi_squared_tail(fit.chi_squared, degrees_of_freedom),
+        line: fit_line(x, y, error)?,
+        linearity: two_sided_tail(quadratic.deviations_from(0.0)),
+    })
+}
+
+/// Exponent of a power law y = A x^slope, as a line through the logarithms.
+///
+/// `ln y = intercept + slope ln x`, the error of ln y being error/y; `intercept` is ln A. For errors above some 20 per
+/// cent the logarithm of a mean is biased downward by half of its squared relative error. Serves tau against L.
+///
+/// # Errors
+/// [`Error::NotPositive`] for an x, a y or an error, else as for [`fit_line`].
+pub fn power_exponent(x: &[f64], y: &[f64], error: &[f64]) -> Result<LineFit, Error> {
+    same_length(x.len(), y.len())?;
+    same_length(x.len(), error.len())?;
+    let logarithms =
+        |column: &[f64]| -> Vec<f64> { column.iter().map(|&value| libm::log(value)).collect() };
+    let ln_x = logarithms(checked_positive(x)?);
+    let ln_y = logarithms(checked_positive(y)?);
+    let relative: Vec<f64> = error.iter().zip(y).map(|(error, y)| error / y).collect();
+    fit_line(&ln_x, &ln_y, &relative)
+}
+
+fn solved<const N: usize>(
+    fit: Option<LeastSquares<N>>,
+    points: usize,
+) -> Result<LeastSquares<N>, Error> {
+    fit.filter(|fit| fit.chi_squared.is_finite())
+        .ok_or(Error::Undetermined {
+            points,
+            parameters: N,
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::{assert_coverage, white_noise};
+    use proptest::prelude::*;
+
+    const RATES: [f64; 6] = [0.03, 0.05, 0.08, 0.1, 0.15, 0.2];
+    const ERRORS: [f64; 6] = [0.01, 0.02, 0.01, 0.03, 0.02, 0.01];
+
+    fn noisy(seed: u64, bend: f64) -> Vec<f64> {
+        let noise = white_noise(seed, RATES.len());
+        (0..RATES.len())
+            .map(|i| 3.0 - 3.75 * RATES[i] + bend * RATES[i] * RATES[i] + ERRORS[i] * noise[i])
+            .collect()
+    }
+
+    #[test]
+    fn errors_of_the_line_cover_and_its_probability_is_uniform() {
+        let trials = 1000;
+        let mut covered = [0; 4];
+        let mut improbable = 0;
+        let mut bent = 0;
+        for seed in 0..trials {
+            let y = noisy(seed, 0.0);
+            let fit = fit_line(&RATES, &y, &ERRORS).unwrap();
+            covered[0] += usize::from(fit.slope.interval_68.contains(-3.75));
+            covered[1] += usize::from(fit.slope.interval_95.contains(-3.75));
+            covered[2] += usize::from(fit.intercept.interval_68.contains(3.0));
+            covered[3] += usize::from(fit.at(0.5).interval_95.contains(3.0 - 1.875));
+            improbable += usize::from(fit.probability < 0.1);
+            bent += usize::from(fit_parabola(&RATES, &y, &ERRORS).unwrap().linearity < 0.05);
+        }
+        let trials = trials as usize;
+        assert_coverage(covered[0], trials, 0.6827, 0.0, "slope");
+        assert_coverage(covered[1], trials, 0.95, 0.0, "slope");
+        assert_coverage(covered[2], trials, 0.6827, 0.0, "intercept");
+        assert_coverage(covered[3], trials, 0.95, 0.0, "value far outside");
+        assert_coverage(improbable, trials, 0.1, 0.0, "probability of chi^2");
+        assert_coverage(bent, trials, 0.05, 0.0, "false bends");
+    }
+
+    #[test]
+    fn a_bend_is_seen_and_its_coefficients_found() {
+        let y = noisy(3, 12.0);
+        let found = fit_parabola(&RATES, &y, &ERRORS).unwrap();
+        assert!(found.linearity < 1e-3, "{found:?}");
+        assert!(found.line.probability < 1e-3);
+        assert!(found.line.scale_factor() > 1.5);
+        assert!(found.quadratic.deviations_from(12.0).abs() < 3.0);
+        assert!(found.linear.deviations_from(-3.75).abs() < 3.0);
+        assert!(found.constant.deviations_from(3.0).abs() < 3.0);
+        assert!(found.probability > 1e-3);
+        // The difference of the chi^2 is the square of the quadratic term's score.
+        let difference = found.line.chi_squared - found.chi_squared;
+        let score = found.quadratic.deviations_from(0.0);
+        assert!((difference - score * score).abs() < 1e-8 * difference);
+    }
+
+    #[test]
+    fn a_power_is_found_from_its_logarithms() {
+        let length = [5.0, 10.0, 20.0, 40.0];
+        let time = length.map(|l: f64| 7.0 * libm::pow(l, -1.0));
+        let error = time.map(|t| 0.1 * t);
+        let fit = power_exponent(&length, &time, &error).unwrap();
+        assert!((fit.slope.value + 1.0).abs() < 1e-12);
+        assert!((fit.intercept.value - 7.0_f64.ln()).abs() < 1e-12);
+        // Equal relative errors at equal steps of ln 2: 0.1/(ln 2 sqrt(5)).
+        assert!((fit.slope.error - 0.1 / (2.0_f64.ln() * 5.0_f64.sqrt())).abs() < 1e-12);
+        assert!(matches!(
+            power_exponent(&[1.0, -2.0], &[1.0, 1.0], &[0.1, 0.1]),
+            Err(Error::NotPositive { index: 1, .. })
+        ));
+    }
+
+    #[test]
+    fn too_few_places_and_bad_columns_are_refused() {
+        assert_eq!(
+            fit_line(&[2.0; 5], &[1.0; 5], &[0.1; 5]),
+            Err(Error::TooFewPlaces {
+                needed: 2,
+                found: 1
+            })
+        );
+        assert!(matches!(
+            fit_parabola(&[1.0, 1.0, 2.0], &[1.0; 3], &[0.1; 3]),
+            Err(Error::TooFewPlaces { needed: 3, .. })
+        ));
+        assert!(matches!(
+            fit_line(&[], &[], &[]),
+            Err(Error::TooFewPlaces { found: 0, .. })
+        ));
+        assert!(matches!(
+            fit_line(&[1.0, 2.0], &[1.0, 2.0], &[0.1, 0.0]),
+            Err(Error::NotPositive { index: 1, .. })
+        ));
+        assert!(matches!(
+            fit_line(&[1.0, 2.0], &[1.0], &[0.1, 0.1]),
+            Err(Error::LengthMismatch { .. })
+        ));
+    }
+
+    proptest! {
+        #[test]
+        fn any_points_give_finite_numbers_or_an_error(
+            points in prop::collection::vec(
+                (any::<f64>(), any::<f64>(), any::<f64>()), 0..8),
+        ) {
+            let x: Vec<f64> = points.iter().map(|p| p.0).collect();
+            let y: Vec<f64> = points.iter().map(|p| p.1).collect();
+            let error: Vec<f64> = points.iter().map(|p| p.2.abs()).collect();
+            if let Ok(fit) = fit_line(&x, &y, &error) {
+                prop_assert!(fit.chi_squared.is_finite());
+            }
+            let _ = fit_parabola(&x, &y, &error);
+            let _ = power_exponent(&x, &y, &error);
+        }
+    }
+}

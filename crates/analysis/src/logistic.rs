@@ -1,0 +1,325 @@
+//! The width at which half of the runs end jammed.
+
+use crate::error::{Error, checked, same_length};
+use crate::numerics::minimum::{Minimum, crossing, minimise, minimise_from_grid};
+use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use serde::{Deserialize, Serialize};
+
+/// Places in the grid of the width sought.
+const PLACES: usize = 121;
+
+/// The width at which the fraction of jammed runs falls through one half.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FractionCrossing {
+    /// The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
+    pub width: Uncertain,
+    /// Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are
+    /// separated.
+    pub spread: f64,
+    /// Largest width at which all runs jam, with all below it doing so; `None` where already at the least some do not.
+    pub last_all: Option<f64>,
+    /// Smallest width at which none jams, nor above it; `None` where at the largest some still do.
+    pub first_none: Option<f64>,
+    /// Whether the fraction falls from 1 to 0 between two neighbouring widths, or at a single one between: the data
+    /// then bracket the width and say nothing of the spread.
+    pub is_separated: bool,
+    /// Largest log-likelihood.
+    pub log_likelihood: f64,
+    /// Runs.
+    pub runs: usize,
+}
+
+/// Numbers of runs and of jammed ones by width, in increasing order.
+pub(crate) struct Fractions {
+    places: Vec<f64>,
+    rows: Vec<(f64, f64)>,
+}
+
+impl Fractions {
+    pub(crate) fn new(width: &[f64], jammed: &[bool]) -> Result<Self, Error> {
+        same_length(width.len(), jammed.len())?;
+        checked(width, 2)?;
+        let mut places = width.to_vec();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|a, b| a == b);
+        let rows = places
+            .iter()
+            .map(|&place| {
+                let here = || {
+                    width
+                        .iter()
+                        .zip(jammed)
+                        .filter(|(width, _)| **width == place)
+                };
+                let count = |count: usize| count as f64;
+                (
+                    count(here().count()),
+                    count(here().filter(|(_, jammed)| **jammed).count()),
+                )
+            })
+            .collect();
+        let fractions = Self { places, rows };
+        let all: f64 = fractions.rows.iter().map(|row| row.1).sum();
+        if all == 0.0 || all == width.len() as f64 {
+            return Err(Error::OneOutcome { runs: width.len() });
+        }
+        if fractions.places.len() < 2 {
+            return Err(Error::TooFewPlaces {
+                needed: 2,
+                found: fractions.places.len(),
+            });
+        }
+        Ok(fractions)
+    }
+
+    pub(crate) fn least(&self) -> f64 {
+        self.places[0]
+    }
+
+    pub(crate) fn largest(&self) -> f64 {
+        self.places[self.places.len() - 1]
+    }
+
+    /// Smallest distance of two widths.
+    fn spacing(&self) -> f64 {
+        self.places
+            .windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// Minus the log-likelihood at a half width and a spread.
+    fn deficit(&self, half: f64, spread: f64) -> f64 {
+        self.places
+            .iter()
+            .zip(&self.rows)
+            .map(|(&place, &(runs, jammed))| {
+                let x = (place - half) / spread;
+                // ln(1 + exp(x)) without overflow; the fraction is 1/(1 + exp(x)).
+                let soft = x.max(0.0) + libm::log1p(libm::exp(-x.abs()));
+                let free = if runs > jammed {
+                    (runs - jammed) * (soft - x)
+                } else {
+                    0.0
+                };
+                let kept = if jammed > 0.0 { jammed * soft } else { 0.0 };
+                kept + free
+            })
+            .sum()
+    }
+
+    /// Best spread at a half width, from far below the spacing to far above the range, and minus its log-likelihood.
+    pub(crate) fn at_half(&self, half: f64) -> Minimum {
+        let bounds = (
+            libm::log(1e-3 * self.spacing()),
+            libm::log(1e2 * (self.largest() - self.least())),
+        );
+        minimise(
+            |ln_spread| self.deficit(half, libm::exp(ln_spread)),
+            bounds,
+            1e-4,
+        )
+    }
+
+    /// Grid from a range below the least to a range above the largest width.
+    pub(crate) fn grid(least: f64, largest: f64) -> Vec<f64> {
+        let range = largest - least;
+        (0..PLACES)
+            .map(|k| least - 0.5 * range + 2.0 * range * k as f64 / (PLACES - 1) as f64)
+            .collect()
+    }
+}
+
+/// Width at which half of the runs jam, from runs that did and runs that did not.
+///
+/// `P(jammed) = 1/(1 + exp((w - w_half)/spread))`, by maximum likelihood
+///
+/// One row a run; `jammed`: how the run ended, whatever it started from, so that the fraction falls with the width from
+/// either start. Intervals by profile likelihood. Where all runs jam up to one width and none from the next on, the
+/// likelihood has no maximum: the width is then the middle of the bracket, both intervals are the bracket, and the
+/// error is its length over sqrt(12); with mixed runs at one width between, that width, with its neighbours as the
+/// bracket. Sources: Cox & Snell, Analysis of Binary Data (1989), chapter 2; separation: Albert & Anderson, Biometrika
+/// 71, 1 (1984).
+///
+/// # Errors
+/// [`Error::OneOutcome`], [`Error::TooFewPlaces`] at a single width, [`Error::Undetermined`] where the fraction does
+/// not fall with the width, [`Error::TooFew`], [`Error::LengthMismatch`], [`Error::NonFinite`].
+///
+/// ```
+/// use peristalsis_analysis::fraction_crossing;
+/// let found = fraction_crossing(&[2.6, 2.7, 2.8, 2.9], &[true, true, false, false])?;
+/// assert!(found.is_separated && (found.width.value - 2.75).abs() < 1e-12);
+/// assert_eq!((found.last_all, found.first_none), (Some(2.7), Some(2.8)));
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fraction_crossing(width: &[f64], jammed: &[bool]) -> Result<FractionCrossing, Error> {
+    let fractions = Fractions::new(width, jammed)?;
+    let rows = &fractions.rows;
+    let all_up_to = rows.iter().take_while(|(runs, jams)| runs == jams).count();
+    let none_from = rows.len() - rows.iter().rev().take_while(|row| row.1 == 0.0).count();
+    let last_all = all_up_to.checked_sub(1).map(|k| fractions.places[k]);
+    let first_none = fractions.places.get(none_from).copied();
+    // Rows between the last all and the first none.
+    let mixed = none_from.saturating_sub(all_up_to);
+    let separated = (mixed <= 1).then_some(()).and(last_all.zip(first_none));
+    if let Some((lower, upper)) = separated {
+        let bracket = Interval { lower, upper };
+        let mut log_likelihood = 0.0;
+        let mut value = 0.5 * (lower + upper);
+        if mixed == 1 {
+            let (runs, jams) = rows[all_up_to];
+            value = fractions.places[all_up_to];
+            log_likelihood =
+                jams * libm::log(jams / runs) + (runs - jams) * libm::log1p(-jams / runs);
+        }
+        return Ok(FractionCrossing {
+            width: Uncertain {
+                value,
+                error: bracket.length() / 12.0_f64.sqrt(),
+                interval_68: bracket,
+                interval_95: bracket,
+            },
+            spread: 0.0,
+            last_all,
+            first_none,
+            is_separated: true,
+            log_likelihood,
+            runs: width.len(),
+        });
+    }
+    let undetermined = Error::Undetermined {
+        points: width.len(),
+        parameters: 2,
+    };
+    let grid = Fractions::grid(fractions.least(), fractions.largest());
+    let deficit = |half: f64| fractions.at_half(half).value;
+    let range = fractions.largest() - fractions.least();
+    let best = minimise_from_grid(deficit, &grid, 1e-7 * range).ok_or(undetermined)?;
+    let spread = libm::exp(fractions.at_half(best.place).place);
+    // A fraction that does not fall is fitted best by an endless spread or a half width far outside.
+    let outside = best.place <= grid[1] || best.place >= grid[PLACES - 2];
+    if outside || spread > 50.0 * range {
+        return Err(undetermined);
+    }
+    let ends = |deviations: f64| {
+        let beyond = |half: f64| deficit(half) - best.value - 0.5 * deviations * deviations;
+        let step = 0.05 * range;
+        let end = |side: f64| {
+            let limit = best.place + side * 20.0 * range;
+            crossing(beyond, best.place, step, limit).unwrap_or(side * f64::INFINITY)
+        };
+        Interval {
+            lower: end(-1.0),
+            upper: end(1.0),
+        }
+    };
+    let interval_68 = ends(NARROW);
+    Ok(FractionCrossing {
+        width: Uncertain {
+            value: best.place,
+            error: 0.5 * interval_68.length(),
+            interval_68,
+            interval_95: ends(WIDE),
+        },
+        spread,
+        last_all,
+        first_none,
+        is_separated: false,
+        log_likelihood: -best.value,
+        runs: width.len(),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bootstrap::Randomness;
+    use crate::synthetic::assert_coverage;
+    use proptest::prelude::*;
+
+    fn runs(seed: u64, replicas: usize, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {
+        let mut randomness = Randomness::new(seed, 6);
+        let mut rows = (Vec::new(), Vec::new());
+        for k in 0..9 {
+            let width = 2.6 + 0.05 * f64::from(k);
+            for _ in 0..replicas {
+                let fraction = 1.0 / (1.0 + libm::exp((width - half) / spread));
+                rows.0.push(width);
+                rows.1.push(randomness.uniform() < fraction);
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn intervals_cover_the_half_width() {
+        let trials = 400;
+        let mut covered = [0; 2];
+        let mut spreads = 0.0;
+        for seed in 0..trials {
+            let (width, jammed) = runs(seed, 10, 2.79, 0.06);
+            let found = fraction_crossing(&width, &jammed).unwrap();
+            assert!(!found.is_separated);
+            covered[0] += usize::from(found.width.interval_68.contains(2.79));
+            covered[1] += usize::from(found.width.interval_95.contains(2.79));
+            spreads += found.spread;
+        }
+        assert_coverage(covered[0], trials as usize, 0.6827, 0.01, "half width");
+        assert_coverage(covered[1], trials as usize, 0.95, 0.01, "half width");
+        assert!((spreads / trials as f64 / 0.06 - 1.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn a_sharp_fall_is_bracketed() {
+        let mut covered = 0;
+        for seed in 0..100 {
+            let (width, jammed) = runs(seed, 10, 2.81, 0.002);
+            let found = fraction_crossing(&width, &jammed).unwrap();
+            assert!(found.is_separated);
+            covered += usize::from(found.width.interval_95.contains(2.81));
+        }
+        assert!(covered > 98, "{covered}");
+        // Two of three runs jam at a width between: that width.
+        let width = [2.6, 2.7, 2.7, 2.7, 2.9];
+        let found = fraction_crossing(&width, &[true, true, true, false, false]).unwrap();
+        assert_eq!((found.width.value, found.is_separated), (2.7, true));
+        assert_eq!((found.last_all, found.first_none), (Some(2.6), Some(2.9)));
+        let expected = 2.0 * libm::log(2.0 / 3.0) + libm::log(1.0 / 3.0);
+        assert!((found.log_likelihood - expected).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_fraction_that_does_not_fall_is_refused() {
+        let width = [2.6, 2.7, 2.8];
+        assert_eq!(
+            fraction_crossing(&width, &[true; 3]),
+            Err(Error::OneOutcome { runs: 3 })
+        );
+        assert!(matches!(
+            fraction_crossing(&width, &[false, false, true]),
+            Err(Error::Undetermined { .. })
+        ));
+        assert!(matches!(
+            fraction_crossing(&[2.6; 3], &[false, false, true]),
+            Err(Error::TooFewPlaces { found: 1, .. })
+        ));
+        assert!(fraction_crossing(&[], &[]).is_err());
+        assert!(fraction_crossing(&[f64::NAN, 1.0], &[true, false]).is_err());
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn any_outcomes_give_a_width_or_an_error(
+            rows in prop::collection::vec((0_u8..6, any::<bool>()), 0..30),
+            spacing in prop_oneof![Just(0.1), Just(1e-7), Just(1e9)],
+        ) {
+            let width: Vec<f64> = rows.iter().map(|row| spacing * f64::from(row.0)).collect();
+            let jammed: Vec<bool> = rows.iter().map(|row| row.1).collect();
+            if let Ok(found) = fraction_crossing(&width, &jammed) {
+                prop_assert!(found.width.interval_95.contains(found.width.value));
+                prop_assert!(found.log_likelihood <= 1e-12);
+            }
+        }
+    }
+}

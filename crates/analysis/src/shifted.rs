@@ -1,0 +1,204 @@
+//! Transition times with a dead time before nucleation at a constant rate.
+
+use crate::error::Error;
+use crate::lifetime::group_of;
+use crate::numerics::minimum::crossing;
+use crate::survival::times;
+use crate::transition::Transition;
+use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use serde::{Deserialize, Serialize};
+
+/// Probabilities of the narrow and of the wide interval.
+const LEVELS: [f64; 2] = [0.682_689_492_137_086, 0.95];
+
+/// Shifted exponential distribution fitted to the transition times of one ensemble.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ShiftedExponentialFit {
+    /// Dead time t_0 before which no transition happens, corrected for its bias; 0 at least.
+    pub dead_time: Uncertain,
+    /// Mean waiting time theta after the dead time; 1/theta is the rate.
+    pub waiting_time: Uncertain,
+    /// Mean `<tau>` = t_0 + theta.
+    pub mean: Uncertain,
+    /// Variance `chi_tau = theta^2`.
+    pub variance: Uncertain,
+    /// Largest log-likelihood, comparable with that of a [`LifetimeFit`](crate::LifetimeFit) on the same runs.
+    pub log_likelihood: f64,
+    /// Runs with an observed transition.
+    pub observed: usize,
+    /// Censored runs.
+    pub censored: usize,
+}
+
+impl ShiftedExponentialFit {
+    /// Akaike's criterion 2 p - 2 ln L with p = 2. The dead time is found faster than other parameters are (its error
+    /// falls as 1/n), so that this is a rough guide here.
+    pub fn akaike(&self) -> f64 {
+        4.0 - 2.0 * self.log_likelihood
+    }
+}
+
+/// Fits a dead time and a constant rate after it.
+///
+/// `S(t) = 1` for t < t_0, `exp(-(t - t_0)/theta)` beyond
+///
+/// With t_1 the first of d transitions, n runs at risk then and T the time that all runs were watched after t_1: theta
+/// = T/(d - 1), t_0 = t_1 - theta/n, both without bias. Interval of t_0 from the exact law of n (t_1 - t_0)/theta (F
+/// with 2 and 2 (d - 1) degrees of freedom), one-sided as t_0 <= t_1; that of theta from the likelihood of the times
+/// after t_1, `-(d - 1) ln theta - T/theta`; that of the mean from theta, whose error is the larger by sqrt(n). Exact
+/// without censoring and for runs that are all ended at one transition; else nearly so. Source: Lawless, Statistical
+/// Models and Methods for Lifetime Data (2003), section 4.5.
+///
+/// # Errors
+/// [`Error::TooFewObserved`] below 3 transitions, [`Error::NoScatter`] where all of them are at one time,
+/// [`Error::NotPositive`], [`Error::NonFinite`], [`Error::Negative`].
+///
+/// ```
+/// use peristalsis_analysis::{Transition, fit_shifted_exponential};
+/// let runs = [5.0, 6.0, 10.0].map(|time| Transition::At { time, period: 0 });
+/// let fit = fit_shifted_exponential(&runs)?;
+/// // Watched after 5: 0 + 1 + 5, for two further transitions; the mean is that of the sample.
+/// assert_eq!((fit.waiting_time.value, fit.dead_time.value), (3.0, 4.0));
+/// assert_eq!(fit.mean.value, 7.0);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fit_shifted_exponential(transitions: &[Transition]) -> Result<ShiftedExponentialFit, Error> {
+    let group = group_of(transitions, 3)?;
+    let observed = group.observed();
+    if !group.scatters() {
+        return Err(Error::NoScatter { observed });
+    }
+    let times = times(transitions)?;
+    let first = times
+        .iter()
+        .filter(|run| run.1)
+        .map(|run| run.0)
+        .fold(f64::INFINITY, f64::min);
+    let watched: f64 = times.iter().map(|run| (run.0 - first).max(0.0)).sum();
+    let at_risk = times.iter().filter(|run| run.0 >= first).count() as f64;
+    let free = observed as f64 - 1.0;
+    let theta = watched / free;
+    let waiting_time = waiting_time(theta, free);
+    let dead = (first - theta / at_risk).max(0.0);
+    let latest = |level: f64| Interval {
+        lower: (first - theta / at_risk * free * (libm::pow(1.0 - level, -1.0 / free) - 1.0))
+            .max(0.0),
+        upper: first,
+    };
+    let dead_time = Uncertain {
+        value: dead,
+        error: theta / at_risk,
+        interval_68: latest(LEVELS[0]),
+        interval_95: latest(LEVELS[1]),
+    };
+    let theta_error = waiting_time.error * (1.0 - 1.0 / at_risk);
+    let mean_error = (theta_error * theta_error + dead_time.error * dead_time.error).sqrt();
+    let largest = watched / observed as f64;
+    Ok(ShiftedExponentialFit {
+        dead_time,
+        waiting_time,
+        mean: waiting_time.map(mean_error, |theta| dead + theta),
+        variance: waiting_time.map(2.0 * theta * waiting_time.error, |theta| theta * theta),
+        log_likelihood: -(observed as f64) * (libm::log(largest) + 1.0),
+        observed,
+        censored: transitions.len() - observed,
+    })
+}
+
+/// Mean waiting time with the intervals of its likelihood; `free` transitions after the first.
+fn waiting_time(theta: f64, free: f64) -> Uncertain {
+    let ends = |deviations: f64| {
+        // In the logarithm u of the ratio to theta: free (u + exp(-u) - 1) = z^2/2.
+        let excess = |u: f64| free * (u + libm::expm1(-u)) - 0.5 * deviations * deviations;
+        let end = |limit| {
+            let log = crossing(excess, 0.0, deviations / free.sqrt(), limit);
+            theta * libm::exp(log.unwrap_or(limit))
+        };
+        Interval {
+            lower: end(-40.0),
+            upper: end(40.0),
+        }
+    };
+    Uncertain {
+        value: theta,
+        error: theta / free.sqrt(),
+        interval_68: ends(NARROW),
+        interval_95: ends(WIDE),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bootstrap::Randomness;
+    use crate::synthetic::{assert_coverage, exponential, watched};
+    use crate::{Family, fit_lifetime};
+
+    fn sample(seed: u64, runs: usize, until: f64) -> Vec<Transition> {
+        let mut randomness = Randomness::new(seed, 4);
+        (0..runs)
+            .map(|_| watched(4.0 + 6.0 * exponential(&mut randomness), until))
+            .collect()
+    }
+
+    #[test]
+    fn intervals_cover_with_a_quarter_censored() {
+        let trials = 400;
+        let mut covered = [0; 8];
+        for seed in 0..trials {
+            let fit = fit_shifted_exponential(&sample(seed, 30, 12.5)).unwrap();
+            let truths = [
+                (fit.dead_time, 4.0),
+                (fit.waiting_time, 6.0),
+                (fit.mean, 10.0),
+                (fit.variance, 36.0),
+            ];
+            for (k, (found, truth)) in truths.into_iter().enumerate() {
+                covered[2 * k] += usize::from(found.interval_68.contains(truth));
+                covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
+            }
+        }
+        for (k, what) in ["dead", "waiting", "mean", "variance"].iter().enumerate() {
+            assert_coverage(covered[2 * k], trials as usize, 0.6827, 0.01, what);
+            assert_coverage(covered[2 * k + 1], trials as usize, 0.95, 0.01, what);
+        }
+    }
+
+    #[test]
+    fn the_criterion_prefers_it_to_a_plain_exponential_where_there_is_a_dead_time() {
+        let runs = sample(1, 60, 20.0);
+        let shifted = fit_shifted_exponential(&runs).unwrap();
+        let plain = fit_lifetime(Family::Exponential, &runs).unwrap();
+        assert!(shifted.akaike() < plain.akaike() - 10.0);
+        assert_eq!(shifted.observed + shifted.censored, 60);
+        // ln L = -d ln theta - sum (t - t_0)/theta at the largest: t_0 the first time, theta = T/d.
+        let by_hand = fit_shifted_exponential(
+            &[5.0, 6.0, 10.0].map(|time| Transition::At { time, period: 0 }),
+        );
+        let log_likelihood = by_hand.unwrap().log_likelihood;
+        assert!((log_likelihood + 3.0 * 2.0_f64.ln() + 3.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_dead_time_is_never_negative_and_bad_runs_are_refused() {
+        let mut randomness = Randomness::new(6, 0);
+        for _ in 0..50 {
+            let runs: Vec<Transition> = (0..6)
+                .map(|_| watched(exponential(&mut randomness), 3.0))
+                .collect();
+            if let Ok(fit) = fit_shifted_exponential(&runs) {
+                assert!(fit.dead_time.value >= 0.0 && fit.dead_time.interval_95.lower >= 0.0);
+            }
+        }
+        let at = |time| Transition::At { time, period: 0 };
+        assert_eq!(
+            fit_shifted_exponential(&[at(2.0); 4]),
+            Err(Error::NoScatter { observed: 4 })
+        );
+        assert!(matches!(
+            fit_shifted_exponential(&[at(2.0), at(3.0)]),
+            Err(Error::TooFewObserved { observed: 2, .. })
+        ));
+        assert!(fit_shifted_exponential(&[at(f64::NAN); 4]).is_err());
+    }
+}

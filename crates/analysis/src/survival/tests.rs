@@ -1,0 +1,184 @@
+use super::*;
+use crate::bootstrap::Randomness;
+use crate::synthetic::{assert_coverage, exponential, remission, watched};
+use proptest::prelude::*;
+
+#[test]
+fn the_textbook_example_of_remission_times() {
+    let found = Survival::new(&remission()).unwrap();
+    assert_eq!((found.runs, found.observed, found.watched), (21, 9, 35.0));
+    let expected = [
+        (6.0, 21, 0.857, 0.0764),
+        (7.0, 17, 0.807, 0.0869),
+        (10.0, 15, 0.753, 0.0963),
+        (13.0, 12, 0.690, 0.1068),
+        (16.0, 11, 0.627, 0.1141),
+        (22.0, 7, 0.538, 0.1282),
+        (23.0, 6, 0.448, 0.1346),
+    ];
+    assert_eq!(found.steps.len(), expected.len());
+    for (step, (time, at_risk, survival, error)) in found.steps.iter().zip(expected) {
+        assert_eq!((step.time, step.at_risk), (time, at_risk));
+        assert!((step.survival.value - survival).abs() < 5.1e-4);
+        assert!((step.survival.error - error).abs() < 5.1e-5);
+    }
+    let median = found.median().unwrap();
+    assert_eq!(median.value, 23.0);
+    assert_eq!(
+        (median.interval_95.lower, median.interval_95.upper),
+        (13.0, f64::INFINITY)
+    );
+    assert_eq!(found.at(22.5), found.steps[5].survival.value);
+    assert_eq!(found.at(0.0), 1.0);
+}
+
+#[test]
+fn without_censoring_the_restricted_moments_are_those_of_the_sample() {
+    let times = [3.0, 1.0, 7.0, 2.0, 2.0];
+    let runs = times.map(|time| Transition::At { time, period: 0 });
+    let found = restricted_moments(&runs, 9.0).unwrap();
+    let plain = crate::moments(&times).unwrap();
+    assert!((found.mean.value - plain.mean).abs() < 1e-14);
+    assert!((found.mean.error - plain.mean_error).abs() < 1e-14);
+    assert!((found.variance.value - plain.variance).abs() < 1e-13);
+    assert!((found.variance.error - plain.variance_error).abs() < 1e-13);
+    let survival = Survival::new(&runs).unwrap();
+    assert_eq!(survival.median().unwrap().value, 2.0);
+    assert_eq!(survival.at(7.0), 0.0);
+}
+
+#[test]
+fn intervals_of_survival_median_and_restricted_mean_cover() {
+    let (trials, runs, horizon) = (400, 40, 1.5);
+    let true_mean = 1.0 - libm::exp(-horizon);
+    // E min(t, h)^2 = 2 (1 - (1 + h) exp(-h)).
+    let true_variance = 2.0 * (1.0 - (1.0 + horizon) * libm::exp(-horizon)) - true_mean * true_mean;
+    let mut covered = [0; 6];
+    for seed in 0..trials {
+        let mut randomness = Randomness::new(seed, 1);
+        // Watched for a time uniform from 1 to 3, whatever happens.
+        let sample: Vec<Transition> = (0..runs)
+            .map(|_| {
+                let until = 1.0 + 2.0 * randomness.uniform();
+                watched(exponential(&mut randomness), until)
+            })
+            .collect();
+        let survival = Survival::new(&sample).unwrap();
+        let step = survival
+            .steps
+            .iter()
+            .rfind(|step| step.time <= 1.0)
+            .unwrap();
+        let median = survival.median().unwrap();
+        let Ok(moments) = restricted_moments(&sample, horizon) else {
+            panic!("seed {seed}: nobody watched at the horizon");
+        };
+        let truth = [
+            (step.survival, libm::exp(-1.0)),
+            (median, 2.0_f64.ln()),
+            (moments.mean, true_mean),
+        ];
+        for (k, (found, truth)) in truth.into_iter().enumerate() {
+            covered[2 * k] += usize::from(found.interval_68.contains(truth));
+            covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
+        }
+        assert!((moments.variance.value - true_variance).abs() < 6.0 * moments.variance.error);
+    }
+    let trials = trials as usize;
+    for (k, what) in ["survival", "median", "restricted mean"].iter().enumerate() {
+        // A survival of 40 runs has steps of 0.025, which costs some hundredths of the level.
+        assert_coverage(covered[2 * k], trials, 0.6827, 0.02, what);
+        assert_coverage(covered[2 * k + 1], trials, 0.95, 0.01, what);
+    }
+}
+
+#[test]
+fn dropping_censored_runs_biases_the_mean_and_the_curve_does_not() {
+    // As at a width near w_c: mean 1, watched for 1, so that 37 per cent of the runs are censored.
+    let mut randomness = Randomness::new(5, 0);
+    let sample: Vec<Transition> = (0..1500)
+        .map(|_| watched(exponential(&mut randomness), 1.0))
+        .collect();
+    let naive = crate::transition_time_moments(&sample)
+        .unwrap()
+        .moments
+        .mean;
+    // E(t | t < 1) = 1 - 1/(e - 1).
+    assert!((naive - 0.418).abs() < 0.03);
+    let restricted = restricted_moments(&sample, 1.0).unwrap().mean;
+    assert!((restricted.value - 0.632).abs() < 0.03);
+    let fitted = crate::fit_lifetime(crate::Family::Exponential, &sample).unwrap();
+    assert!((fitted.mean.value - 1.0).abs() < 0.1);
+}
+
+#[test]
+fn bad_runs_and_horizons_are_refused() {
+    assert!(matches!(
+        Survival::new(&[]),
+        Err(Error::TooFew { needed: 1, .. })
+    ));
+    let censored = |time| Transition::Censored { time };
+    assert!(matches!(
+        Survival::new(&[censored(-1.0)]),
+        Err(Error::Negative { index: 0, .. })
+    ));
+    assert!(matches!(
+        Survival::new(&[censored(1.0), censored(f64::NAN)]),
+        Err(Error::NonFinite { index: 1, .. })
+    ));
+    let all_censored = Survival::new(&[censored(1.0); 4]).unwrap();
+    assert_eq!(
+        all_censored.median(),
+        Err(Error::LevelNotReached {
+            level: 0.5,
+            survival: 1.0
+        })
+    );
+    assert!(matches!(
+        all_censored.restricted_mean(1.0),
+        Err(Error::TooFewObserved { observed: 0, .. })
+    ));
+    let found = Survival::new(&remission()).unwrap();
+    for horizon in [35.5, 0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(
+            found.restricted_mean(horizon),
+            Err(Error::Horizon { .. })
+        ));
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_curve_falls_and_its_intervals_hold_it(
+        times in prop::collection::vec((0.0..10.0_f64, any::<bool>()), 1..40),
+    ) {
+        let runs: Vec<Transition> = times
+            .iter()
+            .map(|&(time, observed)| {
+                // Rounded, so that ties occur.
+                let time = time.round();
+                if observed {
+                    Transition::At { time, period: 0 }
+                } else {
+                    Transition::Censored { time }
+                }
+            })
+            .collect();
+        let survival = Survival::new(&runs).unwrap();
+        let mut last = 1.0;
+        for step in &survival.steps {
+            let value = step.survival.value;
+            prop_assert!(value < last && value >= 0.0);
+            prop_assert!(step.survival.interval_95.contains(value));
+            prop_assert!(step.survival.interval_68.contains(value));
+            last = value;
+        }
+        if let Ok(mean) = survival.restricted_mean(survival.watched) {
+            prop_assert!(mean.value >= 0.0 && mean.value <= survival.watched + 1e-9);
+            prop_assert!(mean.error.is_finite());
+        }
+        if let Ok(median) = survival.median() {
+            prop_assert!(median.interval_95.contains(median.value));
+        }
+    }
+}

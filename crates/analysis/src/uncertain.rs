@@ -1,0 +1,174 @@
+//! A number with its uncertainty.
+
+use serde::{Deserialize, Serialize};
+
+/// Standard deviations of the narrow interval: 68.27 per cent.
+pub(crate) const NARROW: f64 = 1.0;
+/// Standard deviations of the wide interval: 95 per cent.
+pub(crate) const WIDE: f64 = 1.959_963_984_540_054;
+/// Probability to either side of the narrow interval.
+const NARROW_TAIL: f64 = 0.158_655_253_931_457;
+/// Probability to either side of the wide interval.
+const WIDE_TAIL: f64 = 0.025;
+
+/// Confidence interval; a side that the data leave open is infinite.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Interval {
+    /// Lower end.
+    pub lower: f64,
+    /// Upper end.
+    pub upper: f64,
+}
+
+impl Interval {
+    /// Whether a value lies in the interval, ends included.
+    pub fn contains(&self, value: f64) -> bool {
+        self.lower <= value && value <= self.upper
+    }
+
+    /// Distance of the ends.
+    pub fn length(&self) -> f64 {
+        self.upper - self.lower
+    }
+}
+
+/// A number with its standard error and its confidence intervals.
+///
+/// The intervals need not be symmetric, nor the error half of the narrow one: each estimator states whether they come
+/// from a profile likelihood, a bootstrap or the normal approximation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Uncertain {
+    /// The estimate.
+    pub value: f64,
+    /// Its standard error (one standard deviation).
+    pub error: f64,
+    /// Interval that covers the truth in 68.27 per cent of repetitions.
+    pub interval_68: Interval,
+    /// Interval that covers the truth in 95 per cent of repetitions.
+    pub interval_95: Interval,
+}
+
+impl Uncertain {
+    /// Normal approximation: value +- error and value +- 1.96 error.
+    pub fn normal(value: f64, error: f64) -> Self {
+        let around = |deviations: f64| Interval {
+            lower: value - deviations * error,
+            upper: value + deviations * error,
+        };
+        Self {
+            value,
+            error,
+            interval_68: around(NARROW),
+            interval_95: around(WIDE),
+        }
+    }
+
+    /// Normal approximation for the logarithm of a positive number, of which `relative_error` is the standard error.
+    pub fn log_normal(value: f64, relative_error: f64) -> Self {
+        Self::normal(libm::log(value), relative_error).exponential()
+    }
+
+    /// Percentile bootstrap: standard deviation and quantiles of the estimates from resampled data.
+    ///
+    /// `None` with fewer than two finite estimates. Source: Efron & Tibshirani, An Introduction to the Bootstrap
+    /// (1993), chapters 6 and 13.
+    pub fn from_bootstrap(value: f64, resampled: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = resampled.iter().copied().filter(|x| !x.is_nan()).collect();
+        sorted.sort_by(f64::total_cmp);
+        let finite: Vec<f64> = sorted.iter().copied().filter(|x| x.is_finite()).collect();
+        if finite.len() < 2 {
+            return None;
+        }
+        let count = finite.len() as f64;
+        let mean = finite.iter().sum::<f64>() / count;
+        let scatter: f64 = finite.iter().map(|x| (x - mean) * (x - mean)).sum();
+        let between = |tail: f64| Interval {
+            lower: quantile(&sorted, tail),
+            upper: quantile(&sorted, 1.0 - tail),
+        };
+        Some(Self {
+            value,
+            error: (scatter / (count - 1.0)).sqrt(),
+            interval_68: between(NARROW_TAIL),
+            interval_95: between(WIDE_TAIL),
+        })
+    }
+
+    /// The number whose logarithm this is; its error by the law of propagation, its intervals exactly.
+    pub(crate) fn exponential(self) -> Self {
+        let value = libm::exp(self.value);
+        self.map(value * self.error, libm::exp)
+    }
+
+    /// An increasing function of the number, with a given standard error.
+    pub(crate) fn map(self, error: f64, function: impl Fn(f64) -> f64) -> Self {
+        let ends = |interval: Interval| Interval {
+            lower: function(interval.lower),
+            upper: function(interval.upper),
+        };
+        Self {
+            value: function(self.value),
+            error,
+            interval_68: ends(self.interval_68),
+            interval_95: ends(self.interval_95),
+        }
+    }
+
+    /// Distance from a reference value in standard errors.
+    pub fn deviations_from(&self, reference: f64) -> f64 {
+        if self.value == reference {
+            0.0
+        } else {
+            (self.value - reference) / self.error
+        }
+    }
+}
+
+/// Quantile of sorted values by linear interpolation between order statistics.
+pub(crate) fn quantile(sorted: &[f64], probability: f64) -> f64 {
+    let place = probability.clamp(0.0, 1.0) * (sorted.len() - 1) as f64;
+    let below = place as usize;
+    let above = (below + 1).min(sorted.len() - 1);
+    let fraction = place - below as f64;
+    if fraction == 0.0 || sorted[below] == sorted[above] {
+        sorted[below]
+    } else {
+        sorted[below] + fraction * (sorted[above] - sorted[below])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::synthetic::white_noise;
+
+    #[test]
+    fn intervals_of_the_normal_approximation() {
+        let found = Uncertain::normal(2.0, 0.5);
+        assert_eq!(
+            (found.interval_68.lower, found.interval_68.upper),
+            (1.5, 2.5)
+        );
+        assert!((found.interval_95.length() - 1.959_964).abs() < 1e-6);
+        assert!(found.interval_68.contains(1.5) && !found.interval_68.contains(1.49));
+        assert!((found.deviations_from(3.0) + 2.0).abs() < 1e-15);
+        assert_eq!(Uncertain::normal(1.0, 0.0).deviations_from(1.0), 0.0);
+        let ratio = Uncertain::log_normal(10.0, 0.1);
+        assert!((ratio.error - 1.0).abs() < 1e-12);
+        let product = ratio.interval_95.lower * ratio.interval_95.upper;
+        assert!((product - 100.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn quantiles_of_resampled_estimates() {
+        let found = Uncertain::from_bootstrap(0.1, &white_noise(3, 20_000)).unwrap();
+        assert_eq!(found.value, 0.1);
+        assert!((found.error - 1.0).abs() < 0.02);
+        assert!((found.interval_68.lower + 1.0).abs() < 0.04);
+        assert!((found.interval_95.upper - 1.96).abs() < 0.06);
+        assert!(Uncertain::from_bootstrap(0.0, &[1.0, f64::NAN]).is_none());
+        let open = Uncertain::from_bootstrap(0.0, &[1.0, 2.0, f64::INFINITY]).unwrap();
+        assert_eq!(open.interval_95.upper, f64::INFINITY);
+        assert!((quantile(&[1.0, 2.0, 4.0], 0.75) - 3.0).abs() < 1e-15);
+    }
+}
