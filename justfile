@@ -27,3 +27,8 @@ bench:
 bench-peers *options:
     cargo build --release -p peristalsis
     python3 benchmarks/peers/bench_peers.py {{options}}
+
+# Speed against cores, grains and width of the tube (--quick, --runs N, --only NAME ...).
+bench-scaling *options:
+    cargo build --release -p peristalsis
+    python3 benchmarks/scaling/bench_scaling.py {{options}}

@@ -128,7 +128,7 @@ def wide(program, runs, quick):
     ratios, contacts, grains = [], (0, 0), 0
     for _ in range(runs):
         broad, _ = program.run(wide_tube)
-        narrow, _ = program.run(tube(2000, 0.5, "drive.width=2.9", "grains.volume_fraction=0.12"))
+        narrow, _ = program.run(tube(4938, 0.5, "drive.width=2.85"))
         grains = broad["grains"]
         contacts = (broad["contacts"], narrow["contacts"])
         ratios.append(speed(narrow) / speed(broad))
