@@ -28,7 +28,7 @@ use self::listing::{Partners, Tile};
 use self::motion::{Moved, Phase};
 use self::order::Row;
 use self::pairs::{Block, PairConstants};
-use self::strips::{Strips, WIDE_SKIN};
+use self::strips::{SKINS, Strips};
 use self::sums::Sums;
 use self::wall::WallTable;
 use super::lanes::LANES;
@@ -46,7 +46,7 @@ pub use self::order::Sorting;
 const TILE: usize = 128;
 
 /// Tiles whose forces threads work out before they are added up.
-const BATCH: usize = 128;
+const BATCH: usize = 512;
 
 /// Grains in the order of z, with all that their motion needs.
 #[derive(Clone, Debug)]
@@ -119,7 +119,7 @@ impl Sorted {
         let equal = bodies.diameter.windows(2).all(|pair| pair[0] == pair[1])
             && bodies.mass.windows(2).all(|pair| pair[0] == pair[1]);
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
-        let cutoff = diameter + WIDE_SKIN * skin;
+        let cutoff = diameter + SKINS * skin;
         equal
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.

@@ -1,8 +1,9 @@
 //! The order of the grains, strip by strip and along each strip: making it, and bringing grains into it and back.
 
 use glam::DVec3;
+use rayon::prelude::*;
 
-use super::Sorted;
+use super::{Sorted, TILE};
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
 
@@ -306,6 +307,7 @@ impl Sorted {
             place = row.places().end + LANES;
             self.rows.push(row);
         }
+        let parallel = self.pool.is_some();
         let (rows, places) = (&self.rows, place.next_multiple_of(LANES));
         for columns in [
             &mut self.position,
@@ -313,11 +315,19 @@ impl Sorted {
             &mut self.acceleration,
         ] {
             for values in columns.each() {
-                gather(rows, keys, values, 0.0, column, places);
+                gather(rows, keys, values, 0.0, column, places, parallel);
             }
         }
-        gather(rows, keys, &mut self.order, u32::MAX, order, places);
-        gather(rows, keys, &mut self.turns, 0, turns, places);
+        gather(
+            rows,
+            keys,
+            &mut self.order,
+            u32::MAX,
+            order,
+            places,
+            parallel,
+        );
+        gather(rows, keys, &mut self.turns, 0, turns, places, parallel);
 
         let z = &mut self.position.z;
         z.fill(NOWHERE);
@@ -361,23 +371,37 @@ impl Sorted {
     }
 }
 
+/// Grains that a thread brings into order at a time.
+const PIECE: usize = 32 * TILE;
+
 /// Brings values into the order of the keys, row by row; `filler` stands where there is no grain.
-fn gather<T: Copy>(
+fn gather<T: Copy + Send + Sync>(
     rows: &[Row],
     keys: &[(f64, u32)],
     values: &mut Vec<T>,
     filler: T,
     scratch: &mut Vec<T>,
     places: usize,
+    parallel: bool,
 ) {
     scratch.clear();
     scratch.resize(places, filler);
+    let from = &values[..];
+    let one = |(gathered, keys): (&mut [T], &[(f64, u32)])| {
+        for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
+            *gathered = from[place as usize];
+        }
+    };
     let mut keys = keys;
     for row in rows {
         let own;
         (own, keys) = keys.split_at(row.grains);
-        for (gathered, &(_, place)) in scratch[row.own()].iter_mut().zip(own) {
-            *gathered = values[place as usize];
+        let gathered = &mut scratch[row.own()];
+        if parallel && row.grains > PIECE {
+            let pieces = gathered.par_chunks_mut(PIECE);
+            pieces.zip(own.par_chunks(PIECE)).for_each(one);
+        } else {
+            one((gathered, own));
         }
     }
     core::mem::swap(values, scratch);

@@ -4,15 +4,14 @@
 //! stand in the same strip or in one of the eight beside it, of which four look for them.
 
 /// Mean number of grains ahead within reach above which strips serve better than one row.
-const MOST_AHEAD: f64 = 16.0;
+const MOST_AHEAD: f64 = 20.0;
 
 /// Half the width of the square that is divided, in mean radii of the tube; what lies farther out belongs to the strips
 /// at its edge.
 const HALF_WIDTH: f64 = 1.25;
 
-/// Skin where there are several strips, in skins of a narrow tube: there sorting anew costs more, and pairs that do not
-/// touch cost less.
-pub(super) const WIDE_SKIN: f64 = 2.0;
+/// Skin of this kernel in skins of a list of neighbours: sorting anew costs more, and pairs that do not touch cost less.
+pub(super) const SKINS: f64 = 2.0;
 
 /// How many strips side by side at most.
 const MOST_ACROSS: f64 = 256.0;
@@ -40,8 +39,9 @@ impl Strips {
         skin: f64,
     ) -> Self {
         let half_width = HALF_WIDTH * mean_radius;
-        let ahead = grains as f64 / length * (diameter + skin);
-        let cutoff = diameter + WIDE_SKIN * skin;
+        let skin = SKINS * skin;
+        let cutoff = diameter + skin;
+        let ahead = grains as f64 / length * cutoff;
         let across = if ahead <= MOST_AHEAD {
             1.0
         } else {
@@ -51,7 +51,7 @@ impl Strips {
             across: across as usize,
             half_width,
             per_width: across / (2.0 * half_width),
-            skin: if across > 1.0 { WIDE_SKIN * skin } else { skin },
+            skin,
         }
     }
 
@@ -66,6 +66,9 @@ impl Strips {
 
     /// The strip of a place in the cross-section.
     pub(super) fn at(&self, x: f64, y: f64) -> usize {
+        if !self.several() {
+            return 0;
+        }
         let index = |coordinate: f64| {
             (((coordinate + self.half_width) * self.per_width) as usize).min(self.across - 1)
         };
@@ -100,7 +103,7 @@ mod tests {
 
     #[test]
     fn neighbours_within_the_cutoff_meet_exactly_once() {
-        let cutoff = 1.0 + WIDE_SKIN * 0.3;
+        let cutoff = 1.0 + SKINS * 0.3;
         let strips = Strips::new(100_000, 500.0, 4.0, 1.0, 0.3);
         let meets = |one: usize, other: usize| strips.ahead(one).contains(&Some(other));
         let places: Vec<(f64, f64)> = (-13..=13)
