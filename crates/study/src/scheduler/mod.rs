@@ -207,10 +207,15 @@ pub fn work_on(
         .common
         .into_inner()
         .unwrap_or_else(PoisonError::into_inner);
-    match common.error.take() {
-        Some(error) => Err(error),
-        None => Ok(ending),
+    if let Some(error) = common.error.take() {
+        return Err(error);
     }
+    let has_ended = |run: &PlannedRun| finding(&common.entries, &run.identity).is_some();
+    if common.plan.runs().iter().all(has_ended) {
+        // A request to stop came when nothing was left to do.
+        return Ok(Ending::Complete);
+    }
+    Ok(ending)
 }
 
 /// Keeps the leases, obeys and shows, until no worker is left.
