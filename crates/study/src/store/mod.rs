@@ -168,7 +168,7 @@ impl Store {
                     expected: study.name.clone(),
                 });
             }
-        } else if fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_some()) {
+        } else if !store.holds_nothing_else() {
             return Err(StudyError::NoStore {
                 path: path.to_owned(),
                 reason: "it holds other files".to_owned(),
@@ -188,6 +188,20 @@ impl Store {
             }
         }
         Ok(store)
+    }
+
+    /// Whether nothing is in the folder but what a process leaves that is making a store just now, or was killed doing so.
+    fn holds_nothing_else(&self) -> bool {
+        let is_ours = |name: &str| {
+            [STUDY, BASE, RUNS].contains(&name)
+                || name.starts_with(INDEX)
+                || name.ends_with(atomic::PARTIAL_SUFFIX)
+        };
+        fs::read_dir(&self.path).map_or(true, |entries| {
+            entries
+                .flatten()
+                .all(|entry| entry.file_name().to_str().is_some_and(is_ours))
+        })
     }
 
     /// Opens a store.
