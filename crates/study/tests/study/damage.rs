@@ -206,7 +206,7 @@ fn a_run_that_fails_is_kept_with_its_reason_and_can_be_tried_again() {
         .collect();
     for run in &failed {
         let reason = survey.entries[&run.identity].reason.clone().unwrap();
-        assert!(reason.contains("too far"), "{reason}");
+        assert!(reason.contains("diverged at step"), "{reason}");
         assert!(
             place
                 .store()
