@@ -24,6 +24,8 @@ pub use board::{Board, Working};
 const TICK: Duration = Duration::from_millis(50);
 /// Time between two heartbeats.
 const HEARTBEAT: Duration = Duration::from_secs(5);
+/// Time between two measurements of how far the study is.
+const MEASUREMENT: Duration = Duration::from_millis(300);
 /// Time after which a worker without work asks again.
 const IDLE: Duration = Duration::from_millis(300);
 
@@ -256,9 +258,9 @@ fn coordinate(
                 common.error.get_or_insert(error);
             }
         }
-        let board = gauge.board(shared.study, &mut common);
+        gauge.look(shared.study, &mut common, is_last);
         drop(common);
-        watch(&board);
+        watch(&gauge.board);
         if is_last {
             return ending;
         }
@@ -273,6 +275,8 @@ struct Gauge {
     before: f64,
     /// What the estimates were made from, and they themselves.
     brackets: (usize, Vec<crate::Bracket>),
+    measured: Option<Instant>,
+    board: Board,
 }
 
 impl Gauge {
@@ -281,10 +285,26 @@ impl Gauge {
             begin: Instant::now(),
             before: fraction(common),
             brackets: (usize::MAX, Vec::new()),
+            measured: None,
+            board: Board::default(),
         }
     }
 
-    fn board(&mut self, study: &Specification, common: &mut Common) -> Board {
+    /// Brings the board up to date: the workers always, the rest now and then.
+    fn look(&mut self, study: &Specification, common: &mut Common, is_last: bool) {
+        self.board.workers.clone_from(&common.workers);
+        self.board.news = std::mem::take(&mut common.news);
+        if is_last
+            || self
+                .measured
+                .is_none_or(|last| last.elapsed() > MEASUREMENT)
+        {
+            self.measure(study, common);
+            self.measured = Some(Instant::now());
+        }
+    }
+
+    fn measure(&mut self, study: &Specification, common: &Common) {
         let runs = common.plan.runs();
         let count = |state: State| {
             runs.iter()
@@ -304,16 +324,15 @@ impl Gauge {
         let fraction = fraction(common);
         let gained = fraction - self.before;
         let left = (gained > 0.0).then(|| self.begin.elapsed().mul_f64((1.0 - fraction) / gained));
-        Board {
+        self.board = Board {
             total: runs.len(),
             done,
             failed,
             fraction,
             left,
-            workers: common.workers.clone(),
             brackets: self.brackets.1.clone(),
-            news: std::mem::take(&mut common.news),
-        }
+            ..std::mem::take(&mut self.board)
+        };
     }
 }
 

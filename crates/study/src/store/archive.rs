@@ -119,6 +119,7 @@ impl Store {
             }
             fs::rename(unpacked.path(), &target)
                 .map_err(StudyError::io("move into place", &target))?;
+            atomic::synchronize(&self.file(RUNS))?;
             if let Verdict::Done { row, stamp } = self.run_files(*identity).verdict(None) {
                 index.note([(*identity, &done(&row, stamp))])?;
                 packed.taken += 1;

@@ -446,3 +446,6 @@ impl Lease {
         )
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -126,6 +126,9 @@ impl RunFiles {
     /// Makes the folder, and what of it does not change during the run; takes away what a killed process left half written.
     pub(crate) fn begin(&self, assignment: &Assignment) -> Result<(), StudyError> {
         fs::create_dir_all(&self.path).map_err(StudyError::io("make", &self.path))?;
+        if let Some(runs) = self.path.parent() {
+            atomic::synchronize(runs)?;
+        }
         for entry in fs::read_dir(&self.path).map_err(StudyError::io("read", &self.path))? {
             let path = entry.map_err(StudyError::io("read", &self.path))?.path();
             let name = path.to_string_lossy();

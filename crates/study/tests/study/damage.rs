@@ -266,3 +266,15 @@ fn a_folder_that_cannot_be_written_ends_the_work_with_its_name() {
     }
     fs::set_permissions(&runs, fs::Permissions::from_mode(0o755)).unwrap();
 }
+
+#[test]
+fn a_damaged_copy_of_the_study_file_is_replaced_by_the_file_itself() {
+    let place = Place::new(SMALL);
+    place.complete();
+    let tables = place.tables();
+    fs::write(place.path("store/study.toml"), "name = ").unwrap();
+    assert!(place.store().specification().is_ok());
+    assert!(place.path("store/study.toml.damaged-1").exists());
+    assert_eq!(place.complete(), Vec::<String>::new());
+    assert_eq!(place.tables(), tables);
+}

@@ -43,9 +43,9 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
     assert_eq!(estimate["runs"], 12);
     // 0.5 is halved three times, in two lines, by three replicates.
     assert_eq!(estimate["refinement_runs"], 3 * 2 * 3);
-    // 100 periods of 10 in steps of 0.05.
-    assert_eq!(estimate["steps"], 12 * 20_000);
-    assert_eq!(estimate["grain_steps"], 12.0 * 20_000.0 * 100.0);
+    // 70 periods of 10 in steps of 0.05.
+    assert_eq!(estimate["steps"], 12 * 14_000);
+    assert_eq!(estimate["grain_steps"], 12.0 * 14_000.0 * 100.0);
     assert!(estimate["processor_seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(plan["runs"].as_array().unwrap().len(), 12);
     place
@@ -315,7 +315,7 @@ fn interrupted(place: &Place, signal: &str) -> Outcome {
 #[test]
 fn signals_stop_it_with_every_run_saved() {
     for (signal, code) in [("INT", 130), ("TERM", 143), ("USR1", 138)] {
-        let place = place_of(&STUDY.replace("run.periods = 100", "run.periods = 100000"));
+        let place = place_of(&STUDY.replace("run.periods = 70", "run.periods = 100000"));
         let outcome = interrupted(&place, signal).expect_code(code).says(&[
             "stopped, every run is saved",
             "go on with: peristalsis study run",
@@ -332,7 +332,11 @@ fn signals_stop_it_with_every_run_saved() {
 
 #[test]
 fn time_that_is_up_stops_it_as_well() {
-    let place = place_of(&STUDY.replace("run.periods = 100", "run.periods = 100000"));
+    let place = place_of(
+        &STUDY
+            .replace("run.periods = 70", "run.periods = 100000")
+            .replace("[stop]\nsettled_periods = 30", ""),
+    );
     place
         .call([
             "study",

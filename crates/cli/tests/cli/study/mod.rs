@@ -20,14 +20,14 @@ replicates = 3
 grains.number = 100
 tube.waves = 5
 drive.strain_rate = 0.1
-run.periods = 100
+run.periods = 70
 
 [[axes]]
 key = "drive.width"
 values = [2.4, 2.9]
 
 [stop]
-settled_periods = 40
+settled_periods = 30
 "#;
 
 /// Four runs that take no time.
@@ -35,7 +35,7 @@ fn quick() -> String {
     STUDY
         .replace("grains.number = 100", "grains.number = 20")
         .replace("tube.waves = 5", "tube.waves = 2")
-        .replace("run.periods = 100", "run.periods = 4")
+        .replace("run.periods = 70", "run.periods = 4")
         .replace("replicates = 3", "replicates = 1")
 }
 

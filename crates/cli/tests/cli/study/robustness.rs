@@ -92,7 +92,7 @@ fn assert_whole(place: &Place, runs: usize) {
 #[test]
 fn kills_at_random_moments_lose_nothing() {
     let place = place_of(STUDY);
-    let kills = kill_until_done(&place, &mut Numbers(1), 260);
+    let kills = kill_until_done(&place, &mut Numbers(1), 180);
     assert!(kills >= 8, "only {kills} kills");
     assert!(tables(&place, "store") == *usual_tables());
     assert_whole(&place, 12);
@@ -299,7 +299,7 @@ fn files_that_cannot_grow_end_the_work_and_lose_nothing() {
 fn dozens_of_kills_of_two_processes_lose_nothing() {
     let text = STUDY
         .replace("replicates = 3", "replicates = 6")
-        .replace("run.periods = 100", "run.periods = 200")
+        .replace("run.periods = 70", "run.periods = 200")
         + "[refine]\nkey = \"drive.width\"\ntolerance = 0.15\n";
     let expected = undisturbed(&text);
     for seed in 0..3 {
