@@ -57,16 +57,13 @@ impl Display {
             };
         }
         let all = MultiProgress::with_draw_target(ProgressDrawTarget::stderr_with_hz(REFRESH_RATE));
-        let style = |template: &str| {
-            ProgressStyle::with_template(template)
-                .expect("the template is a constant with known fields")
-                .progress_chars("━╸─")
-        };
-        let runs = all.add(ProgressBar::new(1000).with_style(style("{bar:30.cyan/dim} {msg}")));
-        let line = || all.add(ProgressBar::new(1).with_style(style("  {wide_msg}")));
+        let bar = ProgressBar::new(1000).with_style(style("{bar:30.cyan/dim} {msg}"));
+        let runs = all.add(bar);
         Self::Bars(Bars {
-            estimates: (0..ESTIMATES_SHOWN).map(|_| line()).collect(),
-            workers: (0..workers.min(WORKERS_SHOWN)).map(|_| line()).collect(),
+            estimates: Vec::new(),
+            workers: (0..workers.min(WORKERS_SHOWN))
+                .map(|_| all.add(line()))
+                .collect(),
             runs,
             all,
         })
@@ -100,19 +97,38 @@ impl Display {
     /// Takes the lines away.
     pub(super) fn finish(&self) {
         if let Self::Bars(bars) = self {
-            drop(bars.all.clear());
+            let lines = bars.estimates.iter().chain(&bars.workers);
+            for line in lines.chain([&bars.runs]) {
+                line.finish_and_clear();
+            }
         }
     }
 }
 
+/// How a line is drawn.
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template)
+        .expect("the template is a constant with known fields")
+        .progress_chars("━╸─")
+}
+
+/// A line of text.
+fn line() -> ProgressBar {
+    ProgressBar::new(1).with_style(style("  {wide_msg}"))
+}
+
 impl Bars {
-    fn update(&self, board: &Board) {
+    fn update(&mut self, board: &Board) {
         for news in &board.news {
             drop(self.all.println(news));
         }
         self.runs.set_position((1000.0 * board.fraction) as u64);
         self.runs.set_message(overall(board));
         let more = board.brackets.len().saturating_sub(ESTIMATES_SHOWN);
+        while self.estimates.len() < board.brackets.len().min(ESTIMATES_SHOWN) {
+            let below = self.estimates.len() + 1;
+            self.estimates.push(self.all.insert(below, line()));
+        }
         for (index, line) in self.estimates.iter().enumerate() {
             line.set_message(match board.brackets.get(index) {
                 Some(_) if more > 0 && index + 1 == ESTIMATES_SHOWN => {
