@@ -33,6 +33,17 @@ struct Finished {
 }
 
 impl Store {
+    /// The finished runs of the study, a row each in the order of the axes, every hash checked: the first table of
+    /// [`Store::export`].
+    ///
+    /// # Errors
+    /// Errors of reading the store.
+    pub fn rows(&self) -> Result<Table, StudyError> {
+        let survey = self.survey()?;
+        let (finished, _) = self.finished(&survey, &mut self.index()?)?;
+        rows_table(&survey, &finished)
+    }
+
     /// Writes the tables of the study into a folder: `NAME.parquet` and `NAME.csv`, a row a finished run in the order of
     /// the axes; `NAME-timing.csv`, what each took; `NAME-failed.csv`, the runs that failed; and with `series`
     /// `NAME-series.parquet`, J/Jmax in time of every run.

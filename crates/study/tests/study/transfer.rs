@@ -11,6 +11,10 @@ fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
     let first = Place::new(SMALL);
     first.complete();
     let tables = first.tables();
+    assert_eq!(
+        peristalsis_formats::parquet::encode(&first.store().rows().unwrap()).unwrap(),
+        tables[1]
+    );
     for ending in ["csv", "parquet"] {
         let second = Place::new(SMALL);
         let table = first.path(&format!("tables/small.{ending}"));

@@ -56,6 +56,20 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
 }
 
 #[test]
+fn examples_are_studies() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/studies");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let plan = Place::new()
+            .call(["study", "plan", path.to_str().unwrap(), "--json"])
+            .expect_code(0)
+            .json();
+        assert_eq!(plan["estimate"]["warnings"].as_array().unwrap().len(), 0);
+        assert_eq!(plan["name"], path.file_stem().unwrap().to_str().unwrap());
+    }
+}
+
+#[test]
 fn the_disk_of_a_plan_is_about_that_of_the_store() {
     let place = finished();
     let plan = place
