@@ -160,7 +160,7 @@ fn stopped_half_way(place: &Place) -> std::path::PathBuf {
 #[test]
 fn damaged_checkpoints_fall_back_to_the_older_one_and_then_to_the_start() {
     let text = SMALL
-        .replace("run.periods = 12", "run.periods = 150")
+        .replace("run.periods = 12", "run.periods = 350")
         .replace("replicates = 3", "replicates = 1");
     let through = Place::new(&text);
     through.complete();

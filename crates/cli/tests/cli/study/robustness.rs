@@ -30,7 +30,7 @@ const RUN: [&str; 9] = [
     "--store",
     "store",
     "--checkpoint-every",
-    "50ms",
+    "20ms",
     "--workers",
     "2",
 ];
@@ -92,8 +92,9 @@ fn assert_whole(place: &Place, runs: usize) {
 #[test]
 fn kills_at_random_moments_lose_nothing() {
     let place = place_of(STUDY);
-    let kills = kill_until_done(&place, &mut Numbers(1), 180);
-    assert!(kills >= 8, "only {kills} kills");
+    let kills = kill_until_done(&place, &mut Numbers(1), 300);
+    assert!(kills >= 4, "only {kills} kills");
+    println!("{kills} kills");
     assert!(tables(&place, "store") == *usual_tables());
     assert_whole(&place, 12);
 }
@@ -106,7 +107,7 @@ fn two_processes_of_which_one_is_killed_share_a_store() {
     let mut kills = 0;
     while steady.try_wait().unwrap().is_none() {
         let mut other = start(&place);
-        std::thread::sleep(Duration::from_millis(50 + numbers.below(300)));
+        std::thread::sleep(Duration::from_millis(20 + numbers.below(150)));
         if other.try_wait().unwrap().is_none() {
             other.kill().unwrap();
             kills += 1;
@@ -295,27 +296,28 @@ fn files_that_cannot_grow_end_the_work_and_lose_nothing() {
 }
 
 #[test]
-#[ignore = "minutes: dozens of kills of two processes at once"]
+#[ignore = "a minute or two: dozens of kills of two processes at once, with refinement"]
 fn dozens_of_kills_of_two_processes_lose_nothing() {
     let text = STUDY
         .replace("replicates = 3", "replicates = 6")
-        .replace("run.periods = 70", "run.periods = 200")
+        .replace("run.periods = 70", "run.periods = 150")
         + "[refine]\nkey = \"drive.width\"\ntolerance = 0.15\n";
     let expected = undisturbed(&text);
-    for seed in 0..3 {
+    let mut kills = 0;
+    for seed in 0..40 {
         let place = place_of(&text);
-        let kills: u32 = std::thread::scope(|scope| {
-            let loops: Vec<_> = [10, 20]
-                .map(|base| {
-                    let place = &place;
-                    scope.spawn(move || kill_until_done(place, &mut Numbers(base + seed), 400))
-                })
-                .into_iter()
-                .collect();
-            loops.into_iter().map(|one| one.join().unwrap()).sum()
+        kills += std::thread::scope(|scope| {
+            let place = &place;
+            let loops = [100, 200].map(|base| {
+                scope.spawn(move || kill_until_done(place, &mut Numbers(base + seed), 300))
+            });
+            loops.map(|one| one.join().unwrap()).iter().sum::<u32>()
         });
-        assert!(kills >= 24, "only {kills} kills");
         assert!(tables(&place, "store") == expected);
         assert!(!place.path("store/quarantine").exists());
+        if kills >= 100 {
+            return;
+        }
     }
+    panic!("only {kills} kills");
 }
