@@ -45,4 +45,6 @@ pub use refinement::{Bracket, Finding, brackets, refine};
 pub use row::Row;
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
-pub use store::{Entry, Exported, LEASE_TIMEOUT, Packed, State, Store, Survey, Verification};
+pub use store::{
+    Entry, Exported, LEASE_TIMEOUT, Packed, Staleness, State, Store, Survey, Verification,
+};

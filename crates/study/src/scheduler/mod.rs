@@ -148,13 +148,7 @@ impl Shared<'_> {
     fn assignment(&self, identity: Identity) -> (Assignment, String) {
         let common = self.common();
         let run = common.planned(identity);
-        let assignment = Assignment {
-            identity,
-            replicate: run.replicate,
-            configuration: common.plan.configuration(&run),
-            stopping: common.plan.stopping,
-            record: common.plan.record.clone(),
-        };
+        let assignment = Assignment::of(&common.plan, &run);
         let words = common.plan.point(&run).in_words();
         (assignment, format!("{words}, replicate {}", run.replicate))
     }

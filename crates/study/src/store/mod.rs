@@ -18,6 +18,7 @@ mod index;
 mod owner;
 mod run_files;
 mod seal;
+mod staleness;
 mod survey;
 
 use std::fs;
@@ -37,6 +38,7 @@ pub(crate) use index::{Claim, Index};
 pub use index::{Entry, State};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
+pub use staleness::Staleness;
 pub use survey::Survey;
 pub(crate) use survey::finding;
 

@@ -7,15 +7,17 @@ use std::path::{Path, PathBuf};
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, atomic, parquet};
 use peristalsis_run::{Run, RunError, Stopping, Summary, profile_table, timeseries_table};
+use serde_json::Value;
 
 use super::seal::{SEAL, Seal};
 use crate::error::StudyError;
 use crate::identity::{Identity, PHYSICS_VERSION, Record};
+use crate::plan::{Plan, PlannedRun};
 use crate::row::Row;
 
 const CONFIGURATION: &str = "config.toml";
 /// What signac and row look for beside each run.
-const STATEPOINT: &str = "signac_statepoint.json";
+pub(crate) const STATEPOINT: &str = "signac_statepoint.json";
 /// The newer and the older generation of the state.
 const CHECKPOINTS: [&str; 2] = ["state.checkpoint", "state.checkpoint.1"];
 pub(crate) const TIMESERIES: &str = "timeseries.parquet";
@@ -56,6 +58,18 @@ pub(crate) struct Assignment {
     pub(crate) record: Record,
 }
 
+impl Assignment {
+    pub(crate) fn of(plan: &Plan, run: &PlannedRun) -> Self {
+        Self {
+            identity: run.identity,
+            replicate: run.replicate,
+            configuration: plan.configuration(run),
+            stopping: plan.stopping,
+            record: plan.record.clone(),
+        }
+    }
+}
+
 /// The folder of one run.
 #[derive(Clone, Debug)]
 pub(crate) struct RunFiles {
@@ -85,7 +99,7 @@ impl RunFiles {
             return self.sealed(checked).unwrap_or_else(Verdict::Damaged);
         }
         if let Ok(text) = fs::read_to_string(self.file(FAILED)) {
-            let reason = serde_json::from_str::<serde_json::Value>(&text)
+            let reason = serde_json::from_str::<Value>(&text)
                 .ok()
                 .and_then(|value| Some(value.get("reason")?.as_str()?.to_owned()));
             return Verdict::Failed(reason.unwrap_or(text));
@@ -137,7 +151,7 @@ impl RunFiles {
             }
         }
         self.write_if_other(CONFIGURATION, &assignment.configuration.to_toml())?;
-        self.write_if_other(STATEPOINT, &statepoint(assignment))
+        self.write_if_other(STATEPOINT, &format!("{:#}\n", statepoint(assignment)))
     }
 
     fn write_if_other(&self, name: &str, text: &str) -> Result<(), StudyError> {
@@ -276,7 +290,7 @@ fn split(summary: &Summary) -> (String, String) {
             }
         }
     }
-    let timing = serde_json::Value::from(timing);
+    let timing = Value::from(timing);
     (format!("{science:#}\n"), format!("{timing:#}\n"))
 }
 
@@ -303,7 +317,7 @@ fn kept(table: Table, columns: Option<&[String]>) -> Table {
 }
 
 /// The state point: every key of the configuration and what else makes the identity.
-fn statepoint(assignment: &Assignment) -> String {
+pub(crate) fn statepoint(assignment: &Assignment) -> Value {
     let text = assignment.configuration.to_toml();
     let mut table: toml::Table =
         toml::from_str(&text).expect("the canonical form of a configuration is TOML");
@@ -314,7 +328,11 @@ fn statepoint(assignment: &Assignment) -> String {
     statepoint["physics_version"] = PHYSICS_VERSION.into();
     statepoint["stop"] = match assignment.stopping {
         Some(stopping) => serde_json::json!({ "settled_periods": stopping.settled_periods }),
-        None => serde_json::Value::Null,
+        None => Value::Null,
     };
-    format!("{statepoint:#}\n")
+    statepoint["record"] = serde_json::json!({
+        "columns": assignment.record.columns,
+        "profile": assignment.record.profile,
+    });
+    statepoint
 }

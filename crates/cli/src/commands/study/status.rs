@@ -1,8 +1,9 @@
 //! `peristalsis study status` and `peristalsis study why`
 
+use std::collections::HashSet;
 use std::process::ExitCode;
 
-use peristalsis_study::{Bracket, State, Store, Survey, brackets};
+use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
@@ -84,17 +85,11 @@ pub(super) fn in_words(store: &Store, survey: &Survey) -> String {
         survey.plan.runs().len(),
         counts.join(", ")
     ));
+    let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
     let others = survey
         .entries
         .iter()
-        .filter(|(identity, entry)| {
-            entry.state == State::Done
-                && !survey
-                    .plan
-                    .runs()
-                    .iter()
-                    .any(|run| run.identity == **identity)
-        })
+        .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity))
         .count();
     if others > 0 {
         text.push_str(&format!(
@@ -169,9 +164,13 @@ pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
             ));
         }
         None => {
-            lines.push("point       not part of the study as it stands: its study file, the program's physics or \
-                        the rule by which runs stop have changed since"
-                .to_owned());
+            lines.push("point       not part of the study as it stands".to_owned());
+            if let Some(stale) = store.staleness(&survey, identity) {
+                lines.push(format!("nearest     {}", stale.nearest));
+                for difference in &stale.differences {
+                    lines.push(format!("changed     {difference}"));
+                }
+            }
         }
     }
     let entry = survey.entries.get(&identity);

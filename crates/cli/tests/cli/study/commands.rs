@@ -197,9 +197,23 @@ fn why_says_what_has_become_of_a_run() {
         .call(["study", "run", "study.toml", "--store", "store"])
         .expect_code(0)
         .shows(&["4 finished runs are not part of the study"]);
-    why(&run)
-        .expect_code(0)
-        .shows(&["not part of the study as it stands", "done"]);
+    why(&run).expect_code(0).shows(&[
+        "not part of the study as it stands",
+        "nearest     drive.width 2.6, from rest, replicate 0",
+        "changed     drive.width: 2.4, now 2.6\n",
+        "done",
+    ]);
+    place.write(
+        "study.toml",
+        quick().replace("settled_periods = 30", "settled_periods = 5"),
+    );
+    place
+        .call(["study", "run", "study.toml", "--store", "store"])
+        .expect_code(0);
+    why(&run).expect_code(0).shows(&[
+        "nearest     drive.width 2.4",
+        "changed     stop.settled_periods: 30, now 5\n",
+    ]);
 }
 
 #[test]
