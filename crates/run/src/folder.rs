@@ -138,7 +138,7 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Format`] where the file cannot be written; an older state stays.
     pub fn save_state(&self, run: &Run) -> Result<(), RunError> {
-        Ok(atomic::write(&self.file(STATE), &run.checkpoint()?)?)
+        run.write_checkpoint(&self.file(STATE))
     }
 
     /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.

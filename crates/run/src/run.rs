@@ -1,5 +1,6 @@
 //! A run in progress.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
@@ -93,7 +94,7 @@ impl Run {
         })
     }
 
-    /// Goes on from a checkpoint that [`Run::checkpoint`] made for the same configuration.
+    /// Goes on from a checkpoint that [`Run::write_checkpoint`] wrote for the same configuration.
     ///
     /// # Errors
     /// [`RunError::Format`] where the checkpoint is damaged or another's, and as [`Run::resume`].
@@ -102,13 +103,13 @@ impl Run {
         Self::resume(configuration, state)
     }
 
-    /// The state as a checkpoint.
+    /// Writes the state to a checkpoint file, whole or not at all.
     ///
     /// # Errors
-    /// [`RunError::Format`] where it is too large.
-    pub fn checkpoint(&self) -> Result<Vec<u8>, RunError> {
+    /// [`RunError::Format`] where it is too large or cannot be written; an older file stays.
+    pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
         let identity = checkpoint_identity(&self.configuration);
-        Ok(checkpoint::encode(&identity, &self.state())?)
+        Ok(checkpoint::write(path, &identity, &self.state())?)
     }
 
     /// Lets the run end before its time. The rule is no part of the state: give it again after a restart.

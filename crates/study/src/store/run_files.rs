@@ -201,7 +201,6 @@ impl RunFiles {
 
     /// Saves the state; the one before becomes the older generation.
     pub(crate) fn save(&self, run: &Run) -> Result<(), StudyError> {
-        let bytes = run.checkpoint().map_err(|source| self.failed(source))?;
         let [newer, older] = CHECKPOINTS.map(|name| self.file(name));
         match fs::rename(&newer, &older) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -209,7 +208,8 @@ impl RunFiles {
             }
             _ => {}
         }
-        Ok(atomic::write(&newer, &bytes)?)
+        run.write_checkpoint(&newer)
+            .map_err(|source| self.failed(source))
     }
 
     /// Writes the products and seals them.
