@@ -115,7 +115,15 @@ impl Failure {
             Self::Study(StudyError::NoStore { .. }) => Some(
                 "a store is the folder that `peristalsis study run FILE --store DIR` made".to_owned(),
             ),
-            Self::Study(StudyError::Io { .. } | StudyError::Format(_) | StudyError::Index { .. }) => {
+            Self::Study(
+                StudyError::Io { .. }
+                | StudyError::Format(_)
+                | StudyError::Index { .. }
+                | StudyError::Run {
+                    source: RunError::Format(_),
+                    ..
+                },
+            ) => {
                 Some("nothing that was finished is lost: mend the disk and call again".to_owned())
             }
             _ => None,
