@@ -87,6 +87,7 @@ impl Store {
     }
 
     pub(super) fn fill(&self, index: &mut Index) -> Result<Verification, StudyError> {
+        let before = index.states()?;
         let mut found = Verification::default();
         let mut entries = self.imported()?;
         let leases = index.leases(LEASE_TIMEOUT)?;
@@ -129,7 +130,7 @@ impl Store {
             .values()
             .filter(|entry| entry.state == State::Done && entry.reason.is_some())
             .count();
-        index.replace(&entries)?;
+        index.replace(&entries, &before)?;
         Ok(found)
     }
 

@@ -209,11 +209,28 @@ impl Index {
         })
     }
 
-    /// Forgets what was known of all runs and notes this instead; leases stay.
-    pub(crate) fn replace(&mut self, entries: &HashMap<Identity, Entry>) -> Result<(), StudyError> {
+    /// What has become of each run, leases apart.
+    pub(crate) fn states(&self) -> Result<HashMap<Identity, State>, StudyError> {
+        all_states(&self.connection).map_err(|error| self.failed(error))
+    }
+
+    /// Forgets what was known of all runs and notes this instead. Leases stay, and so does what other processes have noted
+    /// since the states were those of `before`, when whoever calls began to look at the files.
+    pub(crate) fn replace(
+        &mut self,
+        entries: &HashMap<Identity, Entry>,
+        before: &HashMap<Identity, State>,
+    ) -> Result<(), StudyError> {
         self.change(|transaction| {
-            transaction.execute("DELETE FROM runs", [])?;
-            for (identity, entry) in entries {
+            let now = all_states(transaction)?;
+            let is_news = |identity: &Identity| {
+                now.contains_key(identity) && now.get(identity) != before.get(identity)
+            };
+            for identity in now.keys().filter(|identity| !is_news(identity)) {
+                let text = identity.to_string();
+                transaction.execute("DELETE FROM runs WHERE identity = ?1", [text])?;
+            }
+            for (identity, entry) in entries.iter().filter(|(identity, _)| !is_news(identity)) {
                 put(transaction, *identity, entry)?;
             }
             transaction.pragma_update(None, "user_version", LAYOUT)

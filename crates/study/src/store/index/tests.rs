@@ -111,7 +111,10 @@ fn an_index_is_new_until_it_has_been_filled() {
     };
     case.claim(0);
     case.index()
-        .replace(&HashMap::from([(case.runs[0], entry.clone())]))
+        .replace(
+            &HashMap::from([(case.runs[0], entry.clone())]),
+            &HashMap::new(),
+        )
         .unwrap();
     let (index, is_new) = Index::open(&case.path()).unwrap();
     assert!(!is_new);
@@ -130,7 +133,7 @@ fn an_index_of_another_layout_is_made_again() {
     let case = Case::new();
     let entry = Entry::new(State::Failed, None);
     case.index()
-        .replace(&HashMap::from([(case.runs[0], entry)]))
+        .replace(&HashMap::from([(case.runs[0], entry)]), &HashMap::new())
         .unwrap();
     case.index()
         .connection
@@ -139,4 +142,24 @@ fn an_index_of_another_layout_is_made_again() {
     let (index, is_new) = Index::open(&case.path()).unwrap();
     assert!(is_new);
     assert!(index.entries().unwrap().is_empty());
+}
+
+#[test]
+fn what_others_note_while_the_files_are_looked_at_stays() {
+    let case = Case::new();
+    let [first, second] = case.runs;
+    let [done, failed, saved] =
+        [State::Done, State::Failed, State::Checkpointed].map(|state| Entry::new(state, None));
+    case.index()
+        .note([(first, &saved), (second, &failed)])
+        .unwrap();
+    let before = case.index().states().unwrap();
+    // The files of both are seen as they are now; then another process finishes the first.
+    case.index().note([(first, &done)]).unwrap();
+    let seen = HashMap::from([(first, saved.clone())]);
+    case.index().replace(&seen, &before).unwrap();
+    assert_eq!(
+        case.index().entries().unwrap(),
+        HashMap::from([(first, done)])
+    );
 }
