@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::commands::study::StudyCommand;
+
 /// Grains in a peristaltic tube, by the discrete element method.
 #[derive(Debug, Parser)]
 #[command(
@@ -11,7 +13,7 @@ use clap::{Args, Parser, Subcommand};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130 interrupted."
+    after_help = "Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130, 138, 143 stopped by a signal."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -30,6 +32,9 @@ pub(crate) enum Command {
     Schema,
     /// What a Newtonian fluid would do in such a tube (Shapiro, Jaffrin & Weinberg 1969).
     Newtonian(NewtonianArguments),
+    /// Ensembles of runs over grids of parameters, in a store that keeps them safe.
+    #[command(subcommand)]
+    Study(StudyCommand),
     /// Print completions for a shell.
     Completions(CompletionsArguments),
 }

@@ -8,6 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_run::RunError;
+use peristalsis_study::StudyError;
 
 use crate::commands::say;
 
@@ -39,6 +40,9 @@ pub(crate) enum Failure {
     /// The run or its record.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A study or its store.
+    #[error(transparent)]
+    Study(#[from] StudyError),
     /// Signals cannot be watched.
     #[error("cannot watch for signals: {0}")]
     Signals(std::io::Error),
@@ -70,6 +74,16 @@ impl Failure {
                 ) => BAD_INPUT,
                 _ => FAILED,
             },
+            Self::Study(error) => match error {
+                StudyError::Configuration(_)
+                | StudyError::Read { .. }
+                | StudyError::NoStore { .. }
+                | StudyError::OtherStudy { .. }
+                | StudyError::NoSuchRun { .. }
+                | StudyError::NotRows { .. }
+                | StudyError::Trial(_) => BAD_INPUT,
+                _ => FAILED,
+            },
             Self::Signals(_) | Self::Output(_) => FAILED,
         }
     }
@@ -95,6 +109,23 @@ impl Failure {
             Self::Run(RunError::Engine(EngineError::Diverged { .. })) => {
                 Some("take a shorter run.time_step, or softer or fewer grains".to_owned())
             }
+            Self::Study(StudyError::OtherStudy { .. }) => {
+                Some("name another folder with --store, or give the study its old `name`".to_owned())
+            }
+            Self::Study(StudyError::NoStore { .. }) => Some(
+                "a store is the folder that `peristalsis study run FILE --store DIR` made".to_owned(),
+            ),
+            Self::Study(
+                StudyError::Io { .. }
+                | StudyError::Format(_)
+                | StudyError::Index { .. }
+                | StudyError::Run {
+                    source: RunError::Format(_),
+                    ..
+                },
+            ) => {
+                Some("nothing that was finished is lost: mend the disk and call again".to_owned())
+            }
             _ => None,
         }
     }
@@ -108,7 +139,9 @@ impl Failure {
             Renderer::plain()
         };
         match self {
-            Self::Configuration(error) | Self::Run(RunError::Configuration(error)) => {
+            Self::Configuration(error)
+            | Self::Run(RunError::Configuration(error))
+            | Self::Study(StudyError::Configuration(error)) => {
                 for problem in error.problems() {
                     say(&format!("{}\n", renderer.render(&[of_problem(problem)])));
                 }

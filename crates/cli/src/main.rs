@@ -1,7 +1,7 @@
 //! `peristalsis`: grains in a peristaltic tube, from the command line.
 //!
 //! Parses, calls, reports: this is the only crate that prints or exits. Results go to standard output, everything else
-//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130 and 143 stopped by a signal.
+//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130, 138 and 143 stopped by a signal.
 
 mod arguments;
 mod commands;
@@ -24,6 +24,7 @@ fn main() -> ExitCode {
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),
+        Command::Study(command) => commands::study::study(&command),
         Command::Completions(arguments) => commands::completions::completions(&arguments),
     };
     match outcome {

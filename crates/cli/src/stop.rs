@@ -1,8 +1,11 @@
-//! Stops on request: Ctrl-C and SIGTERM end a run cleanly, a second one at once.
+//! Stops on request: Ctrl-C, SIGTERM and SIGUSR1 (which batch systems send before their time is up) end a run cleanly, a
+//! second one at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+#[cfg(unix)]
+use signal_hook::consts::SIGUSR1;
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::Failure;
@@ -22,7 +25,12 @@ impl Stop {
     pub(crate) fn watch() -> Result<Self, Failure> {
         let signal = Arc::new(AtomicUsize::new(0));
         let at_once = Arc::new(AtomicBool::new(true));
-        for number in [SIGINT, SIGTERM] {
+        for number in [
+            SIGINT,
+            SIGTERM,
+            #[cfg(unix)]
+            SIGUSR1,
+        ] {
             let code = i32::from(SIGNAL_BASE) + number;
             // In this order: the first signal finds `at_once` false, sets it and is noted; a second one exits.
             signal_hook::flag::register_conditional_shutdown(number, code, Arc::clone(&at_once))

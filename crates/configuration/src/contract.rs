@@ -9,53 +9,170 @@ use crate::suggestion;
 
 /// Checks a layer against the schema; all problems in one go.
 pub(crate) fn check(table: &Table, problems: &mut Problems) {
-    check_table(table, schema::cached(), "", problems);
-}
-
-fn check_table(table: &Table, schema: &Value, path: &str, problems: &mut Problems) {
-    // An object without properties (the record's derived values) is open.
-    let Some(properties) = schema.get("properties") else {
-        return;
-    };
-    for (name, entry) in table {
-        let full = if path.is_empty() {
-            name.clone()
-        } else {
-            format!("{path}.{name}")
-        };
-        if let Some(inner) = properties.get(name) {
-            check_item(&entry.item, inner, &full, problems);
-            continue;
-        }
-        let mut problem = Problem::new(ProblemKind::UnknownKey, format!("there is no key {full}"))
-            .key(&full)
-            .at(&entry.key, "unknown key");
-        problem = match suggestion::nearest_key(&full, schema::known_keys()) {
-            Some(near) => problem.help(format!("did you mean {near}?")),
-            None => problem.help(format!("known here: {}", names_of(properties))),
-        };
-        problems.push(Some(&entry.key), problem);
+    Contract {
+        known: schema::known_keys(),
+        problems,
     }
-    check_required(table, schema, path, problems);
+    .table(table, schema::cached(), "");
 }
 
-fn check_required(table: &Table, schema: &Value, path: &str, problems: &mut Problems) {
-    let required = schema.get("required").and_then(Value::as_array);
-    for name in required.into_iter().flatten().filter_map(Value::as_str) {
-        if table.contains_key(name) {
-            continue;
+/// Checks a document of another kind against its own JSON schema: unknown keys, types, names and ranges, with the same
+/// messages as those of a configuration. Of the schema's words those are understood that [`schema`](crate::schema())
+/// itself uses.
+pub fn check_against(schema: &Value, table: &Table, problems: &mut Problems) {
+    Contract {
+        known: &schema::keys_of(schema),
+        problems,
+    }
+    .table(table, schema, "");
+}
+
+/// What a check needs besides the value and its schema.
+struct Contract<'a> {
+    /// Full names of all keys, to guess from.
+    known: &'a [String],
+    problems: &'a mut Problems,
+}
+
+impl Contract<'_> {
+    fn table(&mut self, table: &Table, schema: &Value, path: &str) {
+        // An object without properties (the record's derived values) is open.
+        let Some(properties) = schema.get("properties") else {
+            return;
+        };
+        for (name, entry) in table {
+            let full = joined(path, name);
+            if let Some(inner) = properties.get(name) {
+                self.item(&entry.item, inner, &full);
+                continue;
+            }
+            let mut problem =
+                Problem::new(ProblemKind::UnknownKey, format!("there is no key {full}"))
+                    .key(&full)
+                    .at(&entry.key, "unknown key");
+            problem = match suggestion::nearest_key(&full, self.known) {
+                Some(near) => problem.help(format!("did you mean {near}?")),
+                None => problem.help(format!("known here: {}", names_of(properties))),
+            };
+            self.problems.push(Some(&entry.key), problem);
         }
-        let place = table.values().next().map(|entry| &entry.key);
-        let mut problem = Problem::new(
-            ProblemKind::Missing,
-            format!("{path}.{name} is missing in this table"),
-        )
-        .key(format!("{path}.{name}"))
-        .help(allowed(&schema["properties"][name]));
-        if let Some(place) = place {
-            problem = problem.at(place, "in this table");
+        self.required(table, schema, path);
+    }
+
+    fn required(&mut self, table: &Table, schema: &Value, path: &str) {
+        let required = schema.get("required").and_then(Value::as_array);
+        for name in required.into_iter().flatten().filter_map(Value::as_str) {
+            if table.contains_key(name) {
+                continue;
+            }
+            let place = table.values().next().map(|entry| &entry.key);
+            let mut problem = Problem::new(
+                ProblemKind::Missing,
+                format!("{} is missing in this table", joined(path, name)),
+            )
+            .key(joined(path, name))
+            .help(allowed(&schema["properties"][name]));
+            if let Some(place) = place {
+                problem = problem.at(place, "in this table");
+            }
+            self.problems.push(place, problem);
         }
-        problems.push(place, problem);
+    }
+
+    fn item(&mut self, item: &Item, schema: &Value, path: &str) {
+        if let Some(branches) = schema.get("anyOf").and_then(Value::as_array) {
+            match branches.iter().find(|branch| takes(branch, &item.node)) {
+                Some(branch) => self.item(item, &with_description(branch, schema), path),
+                None => self.wrong_type(item, schema, path),
+            }
+            return;
+        }
+        if !takes(schema, &item.node) {
+            return self.wrong_type(item, schema, path);
+        }
+        match &item.node {
+            Node::Table(table) => self.table(table, schema, path),
+            Node::Array(items) => self.array(item, items, schema, path),
+            Node::Text(text) => self.name(item, text, schema, path),
+            Node::Integer(integer) => self.range(item, *integer as f64, schema, path),
+            Node::Float(number) => self.range(item, *number, schema, path),
+            Node::Boolean(_) | Node::Other(_) => {}
+        }
+    }
+
+    fn wrong_type(&mut self, item: &Item, schema: &Value, path: &str) {
+        let message = format!("{path} is {}, which it cannot be", item.node.description());
+        let problem = Problem::new(ProblemKind::WrongType, message)
+            .key(path)
+            .at(&item.origin, format!("this is {}", item.node.description()))
+            .help(allowed(schema));
+        self.problems.push(Some(&item.origin), problem);
+    }
+
+    fn array(&mut self, item: &Item, items: &[Item], schema: &Value, path: &str) {
+        let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
+        if (items.len() as u64) < least {
+            let problem = Problem::new(
+                ProblemKind::OutOfRange,
+                format!("the list {path} is too short"),
+            )
+            .key(path)
+            .at(&item.origin, "this list")
+            .help(allowed(schema));
+            self.problems.push(Some(&item.origin), problem);
+        }
+        let Some(inner) = schema.get("items") else {
+            return;
+        };
+        for (index, element) in items.iter().enumerate() {
+            self.item(element, inner, &format!("{path}[{index}]"));
+        }
+    }
+
+    fn name(&mut self, item: &Item, text: &str, schema: &Value, path: &str) {
+        let names = names(schema);
+        if names.is_empty() || names.contains(&text) {
+            return;
+        }
+        let help = match suggestion::nearest(text, names.iter().copied()) {
+            Some(near) => format!("did you mean \"{near}\"? {}", allowed(schema)),
+            None => allowed(schema),
+        };
+        let problem = Problem::new(ProblemKind::WrongType, format!("{path} cannot be {text:?}"))
+            .key(path)
+            .at(&item.origin, "unknown name")
+            .help(help);
+        self.problems.push(Some(&item.origin), problem);
+    }
+
+    fn range(&mut self, item: &Item, number: f64, schema: &Value, path: &str) {
+        let bound = |name: &str| schema.get(name).and_then(Value::as_f64);
+        let complaint = if !number.is_finite() {
+            Some("is not a finite number")
+        } else if bound("minimum").is_some_and(|least| number < least)
+            || bound("exclusiveMinimum").is_some_and(|least| number <= least)
+        {
+            Some("is too small")
+        } else if bound("maximum").is_some_and(|most| number > most) {
+            Some("is too large")
+        } else {
+            None
+        };
+        let Some(complaint) = complaint else { return };
+        let message = format!("{path} = {} {complaint}", item.origin.text());
+        let problem = Problem::new(ProblemKind::OutOfRange, message)
+            .key(path)
+            .at(&item.origin, complaint)
+            .help(allowed(schema));
+        self.problems.push(Some(&item.origin), problem);
+    }
+}
+
+fn joined(path: &str, name: &str) -> String {
+    if path.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{path}.{name}")
     }
 }
 
@@ -67,27 +184,6 @@ fn names_of(properties: &Value) -> String {
         .map(String::as_str)
         .collect();
     names.join(", ")
-}
-
-fn check_item(item: &Item, schema: &Value, path: &str, problems: &mut Problems) {
-    if let Some(branches) = schema.get("anyOf").and_then(Value::as_array) {
-        match branches.iter().find(|branch| takes(branch, &item.node)) {
-            Some(branch) => check_item(item, &with_description(branch, schema), path, problems),
-            None => wrong_type(item, schema, path, problems),
-        }
-        return;
-    }
-    if !takes(schema, &item.node) {
-        return wrong_type(item, schema, path, problems);
-    }
-    match &item.node {
-        Node::Table(table) => check_table(table, schema, path, problems),
-        Node::Array(items) => check_array(item, items, schema, path, problems),
-        Node::Text(text) => check_name(item, text, schema, path, problems),
-        Node::Integer(integer) => check_range(item, *integer as f64, schema, path, problems),
-        Node::Float(number) => check_range(item, *number, schema, path, problems),
-        Node::Boolean(_) | Node::Other(_) => {}
-    }
 }
 
 /// The branch with the description of the whole, for help.
@@ -113,35 +209,6 @@ fn takes(schema: &Value, node: &Node) -> bool {
     }
 }
 
-fn wrong_type(item: &Item, schema: &Value, path: &str, problems: &mut Problems) {
-    let message = format!("{path} is {}, which it cannot be", item.node.description());
-    let problem = Problem::new(ProblemKind::WrongType, message)
-        .key(path)
-        .at(&item.origin, format!("this is {}", item.node.description()))
-        .help(allowed(schema));
-    problems.push(Some(&item.origin), problem);
-}
-
-fn check_array(item: &Item, items: &[Item], schema: &Value, path: &str, problems: &mut Problems) {
-    let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
-    if (items.len() as u64) < least {
-        let problem = Problem::new(
-            ProblemKind::OutOfRange,
-            format!("the list {path} is too short"),
-        )
-        .key(path)
-        .at(&item.origin, "this list")
-        .help(allowed(schema));
-        problems.push(Some(&item.origin), problem);
-    }
-    let Some(inner) = schema.get("items") else {
-        return;
-    };
-    for (index, element) in items.iter().enumerate() {
-        check_item(element, inner, &format!("{path}[{index}]"), problems);
-    }
-}
-
 /// The names that a schema allows.
 fn names(schema: &Value) -> Vec<&str> {
     let by_enum = schema
@@ -158,44 +225,6 @@ fn names(schema: &Value) -> Vec<&str> {
         .filter_map(Value::as_str)
         .chain(by_const.filter_map(|one| one.get("const").and_then(Value::as_str)))
         .collect()
-}
-
-fn check_name(item: &Item, text: &str, schema: &Value, path: &str, problems: &mut Problems) {
-    let names = names(schema);
-    if names.is_empty() || names.contains(&text) {
-        return;
-    }
-    let help = match suggestion::nearest(text, names.iter().copied()) {
-        Some(near) => format!("did you mean \"{near}\"? {}", allowed(schema)),
-        None => allowed(schema),
-    };
-    let problem = Problem::new(ProblemKind::WrongType, format!("{path} cannot be {text:?}"))
-        .key(path)
-        .at(&item.origin, "unknown name")
-        .help(help);
-    problems.push(Some(&item.origin), problem);
-}
-
-fn check_range(item: &Item, number: f64, schema: &Value, path: &str, problems: &mut Problems) {
-    let bound = |name: &str| schema.get(name).and_then(Value::as_f64);
-    let complaint = if !number.is_finite() {
-        Some("is not a finite number")
-    } else if bound("minimum").is_some_and(|least| number < least)
-        || bound("exclusiveMinimum").is_some_and(|least| number <= least)
-    {
-        Some("is too small")
-    } else if bound("maximum").is_some_and(|most| number > most) {
-        Some("is too large")
-    } else {
-        None
-    };
-    let Some(complaint) = complaint else { return };
-    let message = format!("{path} = {} {complaint}", item.origin.text());
-    let problem = Problem::new(ProblemKind::OutOfRange, message)
-        .key(path)
-        .at(&item.origin, complaint)
-        .help(allowed(schema));
-    problems.push(Some(&item.origin), problem);
 }
 
 /// What a key allows, in words, with its description.

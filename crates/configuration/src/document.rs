@@ -1,4 +1,4 @@
-//! A TOML text as a tree whose every value remembers where it was written.
+//! Documents: a TOML text as a tree whose every value remembers where it was written.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -8,33 +8,43 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{Problem, ProblemKind, Problems};
-use crate::source::{Origin, Source, SourceKind};
+use crate::source::{Origin, Source, SourceFile, SourceKind};
 
-/// Keys of a table.
-pub(crate) type Table = BTreeMap<String, Entry>;
+/// The keys of a table, each with its value.
+pub type Table = BTreeMap<String, Entry>;
 
 /// A key with its value and both their places.
 #[derive(Clone, Debug)]
-pub(crate) struct Entry {
-    pub(crate) key: Origin,
-    pub(crate) item: Item,
+pub struct Entry {
+    /// Where the key stands.
+    pub key: Origin,
+    /// The value.
+    pub item: Item,
 }
 
 /// A value with its place.
 #[derive(Clone, Debug)]
-pub(crate) struct Item {
-    pub(crate) origin: Origin,
-    pub(crate) node: Node,
+pub struct Item {
+    /// Where it stands.
+    pub origin: Origin,
+    /// The value itself.
+    pub node: Node,
 }
 
 /// A value.
 #[derive(Clone, Debug)]
-pub(crate) enum Node {
+pub enum Node {
+    /// A table.
     Table(Table),
+    /// A list.
     Array(Vec<Item>),
+    /// A text.
     Text(String),
+    /// A whole number.
     Integer(i64),
+    /// A number with a point or an exponent.
     Float(f64),
+    /// True or false.
     Boolean(bool),
     /// A whole number beyond 64 bits, a float beyond the range of f64, a date: no key takes one.
     Other(&'static str),
@@ -42,7 +52,8 @@ pub(crate) enum Node {
 
 impl Node {
     /// The kind of value in words.
-    pub(crate) fn description(&self) -> &'static str {
+    #[must_use]
+    pub fn description(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
             Self::Array(_) => "a list",
@@ -53,6 +64,15 @@ impl Node {
             Self::Other(description) => description,
         }
     }
+}
+
+/// Parses a file, to be checked and resolved by someone else; what is not TOML becomes a problem and an empty table.
+#[must_use]
+pub fn parse_file(file: SourceFile<'_>, problems: &mut Problems) -> Table {
+    parse(
+        &Source::new(SourceKind::File, file.name, file.text),
+        problems,
+    )
 }
 
 /// Parses a whole source; what is not TOML becomes a problem and an empty table.
@@ -187,7 +207,8 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
 }
 
 /// The entry at a dotted path.
-pub(crate) fn entry<'a>(table: &'a Table, path: &str) -> Option<&'a Entry> {
+#[must_use]
+pub fn entry<'a>(table: &'a Table, path: &str) -> Option<&'a Entry> {
     match path.split_once('.') {
         None => table.get(path),
         Some((first, rest)) => match &table.get(first)?.item.node {
@@ -214,6 +235,26 @@ pub(crate) fn text<'a>(table: &'a Table, path: &str) -> Option<&'a str> {
         Node::Text(text) => Some(text),
         _ => None,
     }
+}
+
+/// A table that holds one value at the end of a dotted path: a layer that sets one key. `key` is where the path stands.
+#[must_use]
+pub fn setting(path: &str, key: &Origin, item: Item) -> Table {
+    let (name, item) = match path.split_once('.') {
+        None => (path, item),
+        Some((first, rest)) => {
+            let inner = Item {
+                origin: item.origin.clone(),
+                node: Node::Table(setting(rest, key, item)),
+            };
+            (first, inner)
+        }
+    };
+    let entry = Entry {
+        key: key.clone(),
+        item,
+    };
+    Table::from([(name.to_owned(), entry)])
 }
 
 /// The tree as a plain TOML table, for serde.

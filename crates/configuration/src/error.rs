@@ -139,7 +139,8 @@ fn paragraph(problem: &Problem) -> String {
 }
 
 impl Problem {
-    pub(crate) fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
+    /// A problem without key, help or place so far.
+    pub fn new(kind: ProblemKind, message: impl Into<String>) -> Self {
         Self {
             kind,
             message: message.into(),
@@ -149,17 +150,23 @@ impl Problem {
         }
     }
 
-    pub(crate) fn key(mut self, key: impl Into<String>) -> Self {
+    /// Names the key.
+    #[must_use]
+    pub fn key(mut self, key: impl Into<String>) -> Self {
         self.key = Some(key.into());
         self
     }
 
-    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
+    /// Says what is allowed, or how to mend it.
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    pub(crate) fn at(mut self, origin: &Origin, message: impl Into<String>) -> Self {
+    /// Adds a place and what to say of it.
+    #[must_use]
+    pub fn at(mut self, origin: &Origin, message: impl Into<String>) -> Self {
         self.labels.push(Label::new(origin, message));
         self
     }
@@ -167,13 +174,13 @@ impl Problem {
 
 /// Problems found so far, with their place in the order of the texts.
 #[derive(Debug, Default)]
-pub(crate) struct Problems {
+pub struct Problems {
     found: Vec<((SourceKind, usize), Problem)>,
 }
 
 impl Problems {
     /// Adds a problem at a place that orders it among the others.
-    pub(crate) fn push(&mut self, place: Option<&Origin>, problem: Problem) {
+    pub fn push(&mut self, place: Option<&Origin>, problem: Problem) {
         let order = place.map_or((SourceKind::Override, usize::MAX), |origin| {
             (origin.source.kind, origin.span.start)
         });
@@ -181,7 +188,10 @@ impl Problems {
     }
 
     /// `Ok` without problems, else all of them as one error.
-    pub(crate) fn check(&mut self) -> Result<(), ConfigurationError> {
+    ///
+    /// # Errors
+    /// All problems, in the order of the texts.
+    pub fn check(&mut self) -> Result<(), ConfigurationError> {
         if self.found.is_empty() {
             return Ok(());
         }

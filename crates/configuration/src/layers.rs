@@ -160,8 +160,8 @@ fn merge(base: &mut Table, layer: Table) {
     }
 }
 
-/// Joins the overrides into one layer; the last value of a key holds.
-pub(crate) fn join(overrides: Vec<Table>) -> Table {
+/// Joins layers of settings into one; the last value of a key holds.
+pub fn join(overrides: Vec<Table>) -> Table {
     let mut layer = Table::new();
     for table in overrides {
         merge(&mut layer, table);

@@ -25,7 +25,7 @@ mod canonical;
 mod configuration;
 mod contract;
 pub mod defaults;
-mod document;
+pub mod document;
 mod entries;
 mod error;
 mod keys;
@@ -42,7 +42,9 @@ pub use configuration::{
     Configuration, Contact, Control, Drive, ElasticWall, Friction, Grains, Initial, NormalLaw,
     Observe, Run, Tube, Wall, WallKeep,
 };
-pub use error::{ConfigurationError, Label, Problem, ProblemKind};
+pub use contract::check_against;
+pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
+pub use layers::join;
 pub use options::{
     DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
     WaveDirection, Waveform,
@@ -50,4 +52,4 @@ pub use options::{
 pub use presets::{PRESETS, Preset, preset};
 pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
 pub use schema::schema;
-pub use source::{SourceFile, Sources};
+pub use source::{Origin, SourceFile, Sources};

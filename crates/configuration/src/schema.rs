@@ -136,11 +136,14 @@ fn last_name(key: &str) -> &str {
 /// Full names of all keys and tables, from the schema.
 pub(crate) fn known_keys() -> &'static [String] {
     static KEYS: OnceLock<Vec<String>> = OnceLock::new();
-    KEYS.get_or_init(|| {
-        let mut keys = Vec::new();
-        collect_keys(cached(), "", &mut keys);
-        keys
-    })
+    KEYS.get_or_init(|| keys_of(cached()))
+}
+
+/// Full names of all keys and tables of a schema.
+pub(crate) fn keys_of(schema: &Value) -> Vec<String> {
+    let mut keys = Vec::new();
+    collect_keys(schema, "", &mut keys);
+    keys
 }
 
 fn collect_keys(schema: &Value, path: &str, keys: &mut Vec<String>) {
@@ -154,6 +157,9 @@ fn collect_keys(schema: &Value, path: &str, keys: &mut Vec<String>) {
             collect_keys(inner, &full, keys);
             keys.push(full);
         }
+    }
+    if let Some(items) = schema.get("items") {
+        collect_keys(items, path, keys);
     }
     if let Some(Value::Array(branches)) = schema.get("anyOf") {
         branches

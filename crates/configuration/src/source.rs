@@ -56,14 +56,21 @@ impl Source {
 
 /// A place in a source.
 #[derive(Clone, Debug)]
-pub(crate) struct Origin {
+pub struct Origin {
     pub(crate) source: Arc<Source>,
     pub(crate) span: Range<usize>,
 }
 
 impl Origin {
+    /// The bytes of the source's text that it covers.
+    #[must_use]
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
     /// The text at this place.
-    pub(crate) fn text(&self) -> &str {
+    #[must_use]
+    pub fn text(&self) -> &str {
         self.source.text.get(self.span.clone()).unwrap_or("")
     }
 }

@@ -47,6 +47,14 @@ pub fn write_with(
     synchronize_folder(folder).map_err(FormatError::io("synchronize the folder of", path))
 }
 
+/// Makes the names in a folder last: that of a folder just made in it, or of a file just moved there.
+///
+/// # Errors
+/// [`FormatError::Io`] where the folder cannot be opened or synchronized.
+pub fn synchronize(folder: &Path) -> Result<(), FormatError> {
+    synchronize_folder(folder).map_err(FormatError::io("synchronize", folder))
+}
+
 fn folder_of(path: &Path) -> io::Result<&Path> {
     match (path.file_name(), path.parent()) {
         (Some(_), Some(folder)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),

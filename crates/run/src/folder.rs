@@ -3,17 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
-use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_formats::{FormatError, atomic, csv, parquet};
 
 use crate::error::RunError;
 use crate::pictures;
-use crate::run::{Run, RunState};
+use crate::run::Run;
 use crate::summary::Summary;
 use crate::tables::{profile_table, timeseries_table};
-
-/// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 3;
 
 const CONFIGURATION: &str = "config.toml";
 const SUMMARY: &str = "summary.json";
@@ -124,8 +120,7 @@ impl RunFolder {
         })?;
         let state = std::fs::read(folder.file(STATE))
             .map_err(|error| missing(format!("{STATE}: {error}")))?;
-        let state: RunState = checkpoint::decode(&identity(&configuration), &state)?;
-        let run = Run::resume(configuration, state)?;
+        let run = Run::from_checkpoint(configuration, &state)?;
         if run.is_complete() {
             return Err(missing("it is complete".to_owned()));
         }
@@ -143,12 +138,7 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Format`] where the file cannot be written; an older state stays.
     pub fn save_state(&self, run: &Run) -> Result<(), RunError> {
-        let identity = identity(run.configuration());
-        Ok(checkpoint::write(
-            &self.file(STATE),
-            &identity,
-            &run.state_view(),
-        )?)
+        run.write_checkpoint(&self.file(STATE))
     }
 
     /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.
@@ -177,13 +167,5 @@ impl RunFolder {
 
     fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
-    }
-}
-
-fn identity(configuration: &Configuration) -> CheckpointIdentity {
-    CheckpointIdentity {
-        kind: *b"run     ",
-        layout_version: STATE_LAYOUT,
-        physics_hash: configuration.physics_hash(),
     }
 }

@@ -11,6 +11,7 @@ mod folder;
 mod pictures;
 mod recorder;
 mod run;
+mod stopping;
 mod summary;
 mod tables;
 
@@ -21,6 +22,7 @@ pub use folder::{RunFolder, Written};
 pub use peristalsis_configuration::Configuration;
 pub use recorder::Recorder;
 pub use run::{Progress, Run, RunState, RunStateView};
+pub use stopping::Stopping;
 pub use summary::{Status, Summary};
 pub use tables::{profile_table, timeseries_table};
 

@@ -101,13 +101,16 @@ impl Recorder {
         &self.wall_faults
     }
 
+    /// The transition, or how long none was seen; `None` where there is no ratio of flow rates to watch.
+    #[must_use]
+    pub fn transition(&self) -> Option<Transition> {
+        Some(self.detector.as_ref()?.outcome())
+    }
+
     /// Time of the transition \[t\], if it has been found.
     #[must_use]
     pub fn transition_time(&self) -> Option<f64> {
-        match self.detector.as_ref()?.outcome() {
-            Transition::At { time, .. } => Some(time),
-            Transition::Censored { .. } => None,
-        }
+        self.transition()?.observed()
     }
 
     /// Time of a crossing \[t\] that has not lasted long enough yet.

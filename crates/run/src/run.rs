@@ -1,14 +1,20 @@
 //! A run in progress.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{Instructions, Simulation, Snapshot, SnapshotView};
+use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 
 use crate::RunError;
 use crate::assemble::{assemble, parameters, walls};
 use crate::recorder::Recorder;
+use crate::stopping::Stopping;
+
+/// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
+const STATE_LAYOUT: u32 = 3;
 
 /// A simulation together with what has been measured of it.
 #[derive(Clone, Debug)]
@@ -17,6 +23,7 @@ pub struct Run {
     simulation: Simulation,
     packing: PackingReport,
     recorder: Recorder,
+    stopping: Option<Stopping>,
     /// Time spent in the engine and its observables, earlier parts of the run included.
     elapsed: Duration,
 }
@@ -71,6 +78,7 @@ impl Run {
             simulation,
             packing,
             recorder,
+            stopping: None,
             elapsed: Duration::ZERO,
         })
     }
@@ -90,8 +98,32 @@ impl Run {
             simulation,
             packing: state.packing,
             recorder: state.recorder,
+            stopping: None,
             elapsed: state.elapsed,
         })
+    }
+
+    /// Goes on from a checkpoint that [`Run::write_checkpoint`] wrote for the same configuration.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the checkpoint is damaged or another's, and as [`Run::resume`].
+    pub fn from_checkpoint(configuration: Configuration, bytes: &[u8]) -> Result<Self, RunError> {
+        let state = checkpoint::decode(&checkpoint_identity(&configuration), bytes)?;
+        Self::resume(configuration, state)
+    }
+
+    /// Writes the state to a checkpoint file, whole or not at all.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where it is too large or cannot be written; an older file stays.
+    pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
+        let identity = checkpoint_identity(&self.configuration);
+        Ok(checkpoint::write(path, &identity, &self.state_view())?)
+    }
+
+    /// Lets the run end before its time. The rule is no part of the state: give it again after a restart.
+    pub fn stop_when(&mut self, stopping: Stopping) {
+        self.stopping = Some(stopping);
     }
 
     /// The state, to go on from later.
@@ -144,10 +176,27 @@ impl Run {
         Ok(outcome?)
     }
 
-    /// Whether all samples have been taken.
+    /// Whether all samples have been taken, or the run may end before.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.recorder.samples().len() as u64 >= self.configuration.run.samples
+        self.recorder.samples().len() as u64 >= self.configuration.run.samples || self.is_settled()
+    }
+
+    /// Whether the run may end since its transition has been found and has settled.
+    #[must_use]
+    pub fn is_settled(&self) -> bool {
+        self.stopping
+            .is_some_and(|stopping| stopping.is_settled(&self.recorder))
+    }
+
+    /// The part at the end of what was measured that late means are taken over: as configured, unless the run
+    /// [has settled](Self::is_settled), when it is the second half of the periods that it was given for that.
+    #[must_use]
+    pub fn late_fraction(&self) -> f64 {
+        match self.stopping {
+            Some(stopping) if self.is_settled() => stopping.late_fraction(&self.recorder),
+            _ => self.configuration.observe.late_fraction,
+        }
     }
 
     /// How far it is.
@@ -201,5 +250,14 @@ impl Run {
     #[must_use]
     pub fn elapsed(&self) -> Duration {
         self.elapsed
+    }
+}
+
+/// What a checkpoint of such a run is a checkpoint of.
+fn checkpoint_identity(configuration: &Configuration) -> CheckpointIdentity {
+    CheckpointIdentity {
+        kind: *b"run     ",
+        layout_version: STATE_LAYOUT,
+        physics_hash: configuration.physics_hash(),
     }
 }

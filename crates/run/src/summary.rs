@@ -13,6 +13,8 @@ use crate::{REVISION, VERSION};
 pub enum Status {
     /// As long as it was meant to.
     Complete,
+    /// Ended before by its own rule, the transition having been found and having settled.
+    Settled,
     /// Stopped before.
     Interrupted,
     /// A grain moved too far in one step.
@@ -21,7 +23,7 @@ pub enum Status {
 
 /// The outcome of a run; missing numbers are `null` in JSON.
 ///
-/// "Late" is the last part of the run, a quarter unless configured otherwise. Units: d, m, t.
+/// "Late" is the last part of the run, a quarter unless configured otherwise ([`Run::late_fraction`]). Units: d, m, t.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Summary {
     /// How it ended.
@@ -99,7 +101,7 @@ impl Summary {
         let configuration = run.configuration();
         let recorder = run.recorder();
         let samples = recorder.samples();
-        let late = recorder.late(configuration.observe.late_fraction);
+        let late = recorder.late(run.late_fraction());
         let last = samples.last();
         let ratios: Vec<f64> = late.iter().map(|sample| sample.flow_rate_ratio).collect();
         let estimate = mean_with_error(&ratios).ok();

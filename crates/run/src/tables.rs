@@ -106,10 +106,9 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
 /// The bins of the late profile.
 pub(crate) fn late_profile(run: &Run) -> Vec<ProfileBin> {
     let configuration = run.configuration();
-    run.recorder().profile().late(
-        configuration.observe.late_fraction,
-        configuration.tube.wavelength,
-    )
+    run.recorder()
+        .profile()
+        .late(run.late_fraction(), configuration.tube.wavelength)
 }
 
 fn applies(scope: Scope, configuration: &Configuration) -> bool {

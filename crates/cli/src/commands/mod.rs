@@ -6,6 +6,7 @@ pub(crate) mod newtonian;
 pub(crate) mod presets;
 pub(crate) mod run;
 pub(crate) mod schema;
+pub(crate) mod study;
 
 use std::io::Write;
 

@@ -12,6 +12,7 @@ mod folders;
 mod limits;
 mod running;
 mod streams;
+mod study;
 
 #[cfg(unix)]
 mod signals;

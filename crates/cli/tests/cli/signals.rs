@@ -103,13 +103,15 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
 }
 
 #[test]
-fn a_terminated_run_ends_as_well() {
-    let place = Place::new();
-    let (code, said) = interrupted(&place, &[LONG, &["--out", "stopped"]].concat(), "TERM");
-    assert_eq!(code, Some(143), "{said}");
-    assert!(said.contains("stopped after"), "{said}");
-    assert_eq!(
-        read_json(&place.path("stopped/summary.json"))["status"],
-        "interrupted"
-    );
+fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
+    for (signal, expected) in [("TERM", 143), ("USR1", 138)] {
+        let place = Place::new();
+        let (code, said) = interrupted(&place, &[LONG, &["--out", "stopped"]].concat(), signal);
+        assert_eq!(code, Some(expected), "{said}");
+        assert!(said.contains("stopped after"), "{said}");
+        assert_eq!(
+            read_json(&place.path("stopped/summary.json"))["status"],
+            "interrupted"
+        );
+    }
 }

@@ -30,8 +30,21 @@ impl Configuration {
     /// Everything found wrong, in the order of the texts: first what is wrong with single keys, and where all of these
     /// are right, what is wrong with their values together.
     pub fn from_sources(sources: &Sources<'_>) -> Result<Self, ConfigurationError> {
+        Self::from_sources_and(sources, &[])
+    }
+
+    /// As [`Configuration::from_sources`], with more layers over them, the last one on top: tables of a document that
+    /// states several configurations, such as a study.
+    ///
+    /// # Errors
+    ///
+    /// As [`Configuration::from_sources`].
+    pub fn from_sources_and(
+        sources: &Sources<'_>,
+        above: &[Table],
+    ) -> Result<Self, ConfigurationError> {
         let mut problems = Problems::default();
-        let table = layered(sources, &mut problems);
+        let table = layered(sources, above, &mut problems);
         problems.check()?;
         layers::check_switches(&table, &mut problems);
         let keys: Option<Keys> = deserialised(&table, &mut problems);
@@ -65,7 +78,7 @@ impl Configuration {
 }
 
 /// All layers, checked one by one and laid over one another.
-fn layered(sources: &Sources<'_>, problems: &mut Problems) -> Table {
+fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> Table {
     let file = sources.file.map(|file| {
         let source = Source::new(SourceKind::File, file.name, file.text);
         checked(document::parse(&source, problems), problems)
@@ -97,7 +110,9 @@ fn layered(sources: &Sources<'_>, problems: &mut Problems) -> Table {
         );
         table = checked(document::parse(&source, problems), problems);
     }
-    for layer in file.into_iter().chain([overrides]) {
+    let above = above.iter().map(|layer| checked(layer.clone(), problems));
+    let above: Vec<Table> = above.collect();
+    for layer in file.into_iter().chain([overrides]).chain(above) {
         layers::lay_over(&mut table, layer, problems);
     }
     for aside in ["preset", "resolved"] {

@@ -1,0 +1,139 @@
+//! `peristalsis study retry`, `verify`, `scan`, `export`, `pack` and `import`
+
+use std::process::ExitCode;
+
+use peristalsis_study::{Identity, Specification, State, Store, Verification};
+
+use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
+use crate::commands::{print, say};
+use crate::failure::Failure;
+
+/// Lets runs be computed again.
+pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
+    let store = Store::open(&arguments.store.store)?;
+    let survey = store.survey()?;
+    let runs: Vec<Identity> = if arguments.failed {
+        survey
+            .plan
+            .runs()
+            .iter()
+            .map(|run| run.identity)
+            .filter(|identity| survey.state(*identity) == State::Failed)
+            .collect()
+    } else {
+        let runs: Result<Vec<Identity>, _> = arguments
+            .runs
+            .iter()
+            .map(|prefix| survey.run_beginning(prefix))
+            .collect();
+        runs?
+    };
+    let mut begun = 0;
+    for identity in &runs {
+        if store.retry(*identity)? {
+            begun += 1;
+        } else {
+            say(&format!(
+                "run {identity} has neither failed nor finished, or is being worked on: left as it is"
+            ));
+        }
+    }
+    print(&format!("{begun} runs will be computed again\n"))?;
+    Ok(if begun == runs.len() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Checks all hashes.
+pub(crate) fn verify(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
+    let found = Store::open(&arguments.store)?.verify()?;
+    print(&in_words(&found))?;
+    Ok(if found.quarantined.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Makes the index again.
+pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
+    let found = Store::open(&arguments.store)?.scan()?;
+    print(&in_words(&found))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn in_words(found: &Verification) -> String {
+    let mut text = format!(
+        "{} finished runs whose hashes check, {} imported, {} with a checkpoint, {} failed\n",
+        found.whole, found.imported, found.checkpointed, found.failed
+    );
+    for (identity, reason) in &found.quarantined {
+        text.push_str(&format!(
+            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again\n"
+        ));
+    }
+    text
+}
+
+/// Writes the tables.
+pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
+    let store = Store::open(&arguments.store.store)?;
+    let exported = store.export(&arguments.out, arguments.series)?;
+    for (identity, reason) in &exported.quarantined {
+        say(&format!(
+            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+        ));
+    }
+    if exported.missing > 0 {
+        say(&format!(
+            "{} runs of the study are not finished",
+            exported.missing
+        ));
+    }
+    for file in &exported.files {
+        print(&format!("{}\n", file.display()))?;
+    }
+    Ok(if exported.quarantined.is_empty() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Writes the archive.
+pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
+    let packed = Store::open(&arguments.store.store)?.pack(&arguments.archive)?;
+    print(&format!(
+        "{} finished runs in {}\n",
+        packed.runs,
+        arguments.archive.display()
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Takes finished runs over.
+pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
+    let path = &arguments.store.store;
+    let store = match &arguments.study {
+        Some(file) => Store::create(path, &Specification::read(file)?)?,
+        None => Store::open(path)?,
+    };
+    for file in &arguments.files {
+        let is_archive = file.extension().is_some_and(|extension| extension == "tar");
+        if is_archive {
+            let packed = store.import_archive(file)?;
+            print(&format!(
+                "{} of {} runs taken from {}\n",
+                packed.taken,
+                packed.runs,
+                file.display()
+            ))?;
+        } else {
+            let rows = store.import_table(file)?;
+            print(&format!("{rows} rows taken from {}\n", file.display()))?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}

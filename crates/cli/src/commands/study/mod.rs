@@ -1,0 +1,220 @@
+//! `peristalsis study`: one file a group of subcommands.
+
+mod keep;
+mod plan;
+mod progress;
+mod run;
+mod status;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::{Args, Subcommand};
+
+use crate::commands::print;
+use crate::failure::Failure;
+
+/// What to do with a study.
+#[derive(Debug, Subcommand)]
+pub(crate) enum StudyCommand {
+    /// Say what a study would run, and what time and disk it would take; runs nothing.
+    Plan(PlanArguments),
+    /// Compute what is missing; may be stopped, called again, and called several times at once.
+    Run(RunArguments),
+    /// Say how far a study is.
+    Status(StatusArguments),
+    /// Say all that is known of a run: what has become of it, and why.
+    Why(WhyArguments),
+    /// Let runs be computed again; their files are moved aside.
+    Retry(RetryArguments),
+    /// Check the hashes of all finished runs; what does not match is moved aside.
+    Verify(StoreArguments),
+    /// Make the index of a store again from its files.
+    Scan(StoreArguments),
+    /// Write the tables of a study: a row a run.
+    Export(ExportArguments),
+    /// Write the finished runs of a store to one archive.
+    Pack(PackArguments),
+    /// Take finished runs from tables or archives, by their identity.
+    Import(ImportArguments),
+    /// Print the JSON schema of a study file.
+    Schema,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArguments {
+    /// Study file in TOML.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Store whose finished runs are counted; the default is that of `study run`.
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
+    /// Print as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArguments {
+    /// Study file in TOML.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Folder that keeps the runs; the default is stores/NAME, after the study's name.
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
+    /// Runs at a time; the default is the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
+    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
+    #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
+    limit: Option<Duration>,
+    /// Time between two checkpoints of a run.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = time_span)]
+    checkpoint_every: Duration,
+    /// Print the status as JSON on standard output at the end, and nothing else there.
+    #[arg(long)]
+    json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StoreArguments {
+    /// Folder that keeps the runs.
+    #[arg(value_name = "STORE")]
+    store: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StatusArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Print as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct WhyArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Identity of the run, or its beginning.
+    #[arg(value_name = "RUN")]
+    run: String,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RetryArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Identities of the runs, or their beginnings.
+    #[arg(value_name = "RUN", required_unless_present = "failed")]
+    runs: Vec<String>,
+    /// All runs that failed.
+    #[arg(long, conflicts_with = "runs")]
+    failed: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Folder for the tables.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Write J/Jmax in time of every run, too.
+    #[arg(long)]
+    series: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PackArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Archive to write (tar).
+    #[arg(value_name = "ARCHIVE")]
+    archive: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ImportArguments {
+    #[command(flatten)]
+    store: StoreArguments,
+    /// Exported tables (.csv, .parquet), or archives (.tar).
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+    /// Study file, where the store is still to be made.
+    #[arg(long, value_name = "FILE")]
+    study: Option<PathBuf>,
+}
+
+/// Does what was asked for.
+pub(crate) fn study(command: &StudyCommand) -> Result<ExitCode, Failure> {
+    match command {
+        StudyCommand::Plan(arguments) => plan::plan(arguments),
+        StudyCommand::Run(arguments) => run::run(arguments),
+        StudyCommand::Status(arguments) => status::status(arguments),
+        StudyCommand::Why(arguments) => status::why(arguments),
+        StudyCommand::Retry(arguments) => keep::retry(arguments),
+        StudyCommand::Verify(arguments) => keep::verify(arguments),
+        StudyCommand::Scan(arguments) => keep::scan(arguments),
+        StudyCommand::Export(arguments) => keep::export(arguments),
+        StudyCommand::Pack(arguments) => keep::pack(arguments),
+        StudyCommand::Import(arguments) => keep::import(arguments),
+        StudyCommand::Schema => {
+            print(&format!("{:#}\n", peristalsis_study::schema()))?;
+            Ok(ExitCode::SUCCESS)
+        }
+    }
+}
+
+/// The store of a study where none is named.
+fn usual_store(name: &str) -> PathBuf {
+    PathBuf::from("stores").join(name)
+}
+
+/// Reads a time such as 30m, 1.5h, 90s or 250ms.
+fn time_span(text: &str) -> Result<Duration, String> {
+    let letters = text.find(|letter: char| letter.is_ascii_alphabetic());
+    let (number, unit) = text.split_at(letters.unwrap_or(text.len()));
+    let factor = match unit {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        "d" => 86400.0,
+        _ => return Err("a number with ms, s, m, h or d, such as 30m".to_owned()),
+    };
+    let number: f64 = number
+        .trim()
+        .parse()
+        .map_err(|_| "a number with ms, s, m, h or d, such as 30m".to_owned())?;
+    if number > 0.0 {
+        Duration::try_from_secs_f64(number * factor).map_err(|error| error.to_string())
+    } else {
+        Err("a time above 0".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_read_with_their_units() {
+        for (text, seconds) in [
+            ("30m", 1800.0),
+            ("1.5h", 5400.0),
+            ("90s", 90.0),
+            ("250ms", 0.25),
+            ("2d", 172_800.0),
+        ] {
+            assert_eq!(time_span(text).unwrap().as_secs_f64(), seconds, "{text}");
+        }
+        for text in ["", "30", "m", "0s", "-1h", "1y", "NaNs", "infh"] {
+            assert!(time_span(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! `peristalsis study status` and `peristalsis study why`
+
+use std::collections::HashSet;
+use std::process::ExitCode;
+
+use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
+use serde_json::{Value, json};
+
+use super::{StatusArguments, WhyArguments};
+use crate::commands::print;
+use crate::failure::Failure;
+
+/// Runs that are named in words; more are counted.
+const NAMED: usize = 10;
+
+/// Says how far a study is.
+pub(crate) fn status(arguments: &StatusArguments) -> Result<ExitCode, Failure> {
+    let store = Store::open(&arguments.store.store)?;
+    let survey = store.survey()?;
+    if arguments.json {
+        print(&format!("{:#}\n", report(&store, &survey)))?;
+    } else {
+        print(&in_words(&store, &survey))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Where the flow changes its kind, of the runs that have ended.
+fn estimates(survey: &Survey) -> Vec<Bracket> {
+    brackets(&survey.study, &survey.plan, &|identity| {
+        survey.finding(identity)
+    })
+}
+
+/// The status as JSON.
+pub(super) fn report(store: &Store, survey: &Survey) -> Value {
+    let estimates: Vec<Value> = estimates(survey)
+        .iter()
+        .map(|bracket| {
+            json!({
+                "key": bracket.key,
+                "of": bracket.of,
+                "lower": bracket.lower,
+                "upper": bracket.upper,
+                "estimate": bracket.middle(),
+            })
+        })
+        .collect();
+    let runs: Vec<Value> = survey
+        .plan
+        .sorted_runs()
+        .iter()
+        .map(|run| {
+            let entry = survey.entries.get(&run.identity);
+            json!({
+                "identity": run.identity.to_string(),
+                "point": survey.plan.point(run).in_words(),
+                "replicate": run.replicate,
+                "state": survey.state(run.identity),
+                "reason": entry.and_then(|entry| entry.reason.as_ref()),
+                "transition_time": entry.and_then(|entry| entry.transition_time),
+            })
+        })
+        .collect();
+    json!({
+        "name": survey.study.name,
+        "store": store.path().display().to_string(),
+        "total": survey.plan.runs().len(),
+        "counts": survey.counts(),
+        "estimates": estimates,
+        "runs": runs,
+    })
+}
+
+/// The status for a person.
+pub(super) fn in_words(store: &Store, survey: &Survey) -> String {
+    let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
+    let counts: Vec<String> = survey
+        .counts()
+        .iter()
+        .map(|(state, number)| format!("{number} {state}"))
+        .collect();
+    text.push_str(&format!(
+        "{} runs: {}\n",
+        survey.plan.runs().len(),
+        counts.join(", ")
+    ));
+    let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
+    let others = survey
+        .entries
+        .iter()
+        .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity))
+        .count();
+    if others > 0 {
+        text.push_str(&format!(
+            "{others} finished runs are not part of the study as it stands\n"
+        ));
+    }
+    for bracket in estimates(survey) {
+        text.push_str(&estimate(&bracket));
+        text.push('\n');
+    }
+    let ended_badly: Vec<String> = survey
+        .plan
+        .sorted_runs()
+        .iter()
+        .filter_map(|run| {
+            let state = survey.state(run.identity);
+            let reason = survey.entries.get(&run.identity)?.reason.as_deref()?;
+            matches!(state, State::Failed | State::Quarantined).then(|| {
+                let name = match state {
+                    State::Failed => "failed",
+                    _ => "quarantined",
+                };
+                format!(
+                    "{name} {} ({}, replicate {}): {reason}\n",
+                    &run.identity.to_string()[..8],
+                    survey.plan.point(run).in_words(),
+                    run.replicate
+                )
+            })
+        })
+        .collect();
+    text.extend(ended_badly.iter().take(NAMED).map(String::as_str));
+    if ended_badly.len() > NAMED {
+        text.push_str(&format!("and {} more\n", ended_badly.len() - NAMED));
+    }
+    text
+}
+
+/// A critical value with its bracket.
+pub(super) fn estimate(bracket: &Bracket) -> String {
+    let half = 0.5 * (bracket.upper - bracket.lower);
+    format!(
+        "{}: transition at {} = {:.6} ± {:.6}",
+        bracket.of,
+        bracket.key,
+        bracket.middle(),
+        half
+    )
+}
+
+/// Says all that is known of a run.
+pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
+    let store = Store::open(&arguments.store.store)?;
+    let survey = store.survey()?;
+    let identity = survey.run_beginning(&arguments.run)?;
+    let mut lines = vec![format!("run         {identity}")];
+    match survey
+        .plan
+        .runs()
+        .iter()
+        .find(|run| run.identity == identity)
+    {
+        Some(run) => {
+            lines.push(format!(
+                "point       {}, replicate {}",
+                survey.plan.point(run).in_words(),
+                run.replicate
+            ));
+            lines.push(format!(
+                "seed        {}",
+                survey.plan.configuration(run).run.seed
+            ));
+        }
+        None => {
+            lines.push("point       not part of the study as it stands".to_owned());
+            if let Some(stale) = store.staleness(&survey, identity) {
+                lines.push(format!("nearest     {}", stale.nearest));
+                for difference in &stale.differences {
+                    lines.push(format!("changed     {difference}"));
+                }
+            }
+        }
+    }
+    let entry = survey.entries.get(&identity);
+    let state = survey.state(identity);
+    let reason = entry.and_then(|entry| entry.reason.clone());
+    let meaning = match state {
+        State::Pending => "nothing has been computed yet".to_owned(),
+        State::Leased => survey.leases.get(&identity).cloned().unwrap_or_default(),
+        State::Checkpointed => "interrupted; it goes on from its last checkpoint".to_owned(),
+        State::Done => reason.unwrap_or_else(|| {
+            "finished; its hashes checked when it was last looked at".to_owned()
+        }),
+        State::Failed => reason.unwrap_or_default(),
+        State::Quarantined => format!("{}; it will be computed again", reason.unwrap_or_default()),
+    };
+    let name = serde_json::to_value(state)
+        .ok()
+        .and_then(|value| value.as_str().map(str::to_owned))
+        .unwrap_or_default();
+    lines.push(format!("state       {name}: {meaning}"));
+    if let Some(time) = entry.and_then(|entry| entry.transition_time) {
+        lines.push(format!("transition  t = {time}"));
+    }
+    let folder = store.run_folder(identity);
+    if folder.exists() {
+        lines.push(format!("files       {}", folder.display()));
+    }
+    for folder in store.quarantines(identity) {
+        let reason = std::fs::read_to_string(folder.join("reason.txt")).unwrap_or_default();
+        lines.push(format!(
+            "moved aside {}: {}",
+            folder.display(),
+            reason.trim()
+        ));
+    }
+    print(&(lines.join("\n") + "\n"))?;
+    Ok(ExitCode::SUCCESS)
+}

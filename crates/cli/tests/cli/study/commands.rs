@@ -1,0 +1,383 @@
+//! Each subcommand: exit code, words, JSON, and the files that it leaves.
+
+use serde_json::Value;
+
+use super::{STUDY, place_of, quick, tables};
+use crate::{Outcome, Place};
+
+fn finished() -> Place {
+    let place = place_of(&quick());
+    place
+        .call(["study", "run", "study.toml", "--store", "store"])
+        .expect_code(0);
+    place
+}
+
+fn status(place: &Place) -> Value {
+    place
+        .call(["study", "status", "store", "--json"])
+        .expect_code(0)
+        .json()
+}
+
+/// Identity of the first run of the status.
+fn first(place: &Place) -> String {
+    status(place)["runs"][0]["identity"]
+        .as_str()
+        .unwrap()
+        .to_owned()
+}
+
+#[test]
+fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
+    let place = place_of(&format!(
+        "{STUDY}[refine]\nkey = \"drive.width\"\ntolerance = 0.1\n"
+    ));
+    let before = place.inventory();
+    let outcome = place
+        .call(["study", "plan", "study.toml", "--json"])
+        .expect_code(0);
+    let plan = outcome.json();
+    let estimate = &plan["estimate"];
+    assert_eq!(estimate["points"], 4);
+    assert_eq!(estimate["runs"], 12);
+    // 0.5 is halved three times, in two lines, by three replicates.
+    assert_eq!(estimate["refinement_runs"], 3 * 2 * 3);
+    // 70 periods of 10 in steps of 0.05.
+    assert_eq!(estimate["steps"], 12 * 14_000);
+    assert_eq!(estimate["grain_steps"], 12.0 * 14_000.0 * 100.0);
+    assert!(estimate["processor_seconds"].as_f64().unwrap() > 0.0);
+    assert_eq!(plan["runs"].as_array().unwrap().len(), 12);
+    place
+        .call(["study", "plan", "study.toml"])
+        .expect_code(0)
+        .shows(&["12: 4 points, 3 replicates each", "18 runs more", "disk"]);
+    assert_eq!(place.inventory(), before);
+}
+
+#[test]
+fn examples_are_studies() {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/studies");
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let plan = Place::new()
+            .call(["study", "plan", path.to_str().unwrap(), "--json"])
+            .expect_code(0)
+            .json();
+        assert_eq!(plan["estimate"]["warnings"].as_array().unwrap().len(), 0);
+        assert_eq!(plan["name"], path.file_stem().unwrap().to_str().unwrap());
+    }
+}
+
+#[test]
+fn the_disk_of_a_plan_is_about_that_of_the_store() {
+    let place = finished();
+    let plan = place
+        .call(["study", "plan", "study.toml", "--store", "store", "--json"])
+        .expect_code(0)
+        .json();
+    assert_eq!(plan["finished"], 4);
+    let used: u64 = std::fs::read_dir(place.path("store/runs"))
+        .unwrap()
+        .flat_map(|run| std::fs::read_dir(run.unwrap().path()).unwrap())
+        // Files fill whole blocks.
+        .map(|file| {
+            file.unwrap()
+                .metadata()
+                .unwrap()
+                .len()
+                .next_multiple_of(4096)
+        })
+        .sum();
+    let ratio = plan["estimate"]["bytes"].as_f64().unwrap() / used as f64;
+    assert!((0.5..2.0).contains(&ratio), "{ratio}");
+}
+
+#[test]
+fn a_study_runs_tells_and_exports() {
+    let place = place_of(&quick());
+    let outcome = place
+        .call(["study", "run", "study.toml"])
+        .expect_code(0)
+        .shows(&["tested in stores/tested", "4 runs: 4 done"])
+        .says(&["4 of 4 runs done, 100 % of the work", "all runs are done"]);
+    assert!(!outcome.stderr.contains('\r'));
+    // The second time there is nothing to do.
+    place
+        .call(["study", "run", "study.toml", "--json", "--quiet"])
+        .expect_code(0)
+        .shows(&["\"done\": 4"]);
+    let outcome = place
+        .call(["study", "export", "stores/tested", "--out", "out"])
+        .expect_code(0);
+    assert_eq!(
+        outcome.stdout,
+        "out/tested.parquet\nout/tested.csv\nout/tested-timing.csv\n"
+    );
+    let csv = std::fs::read_to_string(place.path("out/tested.csv")).unwrap();
+    let header = csv.lines().next().unwrap();
+    for column in [
+        "drive.width",
+        "identity",
+        "seed",
+        "transition_time",
+        "censored",
+    ] {
+        assert!(header.contains(column), "{column}");
+    }
+    assert!(!header.contains("seconds"));
+    // Beside each run is what signac and row look for.
+    for run in std::fs::read_dir(place.path("stores/tested/runs")).unwrap() {
+        let path = run.unwrap().path().join("signac_statepoint.json");
+        let statepoint = crate::read_json(&path);
+        assert_eq!(statepoint["tube"]["waves"], 2);
+        assert_eq!(statepoint["replicate"], 0);
+    }
+}
+
+#[test]
+fn what_is_wrong_with_a_study_is_said_with_its_place_and_nothing_is_made() {
+    for (from, to, parts) in [
+        (
+            "values = [2.4, 2.9]",
+            "values = [2.4, 3.9]",
+            &["study.toml:16:16", "wider than the tube"][..],
+        ),
+        (
+            "replicates = 1",
+            "replicats = 1",
+            &["study.toml:6:1", "did you mean replicates?"],
+        ),
+    ] {
+        let place = place_of(&quick().replace(from, to));
+        let before = place.inventory();
+        for command in ["plan", "run"] {
+            let outcome = place.call(["study", command, "study.toml"]).expect_code(2);
+            assert_eq!(outcome.stdout, "");
+            outcome.says(parts);
+        }
+        assert_eq!(place.inventory(), before);
+    }
+    let place = finished();
+    place
+        .call(["study", "run", "missing.toml"])
+        .expect_code(2)
+        .says(&["cannot read missing.toml"]);
+    place
+        .call(["study", "status", "nowhere"])
+        .expect_code(2)
+        .says(&["no store", "study run"]);
+    place.write("other.toml", quick().replace("\"tested\"", "\"other\""));
+    place
+        .call(["study", "run", "other.toml", "--store", "store"])
+        .expect_code(2)
+        .says(&["holds the study `tested`, not `other`", "--store"]);
+    place
+        .call(["study", "run", "study.toml", "--for", "soon"])
+        .expect_code(2)
+        .says(&["such as 30m"]);
+}
+
+#[test]
+fn why_says_what_has_become_of_a_run() {
+    let place = finished();
+    let run = first(&place);
+    let why = |run: &str| place.call(["study", "why", "store", run]);
+    why(&run[..8]).expect_code(0).shows(&[
+        &run,
+        "drive.width 2.4, from rest, replicate 0",
+        "state       done",
+        "store/runs",
+    ]);
+    why("").expect_code(2).says(&["4 runs of this store"]);
+    why("zz").expect_code(2).says(&["0 runs of this store"]);
+    // A study that has moved on no longer knows it.
+    place.write("study.toml", quick().replace("[2.4, 2.9]", "[2.6]"));
+    place
+        .call(["study", "run", "study.toml", "--store", "store"])
+        .expect_code(0)
+        .shows(&["4 finished runs are not part of the study"]);
+    why(&run).expect_code(0).shows(&[
+        "not part of the study as it stands",
+        "nearest     drive.width 2.6, from rest, replicate 0",
+        "changed     drive.width: 2.4, now 2.6\n",
+        "done",
+    ]);
+    place.write(
+        "study.toml",
+        quick().replace("settled_periods = 30", "settled_periods = 5"),
+    );
+    place
+        .call(["study", "run", "study.toml", "--store", "store"])
+        .expect_code(0);
+    why(&run).expect_code(0).shows(&[
+        "nearest     drive.width 2.4",
+        "changed     stop.settled_periods: 30, now 5\n",
+    ]);
+}
+
+#[test]
+fn damage_is_told_by_verify_and_mended_by_run() {
+    let place = finished();
+    let before = tables(&place, "store");
+    let run = first(&place);
+    let path = place.path("store/runs").join(&run).join("summary.json");
+    std::fs::write(&path, "{}").unwrap();
+    place
+        .call(["study", "verify", "store"])
+        .expect_code(1)
+        .shows(&[&run, "summary.json has 2 bytes", "moved aside"]);
+    place
+        .call(["study", "why", "store", &run])
+        .expect_code(0)
+        .shows(&["quarantined", "store/quarantine", "computed again"]);
+    place
+        .call(["study", "export", "store", "--out", "partial"])
+        .expect_code(0)
+        .says(&["1 runs of the study are not finished"]);
+    place
+        .call(["study", "run", "study.toml", "--store", "store"])
+        .expect_code(0);
+    assert!(tables(&place, "store") == before);
+    place.call(["study", "verify", "store"]).expect_code(0);
+    std::fs::remove_file(place.path("store/index.sqlite")).unwrap();
+    place
+        .call(["study", "scan", "store"])
+        .expect_code(0)
+        .shows(&["4 finished runs"]);
+}
+
+#[test]
+fn failed_runs_make_the_exit_code_and_can_be_retried() {
+    // Grains that do not fit.
+    let text = quick().replace("grains.number = 20", "grains.number = 3000");
+    let place = place_of(&text.replace("2.9", "2.5"));
+    let run = || place.call(["study", "run", "study.toml", "--store", "store"]);
+    run()
+        .expect_code(1)
+        .shows(&["4 failed", "failed"])
+        .says(&["4 runs failed", "study why"]);
+    assert_eq!(status(&place)["counts"]["failed"], 4);
+    place
+        .call(["study", "retry", "store", "--failed"])
+        .expect_code(0)
+        .shows(&["4 runs will be computed again"]);
+    place
+        .call(["study", "retry", "store", &first(&place)])
+        .expect_code(1)
+        .says(&["left as it is"]);
+    run().expect_code(1);
+}
+
+#[test]
+fn finished_runs_travel_by_table_and_by_archive() {
+    let place = finished();
+    let before = tables(&place, "store");
+    place
+        .call(["study", "pack", "store", "runs.tar"])
+        .expect_code(0)
+        .shows(&["4 finished runs in runs.tar"]);
+    place
+        .call([
+            "study",
+            "import",
+            "packed",
+            "runs.tar",
+            "--study",
+            "study.toml",
+        ])
+        .expect_code(0)
+        .shows(&["4 of 4 runs taken"]);
+    assert!(tables(&place, "packed") == before);
+    place
+        .call([
+            "study",
+            "import",
+            "rows",
+            "store-tables/tested.csv",
+            "--study",
+            "study.toml",
+        ])
+        .expect_code(0)
+        .shows(&["4 rows taken"]);
+    place
+        .call(["study", "run", "study.toml", "--store", "rows"])
+        .expect_code(0);
+    assert!(tables(&place, "rows")[..2] == before[..2]);
+    place
+        .call(["study", "import", "rows", "study.toml"])
+        .expect_code(1);
+}
+
+#[test]
+fn the_schema_is_printed() {
+    let schema = Place::new().call(["study", "schema"]).expect_code(0).json();
+    jsonschema::meta::validate(&schema).unwrap();
+    assert!(schema["properties"]["base"]["properties"]["drive"].is_object());
+}
+
+/// Starts a study that takes minutes, and sends a signal when its runs have begun.
+#[cfg(unix)]
+fn interrupted(place: &Place, signal: &str) -> Outcome {
+    use std::process::{Command, Stdio};
+    let child = place
+        .command(["study", "run", "study.toml", "--store", "store"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !place.path("store/runs").exists()
+        || std::fs::read_dir(place.path("store/runs")).unwrap().count() == 0
+    {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let sent = Command::new("kill")
+        .args([format!("-{signal}"), child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    Outcome::of(child.wait_with_output().unwrap())
+}
+
+#[cfg(unix)]
+#[test]
+fn signals_stop_it_with_every_run_saved() {
+    for (signal, code) in [("INT", 130), ("TERM", 143), ("USR1", 138)] {
+        let place = place_of(&STUDY.replace("run.periods = 70", "run.periods = 100000"));
+        let outcome = interrupted(&place, signal).expect_code(code).says(&[
+            "stopped, every run is saved",
+            "go on with: peristalsis study run",
+        ]);
+        assert!(
+            outcome.stdout.contains("checkpointed"),
+            "{}",
+            outcome.stdout
+        );
+        let counts = &status(&place)["counts"];
+        assert_eq!(counts["leased"], Value::Null, "{counts}");
+    }
+}
+
+#[test]
+fn time_that_is_up_stops_it_as_well() {
+    let place = place_of(
+        &STUDY
+            .replace("run.periods = 70", "run.periods = 100000")
+            .replace("[stop]\nsettled_periods = 30", ""),
+    );
+    place
+        .call([
+            "study",
+            "run",
+            "study.toml",
+            "--store",
+            "store",
+            "--for",
+            "300ms",
+            "--workers",
+            "1",
+        ])
+        .expect_code(0)
+        .says(&["time is up, every run is saved"])
+        .shows(&["1 checkpointed", "11 pending"]);
+}

@@ -1,0 +1,323 @@
+//! Kills, full disks, flipped bits, several processes: in the end the tables are those of an undisturbed study, bit for bit.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::OnceLock;
+use std::time::Duration;
+
+use super::{STUDY, place_of, tables};
+use crate::{Outcome, Place};
+
+/// Numbers that look random and are the same every time.
+struct Numbers(u64);
+
+impl Numbers {
+    /// The next number below a limit.
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % limit
+    }
+}
+
+const RUN: [&str; 9] = [
+    "study",
+    "run",
+    "study.toml",
+    "--store",
+    "store",
+    "--checkpoint-every",
+    "20ms",
+    "--workers",
+    "2",
+];
+
+fn start(place: &Place) -> Child {
+    place
+        .command(RUN)
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap()
+}
+
+/// The tables of this study when nothing disturbs it.
+fn undisturbed(text: &str) -> [Vec<u8>; 3] {
+    let place = place_of(text);
+    place.call(RUN).expect_code(0);
+    tables(&place, "store")
+}
+
+fn usual_tables() -> &'static [Vec<u8>; 3] {
+    static TABLES: OnceLock<[Vec<u8>; 3]> = OnceLock::new();
+    TABLES.get_or_init(|| undisturbed(STUDY))
+}
+
+/// Kills the process at a random moment again and again, until one comes to the end; answers how often.
+fn kill_until_done(place: &Place, numbers: &mut Numbers, longest: u64) -> u32 {
+    let mut kills = 0;
+    loop {
+        let mut child = start(place);
+        std::thread::sleep(Duration::from_millis(10 + numbers.below(longest)));
+        if let Some(status) = child.try_wait().unwrap() {
+            let outcome = Outcome::of(child.wait_with_output().unwrap());
+            assert_eq!(status.code(), Some(0), "{}", outcome.stderr);
+            return kills;
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        kills += 1;
+        assert!(kills < 2000, "it never comes to an end");
+    }
+}
+
+/// Asserts that a store holds each run of its study once, whole, and that nothing had to be thrown away.
+fn assert_whole(place: &Place, runs: usize) {
+    let verified = format!(
+        "{runs} finished runs whose hashes check, 0 imported, 0 with a checkpoint, 0 failed"
+    );
+    place
+        .call(["study", "verify", "store"])
+        .expect_code(0)
+        .shows(&[&verified]);
+    assert!(!place.path("store/quarantine").exists());
+    let timing = std::fs::read_to_string(place.path("store-tables/tested-timing.csv")).unwrap();
+    let identities: BTreeSet<&str> = timing.lines().skip(1).collect();
+    assert_eq!(identities.len(), runs);
+}
+
+#[test]
+fn kills_at_random_moments_lose_nothing() {
+    let place = place_of(STUDY);
+    let kills = kill_until_done(&place, &mut Numbers(1), 300);
+    assert!(kills >= 3, "only {kills} kills");
+    println!("{kills} kills");
+    assert!(tables(&place, "store") == *usual_tables());
+    assert_whole(&place, 12);
+}
+
+#[test]
+fn two_processes_of_which_one_is_killed_share_a_store() {
+    let place = place_of(STUDY);
+    let mut steady = start(&place);
+    let mut numbers = Numbers(2);
+    let mut kills = 0;
+    while steady.try_wait().unwrap().is_none() {
+        let mut other = start(&place);
+        std::thread::sleep(Duration::from_millis(20 + numbers.below(150)));
+        if other.try_wait().unwrap().is_none() {
+            other.kill().unwrap();
+            kills += 1;
+        }
+        other.wait().unwrap();
+    }
+    let outcome = Outcome::of(steady.wait_with_output().unwrap()).expect_code(0);
+    assert!(kills >= 3, "only {kills} kills\n{}", outcome.stderr);
+    assert!(tables(&place, "store") == *usual_tables());
+    assert_whole(&place, 12);
+}
+
+#[test]
+fn two_processes_at_once_do_the_work_once() {
+    let place = place_of(STUDY);
+    let both = [start(&place), start(&place)];
+    for child in both {
+        Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
+    }
+    assert!(tables(&place, "store") == *usual_tables());
+    assert_whole(&place, 12);
+}
+
+#[test]
+fn a_process_that_slept_too_long_finds_its_run_taken_and_does_no_harm() {
+    let signal = |name: &str, child: &Child| {
+        let sent = Command::new("kill")
+            .args([format!("-{name}"), child.id().to_string()])
+            .status()
+            .unwrap();
+        assert!(sent.success());
+    };
+    let place = place_of(STUDY);
+    let sleeper = start(&place);
+    std::thread::sleep(Duration::from_millis(400));
+    signal("STOP", &sleeper);
+    // Its leases are void for everyone else once the index is gone.
+    std::fs::remove_file(place.path("store/index.sqlite")).unwrap();
+    let other = start(&place);
+    std::thread::sleep(Duration::from_millis(300));
+    signal("CONT", &sleeper);
+    for child in [sleeper, other] {
+        // The first may find that its index was pulled from under it; the store is whole in any case.
+        child.wait_with_output().unwrap();
+    }
+    place.call(RUN).expect_code(0);
+    assert!(tables(&place, "store") == *usual_tables());
+}
+
+#[test]
+fn bits_that_flip_between_kills_are_found_and_mended() {
+    let place = place_of(STUDY);
+    let mut numbers = Numbers(3);
+    let mut flipped = 0;
+    for _ in 0..6 {
+        let mut child = start(&place);
+        std::thread::sleep(Duration::from_millis(250 + numbers.below(250)));
+        drop(child.kill());
+        child.wait().unwrap();
+        let files = files_below(&place.path("store/runs"));
+        let candidates: Vec<&PathBuf> = files
+            .iter()
+            .filter(|path| {
+                let name = path.file_name().unwrap().to_string_lossy();
+                !name.contains("signac") && !name.contains("timing") && !name.ends_with(".partial")
+            })
+            .collect();
+        if !candidates.is_empty() {
+            let path = candidates[numbers.below(candidates.len() as u64) as usize];
+            let mut bytes = std::fs::read(path).unwrap();
+            let index = numbers.below(bytes.len() as u64) as usize;
+            bytes[index] ^= 1 << numbers.below(8);
+            std::fs::write(path, bytes).unwrap();
+            flipped += 1;
+        }
+    }
+    assert!(flipped >= 4, "only {flipped} flips");
+    place.call(RUN).expect_code(0);
+    assert!(tables(&place, "store") == *usual_tables());
+}
+
+fn files_below(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return files;
+    };
+    for entry in entries {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files.extend(files_below(&path));
+        } else {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// A small disk of its own, taken away at the end.
+struct SmallDisk {
+    folder: PathBuf,
+}
+
+impl SmallDisk {
+    fn mount(folder: PathBuf, size: &str) -> Option<Self> {
+        std::fs::create_dir(&folder).unwrap();
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", &format!("size={size}"), "tmpfs"])
+            .arg(&folder)
+            .stderr(Stdio::null())
+            .status();
+        mounted
+            .is_ok_and(|status| status.success())
+            .then_some(Self { folder })
+    }
+
+    fn resize(&self, size: &str) {
+        let status = Command::new("mount")
+            .args(["-o", &format!("remount,size={size}")])
+            .arg(&self.folder)
+            .status();
+        assert!(status.unwrap().success());
+    }
+}
+
+impl Drop for SmallDisk {
+    fn drop(&mut self) {
+        drop(Command::new("umount").arg(&self.folder).status());
+    }
+}
+
+#[test]
+fn a_disk_that_is_full_ends_the_work_and_loses_nothing() {
+    let place = place_of(STUDY);
+    let Some(disk) = SmallDisk::mount(place.path("disk"), "400k") else {
+        println!("skipped: this user may mount no file system");
+        return;
+    };
+    let run = RUN.map(|argument| {
+        if argument == "store" {
+            "disk/store"
+        } else {
+            argument
+        }
+    });
+    let mut full = 0;
+    for size in ["400k", "600k", "900k", "1300k"] {
+        disk.resize(size);
+        let outcome = place.call(run);
+        if outcome.code == Some(0) {
+            continue;
+        }
+        full += 1;
+        outcome
+            .expect_code(1)
+            .says(&["nothing that was finished is lost"]);
+    }
+    assert!(full >= 2, "the disk was full {full} times");
+    disk.resize("64m");
+    place.call(run).expect_code(0);
+    assert!(tables(&place, "disk/store") == *usual_tables());
+}
+
+#[test]
+fn files_that_cannot_grow_end_the_work_and_lose_nothing() {
+    let place = place_of(STUDY);
+    let mut refused = 0;
+    for blocks in [1, 24, 64] {
+        // Beyond the limit a write fails as on a full disk, once the signal that says so is ignored.
+        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
+        let output = Command::new("sh")
+            .args(["-c", &script, env!("CARGO_BIN_EXE_peristalsis")])
+            .args(RUN)
+            .current_dir(place.folder.path())
+            .output()
+            .unwrap();
+        let outcome = Outcome::of(output);
+        if outcome.code != Some(0) {
+            refused += 1;
+            outcome.expect_code(1);
+        }
+    }
+    assert!(refused >= 2, "refused {refused} times");
+    place.call(RUN).expect_code(0);
+    assert!(tables(&place, "store") == *usual_tables());
+}
+
+#[test]
+#[ignore = "a minute or two: dozens of kills of two processes at once, with refinement"]
+fn dozens_of_kills_of_two_processes_lose_nothing() {
+    let text = STUDY
+        .replace("replicates = 3", "replicates = 6")
+        .replace("run.periods = 70", "run.periods = 150")
+        + "[refine]\nkey = \"drive.width\"\ntolerance = 0.15\n";
+    let expected = undisturbed(&text);
+    let mut kills = 0;
+    for seed in 0..40 {
+        let place = place_of(&text);
+        kills += std::thread::scope(|scope| {
+            let place = &place;
+            let loops = [100, 200].map(|base| {
+                scope.spawn(move || kill_until_done(place, &mut Numbers(base + seed), 300))
+            });
+            loops.map(|one| one.join().unwrap()).iter().sum::<u32>()
+        });
+        assert!(tables(&place, "store") == expected);
+        assert!(!place.path("store/quarantine").exists());
+        if kills >= 100 {
+            return;
+        }
+    }
+    panic!("only {kills} kills");
+}

@@ -1,0 +1,113 @@
+//! What can go wrong with a study and its store.
+
+use std::path::PathBuf;
+
+use peristalsis_configuration::ConfigurationError;
+use peristalsis_formats::FormatError;
+use peristalsis_run::RunError;
+
+/// Errors of a study.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// The study file, or a configuration that follows from it, is not one that can run.
+    #[error(transparent)]
+    Configuration(#[from] ConfigurationError),
+    /// A file that was named cannot be read.
+    #[error("cannot read {}: {source}", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A folder or file of the store cannot be made, moved or read.
+    #[error("cannot {operation} {}: {source}", path.display())]
+    Io {
+        /// What was tried, as a verb phrase.
+        operation: &'static str,
+        /// The file or folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// A file cannot be written, or is not what it should be.
+    #[error(transparent)]
+    Format(#[from] FormatError),
+    /// The index of the store.
+    #[error("the index of the store, {}: {source}", path.display())]
+    Index {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: rusqlite::Error,
+    },
+    /// A run cannot be packed, saved or written.
+    #[error("run {identity}: {source}")]
+    Run {
+        /// Which.
+        identity: crate::Identity,
+        /// Why.
+        source: RunError,
+    },
+    /// The products of a run do not read back as they were written.
+    #[error("run {identity} does not read back as it was written: {reason}")]
+    NotWritten {
+        /// Which.
+        identity: crate::Identity,
+        /// What differs.
+        reason: String,
+    },
+    /// There is no store where one was named.
+    #[error("{} is no store of a study: {reason}", path.display())]
+    NoStore {
+        /// The folder.
+        path: PathBuf,
+        /// What is missing.
+        reason: String,
+    },
+    /// The store holds another study.
+    #[error("{} holds the study `{found}`, not `{expected}`", path.display())]
+    OtherStudy {
+        /// The folder.
+        path: PathBuf,
+        /// Name of the study in the store.
+        found: String,
+        /// Name of the study that was asked for.
+        expected: String,
+    },
+    /// No run, or more than one, has such an identity.
+    #[error("{number} runs of this store have an identity that begins with {prefix:?}")]
+    NoSuchRun {
+        /// What was asked for.
+        prefix: String,
+        /// How many there are.
+        number: usize,
+    },
+    /// A table holds no rows of finished runs.
+    #[error("{} holds no rows of finished runs: {reason}", path.display())]
+    NotRows {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
+    },
+    /// Some run cannot be estimated.
+    #[error("trial of a run: {0}")]
+    Trial(RunError),
+}
+
+impl StudyError {
+    /// Says what was tried where.
+    pub(crate) fn io(
+        operation: &'static str,
+        path: impl Into<PathBuf>,
+    ) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.into();
+        move |source| Self::Io {
+            operation,
+            path,
+            source,
+        }
+    }
+}

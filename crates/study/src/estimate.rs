@@ -1,0 +1,134 @@
+//! What a study would take, before it runs.
+
+use peristalsis_observe::COLUMNS;
+use peristalsis_run::{Warning, estimate, warnings};
+
+use crate::error::StudyError;
+use crate::plan::Plan;
+use crate::refinement::most_added_points;
+use crate::specification::Specification;
+
+/// Points whose speed is measured; each takes about a second.
+const TRIALS: usize = 3;
+/// Bytes of a number in a Parquet file: mantissas do not compress.
+const BYTES_A_NUMBER: f64 = 8.0;
+/// Bytes of a run besides its tables, in blocks of the disk: configuration, row, summary, seal.
+const BYTES_A_RUN: f64 = 36_000.0;
+/// Columns of a profile.
+const PROFILE_COLUMNS: f64 = 10.0;
+
+/// What a study would take.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct StudyEstimate {
+    /// Points of the axes, states included.
+    pub points: usize,
+    /// Runs before refinement.
+    pub runs: usize,
+    /// Most runs that refinement adds.
+    pub refinement_runs: usize,
+    /// Steps of all runs before refinement, none of them ending early.
+    pub steps: u64,
+    /// Sum over these runs of grains times steps.
+    pub grain_steps: f64,
+    /// Seconds of one processor for these runs, from short trials on this machine.
+    pub processor_seconds: f64,
+    /// Bytes on disk of these runs when they are finished.
+    pub bytes: f64,
+    /// What looks doubtful, with the points that it is about.
+    pub warnings: Vec<StudyWarning>,
+}
+
+/// Something that will run but may not mean what was intended.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct StudyWarning {
+    /// Points that it is about.
+    pub points: usize,
+    /// The first of them, in words.
+    pub first: String,
+    /// The warning at the first of them.
+    #[serde(flatten)]
+    pub warning: Warning,
+}
+
+/// Grains times steps of a whole run, what its time is proportional to.
+pub(crate) fn work(configuration: &peristalsis_run::Configuration) -> f64 {
+    configuration.grains.number.max(1) as f64 * configuration.run.steps() as f64
+}
+
+/// What a study would take, with its speed measured by short trials of a few points.
+///
+/// # Errors
+/// [`StudyError::Trial`] where grains do not fit.
+pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimate, StudyError> {
+    let points = plan.points();
+    let mut trials: Vec<usize> = (0..TRIALS)
+        .map(|trial| trial * (points.len() - 1) / (TRIALS - 1))
+        .collect();
+    trials.dedup();
+    let (mut seconds, mut tried) = (0.0, 0.0);
+    for trial in trials {
+        let configuration = &points[trial].configuration;
+        seconds += estimate(configuration)
+            .map_err(StudyError::Trial)?
+            .expected_seconds;
+        tried += work(configuration);
+    }
+    let replicates = f64::from(study.replicates);
+    let grain_steps: f64 = points
+        .iter()
+        .map(|point| work(&point.configuration))
+        .sum::<f64>()
+        * replicates;
+    let columns = study
+        .record
+        .columns
+        .as_ref()
+        .map_or(COLUMNS.len(), Vec::len) as f64;
+    let bytes: f64 = points
+        .iter()
+        .map(|point| {
+            let configuration = &point.configuration;
+            let profile = if study.record.profile {
+                PROFILE_COLUMNS * f64::from(configuration.observe.profile_bins)
+            } else {
+                0.0
+            };
+            BYTES_A_RUN + BYTES_A_NUMBER * (columns * configuration.run.samples as f64 + profile)
+        })
+        .sum();
+    Ok(StudyEstimate {
+        points: points.len(),
+        runs: plan.runs().len(),
+        refinement_runs: most_added_points(study, plan) * study.replicates as usize,
+        steps: points
+            .iter()
+            .map(|point| point.configuration.run.steps())
+            .sum::<u64>()
+            * u64::from(study.replicates),
+        grain_steps,
+        processor_seconds: seconds / tried * grain_steps,
+        bytes: bytes * replicates,
+        warnings: all_warnings(plan),
+    })
+}
+
+/// Warnings of all points, one of each kind.
+fn all_warnings(plan: &Plan) -> Vec<StudyWarning> {
+    let mut all: Vec<StudyWarning> = Vec::new();
+    for point in plan.points() {
+        for warning in warnings(&point.configuration) {
+            match all
+                .iter_mut()
+                .find(|other| other.warning.key == warning.key)
+            {
+                Some(other) => other.points += 1,
+                None => all.push(StudyWarning {
+                    points: 1,
+                    first: point.in_words(),
+                    warning,
+                }),
+            }
+        }
+    }
+    all
+}

@@ -1,0 +1,143 @@
+//! Who a run is: a hash of what determines its products.
+
+use std::fmt;
+use std::str::FromStr;
+
+use peristalsis_configuration::Configuration;
+use peristalsis_run::Stopping;
+use sha2::{Digest, Sha256};
+
+/// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
+/// results, so that no old run is taken for a new one.
+pub const PHYSICS_VERSION: u32 = 1;
+
+/// What is kept of a run besides its row of numbers.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Record {
+    /// Columns of the time series; `None`: all.
+    pub columns: Option<Vec<String>>,
+    /// Whether the profile in the wave's frame is kept.
+    pub profile: bool,
+}
+
+/// Identity of a run: the first 128 bits of a SHA-256 of all that determines its products.
+///
+/// That is the resolved configuration without its seed, [`PHYSICS_VERSION`], the rule by which it may stop early, what is
+/// kept of it, and the number of the replicate. It knows nothing of the study: a point that two studies share is the
+/// same run, and a point that is added changes no other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Identity([u8; 16]);
+
+impl Identity {
+    /// The identity of one replicate of a point.
+    #[must_use]
+    pub fn of(
+        configuration: &Configuration,
+        stopping: Option<Stopping>,
+        record: &Record,
+        replicate: u32,
+    ) -> Self {
+        let mut text = format!(
+            "peristalsis run of a study 1\nphysics {PHYSICS_VERSION}\nconfiguration {}\n",
+            hexadecimal(&without_seed(configuration).run_hash())
+        );
+        match stopping {
+            None => text.push_str("to its end\n"),
+            Some(Stopping { settled_periods }) => {
+                text.push_str(&format!("settled {settled_periods}\n"));
+            }
+        }
+        match &record.columns {
+            None => text.push_str("all columns\n"),
+            Some(columns) => text.push_str(&format!("columns {}\n", columns.join(" "))),
+        }
+        text.push_str(&format!(
+            "profile {}\nreplicate {replicate}\n",
+            record.profile
+        ));
+        Self(leading(&Sha256::digest(text.as_bytes())))
+    }
+}
+
+/// The seed of one replicate: a hash of the physics of its configuration and its number.
+///
+/// Not of the length of the run and of what is measured: a longer study of the same point follows the same trajectories.
+#[must_use]
+pub fn seed(configuration: &Configuration, replicate: u32) -> u64 {
+    let text = format!(
+        "peristalsis seed 1\nphysics {}\nreplicate {replicate}\n",
+        hexadecimal(&without_seed(configuration).physics_hash())
+    );
+    // TOML has whole numbers of 63 bits.
+    u64::from_le_bytes(leading(&Sha256::digest(text.as_bytes()))) >> 1
+}
+
+fn without_seed(configuration: &Configuration) -> Configuration {
+    let mut configuration = configuration.clone();
+    configuration.run.seed = 0;
+    configuration
+}
+
+fn leading<const N: usize>(digest: &[u8]) -> [u8; N] {
+    digest[..N]
+        .try_into()
+        .expect("a digest of 32 bytes is longer")
+}
+
+/// Bytes as lower-case hexadecimal digits.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+impl fmt::Display for Identity {
+    /// As 32 hexadecimal digits.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str(&hexadecimal(&self.0))
+    }
+}
+
+/// A text is not 32 lower-case hexadecimal digits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("not an identity: 32 lower-case hexadecimal digits")]
+pub struct NotAnIdentity;
+
+impl FromStr for Identity {
+    type Err = NotAnIdentity;
+
+    fn from_str(text: &str) -> Result<Self, NotAnIdentity> {
+        let digits = text.as_bytes();
+        let valid = digits.len() == 32
+            && digits
+                .iter()
+                .all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'));
+        if !valid {
+            return Err(NotAnIdentity);
+        }
+        let mut bytes = [0; 16];
+        for (index, byte) in bytes.iter_mut().enumerate() {
+            *byte = u8::from_str_radix(&text[2 * index..2 * index + 2], 16)
+                .map_err(|_| NotAnIdentity)?;
+        }
+        Ok(Self(bytes))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn identities_read_back_and_nothing_else_does() {
+        let identity = Identity([0x0f; 16]);
+        assert_eq!(identity.to_string().parse(), Ok(identity));
+        for text in [
+            "",
+            "0f",
+            &"0F".repeat(16),
+            &"é".repeat(16),
+            &"0f".repeat(17),
+        ] {
+            assert_eq!(text.parse::<Identity>(), Err(NotAnIdentity), "{text}");
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Studies: ensembles of runs over grids of parameters, kept safe.
+//!
+//! A [`Specification`] is a study file that has been read and checked as a whole; [`Plan`] names its runs. Each has an
+//! [`Identity`], a hash of what determines its products, and a seed that follows from it: a point that is added changes
+//! no other. A [`Store`] keeps the runs in a folder, whose files are the truth and whose index can be made again from
+//! them. [`work_on`] computes what is missing, in several workers and beside other processes; wherever it is interrupted,
+//! the tables that [`Store::export`] writes in the end are the same bytes. Nothing here prints or exits.
+//!
+//! ```
+//! use peristalsis_study::{Plan, Specification};
+//!
+//! let study = Specification::from_toml(
+//!     "study.toml",
+//!     r#"
+//!         name = "widths"
+//!         preset = "frictionless"
+//!         replicates = 3
+//!         [[axes]]
+//!         key = "drive.width"
+//!         from = 2.6
+//!         to = 2.9
+//!         step = 0.1
+//!     "#,
+//!     |_| unreachable!("it builds on a preset"),
+//! )?;
+//! assert_eq!(Plan::of(&study)?.runs().len(), 12);
+//! # Ok::<(), peristalsis_study::StudyError>(())
+//! ```
+
+mod error;
+mod estimate;
+mod identity;
+mod plan;
+mod refinement;
+mod row;
+mod scheduler;
+mod specification;
+mod store;
+
+pub use error::StudyError;
+pub use estimate::{StudyEstimate, StudyWarning, study_estimate};
+pub use identity::{Identity, NotAnIdentity, PHYSICS_VERSION, Record, seed};
+pub use plan::{Plan, PlannedRun, Point, Setting, SettingValue};
+pub use refinement::{Bracket, Finding, brackets, refine};
+pub use row::Row;
+pub use scheduler::{Board, Effort, Ending, Working, work_on};
+pub use specification::{Specification, schema};
+pub use store::{
+    Entry, Exported, LEASE_TIMEOUT, Packed, Staleness, State, Store, Survey, Verification,
+};

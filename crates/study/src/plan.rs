@@ -1,0 +1,303 @@
+//! The runs of a study: points of its axes, and replicates of each.
+
+use std::cmp::Ordering;
+use std::collections::HashMap;
+
+use peristalsis_configuration::document::{Item, Node};
+use peristalsis_configuration::{
+    Configuration, ConfigurationError, InitialState, Problem, ProblemKind, Problems,
+};
+use peristalsis_run::Stopping;
+
+use crate::identity::{Identity, Record, seed};
+use crate::specification::{Choice, Specification, joined};
+
+/// What a key of an axis is set to.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingValue {
+    /// A number with a point or an exponent.
+    Number(f64),
+    /// A whole number.
+    Whole(i64),
+    /// A name.
+    Text(String),
+    /// True or false.
+    Boolean(bool),
+}
+
+impl SettingValue {
+    fn of(node: &Node) -> Self {
+        match node {
+            Node::Integer(whole) => Self::Whole(*whole),
+            Node::Float(number) => Self::Number(*number),
+            Node::Boolean(boolean) => Self::Boolean(*boolean),
+            Node::Text(text) => Self::Text(text.clone()),
+            other => unreachable!("no value of an axis is {}", other.description()),
+        }
+    }
+
+    /// The value as a number, if it is one.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            Self::Number(number) => Some(*number),
+            Self::Whole(whole) => Some(*whole as f64),
+            _ => None,
+        }
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        match (self.number(), other.number()) {
+            (Some(one), Some(other)) => one.total_cmp(&other),
+            (Some(_), None) => Ordering::Less,
+            (None, Some(_)) => Ordering::Greater,
+            (None, None) => self.to_string().cmp(&other.to_string()),
+        }
+    }
+}
+
+impl std::fmt::Display for SettingValue {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Number(number) => number.fmt(formatter),
+            Self::Whole(whole) => whole.fmt(formatter),
+            Self::Text(text) => formatter.write_str(text),
+            Self::Boolean(boolean) => boolean.fmt(formatter),
+        }
+    }
+}
+
+/// A key of the configuration and what a point sets it to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// Full name of the key.
+    pub key: String,
+    /// Its value.
+    pub value: SettingValue,
+}
+
+/// One point of a study: a configuration but for the seed.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The keys of the axes, in the order of the file.
+    pub settings: Vec<Setting>,
+    /// The initial state.
+    pub state: InitialState,
+    /// The configuration, with the seed of its base.
+    pub configuration: Configuration,
+    /// The row of each axis; that of a refined axis has no meaning.
+    pub(crate) rows: Vec<usize>,
+}
+
+impl Point {
+    /// The settings in words, such as "drive.width 2.7, from rest".
+    #[must_use]
+    pub fn in_words(&self) -> String {
+        let mut words: Vec<String> = self
+            .settings
+            .iter()
+            .map(|setting| format!("{} {}", setting.key, setting.value))
+            .collect();
+        words.push(in_words(self.state).to_owned());
+        words.join(", ")
+    }
+
+    fn order(&self, other: &Self) -> Ordering {
+        self.settings
+            .iter()
+            .zip(&other.settings)
+            .map(|(one, other)| one.value.order(&other.value))
+            .find(|order| order.is_ne())
+            .unwrap_or_else(|| {
+                state_name(self.state)
+                    .cmp(state_name(other.state))
+                    .reverse()
+            })
+    }
+}
+
+/// A state as a phrase.
+pub(crate) fn in_words(state: InitialState) -> &'static str {
+    match state {
+        InitialState::Rest => "from rest",
+        InitialState::Jammed => "from jammed",
+    }
+}
+
+/// A state as the configuration calls it.
+pub(crate) fn state_name(state: InitialState) -> &'static str {
+    match state {
+        InitialState::Rest => "rest",
+        InitialState::Jammed => "jammed",
+    }
+}
+
+/// One run of a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlannedRun {
+    /// Who it is.
+    pub identity: Identity,
+    /// Index into [`Plan::points`].
+    pub point: usize,
+    /// Number of the replicate, from 0.
+    pub replicate: u32,
+}
+
+/// The runs of a study, the first replicate of every point before the second of any.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    points: Vec<Point>,
+    runs: Vec<PlannedRun>,
+    replicates: u32,
+    /// When a run may end before its time.
+    pub stopping: Option<Stopping>,
+    /// What is kept of each run.
+    pub record: Record,
+}
+
+impl Plan {
+    /// The runs of a study before refinement.
+    ///
+    /// # Errors
+    /// What is wrong with the configurations of its points, and points that are the same.
+    pub fn of(study: &Specification) -> Result<Self, ConfigurationError> {
+        let states: Vec<Option<InitialState>> = match &study.states {
+            None => vec![None],
+            Some(states) => states.iter().copied().map(Some).collect(),
+        };
+        let mut points = Vec::new();
+        let mut errors = Vec::new();
+        for rows in study.grid() {
+            let choice = choice(study, &rows);
+            for state in &states {
+                match point(study, &choice, &rows, *state) {
+                    Ok(point) => points.push(point),
+                    Err(error) => errors.push(error),
+                }
+            }
+        }
+        joined(errors)?;
+        let mut plan = Self {
+            points: Vec::new(),
+            runs: Vec::new(),
+            replicates: study.replicates,
+            stopping: study.stopping,
+            record: study.record.clone(),
+        };
+        plan.add(points);
+        plan.check_distinct()?;
+        Ok(plan)
+    }
+
+    /// Adds points and the runs of each.
+    pub(crate) fn add(&mut self, points: Vec<Point>) {
+        for point in points {
+            let index = self.points.len();
+            for replicate in 0..self.replicates {
+                let identity =
+                    Identity::of(&point.configuration, self.stopping, &self.record, replicate);
+                self.runs.push(PlannedRun {
+                    identity,
+                    point: index,
+                    replicate,
+                });
+            }
+            self.points.push(point);
+        }
+        self.runs.sort_by_key(|run| (run.replicate, run.point));
+    }
+
+    fn check_distinct(&self) -> Result<(), ConfigurationError> {
+        let mut problems = Problems::default();
+        let mut seen: HashMap<Identity, usize> = HashMap::new();
+        for run in self.runs.iter().filter(|run| run.replicate == 0) {
+            if let Some(first) = seen.insert(run.identity, run.point) {
+                let [one, other] = [first, run.point].map(|point| self.points[point].in_words());
+                let problem = Problem::new(
+                    ProblemKind::Conflict,
+                    format!("two points of the axes are the same run: {one}; {other}"),
+                )
+                .key("axes")
+                .help("an axis names a value once, and a key that changes something");
+                problems.push(None, problem);
+                break;
+            }
+        }
+        problems.check()
+    }
+
+    /// The points, those of refinement after the others.
+    #[must_use]
+    pub fn points(&self) -> &[Point] {
+        &self.points
+    }
+
+    /// The runs in the order in which they are begun.
+    #[must_use]
+    pub fn runs(&self) -> &[PlannedRun] {
+        &self.runs
+    }
+
+    /// The runs in the order of the values of the axes, as tables list them.
+    #[must_use]
+    pub fn sorted_runs(&self) -> Vec<PlannedRun> {
+        let mut runs = self.runs.clone();
+        runs.sort_by(|one, other| {
+            self.points[one.point]
+                .order(&self.points[other.point])
+                .then(one.replicate.cmp(&other.replicate))
+        });
+        runs
+    }
+
+    /// The point of a run.
+    #[must_use]
+    pub fn point(&self, run: &PlannedRun) -> &Point {
+        &self.points[run.point]
+    }
+
+    /// The configuration of a run, its seed included.
+    #[must_use]
+    pub fn configuration(&self, run: &PlannedRun) -> Configuration {
+        let mut configuration = self.points[run.point].configuration.clone();
+        configuration.run.seed = seed(&configuration, run.replicate);
+        configuration
+    }
+}
+
+/// The value of each key at one row of each axis.
+pub(crate) fn choice<'a>(study: &'a Specification, rows: &[usize]) -> Choice<'a> {
+    study
+        .axes
+        .iter()
+        .zip(rows)
+        .flat_map(|(axis, row)| {
+            axis.keys
+                .iter()
+                .zip(&axis.rows[*row])
+                .map(|((key, origin), value)| (key.as_str(), origin, value))
+        })
+        .collect()
+}
+
+/// The point that a choice makes.
+pub(crate) fn point(
+    study: &Specification,
+    choice: &Choice<'_>,
+    rows: &[usize],
+    state: Option<InitialState>,
+) -> Result<Point, ConfigurationError> {
+    let configuration = study.configuration(choice, state)?;
+    Ok(Point {
+        settings: choice
+            .iter()
+            .map(|(key, _, value): &(&str, _, &Item)| Setting {
+                key: (*key).to_owned(),
+                value: SettingValue::of(&value.node),
+            })
+            .collect(),
+        state: configuration.initial.state,
+        configuration,
+        rows: rows.to_vec(),
+    })
+}

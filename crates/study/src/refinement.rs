@@ -1,0 +1,250 @@
+//! Where the flow changes its kind along an axis, and the points that are added there.
+
+use std::collections::{BTreeMap, HashMap};
+
+use peristalsis_configuration::document::{Item, Node};
+use peristalsis_configuration::{ConfigurationError, InitialState};
+
+use crate::identity::Identity;
+use crate::plan::{Plan, Point, choice, in_words, point, state_name};
+use crate::specification::{Specification, neat, number};
+
+/// Axis along which a change is looked for where the study does not refine one.
+const USUAL_KEY: &str = "drive.width";
+
+/// What a run that has ended says of its point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finding {
+    /// The flow changed its kind.
+    Transition,
+    /// It did not before the end of the run.
+    NoTransition,
+    /// The run failed, and says nothing.
+    Nothing,
+}
+
+/// Two neighbouring values of an axis between which the majority of the runs changes: a running estimate of the critical
+/// value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bracket {
+    /// Key of the axis.
+    pub key: String,
+    /// Values of the other axes, and the state, in words.
+    pub of: String,
+    /// Initial state of the runs.
+    pub state: InitialState,
+    /// The lower value.
+    pub lower: f64,
+    /// The upper value.
+    pub upper: f64,
+}
+
+impl Bracket {
+    /// Midway between the two values.
+    #[must_use]
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.lower + self.upper)
+    }
+}
+
+/// The points that differ in one axis alone.
+struct Line<'a> {
+    /// Points by ascending value.
+    points: Vec<(f64, usize, &'a Point)>,
+}
+
+/// Runs of a point: how many had a transition, how many had none, how many have not ended.
+#[derive(Clone, Copy, Default)]
+struct Count {
+    transitions: u32,
+    none: u32,
+    open: u32,
+}
+
+impl Count {
+    /// Whether most runs had a transition; `None` while none has ended well.
+    fn majority(self) -> Option<bool> {
+        (self.transitions + self.none > 0).then_some(self.transitions > self.none)
+    }
+}
+
+/// The axis along which changes are looked for.
+fn watched_axis(study: &Specification) -> Option<usize> {
+    match &study.refinement {
+        Some(refine) => Some(refine.axis),
+        None => study
+            .axes
+            .iter()
+            .position(|axis| axis.is_numeric() && axis.keys[0].0 == USUAL_KEY),
+    }
+}
+
+/// The first setting of an axis in the settings of a point.
+fn setting_of(study: &Specification, axis: usize) -> usize {
+    study.axes[..axis].iter().map(|axis| axis.keys.len()).sum()
+}
+
+fn lines<'a>(study: &Specification, plan: &'a Plan, axis: usize) -> Vec<Line<'a>> {
+    let setting = setting_of(study, axis);
+    let mut lines: BTreeMap<(Vec<usize>, &str), Line<'a>> = BTreeMap::new();
+    for (index, point) in plan.points().iter().enumerate() {
+        let mut others = point.rows.clone();
+        others[axis] = 0;
+        let value = point.settings[setting].value.number();
+        let value = value.expect("a watched axis is one of numbers");
+        lines
+            .entry((others, state_name(point.state)))
+            .or_insert(Line { points: Vec::new() })
+            .points
+            .push((value, index, point));
+    }
+    let mut lines: Vec<Line<'a>> = lines.into_values().collect();
+    for line in &mut lines {
+        line.points.sort_by(|one, other| one.0.total_cmp(&other.0));
+    }
+    lines
+}
+
+fn counts(plan: &Plan, found: &dyn Fn(&Identity) -> Option<Finding>) -> HashMap<usize, Count> {
+    let mut counts: HashMap<usize, Count> = HashMap::new();
+    for run in plan.runs() {
+        let count = counts.entry(run.point).or_default();
+        match found(&run.identity) {
+            Some(Finding::Transition) => count.transitions += 1,
+            Some(Finding::NoTransition) => count.none += 1,
+            Some(Finding::Nothing) => {}
+            None => count.open += 1,
+        }
+    }
+    counts
+}
+
+impl Line<'_> {
+    /// The last two neighbouring values between which the majority changes, points that say nothing yet left out.
+    fn bracket(&self, counts: &HashMap<usize, Count>) -> Option<(f64, f64)> {
+        let known: Vec<(f64, bool)> = self
+            .points
+            .iter()
+            .filter_map(|(value, point, _)| Some((*value, counts.get(point)?.majority()?)))
+            .collect();
+        known
+            .windows(2)
+            .rev()
+            .find(|pair| pair[0].1 != pair[1].1)
+            .map(|pair| (pair[0].0, pair[1].0))
+    }
+}
+
+/// Where the majority of the runs that have ended changes, for each combination of the other axes and each state; empty
+/// where nothing has changed yet, or no axis of numbers is watched.
+#[must_use]
+pub fn brackets(
+    study: &Specification,
+    plan: &Plan,
+    found: &dyn Fn(&Identity) -> Option<Finding>,
+) -> Vec<Bracket> {
+    let Some(axis) = watched_axis(study) else {
+        return Vec::new();
+    };
+    let setting = setting_of(study, axis);
+    let counts = counts(plan, found);
+    let of_line = |line: Line<'_>| {
+        let (lower, upper) = line.bracket(&counts)?;
+        let point = line.points[0].2;
+        let mut words: Vec<String> = point
+            .settings
+            .iter()
+            .enumerate()
+            .filter(|(index, _)| *index != setting)
+            .map(|(_, setting)| format!("{} {}", setting.key, setting.value))
+            .collect();
+        words.push(in_words(point.state).to_owned());
+        Some(Bracket {
+            key: point.settings[setting].key.clone(),
+            of: words.join(", "),
+            state: point.state,
+            lower,
+            upper,
+        })
+    };
+    lines(study, plan, axis)
+        .into_iter()
+        .filter_map(of_line)
+        .collect()
+}
+
+/// Adds the points that refinement asks for, as far as the runs that have ended decide them; answers whether there are
+/// any.
+///
+/// A line of points is bisected only when all its runs have ended, so that the points added do not depend on the order in
+/// which runs end.
+///
+/// # Errors
+/// What is wrong with the configuration of a new point.
+pub fn refine(
+    study: &Specification,
+    plan: &mut Plan,
+    found: &dyn Fn(&Identity) -> Option<Finding>,
+) -> Result<bool, ConfigurationError> {
+    let Some(refine) = &study.refinement else {
+        return Ok(false);
+    };
+    let mut grown = false;
+    loop {
+        let counts = counts(plan, found);
+        let mut added = Vec::new();
+        for line in lines(study, plan, refine.axis) {
+            let all_ended = line
+                .points
+                .iter()
+                .all(|(_, point, _)| counts.get(point).is_some_and(|count| count.open == 0));
+            let Some((lower, upper)) = line.bracket(&counts).filter(|_| all_ended) else {
+                continue;
+            };
+            let middle = neat(0.5 * (lower + upper));
+            if upper - lower <= refine.tolerance || middle <= lower || middle >= upper {
+                continue;
+            }
+            let model = line.points[0].2;
+            let item = Item {
+                origin: refine.origin.clone(),
+                node: Node::Float(middle),
+            };
+            let mut choice = choice(study, &model.rows);
+            choice[setting_of(study, refine.axis)].2 = &item;
+            let state = study.states.as_ref().map(|_| model.state);
+            added.push(point(study, &choice, &model.rows, state)?);
+        }
+        if added.is_empty() {
+            return Ok(grown);
+        }
+        plan.add(added);
+        grown = true;
+    }
+}
+
+/// Most points that refinement can add, were every line to have a change: for an estimate beforehand.
+#[must_use]
+pub(crate) fn most_added_points(study: &Specification, plan: &Plan) -> usize {
+    let Some(refine) = &study.refinement else {
+        return 0;
+    };
+    let widest_gap = study.axes[refine.axis]
+        .rows
+        .iter()
+        .map(|row| number(&row[0].node))
+        .collect::<Vec<_>>();
+    let mut values = widest_gap;
+    values.sort_by(f64::total_cmp);
+    let gap = values
+        .windows(2)
+        .map(|pair| pair[1] - pair[0])
+        .fold(0.0, f64::max);
+    let mut halvings = 0;
+    let mut left = gap;
+    while left > refine.tolerance && halvings < 60 {
+        left *= 0.5;
+        halvings += 1;
+    }
+    halvings * lines(study, plan, refine.axis).len()
+}

@@ -1,0 +1,279 @@
+//! The row of a finished run: all that tables and analyses need of it, and nothing that depends on when it was computed.
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
+use peristalsis_run::Summary;
+
+use crate::identity::Identity;
+use crate::plan::state_name;
+
+/// One value of a row.
+enum Cell {
+    Real(f64),
+    Integer(i64),
+    Text(String),
+    Boolean(bool),
+}
+
+impl Cell {
+    fn optional(value: Option<f64>) -> Self {
+        Self::Real(value.unwrap_or(f64::NAN))
+    }
+
+    fn whole(value: u64) -> Self {
+        // Seeds have 63 bits, and counts are smaller.
+        Self::Integer(i64::try_from(value).unwrap_or(i64::MAX))
+    }
+}
+
+/// What a row is made from.
+struct Origin<'a> {
+    identity: Identity,
+    replicate: u32,
+    configuration: &'a Configuration,
+    summary: &'a Summary,
+}
+
+/// A column of the row.
+struct RowColumn {
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    kind: ValueKind,
+    value: fn(&Origin<'_>) -> Cell,
+}
+
+const fn column(
+    name: &'static str,
+    unit: &'static str,
+    kind: ValueKind,
+    description: &'static str,
+    value: fn(&Origin<'_>) -> Cell,
+) -> RowColumn {
+    RowColumn {
+        name,
+        unit,
+        description,
+        kind,
+        value,
+    }
+}
+
+use ValueKind::{Boolean, Integer, Real, Text};
+
+/// All columns of a row, in order.
+#[rustfmt::skip]
+const COLUMNS: &[RowColumn] = &[
+    column("identity", "", Text, "hash of configuration, physics version and replicate", |o| Cell::Text(o.identity.to_string())),
+    column("replicate", "1", Integer, "number of the replicate, from 0", |o| Cell::Integer(o.replicate.into())),
+    column("seed", "1", Integer, "seed of the random numbers", |o| Cell::whole(o.summary.seed)),
+    column("initial_state", "", Text, "how the grains stood at t = 0", |o| Cell::Text(state_name(o.configuration.initial.state).into())),
+    column("status", "", Text, "complete, or settled: ended early, after its transition", |o| Cell::Text(status_name(o.summary).into())),
+    column("width", "d", Real, "w = 2 (a - b); missing under stress control", |o| Cell::optional(width(o.configuration))),
+    column("force_amplitude", "m d/t^2", Real, "f^P; missing under strain control", |o| Cell::optional(force_amplitude(o.configuration))),
+    column("strain_rate", "1/t", Real, "c/lambda", |o| Cell::Real(o.configuration.drive.strain_rate)),
+    column("volume_fraction", "1", Real, "rho = N/(6 a^2 L), grain volumes averaged", |o| Cell::Real(o.configuration.volume_fraction())),
+    column("number_density", "1/d^3", Real, "n = N d*^3/(pi a^2 L)", |o| Cell::Real(o.configuration.number_density())),
+    column("grains", "1", Integer, "N", |o| Cell::whole(o.summary.grains)),
+    column("radius", "d", Real, "a, to the centres of the wall spheres", |o| Cell::Real(o.configuration.tube.radius)),
+    column("wavelength", "d", Real, "lambda", |o| Cell::Real(o.configuration.tube.wavelength)),
+    column("waves", "1", Integer, "waves in the tube", |o| Cell::Integer(o.configuration.tube.waves.into())),
+    column("spheres_per_ring", "1", Integer, "wall spheres in a ring", |o| Cell::Integer(o.configuration.tube.spheres_per_ring.into())),
+    column("rings_per_wave", "1", Integer, "rings in a wavelength", |o| Cell::Integer(o.configuration.tube.rings_per_wave.into())),
+    column("time", "t", Real, "time reached: where a run without a transition is censored", |o| Cell::Real(o.summary.time)),
+    column("periods", "1", Real, "wavelengths that the wave has run", |o| Cell::Real(o.summary.periods)),
+    column("transition_time", "t", Real, "tau; missing where there was none", |o| Cell::optional(o.summary.transition_time)),
+    column("censored", "", Boolean, "whether the run ended before a transition", |o| Cell::Boolean(o.summary.censored)),
+    column("transition_threshold", "1", Real, "J/Jmax whose crossing counts as the transition", |o| Cell::Real(o.summary.transition_threshold)),
+    column("flow_rate_ratio", "1", Real, "late mean of J/Jmax, grains inside", |o| Cell::Real(o.summary.flow_rate_ratio)),
+    column("flow_rate_ratio_error", "1", Real, "its standard error from block averages", |o| Cell::Real(o.summary.flow_rate_ratio_error)),
+    column("flow_rate_ratio_raw", "1", Real, "late mean of J/Jmax of all grains", |o| Cell::Real(o.summary.flow_rate_ratio_raw)),
+    column("flow_rate", "1/t", Real, "late mean of J", |o| Cell::Real(o.summary.flow_rate)),
+    column("newtonian_flow_rate_ratio", "1", Real, "J/Jmax of a Newtonian fluid in this tube, phi = b/a", |o| Cell::optional(o.summary.newtonian_flow_rate_ratio)),
+    column("newtonian_flow_rate_ratio_clear_bore", "1", Real, "the same for the clear bore, phi = b/(a - d/2)", |o| Cell::optional(o.summary.newtonian_flow_rate_ratio_clear_bore)),
+    column("escaped", "1", Integer, "grains outside the tube at the end", |o| Cell::whole(o.summary.escaped)),
+    column("escaped_most", "1", Integer, "most grains outside the tube at any sample", |o| Cell::whole(o.summary.escaped_most)),
+    column("largest_overlap", "d", Real, "largest overlap of a grain's contact at any step", |o| Cell::Real(o.summary.largest_overlap)),
+    column("energy_residual", "1", Real, "|what the energy ledger misses|/integral of |power that entered|", |o| Cell::Real(o.summary.energy_residual)),
+    column("granular_temperature", "m d^2/t^2", Real, "late mean of the granular temperature", |o| Cell::Real(o.summary.granular_temperature)),
+    column("contacts", "1", Real, "late mean number of contacts of a grain", |o| Cell::Real(o.summary.contacts)),
+    column("wall_power", "m d^2/t^3", Real, "late mean power that wall or drive put in", |o| Cell::Real(o.summary.wall_power)),
+    column("dissipated_power", "m d^2/t^3", Real, "late mean power lost", |o| Cell::Real(o.summary.dissipated_power)),
+    column("bottleneck", "d", Real, "late mean of the smallest bottleneck", |o| Cell::Real(o.summary.bottleneck)),
+    column("time_step", "t", Real, "length of a step", |o| Cell::Real(o.summary.time_step)),
+    column("steps", "1", Integer, "steps done", |o| Cell::whole(o.summary.steps)),
+    column("version", "", Text, "version of the program", |o| Cell::Text(o.summary.version.into())),
+    column("revision", "", Text, "revision of its source", |o| Cell::Text(o.summary.revision.into())),
+];
+
+fn status_name(summary: &Summary) -> &'static str {
+    match summary.status {
+        peristalsis_run::Status::Settled => "settled",
+        _ => "complete",
+    }
+}
+
+fn width(configuration: &Configuration) -> Option<f64> {
+    match configuration.drive.control {
+        Control::Strain { width } => Some(width),
+        Control::Stress { .. } => None,
+    }
+}
+
+fn force_amplitude(configuration: &Configuration) -> Option<f64> {
+    match configuration.drive.control {
+        Control::Strain { .. } => None,
+        Control::Stress {
+            force_amplitude, ..
+        } => Some(force_amplitude),
+    }
+}
+
+/// The row of one finished run, a table of one row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    identity: Identity,
+    table: Table,
+}
+
+impl Row {
+    /// The row of a run that has just ended.
+    pub(crate) fn of(
+        identity: Identity,
+        replicate: u32,
+        configuration: &Configuration,
+        summary: &Summary,
+    ) -> Self {
+        let origin = Origin {
+            identity,
+            replicate,
+            configuration,
+            summary,
+        };
+        let columns = COLUMNS.iter().map(|column| {
+            let values = match (column.value)(&origin) {
+                Cell::Real(value) => Values::Real(vec![value]),
+                Cell::Integer(value) => Values::Integer(vec![value]),
+                Cell::Text(value) => Values::Text(vec![value]),
+                Cell::Boolean(value) => Values::Boolean(vec![value]),
+            };
+            of_kind(column, values)
+        });
+        Self {
+            identity,
+            table: joined(columns),
+        }
+    }
+
+    /// Every row of a table that has the columns of rows; others are left out.
+    ///
+    /// # Errors
+    /// A sentence: the column that is missing or of another kind, or the text that is no identity.
+    pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
+        let identities = table
+            .texts("identity")
+            .map_err(|error| error.to_string())?
+            .to_vec();
+        (0..table.rows())
+            .map(|row| {
+                let identity = identities[row]
+                    .parse()
+                    .map_err(|error| format!("row {}: {error}", row + 1))?;
+                let columns: Result<Vec<Column>, String> = COLUMNS
+                    .iter()
+                    .map(|column| Ok(of_kind(column, one_of(table, column, row)?)))
+                    .collect();
+                Ok(Self {
+                    identity,
+                    table: joined(columns?),
+                })
+            })
+            .collect()
+    }
+
+    /// Reads what [`Row::to_csv`] wrote.
+    ///
+    /// # Errors
+    /// A sentence: what is wrong with the text.
+    pub fn from_csv(text: &str) -> Result<Self, String> {
+        let table = csv::decode(text).map_err(|error| error.to_string())?;
+        let mut rows = Self::all_of(&table)?;
+        match (rows.pop(), rows.is_empty()) {
+            (Some(row), true) => Ok(row),
+            _ => Err("it is not one row".to_owned()),
+        }
+    }
+
+    /// As CSV with its header, exact to the bit.
+    #[must_use]
+    pub fn to_csv(&self) -> String {
+        csv::encode(&self.table)
+    }
+
+    /// Whose row it is.
+    #[must_use]
+    pub fn identity(&self) -> Identity {
+        self.identity
+    }
+
+    /// As a table of one row.
+    #[must_use]
+    pub fn table(&self) -> &Table {
+        &self.table
+    }
+
+    /// tau \[t\]; `None` without a transition.
+    #[must_use]
+    pub fn transition_time(&self) -> Option<f64> {
+        self.table
+            .reals("transition_time")
+            .ok()
+            .and_then(|values| values.first().copied())
+            .filter(|time| !time.is_nan())
+    }
+
+    /// A table without rows, for studies of which nothing is finished.
+    pub(crate) fn no_rows() -> Table {
+        joined(
+            COLUMNS
+                .iter()
+                .map(|column| of_kind(column, Values::empty(column.kind))),
+        )
+    }
+}
+
+fn of_kind(column: &RowColumn, values: Values) -> Column {
+    Column {
+        name: column.name.to_owned(),
+        unit: column.unit.to_owned(),
+        description: column.description.to_owned(),
+        values,
+    }
+}
+
+fn joined(columns: impl IntoIterator<Item = Column>) -> Table {
+    Table::builder()
+        .columns(columns)
+        .build()
+        .expect("the columns of a row have distinct names and one length")
+}
+
+/// One value of a column of another table; an empty column of a CSV file reads as reals.
+fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, String> {
+    let found = table
+        .column(column.name)
+        .map_err(|error| error.to_string())?;
+    match (column.kind, &found.values) {
+        (Real, Values::Real(values)) => Ok(Values::Real(vec![values[row]])),
+        (Real, Values::Integer(values)) => Ok(Values::Real(vec![values[row] as f64])),
+        (Integer, Values::Integer(values)) => Ok(Values::Integer(vec![values[row]])),
+        (Text, Values::Text(values)) => Ok(Values::Text(vec![values[row].clone()])),
+        (Boolean, Values::Boolean(values)) => Ok(Values::Boolean(vec![values[row]])),
+        (wanted, other) => Err(FormatError::OtherKind {
+            name: column.name.to_owned(),
+            expected: wanted,
+            found: other.kind(),
+        }
+        .to_string()),
+    }
+}

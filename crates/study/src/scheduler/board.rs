@@ -1,0 +1,40 @@
+//! What a person sees of a study in progress.
+
+use std::time::Duration;
+
+use peristalsis_run::Progress;
+
+use crate::identity::Identity;
+use crate::refinement::Bracket;
+
+/// How far a study is.
+#[derive(Clone, Debug, Default)]
+pub struct Board {
+    /// Runs of the plan, those that refinement has added so far included.
+    pub total: usize,
+    /// Finished runs.
+    pub done: usize,
+    /// Runs that failed.
+    pub failed: usize,
+    /// Part of the work, in grains times steps, that is done.
+    pub fraction: f64,
+    /// Time left, from the speed since this process began; `None` while nothing can be said.
+    pub left: Option<Duration>,
+    /// What each worker of this process does.
+    pub workers: Vec<Option<Working>>,
+    /// Running estimates of the critical value, one for each combination of the other axes.
+    pub brackets: Vec<Bracket>,
+    /// What happened since the last look, in words: runs that failed, files that were moved aside.
+    pub news: Vec<String>,
+}
+
+/// A run in progress.
+#[derive(Clone, Debug)]
+pub struct Working {
+    /// Which.
+    pub identity: Identity,
+    /// Its point in words.
+    pub point: String,
+    /// How far it is.
+    pub progress: Option<Progress>,
+}

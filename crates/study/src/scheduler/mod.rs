@@ -1,0 +1,356 @@
+//! One process that works on a store: several workers, each with one run at a time.
+//!
+//! Several processes, on several machines, may share a store: each run is leased to one of them. A lease is void when its
+//! owner has died or been silent for [`LEASE_TIMEOUT`]; a worker that lost its lease abandons the run.
+
+mod board;
+mod worker;
+
+use std::collections::HashMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+use crate::error::StudyError;
+use crate::estimate::work;
+use crate::identity::Identity;
+use crate::plan::{Plan, PlannedRun};
+use crate::refinement::{brackets, refine};
+use crate::specification::Specification;
+use crate::store::{Assignment, Claim, Entry, Index, LEASE_TIMEOUT, Owner, State, Store, finding};
+pub use board::{Board, Working};
+
+/// Time between two looks of the coordinator: how fast it obeys and shows.
+const TICK: Duration = Duration::from_millis(50);
+/// Time between two heartbeats.
+const HEARTBEAT: Duration = Duration::from_secs(5);
+/// Time between two measurements of how far the study is.
+const MEASUREMENT: Duration = Duration::from_millis(300);
+/// Time after which a worker without work asks again.
+const IDLE: Duration = Duration::from_millis(300);
+
+/// How a process works on a study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Effort {
+    /// Runs at a time.
+    pub workers: usize,
+    /// Time between two checkpoints of a run.
+    pub checkpoint_interval: Duration,
+    /// Time after which to stop, every run in progress saved.
+    pub limit: Option<Duration>,
+}
+
+/// Why a process ended its work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// Every run of the study has ended.
+    Complete,
+    /// It was asked to stop.
+    Stopped,
+    /// Its time was up.
+    TimeUp,
+}
+
+/// What the threads of a process share.
+struct Shared<'a> {
+    store: &'a Store,
+    study: &'a Specification,
+    effort: Effort,
+    owner: Owner,
+    stop: AtomicBool,
+    common: Mutex<Common>,
+}
+
+/// What one thread at a time may look at or change.
+struct Common {
+    index: Index,
+    plan: Plan,
+    /// Where each run stands in the plan.
+    places: HashMap<Identity, usize>,
+    /// What the index said last, rows apart.
+    entries: HashMap<Identity, Entry>,
+    workers: Vec<Option<Working>>,
+    news: Vec<String>,
+    /// The first error that ended a thread.
+    error: Option<StudyError>,
+    /// Threads at work.
+    active: usize,
+}
+
+impl Common {
+    /// Reads the index again, and adds the points that refinement asks for; answers whether there are any.
+    fn refresh(&mut self, study: &Specification) -> Result<bool, StudyError> {
+        self.entries = self.index.findings()?;
+        let entries = &self.entries;
+        let grown = refine(study, &mut self.plan, &|identity| {
+            finding(entries, identity)
+        })?;
+        if grown {
+            self.places = places(&self.plan);
+        }
+        Ok(grown)
+    }
+
+    fn planned(&self, identity: Identity) -> PlannedRun {
+        self.plan.runs()[self.places[&identity]]
+    }
+}
+
+fn places(plan: &Plan) -> HashMap<Identity, usize> {
+    plan.runs()
+        .iter()
+        .enumerate()
+        .map(|(place, run)| (run.identity, place))
+        .collect()
+}
+
+impl Shared<'_> {
+    fn common(&self) -> MutexGuard<'_, Common> {
+        // What a thread that panicked left is whole: each change is one assignment or one transaction.
+        self.common.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn is_stopped(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// Takes a run that is free.
+    fn claim(&self) -> Result<Claim, StudyError> {
+        let mut common = self.common();
+        loop {
+            common.refresh(self.study)?;
+            let order: Vec<Identity> = common.plan.runs().iter().map(|run| run.identity).collect();
+            let claim = common.index.claim(&order, &self.owner, LEASE_TIMEOUT)?;
+            // Another process may have ended the last run between the look and the claim: that may ask for more points.
+            if claim == Claim::Nothing && common.refresh(self.study)? {
+                continue;
+            }
+            return Ok(claim);
+        }
+    }
+
+    /// Whether this process still has the lease of a run.
+    fn holds(&self, identity: Identity) -> Result<bool, StudyError> {
+        let held = self.common().index.renew(&self.owner)?;
+        Ok(held.contains(&identity))
+    }
+
+    /// Gives a lease back with what has become of the run.
+    fn release(&self, identity: Identity, entry: Option<&Entry>) -> Result<bool, StudyError> {
+        let mut common = self.common();
+        common.index.release(identity, &self.owner, entry)
+    }
+
+    fn tell(&self, news: String) {
+        self.common().news.push(news);
+    }
+
+    fn assignment(&self, identity: Identity) -> (Assignment, String) {
+        let common = self.common();
+        let run = common.planned(identity);
+        let assignment = Assignment::of(&common.plan, &run);
+        let words = common.plan.point(&run).in_words();
+        (assignment, format!("{words}, replicate {}", run.replicate))
+    }
+}
+
+/// Works on a study until all its runs have ended, or it is asked to stop.
+///
+/// `stop` is asked often whether to stop; `watch` is shown how far the study is. Both are called from the calling thread.
+///
+/// # Errors
+/// The first error of the store: a disk that is full, a file that cannot be written. All runs are saved as far as that
+/// allows, and can go on.
+pub fn work_on(
+    store: &Store,
+    study: &Specification,
+    effort: Effort,
+    stop: &dyn Fn() -> bool,
+    watch: &mut dyn FnMut(&Board),
+) -> Result<Ending, StudyError> {
+    let mut index = store.index()?;
+    let plan = Plan::of(study)?;
+    let news = store.check_changed(&mut index, LEASE_TIMEOUT)?;
+    let workers = effort.workers.max(1);
+    let mut common = Common {
+        index,
+        places: places(&plan),
+        plan,
+        entries: HashMap::new(),
+        workers: vec![None; workers],
+        news,
+        error: None,
+        active: workers,
+    };
+    common.refresh(study)?;
+    let shared = Shared {
+        store,
+        study,
+        effort,
+        owner: Owner::new(),
+        stop: AtomicBool::new(false),
+        common: Mutex::new(common),
+    };
+    let mut ending = Ending::Complete;
+    std::thread::scope(|scope| {
+        for slot in 0..workers {
+            let shared = &shared;
+            scope.spawn(move || worker::work(shared, slot));
+        }
+        ending = coordinate(&shared, stop, watch);
+    });
+    let mut common = shared
+        .common
+        .into_inner()
+        .unwrap_or_else(PoisonError::into_inner);
+    if let Some(error) = common.error.take() {
+        return Err(error);
+    }
+    let has_ended = |run: &PlannedRun| finding(&common.entries, &run.identity).is_some();
+    if common.plan.runs().iter().all(has_ended) {
+        // A request to stop came when nothing was left to do.
+        return Ok(Ending::Complete);
+    }
+    Ok(ending)
+}
+
+/// Keeps the leases, obeys and shows, until no worker is left.
+fn coordinate(
+    shared: &Shared<'_>,
+    stop: &dyn Fn() -> bool,
+    watch: &mut dyn FnMut(&Board),
+) -> Ending {
+    let begin = Instant::now();
+    let mut ending = Ending::Complete;
+    let mut heartbeat = Instant::now();
+    let mut gauge = Gauge::new(&shared.common());
+    loop {
+        let is_last = shared.common().active == 0;
+        if ending == Ending::Complete && !is_last {
+            if stop() {
+                ending = Ending::Stopped;
+            } else if shared
+                .effort
+                .limit
+                .is_some_and(|limit| begin.elapsed() >= limit)
+            {
+                ending = Ending::TimeUp;
+            }
+            if ending != Ending::Complete {
+                shared.stop.store(true, Ordering::Relaxed);
+            }
+        }
+        let mut common = shared.common();
+        if heartbeat.elapsed() > HEARTBEAT || is_last {
+            heartbeat = Instant::now();
+            let outcome = common
+                .index
+                .renew(&shared.owner)
+                .and_then(|_| common.refresh(shared.study));
+            if let Err(error) = outcome {
+                shared.stop.store(true, Ordering::Relaxed);
+                common.error.get_or_insert(error);
+            }
+        }
+        gauge.look(shared.study, &mut common, is_last);
+        drop(common);
+        watch(&gauge.board);
+        if is_last {
+            return ending;
+        }
+        std::thread::sleep(TICK);
+    }
+}
+
+/// Measures how far a study is, and how fast it goes.
+struct Gauge {
+    begin: Instant,
+    /// Work done when the measurement began.
+    before: f64,
+    /// What the estimates were made from, and they themselves.
+    brackets: (usize, Vec<crate::Bracket>),
+    measured: Option<Instant>,
+    board: Board,
+}
+
+impl Gauge {
+    fn new(common: &Common) -> Self {
+        Self {
+            begin: Instant::now(),
+            before: fraction(common),
+            brackets: (usize::MAX, Vec::new()),
+            measured: None,
+            board: Board::default(),
+        }
+    }
+
+    /// Brings the board up to date: the workers always, the rest now and then.
+    fn look(&mut self, study: &Specification, common: &mut Common, is_last: bool) {
+        self.board.workers.clone_from(&common.workers);
+        self.board.news = std::mem::take(&mut common.news);
+        if is_last
+            || self
+                .measured
+                .is_none_or(|last| last.elapsed() > MEASUREMENT)
+        {
+            self.measure(study, common);
+            self.measured = Some(Instant::now());
+        }
+    }
+
+    fn measure(&mut self, study: &Specification, common: &Common) {
+        let runs = common.plan.runs();
+        let count = |state: State| {
+            runs.iter()
+                .filter(|run| {
+                    common
+                        .entries
+                        .get(&run.identity)
+                        .is_some_and(|entry| entry.state == state)
+                })
+                .count()
+        };
+        let (done, failed) = (count(State::Done), count(State::Failed));
+        if self.brackets.0 != done + failed {
+            let found = |identity: &Identity| finding(&common.entries, identity);
+            self.brackets = (done + failed, brackets(study, &common.plan, &found));
+        }
+        let fraction = fraction(common);
+        let gained = fraction - self.before;
+        let left = (gained > 0.0).then(|| self.begin.elapsed().mul_f64((1.0 - fraction) / gained));
+        self.board = Board {
+            total: runs.len(),
+            done,
+            failed,
+            fraction,
+            left,
+            brackets: self.brackets.1.clone(),
+            ..std::mem::take(&mut self.board)
+        };
+    }
+}
+
+/// Part of the work of a study that is done.
+fn fraction(common: &Common) -> f64 {
+    let working: HashMap<Identity, f64> = common
+        .workers
+        .iter()
+        .flatten()
+        .filter_map(|working| {
+            let progress = working.progress?;
+            let part = progress.samples as f64 / progress.samples_total.max(1) as f64;
+            Some((working.identity, part))
+        })
+        .collect();
+    let (mut all, mut done) = (0.0, 0.0);
+    for run in common.plan.runs() {
+        let work = work(&common.plan.point(run).configuration);
+        all += work;
+        done += work
+            * match common.entries.get(&run.identity).map(|entry| entry.state) {
+                Some(State::Done | State::Failed) => 1.0,
+                _ => working.get(&run.identity).copied().unwrap_or(0.0),
+            };
+    }
+    if all > 0.0 { done / all } else { 1.0 }
+}

@@ -1,0 +1,216 @@
+//! One thread: takes a run, advances it, seals it, takes the next.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+use peristalsis_run::{Run, RunError, Status, Summary};
+
+use super::{IDLE, Shared, Working};
+use crate::error::StudyError;
+use crate::identity::Identity;
+use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
+
+/// What became of a run in the hands of a worker.
+enum Outcome {
+    /// It ended, well or not, and this is what is known of it.
+    Ended(Entry),
+    /// It was saved, to go on later.
+    Saved,
+    /// Another process has it now.
+    Lost,
+}
+
+/// Works until nothing is left or the process is to stop; an error stops the whole process.
+pub(super) fn work(shared: &Shared<'_>, slot: usize) {
+    let outcome = take_turns(shared, slot);
+    let mut common = shared.common();
+    common.workers[slot] = None;
+    common.active -= 1;
+    if let Err(error) = outcome {
+        shared.stop.store(true, Ordering::Relaxed);
+        common.error.get_or_insert(error);
+    }
+}
+
+fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
+    while !shared.is_stopped() {
+        match shared.claim()? {
+            Claim::Taken(identity) => attend(shared, slot, identity)?,
+            Claim::Wait { .. } => {
+                shared.common().workers[slot] = None;
+                std::thread::sleep(IDLE);
+            }
+            Claim::Nothing => break,
+        }
+    }
+    Ok(())
+}
+
+/// Works on a run that this process has the lease of, and gives the lease back.
+fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<(), StudyError> {
+    let (assignment, point) = shared.assignment(identity);
+    shared.common().workers[slot] = Some(Working {
+        identity,
+        point,
+        progress: None,
+    });
+    let files = shared.store.run_files(identity);
+    // A panic is a bug of ours, in one run: the others go on.
+    let outcome = catch_unwind(AssertUnwindSafe(|| {
+        carry_out(shared, slot, &files, &assignment)
+    }));
+    let outcome = match outcome {
+        Ok(outcome) => outcome,
+        Err(panic) => give_up(
+            shared,
+            &files,
+            identity,
+            &format!("panic: {}", said(&*panic)),
+        ),
+    };
+    match outcome {
+        Ok(Outcome::Ended(entry)) => {
+            shared.release(identity, Some(&entry))?;
+            let mut common = shared.common();
+            common.entries.insert(identity, entry);
+        }
+        Ok(Outcome::Saved) => {
+            shared.release(identity, Some(&Entry::new(State::Checkpointed, None)))?;
+        }
+        Ok(Outcome::Lost) => {
+            shared.tell(format!("run {identity} was taken over by another process"));
+        }
+        Err(error) => {
+            // The error itself is what matters; a lease that cannot be given back is void once this process has ended.
+            drop(shared.release(identity, None));
+            return Err(error);
+        }
+    }
+    Ok(())
+}
+
+fn carry_out(
+    shared: &Shared<'_>,
+    slot: usize,
+    files: &RunFiles,
+    assignment: &Assignment,
+) -> Result<Outcome, StudyError> {
+    let identity = assignment.identity;
+    match files.verdict(None) {
+        Verdict::Done { row, stamp } => {
+            files.remove_checkpoints();
+            return Ok(Outcome::Ended(done(&row, stamp)));
+        }
+        Verdict::Failed(reason) => {
+            return Ok(Outcome::Ended(Entry::new(State::Failed, Some(reason))));
+        }
+        Verdict::Damaged(reason) => {
+            shared.store.quarantine_run(identity, &reason)?;
+            shared.tell(format!(
+                "run {identity} is not what was sealed ({reason}): moved aside, computed again"
+            ));
+        }
+        Verdict::Nothing | Verdict::Checkpointed => {}
+    }
+    files.begin(assignment)?;
+    let mut aside = |path: &std::path::Path, reason: &str| {
+        shared.tell(format!(
+            "{} of run {identity} is damaged ({reason}): moved aside",
+            path.file_name().unwrap_or_default().display()
+        ));
+        shared
+            .store
+            .quarantine_file(path, identity, reason)
+            .map(|_| ())
+    };
+    let mut run = match files.resume(assignment, &mut aside) {
+        Ok(run) => run,
+        Err(StudyError::Run {
+            source: source @ (RunError::Engine(_) | RunError::TooManyGrains { .. }),
+            ..
+        }) => return give_up(shared, files, identity, &source.to_string()),
+        Err(error) => return Err(error),
+    };
+    advance(shared, slot, files, assignment, &mut run)
+}
+
+fn advance(
+    shared: &Shared<'_>,
+    slot: usize,
+    files: &RunFiles,
+    assignment: &Assignment,
+    run: &mut Run,
+) -> Result<Outcome, StudyError> {
+    let identity = assignment.identity;
+    let mut saved = Instant::now();
+    while !run.is_complete() {
+        let is_stopped = shared.is_stopped();
+        if is_stopped || saved.elapsed() >= shared.effort.checkpoint_interval {
+            if !shared.holds(identity)? {
+                return Ok(Outcome::Lost);
+            }
+            files.save(run)?;
+            if is_stopped {
+                return Ok(Outcome::Saved);
+            }
+            saved = Instant::now();
+        }
+        if let Err(error) = run.advance() {
+            // The last state that was whole may show why.
+            if shared.holds(identity)? {
+                drop(files.save(run));
+            }
+            return give_up(shared, files, identity, &error.to_string());
+        }
+        if let Some(working) = &mut shared.common().workers[slot] {
+            working.progress = Some(run.progress());
+        }
+    }
+    if !shared.holds(identity)? {
+        return Ok(Outcome::Lost);
+    }
+    let status = if run.is_settled() {
+        Status::Settled
+    } else {
+        Status::Complete
+    };
+    let summary = Summary::of(run, status, None);
+    files.finish(run, &summary, assignment)?;
+    match files.verdict(None) {
+        Verdict::Done { row, stamp } => Ok(Outcome::Ended(done(&row, stamp))),
+        other => Err(StudyError::NotWritten {
+            identity,
+            reason: match other {
+                Verdict::Damaged(reason) => reason,
+                _ => "its seal is gone".to_owned(),
+            },
+        }),
+    }
+}
+
+/// Keeps the error that a run ended in.
+fn give_up(
+    shared: &Shared<'_>,
+    files: &RunFiles,
+    identity: Identity,
+    reason: &str,
+) -> Result<Outcome, StudyError> {
+    if !shared.holds(identity)? {
+        return Ok(Outcome::Lost);
+    }
+    files.fail(reason)?;
+    shared.tell(format!("run {identity} failed: {reason}"));
+    Ok(Outcome::Ended(Entry::new(
+        State::Failed,
+        Some(reason.to_owned()),
+    )))
+}
+
+fn said(panic: &(dyn std::any::Any + Send)) -> &str {
+    panic
+        .downcast_ref::<&str>()
+        .copied()
+        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
+        .unwrap_or("no message")
+}

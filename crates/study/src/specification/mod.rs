@@ -1,0 +1,427 @@
+//! The study file: what is varied over what base, how often, and when runs may end.
+
+mod axis;
+mod schema;
+
+use std::path::Path;
+
+use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
+use peristalsis_configuration::{
+    Configuration, ConfigurationError, InitialState, Origin, Problem, ProblemKind, Problems,
+    SourceFile, Sources, check_against, join,
+};
+use peristalsis_observe::COLUMNS;
+use peristalsis_run::Stopping;
+
+use crate::error::StudyError;
+use crate::identity::Record;
+use axis::Axis;
+pub(crate) use axis::{neat, number};
+pub use schema::schema;
+
+/// Most runs of a study before refinement.
+const MOST_RUNS: u64 = 1_000_000;
+/// Problems that are reported at once: one wrong axis is wrong at each of its points.
+const MOST_PROBLEMS: usize = 20;
+
+/// A study file that has been read and checked; its points are those of [`Plan`](crate::Plan).
+#[derive(Clone, Debug)]
+pub struct Specification {
+    /// Short name.
+    pub name: String,
+    /// What it is about.
+    pub title: String,
+    /// Runs of each point.
+    pub replicates: u32,
+    /// When a run may end before its time.
+    pub stopping: Option<Stopping>,
+    /// What is kept of each run.
+    pub record: Record,
+    pub(crate) refinement: Option<Refine>,
+    pub(crate) axes: Vec<Axis>,
+    /// Initial states; `None` is that of the base configuration.
+    pub(crate) states: Option<Vec<InitialState>>,
+    base: Base,
+    text: String,
+    /// Where `file` names the base in `text`, quotes included.
+    file_span: Option<std::ops::Range<usize>>,
+}
+
+/// What every run builds on.
+#[derive(Clone, Debug)]
+struct Base {
+    preset: Option<String>,
+    /// Name and text of the configuration file.
+    file: Option<(String, String)>,
+    /// The table `base`.
+    table: Table,
+}
+
+/// Where new points are to be added.
+#[derive(Clone, Debug)]
+pub(crate) struct Refine {
+    /// Which of the axes.
+    pub(crate) axis: usize,
+    /// Distance of two values at which bisection ends.
+    pub(crate) tolerance: f64,
+    /// Where the file asks for it.
+    pub(crate) origin: Origin,
+}
+
+/// One value of each axis: the layer that makes a point of the study.
+pub(crate) type Choice<'a> = Vec<(&'a str, &'a Origin, &'a Item)>;
+
+impl Specification {
+    /// Reads a study file and the configuration file that it may build on, and checks every configuration that follows.
+    ///
+    /// # Errors
+    /// [`StudyError::Read`] where a file cannot be read, [`StudyError::Configuration`] with everything that is wrong in
+    /// it.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let read = |path: &Path| {
+            std::fs::read_to_string(path).map_err(|source| StudyError::Read {
+                path: path.to_owned(),
+                source,
+            })
+        };
+        let text = read(path)?;
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_toml(&path.display().to_string(), &text, |file| {
+            let path = folder.join(file);
+            Ok((path.display().to_string(), read(&path)?))
+        })
+    }
+
+    /// Reads the text of a study file; `file` answers name and text of the configuration file that it names.
+    ///
+    /// # Errors
+    /// As [`Specification::read`].
+    pub fn from_toml(
+        name: &str,
+        text: &str,
+        file: impl FnOnce(&str) -> Result<(String, String), StudyError>,
+    ) -> Result<Self, StudyError> {
+        let mut problems = Problems::default();
+        let table = document::parse_file(SourceFile { name, text }, &mut problems);
+        problems.check()?;
+        check_against(schema::cached(), &table, &mut problems);
+        check_keys(&table, &mut problems);
+        problems.check()?;
+        let axes = axes(&table, &mut problems);
+        let refinement = refinement(&table, &axes, &mut problems);
+        problems.check()?;
+        let named = document::entry(&table, "file");
+        let base = Base {
+            preset: text_of(&table, "preset"),
+            file: match text_of(&table, "file") {
+                Some(name) => Some(file(&name)?),
+                None => None,
+            },
+            table: match document::entry(&table, "base") {
+                Some(Entry {
+                    item:
+                        Item {
+                            node: Node::Table(base),
+                            ..
+                        },
+                    ..
+                }) => base.clone(),
+                _ => Table::new(),
+            },
+        };
+        let study = Self {
+            name: text_of(&table, "name").expect("the schema requires a name"),
+            title: text_of(&table, "title").unwrap_or_default(),
+            replicates: whole(&table, "replicates").unwrap_or(1),
+            stopping: whole(&table, "stop.settled_periods")
+                .map(|settled_periods| Stopping { settled_periods }),
+            record: Record {
+                columns: columns(&table),
+                profile: !matches!(
+                    document::entry(&table, "record.profile").map(|entry| &entry.item.node),
+                    Some(Node::Boolean(false))
+                ),
+            },
+            refinement,
+            axes,
+            states: states(&table),
+            base,
+            text: text.to_owned(),
+            file_span: named.map(|entry| entry.item.origin.span()),
+        };
+        study.check_size(&table)?;
+        crate::plan::Plan::of(&study)?;
+        Ok(study)
+    }
+
+    /// The file's text with its base under another name: what a store keeps beside a copy of the base.
+    pub(crate) fn text_with_base(&self, base: &str) -> String {
+        match &self.file_span {
+            Some(span) => format!(
+                "{}\"{base}\"{}",
+                &self.text[..span.start],
+                &self.text[span.end..]
+            ),
+            None => self.text.clone(),
+        }
+    }
+
+    /// The text of the configuration file that it builds on.
+    pub(crate) fn base_text(&self) -> Option<&str> {
+        self.base.file.as_ref().map(|(_, text)| text.as_str())
+    }
+
+    /// The configuration of one point, with the seed of preset or file.
+    pub(crate) fn configuration(
+        &self,
+        choice: &Choice<'_>,
+        state: Option<InitialState>,
+    ) -> Result<Configuration, ConfigurationError> {
+        let settings = choice
+            .iter()
+            .map(|(key, origin, value)| document::setting(key, origin, (*value).clone()));
+        // All in one layer, so that two axes for two alternatives (width and amplitude) are found to conflict.
+        let above = [self.base.table.clone(), join(settings.collect())];
+        // Below `base`, which does not name a state where `states` does.
+        let state = state.map(|state| match state {
+            InitialState::Rest => "initial.state=rest".to_owned(),
+            InitialState::Jammed => "initial.state=jammed".to_owned(),
+        });
+        let overrides: Vec<String> = state.into_iter().collect();
+        Configuration::from_sources_and(
+            &Sources {
+                file: self
+                    .base
+                    .file
+                    .as_ref()
+                    .map(|(name, text)| SourceFile { name, text }),
+                preset: self.base.preset.as_deref(),
+                overrides: &overrides,
+            },
+            &above,
+        )
+    }
+
+    /// All points of the axes: one index into the rows of each, the last axis fastest.
+    pub(crate) fn grid(&self) -> Vec<Vec<usize>> {
+        let mut grid = vec![Vec::new()];
+        for axis in &self.axes {
+            grid = grid
+                .into_iter()
+                .flat_map(|point| {
+                    (0..axis.rows.len()).map(move |row| {
+                        let mut point = point.clone();
+                        point.push(row);
+                        point
+                    })
+                })
+                .collect();
+        }
+        grid
+    }
+}
+
+impl Specification {
+    /// Refuses a grid that nobody meant.
+    fn check_size(&self, table: &Table) -> Result<(), StudyError> {
+        let states = self.states.as_ref().map_or(1, Vec::len);
+        let runs = self
+            .axes
+            .iter()
+            .map(|axis| axis.rows.len() as f64)
+            .product::<f64>()
+            * states as f64
+            * f64::from(self.replicates);
+        if runs <= MOST_RUNS as f64 {
+            return Ok(());
+        }
+        let mut problem = Problem::new(
+            ProblemKind::OutOfRange,
+            format!("a study of {runs} runs is beyond reach"),
+        )
+        .key("axes")
+        .help(format!("at most {MOST_RUNS} runs: axes multiply"));
+        if let Some(entry) = document::entry(table, "axes") {
+            problem = problem.at(&entry.key, "these axes");
+        }
+        let mut problems = Problems::default();
+        problems.push(None, problem);
+        Ok(problems.check()?)
+    }
+}
+
+/// What the schema does not say of the keys of a study.
+fn check_keys(table: &Table, problems: &mut Problems) {
+    if let Some(entry) = document::entry(table, "name")
+        && let Node::Text(name) = &entry.item.node
+        && (name.is_empty()
+            || name.len() > 100
+            || !name
+                .chars()
+                .all(|letter| letter.is_ascii_alphanumeric() || "-_".contains(letter)))
+    {
+        let problem = Problem::new(
+            ProblemKind::OutOfRange,
+            format!("{name:?} cannot name a study"),
+        )
+        .key("name")
+        .at(&entry.item.origin, "this name")
+        .help("one to a hundred letters, digits, - and _: exported files are called by it");
+        problems.push(Some(&entry.item.origin), problem);
+    }
+    let conflicts = [
+        (
+            "file",
+            "preset",
+            "a study builds on a preset or on a file, not on both",
+            "keep one; a configuration file may itself name a preset",
+        ),
+        (
+            "base.run.seed",
+            "",
+            "every run of a study has a seed of its own",
+            "remove the seed; take more `replicates`",
+        ),
+        (
+            "base.initial.state",
+            "states",
+            "the initial state is given twice",
+            "keep `states`, or base.initial.state",
+        ),
+    ];
+    for (key, other, message, help) in conflicts {
+        let Some(entry) = document::entry(table, key) else {
+            continue;
+        };
+        let mut problem = Problem::new(ProblemKind::Conflict, message)
+            .key(key)
+            .at(&entry.key, "here")
+            .help(help);
+        if !other.is_empty() {
+            let Some(other) = document::entry(table, other) else {
+                continue;
+            };
+            problem = problem.at(&other.key, "and here");
+        }
+        problems.push(Some(&entry.key), problem);
+    }
+}
+
+fn axes(table: &Table, problems: &mut Problems) -> Vec<Axis> {
+    let axes: Vec<Axis> = match document::entry(table, "axes").map(|entry| &entry.item.node) {
+        Some(Node::Array(items)) => items
+            .iter()
+            .filter_map(|item| Axis::read(item, problems))
+            .collect(),
+        _ => Vec::new(),
+    };
+    let mut seen: Vec<(&str, &Origin)> = Vec::new();
+    for (key, origin) in axes.iter().flat_map(|axis| &axis.keys) {
+        if let Some((_, first)) = seen.iter().find(|(other, _)| other == key) {
+            let problem = Problem::new(ProblemKind::Conflict, format!("{key} is varied twice"))
+                .key(key)
+                .at(origin, "here")
+                .at(first, "and here")
+                .help("one axis a key: join the values");
+            problems.push(Some(origin), problem);
+        }
+        seen.push((key, origin));
+    }
+    axes
+}
+
+fn refinement(table: &Table, axes: &[Axis], problems: &mut Problems) -> Option<Refine> {
+    let key = text_of(table, "refine.key")?;
+    let origin = &document::entry(table, "refine.key")?.item.origin;
+    let axis = axes
+        .iter()
+        .position(|axis| axis.is_numeric() && axis.keys[0].0 == key);
+    if let Some(axis) = axis
+        && axes[axis].rows.len() > 1
+    {
+        return Some(Refine {
+            axis,
+            tolerance: number(&document::entry(table, "refine.tolerance")?.item.node),
+            origin: origin.clone(),
+        });
+    }
+    let candidates: Vec<&str> = axes
+        .iter()
+        .filter(|axis| axis.is_numeric() && axis.rows.len() > 1)
+        .map(|axis| axis.keys[0].0.as_str())
+        .collect();
+    let problem = Problem::new(
+        ProblemKind::Inconsistent,
+        format!("{key} cannot be refined: it is not an axis of one key with two numbers or more"),
+    )
+    .key("refine.key")
+    .at(origin, "this key")
+    .help(match candidates.as_slice() {
+        [] => "give it an axis with at least the two values to bisect between".to_owned(),
+        candidates => format!("axes that can be: {}", candidates.join(", ")),
+    });
+    problems.push(Some(origin), problem);
+    None
+}
+
+fn states(table: &Table) -> Option<Vec<InitialState>> {
+    let mut states: Vec<InitialState> = texts(table, "states")?
+        .iter()
+        .map(|name| match name.as_str() {
+            "jammed" => InitialState::Jammed,
+            _ => InitialState::Rest,
+        })
+        .collect();
+    states.dedup();
+    Some(states)
+}
+
+/// The columns kept, in the order of all; `None` where these are all.
+fn columns(table: &Table) -> Option<Vec<String>> {
+    let wanted = texts(table, "record.columns")?;
+    let kept: Vec<String> = COLUMNS
+        .iter()
+        .map(|column| column.name.to_owned())
+        .filter(|name| wanted.contains(name))
+        .collect();
+    (kept.len() < COLUMNS.len()).then_some(kept)
+}
+
+fn text_of(table: &Table, path: &str) -> Option<String> {
+    match &document::entry(table, path)?.item.node {
+        Node::Text(text) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+/// A whole number within 32 bits, which the schema has checked.
+fn whole(table: &Table, path: &str) -> Option<u32> {
+    match document::entry(table, path)?.item.node {
+        Node::Integer(integer) => u32::try_from(integer).ok(),
+        _ => None,
+    }
+}
+
+fn texts(table: &Table, path: &str) -> Option<Vec<String>> {
+    let Node::Array(items) = &document::entry(table, path)?.item.node else {
+        return None;
+    };
+    let texts = items.iter().filter_map(|item| match &item.node {
+        Node::Text(text) => Some(text.clone()),
+        _ => None,
+    });
+    Some(texts.collect())
+}
+
+/// One error of all that was found at the points, each problem once.
+pub(crate) fn joined(errors: Vec<ConfigurationError>) -> Result<(), ConfigurationError> {
+    let mut seen: Vec<Problem> = Vec::new();
+    let mut problems = Problems::default();
+    for problem in errors.iter().flat_map(ConfigurationError::problems) {
+        if seen.len() < MOST_PROBLEMS && !seen.contains(problem) {
+            seen.push(problem.clone());
+            problems.push(None, problem.clone());
+        }
+    }
+    problems.check()
+}

@@ -1,0 +1,233 @@
+//! Whether the files of a store are what was written: what is not is moved aside.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use peristalsis_formats::atomic;
+
+use super::{
+    Entry, INDEX, Index, LEASE_TIMEOUT, QUARANTINE, REASON, RUNS, State, Store, Verdict, done, free,
+};
+use crate::error::StudyError;
+use crate::identity::Identity;
+
+/// What a check of the files found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Verification {
+    /// Finished runs whose hashes check.
+    pub whole: usize,
+    /// Finished runs of which only the row is there, imported.
+    pub imported: usize,
+    /// Runs that were not what had been sealed, with what was wrong; their files were moved aside.
+    pub quarantined: Vec<(Identity, String)>,
+    /// Runs that can go on from a checkpoint.
+    pub checkpointed: usize,
+    /// Runs that ended in an error.
+    pub failed: usize,
+}
+
+impl Store {
+    /// Makes the index again from the files, every hash checked.
+    ///
+    /// # Errors
+    /// Errors of reading or moving files.
+    pub fn scan(&self) -> Result<Verification, StudyError> {
+        let (mut index, _) = Index::open(&self.file(INDEX))?;
+        self.fill(&mut index)
+    }
+
+    /// Checks every hash of every finished run; what does not match is moved aside, and will be computed again.
+    ///
+    /// # Errors
+    /// Errors of moving files.
+    pub fn verify(&self) -> Result<Verification, StudyError> {
+        self.scan()
+    }
+
+    /// Looks whether the files of finished runs have changed since their hashes were checked, checks those that have, and
+    /// moves aside what does not match; answers what happened, in words. A file whose time changed and whose content did
+    /// not stays.
+    pub(crate) fn check_changed(
+        &self,
+        index: &mut Index,
+        timeout: Duration,
+    ) -> Result<Vec<String>, StudyError> {
+        let leases = index.leases(timeout)?;
+        let mut news = Vec::new();
+        let mut changed = Vec::new();
+        for (identity, entry) in index.entries()? {
+            let computed = entry.state == State::Done && entry.reason.is_none();
+            if !computed || leases.contains_key(&identity) {
+                continue;
+            }
+            match self.run_files(identity).verdict(entry.stamp.as_deref()) {
+                Verdict::Done { row, stamp } => {
+                    if stamp != entry.stamp {
+                        changed.push((identity, done(&row, stamp)));
+                    }
+                }
+                Verdict::Damaged(reason) => {
+                    self.quarantine_run(identity, &reason)?;
+                    news.push(format!(
+                        "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+                    ));
+                    changed.push((identity, Entry::new(State::Quarantined, Some(reason))));
+                }
+                Verdict::Nothing | Verdict::Checkpointed | Verdict::Failed(_) => {
+                    news.push(format!(
+                        "run {identity} was finished, and its files are gone: to be computed again"
+                    ));
+                    changed.push((identity, Entry::new(State::Pending, None)));
+                }
+            }
+        }
+        index.note(changed.iter().map(|(identity, entry)| (*identity, entry)))?;
+        Ok(news)
+    }
+
+    pub(super) fn fill(&self, index: &mut Index) -> Result<Verification, StudyError> {
+        let before = index.states()?;
+        let mut found = Verification::default();
+        let mut entries = self.imported()?;
+        let leases = index.leases(LEASE_TIMEOUT)?;
+        for identity in self.identities(RUNS)? {
+            let files = self.run_files(identity);
+            let entry = match files.verdict(None) {
+                Verdict::Nothing => continue,
+                Verdict::Checkpointed => {
+                    found.checkpointed += 1;
+                    Entry::new(State::Checkpointed, None)
+                }
+                Verdict::Done { row, stamp } => {
+                    found.whole += 1;
+                    files.remove_checkpoints();
+                    done(&row, stamp)
+                }
+                // Its owner may be writing it just now.
+                Verdict::Damaged(_) if leases.contains_key(&identity) => continue,
+                Verdict::Damaged(reason) => {
+                    self.quarantine_run(identity, &reason)?;
+                    found.quarantined.push((identity, reason.clone()));
+                    Entry::new(State::Quarantined, Some(reason))
+                }
+                Verdict::Failed(reason) => {
+                    found.failed += 1;
+                    Entry::new(State::Failed, Some(reason))
+                }
+            };
+            // What was computed here goes before what was imported; what was not finished does not.
+            if entry.state == State::Done || !entries.contains_key(&identity) {
+                entries.insert(identity, entry);
+            }
+        }
+        for identity in self.identities(QUARANTINE)? {
+            entries.entry(identity).or_insert_with(|| {
+                Entry::new(State::Quarantined, self.reason_of_quarantine(identity))
+            });
+        }
+        found.imported = entries
+            .values()
+            .filter(|entry| entry.state == State::Done && entry.reason.is_some())
+            .count();
+        index.replace(&entries, &before)?;
+        Ok(found)
+    }
+
+    /// Identities that the folders below name; other names are none of ours.
+    fn identities(&self, folder: &str) -> Result<Vec<Identity>, StudyError> {
+        let folder = self.file(folder);
+        let entries = match fs::read_dir(&folder) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+            Err(error) => return Err(StudyError::io("read", folder)(error)),
+        };
+        let mut identities = Vec::new();
+        for entry in entries {
+            let name = entry.map_err(StudyError::io("read", &folder))?.file_name();
+            let name = name.to_string_lossy();
+            let stem = name.split('.').next().unwrap_or_default();
+            identities.extend(stem.parse::<Identity>());
+        }
+        identities.sort();
+        identities.dedup();
+        Ok(identities)
+    }
+
+    /// Moves all files of a run aside, with the reason.
+    pub(crate) fn quarantine_run(
+        &self,
+        identity: Identity,
+        reason: &str,
+    ) -> Result<PathBuf, StudyError> {
+        self.quarantine(&self.run_folder(identity), identity, reason, false)
+    }
+
+    /// Moves one file of a run aside, with the reason.
+    pub(crate) fn quarantine_file(
+        &self,
+        file: &Path,
+        identity: Identity,
+        reason: &str,
+    ) -> Result<PathBuf, StudyError> {
+        self.quarantine(file, identity, reason, true)
+    }
+
+    fn quarantine(
+        &self,
+        from: &Path,
+        identity: Identity,
+        reason: &str,
+        into_new_folder: bool,
+    ) -> Result<PathBuf, StudyError> {
+        let quarantine = self.file(QUARANTINE);
+        fs::create_dir_all(&quarantine).map_err(StudyError::io("make", &quarantine))?;
+        let folder = free(|number| quarantine.join(format!("{identity}.{number}")));
+        let target = if into_new_folder {
+            fs::create_dir(&folder).map_err(StudyError::io("make", &folder))?;
+            folder.join(from.file_name().unwrap_or_default())
+        } else {
+            folder.clone()
+        };
+        fs::rename(from, &target).map_err(StudyError::io("move aside", from))?;
+        atomic::write(&folder.join(REASON), format!("{reason}\n").as_bytes())?;
+        Ok(folder)
+    }
+
+    fn reason_of_quarantine(&self, identity: Identity) -> Option<String> {
+        self.quarantines(identity)
+            .last()
+            .and_then(|folder| fs::read_to_string(folder.join(REASON)).ok())
+            .map(|text| text.trim().to_owned())
+    }
+
+    /// The folders that files of a run were moved aside to, in this order.
+    #[must_use]
+    pub fn quarantines(&self, identity: Identity) -> Vec<PathBuf> {
+        (1_u32..)
+            .map(|number| self.file(QUARANTINE).join(format!("{identity}.{number}")))
+            .take_while(|folder| folder.exists())
+            .collect()
+    }
+
+    /// Lets a run that failed, or is finished, be computed again; its files are moved aside. Answers false for a run that
+    /// is neither, or that is worked on.
+    ///
+    /// # Errors
+    /// Errors of moving files, and of the index.
+    pub fn retry(&self, identity: Identity) -> Result<bool, StudyError> {
+        let mut index = self.index()?;
+        let state = index.entry(identity)?.map(|entry| entry.state);
+        let leased = index.leases(LEASE_TIMEOUT)?.contains_key(&identity);
+        if leased || !matches!(state, Some(State::Failed | State::Done)) {
+            return Ok(false);
+        }
+        let reason = "to be computed again, as asked for";
+        if self.run_folder(identity).exists() {
+            self.quarantine_run(identity, reason)?;
+        }
+        let entry = Entry::new(State::Quarantined, Some(reason.to_owned()));
+        index.note([(identity, &entry)])?;
+        Ok(true)
+    }
+}

@@ -1,0 +1,314 @@
+//! The tables of a study: a row a run.
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_formats::{Column, Table, Values, csv, parquet};
+
+use super::run_files::{TIMESERIES, TIMING};
+use super::{Index, Store, Survey, Verdict};
+use crate::error::StudyError;
+use crate::identity::{Identity, PHYSICS_VERSION};
+use crate::plan::{Plan, PlannedRun, SettingValue};
+use crate::row::Row;
+use crate::store::index::{Entry, State};
+
+/// What an export wrote.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exported {
+    /// The files.
+    pub files: Vec<PathBuf>,
+    /// Finished runs in the table.
+    pub rows: usize,
+    /// Runs of the plan that are not finished.
+    pub missing: usize,
+    /// Runs that turned out not to be what had been sealed; they were moved aside, and are missing.
+    pub quarantined: Vec<(Identity, String)>,
+}
+
+/// A finished run and where its row was found.
+struct Finished {
+    run: PlannedRun,
+    row: Row,
+    imported: bool,
+}
+
+impl Store {
+    /// The finished runs of the study, a row each in the order of the axes, every hash checked: the first table of
+    /// [`Store::export`].
+    ///
+    /// # Errors
+    /// Errors of reading the store.
+    pub fn rows(&self) -> Result<Table, StudyError> {
+        let survey = self.survey()?;
+        let (finished, _) = self.finished(&survey, &mut self.index()?)?;
+        rows_table(&survey, &finished)
+    }
+
+    /// Writes the tables of the study into a folder: `NAME.parquet` and `NAME.csv`, a row a finished run in the order of
+    /// the axes; `NAME-timing.csv`, what each took; `NAME-failed.csv`, the runs that failed; and with `series`
+    /// `NAME-series.parquet`, J/Jmax in time of every run.
+    ///
+    /// Every hash is checked on the way. The first table holds nothing that depends on when, in which order or how often
+    /// interrupted the runs were computed: the same study gives the same bytes.
+    ///
+    /// # Errors
+    /// Errors of reading the store and of writing.
+    pub fn export(&self, folder: &Path, series: bool) -> Result<Exported, StudyError> {
+        let survey = self.survey()?;
+        let mut index = self.index()?;
+        let (finished, quarantined) = self.finished(&survey, &mut index)?;
+        std::fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
+        let name = &survey.study.name;
+        let mut exported = Exported {
+            files: Vec::new(),
+            rows: finished.len(),
+            missing: survey.plan.runs().len() - finished.len(),
+            quarantined,
+        };
+        let mut note = |file: String| {
+            let path = folder.join(file);
+            exported.files.push(path.clone());
+            path
+        };
+        let rows = rows_table(&survey, &finished)?;
+        parquet::write(&note(format!("{name}.parquet")), &rows)?;
+        csv::write(&note(format!("{name}.csv")), &rows)?;
+        csv::write(
+            &note(format!("{name}-timing.csv")),
+            &self.timing_table(&finished)?,
+        )?;
+        let failed = failed_table(&survey)?;
+        if failed.rows() > 0 {
+            csv::write(&note(format!("{name}-failed.csv")), &failed)?;
+        }
+        if series {
+            parquet::write(
+                &note(format!("{name}-series.parquet")),
+                &self.series_table(&finished)?,
+            )?;
+        }
+        Ok(exported)
+    }
+
+    /// Every finished run of the plan, its hashes checked.
+    #[expect(
+        clippy::type_complexity,
+        reason = "both lists are named at the one place that takes them"
+    )]
+    fn finished(
+        &self,
+        survey: &Survey,
+        index: &mut Index,
+    ) -> Result<(Vec<Finished>, Vec<(Identity, String)>), StudyError> {
+        let (mut finished, mut quarantined) = (Vec::new(), Vec::new());
+        for run in survey.plan.sorted_runs() {
+            let Some(entry) = survey.entries.get(&run.identity) else {
+                continue;
+            };
+            if entry.state != State::Done {
+                continue;
+            }
+            if entry.reason.is_some() {
+                let text = entry.row.as_deref().unwrap_or_default();
+                let row = Row::from_csv(text).map_err(|reason| StudyError::NotRows {
+                    path: self.path().to_owned(),
+                    reason,
+                })?;
+                finished.push(Finished {
+                    run,
+                    row,
+                    imported: true,
+                });
+                continue;
+            }
+            match self.run_files(run.identity).verdict(None) {
+                Verdict::Done { row, .. } => finished.push(Finished {
+                    run,
+                    row: *row,
+                    imported: false,
+                }),
+                other => {
+                    let reason = match other {
+                        Verdict::Damaged(reason) => reason,
+                        _ => "its files are gone".to_owned(),
+                    };
+                    if self.run_folder(run.identity).exists() {
+                        self.quarantine_run(run.identity, &reason)?;
+                    }
+                    let entry = Entry::new(State::Quarantined, Some(reason.clone()));
+                    index.note([(run.identity, &entry)])?;
+                    quarantined.push((run.identity, reason));
+                }
+            }
+        }
+        Ok((finished, quarantined))
+    }
+
+    fn timing_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
+        let mut identities = Vec::new();
+        let (mut seconds, mut speeds) = (Vec::new(), Vec::new());
+        for one in finished.iter().filter(|one| !one.imported) {
+            let path = self.run_folder(one.run.identity).join(TIMING);
+            let timing: serde_json::Value = std::fs::read_to_string(path)
+                .ok()
+                .and_then(|text| serde_json::from_str(&text).ok())
+                .unwrap_or_default();
+            let number = |name: &str| timing[name].as_f64().unwrap_or(f64::NAN);
+            identities.push(one.run.identity.to_string());
+            seconds.push(number("seconds"));
+            speeds.push(number("grain_steps_per_second"));
+        }
+        Ok(Table::builder()
+            .column("identity", "", "the run", Values::Text(identities))
+            .column(
+                "seconds",
+                "s",
+                "seconds that engine and observables took",
+                Values::Real(seconds),
+            )
+            .column(
+                "grain_steps_per_second",
+                "1/s",
+                "grains times steps over these seconds",
+                Values::Real(speeds),
+            )
+            .build()?)
+    }
+
+    /// J/Jmax in time of every run that was computed here.
+    fn series_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
+        let mut identities = Vec::new();
+        let names = ["time", "period", "flow_rate_ratio"];
+        let mut columns: [Vec<f64>; 3] = Default::default();
+        for one in finished.iter().filter(|one| !one.imported) {
+            let path = self.run_folder(one.run.identity).join(TIMESERIES);
+            let table = parquet::read(&path)?;
+            identities.extend(std::iter::repeat_n(
+                one.run.identity.to_string(),
+                table.rows(),
+            ));
+            for (column, name) in columns.iter_mut().zip(names) {
+                // A study may keep other columns.
+                match table.reals(name) {
+                    Ok(values) => column.extend(values),
+                    Err(_) => column.extend(std::iter::repeat_n(f64::NAN, table.rows())),
+                }
+            }
+        }
+        let [time, period, ratio] = columns;
+        Ok(Table::builder()
+            .column("identity", "", "the run", Values::Text(identities))
+            .column(
+                "time",
+                "t",
+                "end of the interval that the row is about",
+                Values::Real(time),
+            )
+            .column(
+                "period",
+                "1",
+                "wavelengths that the wave has run",
+                Values::Real(period),
+            )
+            .column(
+                "flow_rate_ratio",
+                "1",
+                "J/Jmax, mean over the interval, grains inside",
+                Values::Real(ratio),
+            )
+            .build()?)
+    }
+}
+
+/// The rows with the keys of the axes before them.
+fn rows_table(survey: &Survey, finished: &[Finished]) -> Result<Table, StudyError> {
+    let mut rows: Option<Table> = None;
+    for one in finished {
+        match &mut rows {
+            None => rows = Some(one.row.table().clone()),
+            Some(rows) => rows.append(one.row.table().clone())?,
+        }
+    }
+    let rows = rows.unwrap_or_else(Row::no_rows);
+    let runs: Vec<PlannedRun> = finished.iter().map(|one| one.run).collect();
+    let study = &survey.study;
+    Ok(Table::builder()
+        .columns(axis_columns(&survey.plan, &runs))
+        .columns(rows.columns().iter().cloned())
+        .metadata("peristalsis.study", &study.name)
+        .metadata("peristalsis.title", &study.title)
+        .metadata("peristalsis.physics_version", PHYSICS_VERSION.to_string())
+        .build()?)
+}
+
+/// One column for each key of the axes.
+fn axis_columns(plan: &Plan, runs: &[PlannedRun]) -> Vec<Column> {
+    let Some(first) = plan.points().first() else {
+        return Vec::new();
+    };
+    let column = |(index, key): (usize, &String)| {
+        let values: Vec<&SettingValue> = runs
+            .iter()
+            .map(|run| &plan.point(run).settings[index].value)
+            .collect();
+        Column {
+            name: key.clone(),
+            unit: String::new(),
+            description: "key of an axis of the study".to_owned(),
+            values: column_values(&values),
+        }
+    };
+    let keys: Vec<String> = first
+        .settings
+        .iter()
+        .map(|setting| setting.key.clone())
+        .collect();
+    keys.iter().enumerate().map(column).collect()
+}
+
+/// Values as numbers where all are, else as text.
+fn column_values(values: &[&SettingValue]) -> Values {
+    if values.iter().all(|value| value.number().is_some()) {
+        let numbers = values.iter().filter_map(|value| value.number());
+        return Values::Real(numbers.collect());
+    }
+    Values::Text(values.iter().map(ToString::to_string).collect())
+}
+
+/// The runs of the plan that failed, each with its reason.
+fn failed_table(survey: &Survey) -> Result<Table, StudyError> {
+    let failed: Vec<(PlannedRun, &Entry)> = survey
+        .plan
+        .sorted_runs()
+        .into_iter()
+        .filter_map(|run| {
+            let entry = survey.entries.get(&run.identity)?;
+            (entry.state == State::Failed).then_some((run, entry))
+        })
+        .collect();
+    let runs: Vec<PlannedRun> = failed.iter().map(|(run, _)| *run).collect();
+    let text = |value: &dyn Fn(&(PlannedRun, &Entry)) -> String| {
+        Values::Text(failed.iter().map(value).collect())
+    };
+    Ok(Table::builder()
+        .columns(axis_columns(&survey.plan, &runs))
+        .column(
+            "identity",
+            "",
+            "the run",
+            text(&|(run, _)| run.identity.to_string()),
+        )
+        .column(
+            "replicate",
+            "1",
+            "number of the replicate, from 0",
+            Values::Integer(runs.iter().map(|run| run.replicate.into()).collect()),
+        )
+        .column(
+            "reason",
+            "",
+            "the error that it ended in",
+            text(&|(_, entry)| entry.reason.clone().unwrap_or_default()),
+        )
+        .build()?)
+}

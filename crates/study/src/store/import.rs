@@ -1,0 +1,100 @@
+//! Rows of finished runs from tables, so that what was published need not be computed again.
+
+use std::collections::HashMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use peristalsis_formats::{atomic, csv, parquet};
+use sha2::{Digest, Sha256};
+
+use super::{Entry, IMPORTED, State, Store, done, set_aside};
+use crate::error::StudyError;
+use crate::identity::{Identity, hexadecimal};
+use crate::row::Row;
+
+impl Store {
+    /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has.
+    ///
+    /// The table is copied into the store. A run that is finished here stays as it is.
+    ///
+    /// # Errors
+    /// [`StudyError::NotRows`] and errors of reading.
+    pub fn import_table(&self, path: &Path) -> Result<usize, StudyError> {
+        let rows = rows_of(path)?;
+        let number = rows.len();
+        let Some(first) = rows.first() else {
+            return Ok(0);
+        };
+        let mut table = first.table().clone();
+        for row in &rows[1..] {
+            table.append(row.table().clone())?;
+        }
+        let text = csv::encode(&table);
+        let folder = self.file(IMPORTED);
+        fs::create_dir_all(&folder).map_err(StudyError::io("make", &folder))?;
+        let name = hexadecimal(&Sha256::digest(text.as_bytes())[..8]);
+        atomic::write(&folder.join(format!("{name}.csv")), text.as_bytes())?;
+        let mut index = self.index()?;
+        let known = index.entries()?;
+        let new: Vec<(Identity, Entry)> = rows
+            .iter()
+            .filter(|row| {
+                known
+                    .get(&row.identity())
+                    .is_none_or(|entry| entry.state != State::Done)
+            })
+            .map(|row| (row.identity(), imported_entry(row, &name)))
+            .collect();
+        index.note(new.iter().map(|(identity, entry)| (*identity, entry)))?;
+        Ok(number)
+    }
+
+    /// The rows of all imported tables.
+    pub(super) fn imported(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+        let folder = self.file(IMPORTED);
+        let Ok(entries) = fs::read_dir(&folder) else {
+            return Ok(HashMap::new());
+        };
+        let mut found = HashMap::new();
+        let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+        paths.sort();
+        for path in paths
+            .iter()
+            .filter(|path| path.extension().is_some_and(|extension| extension == "csv"))
+        {
+            let name = path.file_stem().unwrap_or_default().to_string_lossy();
+            // A copy carries its hash in its name; one that was damaged must be imported again.
+            let bytes = fs::read(path).map_err(StudyError::io("read", path))?;
+            if hexadecimal(&Sha256::digest(&bytes)[..8]) != name {
+                set_aside(path, "damaged")?;
+                continue;
+            }
+            for row in rows_of(path)? {
+                found.insert(row.identity(), imported_entry(&row, &name));
+            }
+        }
+        Ok(found)
+    }
+}
+
+/// The rows in a table of a file, whose ending says how it is written.
+fn rows_of(path: &Path) -> Result<Vec<Row>, StudyError> {
+    let table = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("parquet") => parquet::read(path)?,
+        _ => csv::read(path)?,
+    };
+    if table.rows() == 0 {
+        return Ok(Vec::new());
+    }
+    Row::all_of(&table).map_err(|reason| StudyError::NotRows {
+        path: path.to_owned(),
+        reason,
+    })
+}
+
+fn imported_entry(row: &Row, table: &str) -> Entry {
+    Entry {
+        reason: Some(format!("imported with {IMPORTED}/{table}.csv")),
+        ..done(row, None)
+    }
+}

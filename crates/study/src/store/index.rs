@@ -1,0 +1,468 @@
+//! The index of a store: what the files say of each run, to be found fast, and who works on it.
+//!
+//! Of the runs it holds nothing that the files do not: it can be deleted, and is made again from them. The leases are in
+//! it alone; losing them costs work that is done twice to the same bits, and no result.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
+
+use super::owner::{Owner, now};
+use crate::error::StudyError;
+use crate::identity::Identity;
+
+/// Layout of the tables; an index of another is made again.
+const LAYOUT: i32 = 1;
+/// How long to wait for another process that writes.
+const BUSY: Duration = Duration::from_secs(60);
+
+/// What has become of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    /// Nothing is there yet.
+    Pending,
+    /// Some process works on it.
+    Leased,
+    /// It was interrupted, and goes on from its last checkpoint.
+    Checkpointed,
+    /// Finished: the hashes of its products check, or its row was imported.
+    Done,
+    /// It ended in an error, which is kept.
+    Failed,
+    /// Its files were not what had been written; they were moved aside, and it will be computed again.
+    Quarantined,
+}
+
+impl State {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Pending => "pending",
+            Self::Leased => "leased",
+            Self::Checkpointed => "checkpointed",
+            Self::Done => "done",
+            Self::Failed => "failed",
+            Self::Quarantined => "quarantined",
+        }
+    }
+
+    fn of_name(name: &str) -> Self {
+        match name {
+            "checkpointed" => Self::Checkpointed,
+            "done" => Self::Done,
+            "failed" => Self::Failed,
+            "quarantined" => Self::Quarantined,
+            _ => Self::Pending,
+        }
+    }
+}
+
+/// What the index says of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
+    /// What has become of it.
+    pub state: State,
+    /// Why it failed or was quarantined; where the row of a finished run came from, if it was imported.
+    pub reason: Option<String>,
+    /// Row of a finished run as CSV.
+    pub(crate) row: Option<String>,
+    /// tau \[t\] of a finished run.
+    pub transition_time: Option<f64>,
+    /// Sizes and times of change of the products when their hashes were last checked.
+    pub(crate) stamp: Option<String>,
+}
+
+impl Entry {
+    pub(crate) fn new(state: State, reason: Option<String>) -> Self {
+        Self {
+            state,
+            reason,
+            row: None,
+            transition_time: None,
+            stamp: None,
+        }
+    }
+}
+
+/// A lease: who works on a run.
+#[derive(Clone, Debug)]
+pub(crate) struct Lease {
+    pub(crate) owner: Owner,
+    pub(crate) heartbeat: i64,
+}
+
+impl Lease {
+    /// Whether the run may be taken over: its owner is dead, or has been silent for too long.
+    fn is_void(&self, timeout: Duration) -> bool {
+        self.owner.is_dead() || now() - self.heartbeat > timeout.as_secs() as i64
+    }
+}
+
+/// An open index.
+#[derive(Debug)]
+pub(crate) struct Index {
+    path: PathBuf,
+    connection: Connection,
+}
+
+const TABLES: &str = "
+    CREATE TABLE IF NOT EXISTS runs (
+        identity TEXT PRIMARY KEY,
+        state TEXT NOT NULL,
+        reason TEXT,
+        row TEXT,
+        transition_time REAL,
+        stamp TEXT
+    ) WITHOUT ROWID;
+    CREATE TABLE IF NOT EXISTS leases (
+        identity TEXT PRIMARY KEY,
+        host TEXT NOT NULL,
+        process INTEGER NOT NULL,
+        started TEXT NOT NULL,
+        token TEXT NOT NULL,
+        heartbeat INTEGER NOT NULL
+    ) WITHOUT ROWID;";
+
+impl Index {
+    /// Opens the index, and answers whether it is new and has to be filled from the files.
+    pub(crate) fn open(path: &Path) -> Result<(Self, bool), StudyError> {
+        match Self::try_open(path) {
+            Err(StudyError::Index { source, .. }) if is_damaged(&source) => {
+                // It is only an index: what it held is in the files.
+                super::set_aside(path, "damaged")?;
+                Self::try_open(path)
+            }
+            outcome => outcome,
+        }
+    }
+
+    fn try_open(path: &Path) -> Result<(Self, bool), StudyError> {
+        let failed = |source| StudyError::Index {
+            path: path.to_owned(),
+            source,
+        };
+        let mut connection = Connection::open(path).map_err(failed)?;
+        let is_new = prepare(&mut connection).map_err(failed)?;
+        let index = Self {
+            path: path.to_owned(),
+            connection,
+        };
+        Ok((index, is_new))
+    }
+
+    fn failed(&self, source: rusqlite::Error) -> StudyError {
+        StudyError::Index {
+            path: self.path.clone(),
+            source,
+        }
+    }
+
+    /// What is known of every run that is not merely pending, leases apart.
+    pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+        select_entries(
+            &self.connection,
+            "SELECT identity, state, reason, row, transition_time, stamp FROM runs",
+        )
+        .map_err(|error| self.failed(error))
+    }
+
+    /// The same without rows and stamps, which are most of it.
+    pub(crate) fn findings(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+        select_entries(
+            &self.connection,
+            "SELECT identity, state, reason, NULL, transition_time, NULL FROM runs",
+        )
+        .map_err(|error| self.failed(error))
+    }
+
+    /// What is known of a run, leases apart.
+    pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>, StudyError> {
+        self.connection
+            .query_row(
+                "SELECT state, reason, row, transition_time, stamp FROM runs WHERE identity = ?1",
+                [identity.to_string()],
+                |row| entry_from(row, 0),
+            )
+            .optional()
+            .map_err(|error| self.failed(error))
+    }
+
+    /// All leases that hold.
+    pub(crate) fn leases(&self, timeout: Duration) -> Result<HashMap<Identity, Lease>, StudyError> {
+        let mut leases = all_leases(&self.connection).map_err(|error| self.failed(error))?;
+        leases.retain(|_, lease| !lease.is_void(timeout));
+        Ok(leases)
+    }
+
+    /// Notes what has become of runs.
+    pub(crate) fn note<'a>(
+        &mut self,
+        entries: impl IntoIterator<Item = (Identity, &'a Entry)>,
+    ) -> Result<(), StudyError> {
+        self.change(|transaction| {
+            for (identity, entry) in entries {
+                put(transaction, identity, entry)?;
+            }
+            Ok(())
+        })
+    }
+
+    /// What has become of each run, leases apart.
+    pub(crate) fn states(&self) -> Result<HashMap<Identity, State>, StudyError> {
+        all_states(&self.connection).map_err(|error| self.failed(error))
+    }
+
+    /// Forgets what was known of all runs and notes this instead. Leases stay, and so does what other processes have noted
+    /// since the states were those of `before`, when whoever calls began to look at the files.
+    pub(crate) fn replace(
+        &mut self,
+        entries: &HashMap<Identity, Entry>,
+        before: &HashMap<Identity, State>,
+    ) -> Result<(), StudyError> {
+        self.change(|transaction| {
+            let now = all_states(transaction)?;
+            let is_news = |identity: &Identity| {
+                now.contains_key(identity) && now.get(identity) != before.get(identity)
+            };
+            for identity in now.keys().filter(|identity| !is_news(identity)) {
+                let text = identity.to_string();
+                transaction.execute("DELETE FROM runs WHERE identity = ?1", [text])?;
+            }
+            for (identity, entry) in entries.iter().filter(|(identity, _)| !is_news(identity)) {
+                put(transaction, *identity, entry)?;
+            }
+            transaction.pragma_update(None, "user_version", LAYOUT)
+        })
+    }
+
+    /// Takes a lease of the first run in this order that is neither finished nor failed nor leased.
+    pub(crate) fn claim(
+        &mut self,
+        order: &[Identity],
+        owner: &Owner,
+        timeout: Duration,
+    ) -> Result<Claim, StudyError> {
+        self.change(|transaction| {
+            let entries = all_states(transaction)?;
+            let leases = all_leases(transaction)?;
+            let mut others = 0;
+            for identity in order {
+                let state = entries.get(identity).copied().unwrap_or(State::Pending);
+                if matches!(state, State::Done | State::Failed) {
+                    continue;
+                }
+                if let Some(lease) = leases.get(identity)
+                    && !lease.is_void(timeout)
+                {
+                    others += 1;
+                    continue;
+                }
+                transaction.execute(
+                    "INSERT OR REPLACE INTO leases VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+                    params![
+                        identity.to_string(),
+                        owner.host,
+                        owner.process,
+                        owner.started,
+                        owner.token,
+                        now()
+                    ],
+                )?;
+                return Ok(Claim::Taken(*identity));
+            }
+            Ok(if others > 0 {
+                Claim::Wait { leased: others }
+            } else {
+                Claim::Nothing
+            })
+        })
+    }
+
+    /// Renews every lease of this owner, and answers which runs it holds.
+    pub(crate) fn renew(&mut self, owner: &Owner) -> Result<Vec<Identity>, StudyError> {
+        self.change(|transaction| {
+            transaction.execute(
+                "UPDATE leases SET heartbeat = ?1 WHERE token = ?2",
+                params![now(), owner.token],
+            )?;
+            let mut held = transaction.prepare("SELECT identity FROM leases WHERE token = ?1")?;
+            let held = held.query_map([&owner.token], |row| identity_from(row, 0))?;
+            held.collect()
+        })
+    }
+
+    /// Notes what has become of a run and gives its lease back; answers false, and does neither, where the lease is no
+    /// longer this owner's.
+    pub(crate) fn release(
+        &mut self,
+        identity: Identity,
+        owner: &Owner,
+        entry: Option<&Entry>,
+    ) -> Result<bool, StudyError> {
+        self.change(|transaction| {
+            let given = transaction.execute(
+                "DELETE FROM leases WHERE identity = ?1 AND token = ?2",
+                params![identity.to_string(), owner.token],
+            )?;
+            if let Some(entry) = entry
+                && given > 0
+            {
+                put(transaction, identity, entry)?;
+            }
+            Ok(given > 0)
+        })
+    }
+
+    fn change<T>(
+        &mut self,
+        action: impl FnOnce(&Transaction<'_>) -> rusqlite::Result<T>,
+    ) -> Result<T, StudyError> {
+        let path = &self.path;
+        let transaction = self
+            .connection
+            .transaction_with_behavior(TransactionBehavior::Immediate);
+        transaction
+            .and_then(|transaction| {
+                let outcome = action(&transaction)?;
+                transaction.commit()?;
+                Ok(outcome)
+            })
+            .map_err(|source| StudyError::Index {
+                path: path.clone(),
+                source,
+            })
+    }
+}
+
+/// Outcome of asking for work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Claim {
+    /// This run is now ours.
+    Taken(Identity),
+    /// All that is left is leased.
+    Wait {
+        /// How many.
+        leased: usize,
+    },
+    /// Nothing is left.
+    Nothing,
+}
+
+fn prepare(connection: &mut Connection) -> rusqlite::Result<bool> {
+    connection.busy_timeout(BUSY)?;
+    let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
+    let layout: i32 = transaction.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    if layout != 0 && layout != LAYOUT {
+        transaction.execute_batch("DROP TABLE IF EXISTS runs; DROP TABLE IF EXISTS leases;")?;
+    }
+    transaction.execute_batch(TABLES)?;
+    // The layout is noted only when the index has been filled, so that a scan cut short is done again.
+    transaction.commit()?;
+    // Found here, damage can still be mended; later it would end a study.
+    let verdict: String = connection.pragma_query_value(None, "quick_check", |row| row.get(0))?;
+    if verdict != "ok" {
+        return Err(rusqlite::Error::SqliteFailure(
+            rusqlite::ffi::Error::new(rusqlite::ffi::SQLITE_CORRUPT),
+            Some(verdict),
+        ));
+    }
+    Ok(layout != LAYOUT)
+}
+
+fn is_damaged(error: &rusqlite::Error) -> bool {
+    matches!(
+        error.sqlite_error_code(),
+        Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase)
+    )
+}
+
+fn identity_from(row: &rusqlite::Row<'_>, column: usize) -> rusqlite::Result<Identity> {
+    let text: String = row.get(column)?;
+    text.parse().map_err(|error: crate::NotAnIdentity| {
+        rusqlite::Error::FromSqlConversionFailure(
+            column,
+            rusqlite::types::Type::Text,
+            Box::new(error),
+        )
+    })
+}
+
+fn entry_from(row: &rusqlite::Row<'_>, first: usize) -> rusqlite::Result<Entry> {
+    let state: String = row.get(first)?;
+    Ok(Entry {
+        state: State::of_name(&state),
+        reason: row.get(first + 1)?,
+        row: row.get(first + 2)?,
+        transition_time: row.get(first + 3)?,
+        stamp: row.get(first + 4)?,
+    })
+}
+
+fn select_entries(
+    connection: &Connection,
+    query: &str,
+) -> rusqlite::Result<HashMap<Identity, Entry>> {
+    let mut statement = connection.prepare(query)?;
+    let rows = statement.query_map([], |row| Ok((identity_from(row, 0)?, entry_from(row, 1)?)))?;
+    rows.collect()
+}
+
+fn all_states(connection: &Connection) -> rusqlite::Result<HashMap<Identity, State>> {
+    let mut statement = connection.prepare("SELECT identity, state FROM runs")?;
+    let rows = statement.query_map([], |row| {
+        let state: String = row.get(1)?;
+        Ok((identity_from(row, 0)?, State::of_name(&state)))
+    })?;
+    rows.collect()
+}
+
+fn all_leases(connection: &Connection) -> rusqlite::Result<HashMap<Identity, Lease>> {
+    let mut statement = connection
+        .prepare("SELECT identity, host, process, started, token, heartbeat FROM leases")?;
+    let rows = statement.query_map([], |row| {
+        let lease = Lease {
+            owner: Owner {
+                host: row.get(1)?,
+                process: row.get(2)?,
+                started: row.get(3)?,
+                token: row.get(4)?,
+            },
+            heartbeat: row.get(5)?,
+        };
+        Ok((identity_from(row, 0)?, lease))
+    })?;
+    rows.collect()
+}
+
+fn put(connection: &Connection, identity: Identity, entry: &Entry) -> rusqlite::Result<()> {
+    connection
+        .execute(
+            "INSERT OR REPLACE INTO runs VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+            params![
+                identity.to_string(),
+                entry.state.name(),
+                entry.reason,
+                entry.row,
+                entry.transition_time,
+                entry.stamp
+            ],
+        )
+        .map(|_| ())
+}
+
+impl Lease {
+    /// Who holds it, in words.
+    pub(crate) fn in_words(&self) -> String {
+        format!(
+            "process {} on {}, last heard of {} s ago",
+            self.owner.process,
+            self.owner.host.split_whitespace().next().unwrap_or("?"),
+            (now() - self.heartbeat).max(0)
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests;

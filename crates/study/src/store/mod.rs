@@ -1,0 +1,209 @@
+//! The store of a study: a folder that keeps its runs.
+//!
+//! ```text
+//! study.toml               the study file (with base.toml, if it builds on a file)
+//! index.sqlite             what the files say of each run, and who works on it
+//! runs/<identity>/         config.toml, state.checkpoint, state.checkpoint.1, products, done.json
+//! quarantine/<identity>.N/ files that were not what had been written
+//! imported/                tables of finished runs
+//! ```
+//!
+//! The files are the truth. A run is done when its seal `done.json` is there and the hashes in it check.
+
+mod archive;
+mod check;
+mod export;
+mod import;
+mod index;
+mod owner;
+mod run_files;
+mod seal;
+mod staleness;
+mod survey;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use peristalsis_formats::atomic;
+
+use crate::error::StudyError;
+use crate::identity::Identity;
+use crate::row::Row;
+use crate::specification::Specification;
+pub use archive::Packed;
+pub use check::Verification;
+pub use export::Exported;
+pub(crate) use index::{Claim, Index};
+pub use index::{Entry, State};
+pub(crate) use owner::Owner;
+pub(crate) use run_files::{Assignment, RunFiles, Verdict};
+pub use staleness::Staleness;
+pub use survey::Survey;
+pub(crate) use survey::finding;
+
+const STUDY: &str = "study.toml";
+const BASE: &str = "base.toml";
+const INDEX: &str = "index.sqlite";
+const RUNS: &str = "runs";
+const QUARANTINE: &str = "quarantine";
+const IMPORTED: &str = "imported";
+const REASON: &str = "reason.txt";
+
+/// How long an owner of whom nothing else is known may be silent before its lease is void.
+pub const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
+
+/// A folder that keeps the runs of a study.
+#[derive(Clone, Debug)]
+pub struct Store {
+    path: PathBuf,
+}
+
+impl Store {
+    /// Opens the store of a study, or makes one in a folder that is missing or empty; the store's copy of the study file
+    /// becomes this one.
+    ///
+    /// # Errors
+    /// [`StudyError::OtherStudy`], [`StudyError::NoStore`] where the folder holds other files, errors of writing.
+    pub fn create(path: &Path, study: &Specification) -> Result<Self, StudyError> {
+        let store = Self {
+            path: path.to_owned(),
+        };
+        if store.file(STUDY).exists() {
+            match store.name() {
+                Some(found) if found != study.name => {
+                    return Err(StudyError::OtherStudy {
+                        path: path.to_owned(),
+                        found,
+                        expected: study.name.clone(),
+                    });
+                }
+                Some(_) => {}
+                // The copy is damaged; the runs are what they are.
+                None => set_aside(&store.file(STUDY), "damaged")?,
+            }
+        } else if !store.holds_nothing_else() {
+            return Err(StudyError::NoStore {
+                path: path.to_owned(),
+                reason: "it holds other files".to_owned(),
+            });
+        }
+        for folder in [path.to_owned(), store.file(RUNS)] {
+            fs::create_dir_all(&folder).map_err(StudyError::io("make", folder))?;
+        }
+        let mut copies = vec![(STUDY, study.text_with_base(BASE))];
+        if let Some(base) = study.base_text() {
+            copies.insert(0, (BASE, base.to_owned()));
+        }
+        for (name, text) in copies {
+            let path = store.file(name);
+            if fs::read(&path).ok().as_deref() != Some(text.as_bytes()) {
+                atomic::write(&path, text.as_bytes())?;
+            }
+        }
+        Ok(store)
+    }
+
+    /// Name of the study that the copy of the study file gives, whatever else may be wrong with it.
+    fn name(&self) -> Option<String> {
+        let text = fs::read_to_string(self.file(STUDY)).ok()?;
+        let table: toml::Table = toml::from_str(&text).ok()?;
+        Some(table.get("name")?.as_str()?.to_owned())
+    }
+
+    /// Whether nothing is in the folder but what a process leaves that is making a store just now, or was killed doing so.
+    fn holds_nothing_else(&self) -> bool {
+        let is_ours = |name: &str| {
+            [STUDY, BASE, RUNS].contains(&name)
+                || name.starts_with(INDEX)
+                || name.ends_with(atomic::PARTIAL_SUFFIX)
+        };
+        fs::read_dir(&self.path).map_or(true, |entries| {
+            entries
+                .flatten()
+                .all(|entry| entry.file_name().to_str().is_some_and(is_ours))
+        })
+    }
+
+    /// Opens a store.
+    ///
+    /// # Errors
+    /// [`StudyError::NoStore`].
+    pub fn open(path: &Path) -> Result<Self, StudyError> {
+        let store = Self {
+            path: path.to_owned(),
+        };
+        if !store.file(STUDY).is_file() {
+            return Err(StudyError::NoStore {
+                path: path.to_owned(),
+                reason: format!("there is no {STUDY}"),
+            });
+        }
+        Ok(store)
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
+    /// The folder of a run, which may not be there.
+    #[must_use]
+    pub fn run_folder(&self, identity: Identity) -> PathBuf {
+        self.file(RUNS).join(identity.to_string())
+    }
+
+    pub(crate) fn run_files(&self, identity: Identity) -> RunFiles {
+        RunFiles::new(&self.file(RUNS), identity)
+    }
+
+    /// The study that the store keeps.
+    ///
+    /// # Errors
+    /// As [`Specification::read`].
+    pub fn specification(&self) -> Result<Specification, StudyError> {
+        Specification::read(&self.file(STUDY))
+    }
+
+    /// The index, made from the files where there was none.
+    pub(crate) fn index(&self) -> Result<Index, StudyError> {
+        let (mut index, is_new) = Index::open(&self.file(INDEX))?;
+        if is_new {
+            self.fill(&mut index)?;
+        }
+        Ok(index)
+    }
+}
+
+/// The entry of a run that is finished here.
+pub(crate) fn done(row: &Row, stamp: Option<String>) -> Entry {
+    Entry {
+        row: Some(row.to_csv()),
+        transition_time: row.transition_time(),
+        stamp,
+        ..Entry::new(State::Done, None)
+    }
+}
+
+/// The first name that is not taken.
+fn free(name: impl Fn(u32) -> PathBuf) -> PathBuf {
+    (1_u32..)
+        .map(name)
+        .find(|path| path.symlink_metadata().is_err())
+        .expect("there are fewer files than numbers")
+}
+
+/// Renames a file to one that says why.
+pub(crate) fn set_aside(path: &Path, why: &str) -> Result<(), StudyError> {
+    let aside = free(|number| {
+        let mut name = path.file_name().unwrap_or_default().to_owned();
+        name.push(format!(".{why}-{number}"));
+        path.with_file_name(name)
+    });
+    fs::rename(path, &aside).map_err(StudyError::io("move aside", path))
+}

@@ -1,0 +1,114 @@
+//! All that is known of a study, for whoever wants to look.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::{Entry, LEASE_TIMEOUT, State, Store};
+use crate::error::StudyError;
+use crate::identity::Identity;
+use crate::plan::Plan;
+use crate::refinement::{Finding, refine};
+use crate::specification::Specification;
+
+/// All that is known of a study and its runs at one moment.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    /// The study.
+    pub study: Specification,
+    /// Its runs, with those that refinement has added.
+    pub plan: Plan,
+    /// What is known of each run, those of other plans of the same store included.
+    pub entries: HashMap<Identity, Entry>,
+    /// Which runs are being worked on, and by whom, in words.
+    pub leases: HashMap<Identity, String>,
+}
+
+impl Survey {
+    /// What has become of a run.
+    #[must_use]
+    pub fn state(&self, identity: Identity) -> State {
+        let state = self
+            .entries
+            .get(&identity)
+            .map_or(State::Pending, |entry| entry.state);
+        if state != State::Done && self.leases.contains_key(&identity) {
+            return State::Leased;
+        }
+        state
+    }
+
+    /// Runs of the plan in each state.
+    #[must_use]
+    pub fn counts(&self) -> BTreeMap<&'static str, usize> {
+        let mut counts = BTreeMap::new();
+        for run in self.plan.runs() {
+            *counts.entry(self.state(run.identity).name()).or_default() += 1;
+        }
+        counts
+    }
+
+    /// What a run that has ended says of its point.
+    #[must_use]
+    pub fn finding(&self, identity: &Identity) -> Option<Finding> {
+        finding(&self.entries, identity)
+    }
+
+    /// The run whose identity begins so, in the plan or not.
+    ///
+    /// # Errors
+    /// [`StudyError::NoSuchRun`] unless there is exactly one.
+    pub fn run_beginning(&self, prefix: &str) -> Result<Identity, StudyError> {
+        let mut found: Vec<Identity> = self
+            .plan
+            .runs()
+            .iter()
+            .map(|run| run.identity)
+            .chain(self.entries.keys().copied())
+            .filter(|identity| identity.to_string().starts_with(prefix))
+            .collect();
+        found.sort();
+        found.dedup();
+        match found.as_slice() {
+            [one] => Ok(*one),
+            several => Err(StudyError::NoSuchRun {
+                prefix: prefix.to_owned(),
+                number: several.len(),
+            }),
+        }
+    }
+}
+
+/// What a run that has ended says of its point.
+pub(crate) fn finding(entries: &HashMap<Identity, Entry>, identity: &Identity) -> Option<Finding> {
+    let entry = entries.get(identity)?;
+    match entry.state {
+        State::Done if entry.transition_time.is_some() => Some(Finding::Transition),
+        State::Done => Some(Finding::NoTransition),
+        State::Failed => Some(Finding::Nothing),
+        _ => None,
+    }
+}
+
+impl Store {
+    /// All that is known of the study and its runs.
+    ///
+    /// # Errors
+    /// Errors of reading study file or index.
+    pub fn survey(&self) -> Result<Survey, StudyError> {
+        let study = self.specification()?;
+        let index = self.index()?;
+        let entries = index.entries()?;
+        let leases = index
+            .leases(LEASE_TIMEOUT)?
+            .into_iter()
+            .map(|(identity, lease)| (identity, lease.in_words()))
+            .collect();
+        let mut plan = Plan::of(&study)?;
+        refine(&study, &mut plan, &|identity| finding(&entries, identity))?;
+        Ok(Survey {
+            study,
+            plan,
+            entries,
+            leases,
+        })
+    }
+}

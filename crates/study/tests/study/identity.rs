@@ -1,0 +1,128 @@
+//! Who a run is: the same for all that does not determine its products, another for all that does.
+
+use std::collections::BTreeMap;
+
+use peristalsis_study::{Identity, Plan};
+
+use crate::{SMALL, plan};
+
+/// Identity and seed of every run, by its point in words and its replicate.
+fn runs(plan: &Plan) -> BTreeMap<(String, u32), (Identity, u64)> {
+    plan.runs()
+        .iter()
+        .map(|run| {
+            let point = plan.point(run).in_words();
+            let seed = plan.configuration(run).run.seed;
+            ((point, run.replicate), (run.identity, seed))
+        })
+        .collect()
+}
+
+#[test]
+fn points_and_replicates_that_are_added_change_no_other_run() {
+    let before = runs(&plan(SMALL));
+    let more = SMALL
+        .replace("[2.5, 2.8]", "[2.9, 2.65, 2.8, 2.5]")
+        .replace("replicates = 3", "replicates = 5");
+    let after = runs(&plan(&more));
+    assert_eq!(after.len(), 20);
+    for (run, identity) in &before {
+        assert_eq!(after[run], *identity, "{run:?}");
+    }
+    let distinct: std::collections::BTreeSet<_> = after.values().collect();
+    assert_eq!(distinct.len(), 20);
+}
+
+#[test]
+fn the_identity_is_that_of_the_run_and_not_of_the_study() {
+    let one = runs(&plan(SMALL));
+    // Another name, another way to say the same: amplitude for width, a range for a list, keys in another order.
+    let other = SMALL
+        .replace("\"small\"", "\"another\"")
+        .replace(
+            "key = \"drive.width\"\nvalues = [2.5, 2.8]",
+            "key = \"drive.amplitude\"\nvalues = [0.25]",
+        )
+        .replace(
+            "grains.number = 20\ntube.waves = 2",
+            "tube.waves = 2\ngrains.number = 20",
+        );
+    let other = runs(&plan(&other));
+    for replicate in 0..3 {
+        assert_eq!(
+            one[&("drive.width 2.5, from rest".to_owned(), replicate)],
+            other[&("drive.amplitude 0.25, from rest".to_owned(), replicate)]
+        );
+    }
+}
+
+#[test]
+fn whatever_determines_the_products_makes_another_run() {
+    let base = runs(&plan(SMALL));
+    let changes = [
+        ("run.periods = 12", "run.periods = 13", true),
+        (
+            "run.periods = 12",
+            "run.periods = 12\nobserve.samples_per_period = 10",
+            true,
+        ),
+        (
+            "run.periods = 12",
+            "run.periods = 12\nobserve.transition_threshold = 0.4",
+            true,
+        ),
+        ("grains.number = 20", "grains.number = 21", false),
+        ("[[axes]]", "[stop]\nsettled_periods = 5\n[[axes]]", true),
+        ("[[axes]]", "[record]\nprofile = false\n[[axes]]", true),
+        ("[[axes]]", "[record]\ncolumns = [\"time\"]\n[[axes]]", true),
+    ];
+    for (from, to, same_seed) in changes {
+        let other = runs(&plan(&SMALL.replace(from, to)));
+        for (run, (identity, seed)) in &base {
+            assert_ne!(other[run].0, *identity, "{to}");
+            // Length and measurement leave the trajectory, and so the random numbers, as they are.
+            assert_eq!(other[run].1 == *seed, same_seed, "{to}");
+        }
+    }
+    // All columns by name, in any order, are all columns.
+    let all: Vec<String> = peristalsis_observe::COLUMNS
+        .iter()
+        .rev()
+        .map(|column| format!("{:?}", column.name))
+        .collect();
+    let all = format!("[record]\ncolumns = [{}]\n[[axes]]", all.join(", "));
+    assert_eq!(runs(&plan(&SMALL.replace("[[axes]]", &all))), base);
+}
+
+#[test]
+fn identities_are_what_they_were_when_stores_were_first_made() {
+    let runs = runs(&plan(SMALL));
+    let (identity, seed) = runs[&("drive.width 2.5, from rest".to_owned(), 0)];
+    assert_eq!(identity.to_string(), "3f7ccc13122636f5af5c139dbe608a3a");
+    assert_eq!(seed, 6_595_242_047_793_466_227);
+}
+
+/// If this fails, the same configuration and seed have come to other results: raise `PHYSICS_VERSION`, so that no store
+/// takes runs of the old physics for those of the new, and then pin what is found here.
+#[test]
+fn results_are_what_the_version_of_the_physics_says() {
+    let place = crate::Place::new(&SMALL.replace("replicates = 3", "replicates = 1"));
+    place.complete();
+    let rows = place.store().rows().unwrap();
+    let bits = |name: &str| {
+        let values = rows.reals(name).unwrap();
+        values
+            .iter()
+            .map(|value| value.to_bits())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(peristalsis_study::PHYSICS_VERSION, 1);
+    assert_eq!(
+        bits("flow_rate_ratio_raw"),
+        [4_597_497_683_520_507_189, 4_581_706_670_038_475_831]
+    );
+    assert_eq!(
+        bits("granular_temperature"),
+        [4_591_033_507_288_930_524, 4_579_387_262_962_471_348]
+    );
+}

@@ -1,0 +1,157 @@
+//! Refinement against runs of which it is known when they jam.
+
+use peristalsis_configuration::InitialState;
+use peristalsis_study::{Finding, Identity, Plan, brackets, refine};
+
+use crate::study;
+
+const STUDY: &str = r#"
+name = "refined"
+preset = "frictionless"
+states = ["rest", "jammed"]
+replicates = 3
+[[axes]]
+key = "drive.strain_rate"
+values = [0.05, 0.1]
+[[axes]]
+key = "drive.width"
+from = 2.5
+to = 2.9
+count = 3
+[refine]
+key = "drive.width"
+tolerance = 0.01
+"#;
+
+/// w_c of runs from rest, and of those from jammed.
+fn critical(strain_rate: f64, state: InitialState) -> f64 {
+    match state {
+        InitialState::Rest => 2.95 - 2.0 * strain_rate,
+        InitialState::Jammed => 2.88,
+    }
+}
+
+/// What a run would find.
+fn truth(plan: &Plan, identity: &Identity) -> Finding {
+    let run = plan
+        .runs()
+        .iter()
+        .find(|run| run.identity == *identity)
+        .unwrap();
+    let point = plan.point(run);
+    let [strain_rate, width] =
+        [0, 1].map(|index: usize| point.settings[index].value.number().unwrap());
+    let is_below = width < critical(strain_rate, point.state);
+    // The last replicate always differs from the others: the majority counts.
+    match (
+        run.replicate,
+        is_below == (point.state == InitialState::Rest),
+    ) {
+        (2, turned) if !turned => Finding::Transition,
+        (2, _) => Finding::NoTransition,
+        (_, true) => Finding::Transition,
+        (_, false) => Finding::NoTransition,
+    }
+}
+
+/// Runs the plan in the order that `next` chooses among what has not ended, refining after each.
+fn grown(next: impl Fn(usize) -> usize) -> Plan {
+    let study = study(STUDY);
+    let mut plan = Plan::of(&study).unwrap();
+    let mut ended: Vec<(Identity, Finding)> = Vec::new();
+    loop {
+        let open: Vec<Identity> = plan
+            .runs()
+            .iter()
+            .map(|run| run.identity)
+            .filter(|identity| !ended.iter().any(|(other, _)| other == identity))
+            .collect();
+        if open.is_empty() {
+            return plan;
+        }
+        let identity = open[next(open.len())];
+        ended.push((identity, truth(&plan, &identity)));
+        let found = |identity: &Identity| {
+            ended
+                .iter()
+                .find(|(other, _)| other == identity)
+                .map(|(_, finding)| *finding)
+        };
+        refine(&study, &mut plan, &found).unwrap();
+    }
+}
+
+#[test]
+fn bisection_ends_within_the_tolerance_of_each_line() {
+    let plan = grown(|_| 0);
+    let study = study(STUDY);
+    let found = |identity: &Identity| Some(truth(&plan, identity));
+    let brackets = brackets(&study, &plan, &found);
+    assert_eq!(brackets.len(), 4);
+    for (bracket, strain_rate) in brackets.iter().zip([0.05, 0.05, 0.1, 0.1]) {
+        assert!(
+            bracket.of.contains(&format!("strain_rate {strain_rate}")),
+            "{bracket:?}"
+        );
+        let critical = critical(strain_rate, bracket.state);
+        assert!(
+            bracket.lower < critical && critical <= bracket.upper,
+            "{bracket:?}"
+        );
+        assert!(bracket.upper - bracket.lower <= 0.01, "{bracket:?}");
+    }
+    // 0.2 is halved five times to be at most 0.01, in each of four lines, by three replicates.
+    assert_eq!(plan.runs().len(), 3 * 4 * (3 + 5));
+}
+
+#[test]
+fn the_points_added_do_not_depend_on_the_order_in_which_runs_end() {
+    let sorted = |plan: Plan| {
+        let mut identities: Vec<Identity> = plan.runs().iter().map(|run| run.identity).collect();
+        identities.sort();
+        identities
+    };
+    let expected = sorted(grown(|_| 0));
+    assert_eq!(sorted(grown(|open| open - 1)), expected);
+    assert_eq!(sorted(grown(|open| open / 2)), expected);
+}
+
+#[test]
+fn nothing_is_added_before_a_line_has_ended_nor_where_nothing_changes() {
+    let study = study(STUDY);
+    let mut plan = Plan::of(&study).unwrap();
+    let runs = plan.runs().len();
+    let last = plan.runs().last().unwrap().identity;
+    let reference = plan.clone();
+    let is_known = |identity: &Identity| {
+        *identity != last && reference.runs().iter().any(|run| run.identity == *identity)
+    };
+    let but_one = |identity: &Identity| is_known(identity).then(|| truth(&reference, identity));
+    assert!(refine(&study, &mut plan, &but_one).unwrap());
+    // Three of the four lines have ended.
+    assert_eq!(plan.runs().len(), runs + 3 * 3);
+    let mut plan = reference.clone();
+    for all in [Finding::Transition, Finding::NoTransition, Finding::Nothing] {
+        assert!(!refine(&study, &mut plan, &|_| Some(all)).unwrap());
+        assert!(brackets(&study, &plan, &|_| Some(all)).is_empty());
+    }
+    assert!(!refine(&study, &mut plan, &|_| None).unwrap());
+}
+
+#[test]
+fn the_estimate_runs_along_before_everything_has_ended() {
+    let study = study(&STUDY.replace("[refine]\nkey = \"drive.width\"\ntolerance = 0.01\n", ""));
+    let plan = Plan::of(&study).unwrap();
+    // Only the first replicates have ended; no refinement is asked for, widths are watched all the same.
+    let first: Vec<Identity> = plan
+        .runs()
+        .iter()
+        .filter(|run| run.replicate == 0)
+        .map(|run| run.identity)
+        .collect();
+    let found = |identity: &Identity| first.contains(identity).then(|| truth(&plan, identity));
+    let brackets = brackets(&study, &plan, &found);
+    assert_eq!(brackets.len(), 4);
+    assert_eq!((brackets[2].lower, brackets[2].upper), (2.7, 2.9));
+    assert!((brackets[2].middle() - 2.8).abs() < 1e-12);
+}

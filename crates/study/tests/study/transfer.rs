@@ -1,0 +1,162 @@
+//! Finished runs from one store to another: by tables of rows, and by archives of all their files.
+
+use std::fs;
+
+use peristalsis_study::{Store, StudyError};
+
+use crate::{Place, SMALL, entries, flip};
+
+#[test]
+fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
+    let first = Place::new(SMALL);
+    first.complete();
+    let tables = first.tables();
+    assert_eq!(
+        peristalsis_formats::parquet::encode(&first.store().rows().unwrap()).unwrap(),
+        tables[1]
+    );
+    for ending in ["csv", "parquet"] {
+        let second = Place::new(SMALL);
+        let table = first.path(&format!("tables/small.{ending}"));
+        assert_eq!(second.store().import_table(&table).unwrap(), 6);
+        // Again, to no effect.
+        assert_eq!(second.store().import_table(&table).unwrap(), 6);
+        assert_eq!(second.complete(), Vec::<String>::new());
+        assert!(second.run_folders().is_empty());
+        let out = second.path("out");
+        second.store().export(&out, true).unwrap();
+        assert_eq!(fs::read(out.join("small.csv")).unwrap(), tables[0]);
+        assert_eq!(fs::read(out.join("small.parquet")).unwrap(), tables[1]);
+        // The files are the truth here as well.
+        fs::remove_file(second.path("store/index.sqlite")).unwrap();
+        assert_eq!(second.store().scan().unwrap().imported, 6);
+        second.store().export(&out, false).unwrap();
+        assert_eq!(fs::read(out.join("small.csv")).unwrap(), tables[0]);
+    }
+}
+
+#[test]
+fn a_study_goes_on_from_the_rows_that_it_is_given() {
+    let whole = Place::new(SMALL);
+    whole.complete();
+    let tables = whole.tables();
+    let part = Place::new(&SMALL.replace("replicates = 3", "replicates = 2"));
+    part.complete();
+    part.tables();
+    let second = Place::new(SMALL);
+    let table = part.path("tables/small.csv");
+    assert_eq!(second.store().import_table(&table).unwrap(), 4);
+    second.complete();
+    assert_eq!(second.run_folders().len(), 2);
+    let out = second.path("out");
+    second.store().export(&out, false).unwrap();
+    assert_eq!(fs::read(out.join("small.csv")).unwrap(), tables[0]);
+    // What was computed here is not replaced by what is imported later.
+    let all = whole.path("tables/small.csv");
+    second.store().import_table(&all).unwrap();
+    let found = second.store().scan().unwrap();
+    assert_eq!((found.whole, found.imported), (2, 4));
+}
+
+#[test]
+fn an_imported_copy_that_was_damaged_is_not_believed() {
+    let first = Place::new(SMALL);
+    first.complete();
+    first.tables();
+    let second = Place::new(SMALL);
+    second
+        .store()
+        .import_table(&first.path("tables/small.csv"))
+        .unwrap();
+    let copy = entries(&second.path("store/imported")).remove(0);
+    flip(&copy, 0.9);
+    assert_eq!(second.store().scan().unwrap().imported, 0);
+    assert!(!copy.exists());
+    second.complete();
+    assert_eq!(second.tables(), first.tables());
+}
+
+#[test]
+fn what_holds_no_rows_is_refused() {
+    let place = Place::new(SMALL);
+    let store = place.store();
+    for (name, text) in [
+        ("other.csv", "a,b\n1,2\n"),
+        ("ids.csv", "identity\n\"nobody\"\n"),
+        (
+            "part.csv",
+            "identity,replicate\n\"0123456789abcdef0123456789abcdef\",1\n",
+        ),
+    ] {
+        fs::write(place.path(name), text).unwrap();
+        let error = store.import_table(&place.path(name)).unwrap_err();
+        assert!(matches!(error, StudyError::NotRows { .. }), "{error}");
+    }
+    assert!(store.import_table(&place.path("missing.csv")).is_err());
+    fs::write(place.path("x.tar"), vec![7_u8; 2048]).unwrap();
+    assert!(store.import_archive(&place.path("x.tar")).is_err());
+    assert_eq!(store.survey().unwrap().entries.len(), 0);
+    // Nothing half unpacked stays.
+    assert!(
+        entries(store.path())
+            .iter()
+            .all(|path| !path.to_string_lossy().contains(".import"))
+    );
+}
+
+#[test]
+fn archives_hold_whole_runs_and_are_the_same_bytes_for_the_same_runs() {
+    let first = Place::new(SMALL);
+    first.complete();
+    let tables = first.tables();
+    let archive = first.path("runs.tar");
+    assert_eq!(first.store().pack(&archive).unwrap().runs, 6);
+    let bytes = fs::read(&archive).unwrap();
+    first.store().pack(&archive).unwrap();
+    assert_eq!(fs::read(&archive).unwrap(), bytes);
+
+    let second = Place::new(SMALL);
+    let taken = second.store().import_archive(&archive).unwrap();
+    assert_eq!((taken.runs, taken.taken), (6, 6));
+    assert_eq!(second.tables(), tables);
+    let again = second.store().import_archive(&archive).unwrap();
+    assert_eq!((again.runs, again.taken), (6, 0));
+    assert_eq!(second.store().verify().unwrap().whole, 6);
+
+    // A run that was damaged in the archive is left out, and computed.
+    let row = b"\"rest\",\"complete\"";
+    let place = bytes
+        .windows(row.len())
+        .position(|window| window == row)
+        .unwrap();
+    let mut damaged = bytes;
+    damaged[place + 1] ^= 1;
+    fs::write(&archive, damaged).unwrap();
+    let third = Place::new(SMALL);
+    let taken = third.store().import_archive(&archive).unwrap();
+    assert_eq!((taken.runs, taken.taken), (6, 5));
+    third.complete();
+    assert_eq!(third.tables(), tables);
+}
+
+#[test]
+fn an_archive_cannot_write_outside_of_the_runs() {
+    let place = Place::new(SMALL);
+    let path = place.path("evil.tar");
+    let mut builder = tar::Builder::new(fs::File::create(&path).unwrap());
+    let mut header = tar::Header::new_gnu();
+    header.set_size(4);
+    header.set_mode(0o644);
+    builder
+        .append_data(&mut header, "study.toml", &b"evil"[..])
+        .unwrap();
+    builder.finish().unwrap();
+    let error = place.store().import_archive(&path).unwrap_err();
+    assert!(error.to_string().contains("study.toml"), "{error}");
+    assert!(
+        Store::open(&place.path("store"))
+            .unwrap()
+            .specification()
+            .is_ok()
+    );
+}
