@@ -126,6 +126,7 @@ impl Sorted {
             let missing = room.saturating_sub(tile.partners.len());
             tile.partners.reserve_exact(missing);
         }
+        self.share_out();
     }
 }
 

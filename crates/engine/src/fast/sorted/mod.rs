@@ -23,7 +23,7 @@ use peristalsis_physics::contact::NormalLaw;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use self::columns::Columns;
+use self::columns::{Columns, ColumnsMut};
 use self::listing::{Partners, Tile};
 use self::motion::{Moved, Phase};
 use self::order::Row;
@@ -44,9 +44,6 @@ pub use self::order::Sorting;
 
 /// Grains in a tile, a multiple of the number of lanes.
 const TILE: usize = 128;
-
-/// Tiles whose forces threads work out before they are added up.
-const BATCH: usize = 512;
 
 /// Grains in the order of z, with all that their motion needs.
 #[derive(Clone, Debug)]
@@ -74,8 +71,10 @@ pub(crate) struct Sorted {
     /// Bound of the distance that a grain has gone across the tube since then.
     lateral: f64,
     tiles: Vec<Tile>,
-    /// Forces of a tile, or of as many as threads work on at a time.
+    /// Forces of a tile, or of each where there are threads.
     of_tiles: Vec<OfTile>,
+    /// For each stretch of places, which windows of which tiles reach it; where there are threads.
+    reached_by: Vec<Vec<(u32, u32)>>,
     moved: Vec<Moved>,
     scratch: order::Scratch,
     instructions: Instructions,
@@ -169,6 +168,7 @@ impl Sorted {
             lateral: 0.0,
             tiles: Vec::new(),
             of_tiles: vec![OfTile::default()],
+            reached_by: Vec::new(),
             moved: Vec::new(),
             scratch: order::Scratch::default(),
             instructions: Instructions::widest(),
@@ -185,9 +185,8 @@ impl Sorted {
         pool: Option<Arc<ThreadPool>>,
     ) {
         self.instructions = instructions;
-        let at_a_time = if pool.is_some() { BATCH } else { 1 };
-        self.of_tiles.resize_with(at_a_time, OfTile::default);
         self.pool = pool;
+        self.share_out();
     }
 
     /// Forces of contacts at rest: takes the positions of `bodies` as they are and answers with their accelerations.
@@ -290,6 +289,7 @@ impl Sorted {
             force,
             tiles,
             of_tiles,
+            reached_by,
             instructions,
             pool,
             ..
@@ -306,23 +306,61 @@ impl Sorted {
             });
         };
         let mut tally = Tally::default();
-        for batch in tiles.chunks(of_tiles.len()) {
-            if pool.is_some() {
-                of_tiles.par_iter_mut().zip(batch).for_each(one);
-            } else {
-                of_tiles.iter_mut().zip(batch).for_each(one);
-            }
-            for (of_tile, tile) in of_tiles.iter().zip(batch) {
+        if pool.is_some() {
+            of_tiles.par_iter_mut().zip(&*tiles).for_each(one);
+            let stretches = force.par_tiles().zip(&*reached_by).enumerate();
+            stretches.for_each(|(stretch, (force, reached_by))| {
                 instructions.run(AddUp {
-                    tile,
-                    of_tile,
+                    first: stretch * TILE,
+                    reached_by,
+                    tiles,
+                    of_tiles,
                     force,
                 });
+            });
+            for of_tile in &*of_tiles {
                 tally.merge(&of_tile.tally);
+            }
+        } else {
+            for (number, tile) in tiles.iter().enumerate() {
+                one((&mut of_tiles[0], tile));
+                let all = [(0, 0), (0, 1), (0, 2), (0, 3), (0, 4)];
+                instructions.run(AddUp {
+                    first: 0,
+                    reached_by: &all[..tile.windows().len()],
+                    tiles: &tiles[number..=number],
+                    of_tiles,
+                    force: force.as_mut(),
+                });
+                tally.merge(&of_tiles[0].tally);
             }
         }
         self.gather_from_copies();
         tally
+    }
+
+    /// Finds out which stretches of places the tiles reach, so that threads can add up a stretch each.
+    fn share_out(&mut self) {
+        let number = if self.pool.is_some() {
+            self.tiles.len()
+        } else {
+            1
+        };
+        self.of_tiles.resize_with(number, OfTile::default);
+        if self.pool.is_none() {
+            return;
+        }
+        let stretches = self.origin.len().div_ceil(TILE);
+        self.reached_by.resize_with(stretches, Vec::new);
+        self.reached_by.iter_mut().for_each(Vec::clear);
+        for (number, tile) in self.tiles.iter().enumerate() {
+            for (index, window) in tile.windows().iter().enumerate() {
+                let stretches = window.first / TILE..(window.first + window.length).div_ceil(TILE);
+                for reached_by in &mut self.reached_by[stretches] {
+                    reached_by.push((number as u32, index as u32));
+                }
+            }
+        }
     }
 
     fn forget_forces(&mut self) {
@@ -385,11 +423,14 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
     }
 }
 
-/// Adds the forces of a tile to all.
+/// Adds what windows of tiles hold to the forces of a stretch of places.
 struct AddUp<'a> {
-    tile: &'a Tile,
-    of_tile: &'a OfTile,
-    force: &'a mut Columns,
+    first: usize,
+    /// Tile and window, in the order of the tiles.
+    reached_by: &'a [(u32, u32)],
+    tiles: &'a [Tile],
+    of_tiles: &'a [OfTile],
+    force: ColumnsMut<'a>,
 }
 
 impl Work for AddUp<'_> {
@@ -397,18 +438,29 @@ impl Work for AddUp<'_> {
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        let of_tile = &self.of_tile.force;
-        for window in self.tile.windows() {
-            let (first, base) = (window.first, window.base);
-            for (to, from) in [
-                (&mut self.force.x, &of_tile.x),
-                (&mut self.force.y, &of_tile.y),
-                (&mut self.force.z, &of_tile.z),
+        let Self {
+            first,
+            reached_by,
+            tiles,
+            of_tiles,
+            force,
+        } = self;
+        let end = first + force.x.len();
+        for &(tile, window) in reached_by {
+            let of_tile = &of_tiles[tile as usize].force;
+            let window = &tiles[tile as usize].windows()[window as usize];
+            let from = window.first.max(first);
+            let to = (window.first + window.length).min(end).max(from);
+            for (all, of_tile) in [
+                (&mut *force.x, &of_tile.x),
+                (&mut *force.y, &of_tile.y),
+                (&mut *force.z, &of_tile.z),
             ] {
-                let to = &mut to[first..first + window.length];
-                let from = &from[base..base + window.length];
-                for (to, from) in to.iter_mut().zip(from) {
-                    *to += from;
+                let all = &mut all[from - first..to - first];
+                let base = window.base + (from - window.first);
+                let of_tile = &of_tile[base..base + (to - from)];
+                for (all, of_tile) in all.iter_mut().zip(of_tile) {
+                    *all += of_tile;
                 }
             }
         }

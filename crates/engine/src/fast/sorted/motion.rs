@@ -117,7 +117,7 @@ impl Columns {
         xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
     }
 
-    fn par_tiles(&mut self) -> impl IndexedParallelIterator<Item = ColumnsMut<'_>> {
+    pub(super) fn par_tiles(&mut self) -> impl IndexedParallelIterator<Item = ColumnsMut<'_>> {
         let z = self.z.par_chunks_mut(TILE);
         let xy = self.x.par_chunks_mut(TILE).zip(self.y.par_chunks_mut(TILE));
         xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
