@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::columns::Columns;
 use super::order::Row;
 use super::strips::{AHEAD, Strips};
-use super::{Sorted, TILE};
+use super::{AT_A_TIME, Sorted, TILE};
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 
@@ -115,7 +115,8 @@ impl Sorted {
             });
         };
         if pool.is_some() {
-            tiles[..used].par_iter_mut().for_each(one);
+            let tiles = tiles[..used].par_iter_mut();
+            tiles.with_min_len(AT_A_TIME).for_each(one);
         } else {
             tiles[..used].iter_mut().for_each(one);
         }

@@ -45,6 +45,9 @@ pub use self::order::Sorting;
 /// Grains in a tile, a multiple of the number of lanes.
 const TILE: usize = 128;
 
+/// Tiles that a thread takes at a time, at least.
+const AT_A_TIME: usize = 8;
+
 /// Grains in the order of z, with all that their motion needs.
 #[derive(Clone, Debug)]
 pub(crate) struct Sorted {
@@ -307,8 +310,10 @@ impl Sorted {
         };
         let mut tally = Tally::default();
         if pool.is_some() {
-            of_tiles.par_iter_mut().zip(&*tiles).for_each(one);
+            let work = of_tiles.par_iter_mut().zip(&*tiles);
+            work.with_min_len(AT_A_TIME).for_each(one);
             let stretches = force.par_tiles().zip(&*reached_by).enumerate();
+            let stretches = stretches.with_min_len(AT_A_TIME);
             stretches.for_each(|(stretch, (force, reached_by))| {
                 instructions.run(AddUp {
                     first: stretch * TILE,

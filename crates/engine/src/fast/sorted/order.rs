@@ -3,6 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::columns::Columns;
 use super::{Sorted, TILE};
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
@@ -243,11 +244,12 @@ impl Sorted {
             z if z < 0.0 => 2,
             _ => 1,
         };
-        let strip = |place: usize| strips.at(position.x[place], position.y[place]);
+        let Columns { x, y, z } = position;
+        let strip = |place: usize| strips.at(x[place], y[place]);
         counts.clear();
         counts.resize(strips.number(), [0; 3]);
         for place in rows.iter().flat_map(Row::own) {
-            counts[strip(place)][side(position.z[place])] += 1;
+            counts[strip(place)][side(z[place])] += 1;
         }
         let mut end = 0;
         for count in counts.iter_mut().flatten() {
@@ -256,10 +258,10 @@ impl Sorted {
         keys.clear();
         keys.resize(end as usize, (0.0, 0));
         for place in rows.iter().flat_map(Row::own) {
-            let z = position.z[place];
-            let (folded, more) = fold(z, *length);
+            let next = &mut counts[strip(place)][side(z[place])];
+            let (folded, more) = fold(z[place], *length);
+            z[place] = folded;
             turns[place] += more;
-            let next = &mut counts[strip(place)][side(z)];
             keys[*next as usize] = (folded, place as u32);
             *next += 1;
         }
@@ -318,6 +320,9 @@ impl Sorted {
                 gather(rows, keys, values, 0.0, column, places, parallel);
             }
         }
+        for gap in gaps(rows, places) {
+            self.position.z[gap].fill(NOWHERE);
+        }
         gather(
             rows,
             keys,
@@ -329,11 +334,6 @@ impl Sorted {
         );
         gather(rows, keys, &mut self.turns, 0, turns, places, parallel);
 
-        let z = &mut self.position.z;
-        z.fill(NOWHERE);
-        for (place, key) in rows.iter().flat_map(Row::own).zip(keys) {
-            z[place] = key.0;
-        }
         self.force.resize(places);
         for row in &self.rows {
             for (from, to, _) in row.copies(self.length) {
@@ -374,6 +374,14 @@ impl Sorted {
 /// Grains that a thread brings into order at a time.
 const PIECE: usize = 32 * TILE;
 
+/// The stretches of places between the grains of the rows, and before and behind them.
+fn gaps(rows: &[Row], places: usize) -> impl Iterator<Item = core::ops::Range<usize>> {
+    let ends = core::iter::once(0).chain(rows.iter().map(|row| row.own().end));
+    let begins = rows.iter().map(|row| row.first);
+    ends.zip(begins.chain(core::iter::once(places)))
+        .map(|(end, begin)| end..begin)
+}
+
 /// Brings values into the order of the keys, row by row; `filler` stands where there is no grain.
 fn gather<T: Copy + Send + Sync>(
     rows: &[Row],
@@ -384,8 +392,10 @@ fn gather<T: Copy + Send + Sync>(
     places: usize,
     parallel: bool,
 ) {
-    scratch.clear();
     scratch.resize(places, filler);
+    for gap in gaps(rows, places) {
+        scratch[gap].fill(filler);
+    }
     let from = &values[..];
     let one = |(gathered, keys): (&mut [T], &[(f64, u32)])| {
         for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
