@@ -71,7 +71,7 @@ pub(crate) struct RunArguments {
     /// Folder for the results; the default is a new one below runs/.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to compute with; they pay from some ten thousand smooth grains in a narrow tube on.
+    /// Threads to compute with, for equal smooth grains in a prescribed tube; they pay from some ten thousand grains on.
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Instructions to compute with; the default is the widest that the machine has.

@@ -27,7 +27,7 @@ pub struct Parameters {
     pub integrator: Integrator,
     /// Length of a step \[t\].
     pub time_step: f64,
-    /// Skin of the neighbour list \[d\]; results do not depend on it.
+    /// Skin of the neighbour list \[d\]; results depend on it by rounding at most.
     pub skin: f64,
     /// Which kernel computes the forces.
     pub kernel: Kernel,
@@ -114,7 +114,7 @@ impl Simulation {
         }
     }
 
-    /// Hands equal smooth grains in a narrow prescribed tube to the kernel that is made for them.
+    /// Hands equal smooth grains in a prescribed tube to the kernel that is made for them.
     fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
         let System {
             bodies,
@@ -153,7 +153,7 @@ impl Simulation {
     /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
     /// from now on, where a fast kernel runs; neither changes a bit of the results.
     ///
-    /// Threads serve smooth grains in a narrow prescribed tube, and pay from some ten thousand grains on.
+    /// Threads serve equal smooth grains in a prescribed tube, and pay from some ten thousand grains on.
     ///
     /// # Errors
     /// [`EngineError::Threads`] where the system gives no more threads.
