@@ -107,7 +107,7 @@ def size(program, runs, quick):
     waves = 5000 if quick else 49383
     ratios, memory, grains = [], [], 0
     for _ in range(1 if not quick else runs):
-        small, _ = program.run(tube(494, 5, "drive.width=2.7"))
+        small, _ = program.run(tube(494, 0.25, "drive.width=2.7"))
         large, bytes_used = program.run(tube(waves, 0.25, "drive.width=2.7"))
         grains = large["grains"]
         ratios.append(speed(small) / speed(large))
