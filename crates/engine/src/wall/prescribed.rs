@@ -263,62 +263,106 @@ impl PrescribedWall {
         if T::ROTATES {
             memory.begin();
         }
-        let wall_diameter = self.lattice.sphere_diameter;
         for grain in 0..bodies.grains {
-            let (centre, velocity) = (bodies.position[grain], bodies.velocity[grain]);
-            let diameter = bodies.diameter[grain];
-            let angular_velocity = bodies.angular_velocity[grain];
-            let mut force = bodies.acceleration[grain];
-            let mut torque = bodies.angular_acceleration[grain];
-            let reach = 0.5 * (diameter + wall_diameter);
-            let reduced_radius = diameter * wall_diameter / (2.0 * (diameter + wall_diameter));
-            self.for_each_touching(centre, diameter, |sphere, separation, wall_velocity| {
-                let distance = separation.length();
-                let overlap = reach - distance;
-                // Rounding may leave a sphere at the very edge of reach; coincident centres have no normal.
-                if overlap <= 0.0 || distance == 0.0 {
-                    return;
-                }
-                let arm = 0.5 * (diameter - overlap);
-                let contact = Contact {
-                    overlap,
-                    distance,
-                    normal: separation * (1.0 / distance),
-                    relative_velocity: velocity - wall_velocity,
-                    reduced_radius,
-                    spin: if T::ROTATES {
-                        arm * angular_velocity
-                    } else {
-                        DVec3::ZERO
-                    },
-                };
-                let mut history = T::History::<f64>::default();
-                if T::ROTATES {
-                    history = memory.take(grain, sphere);
-                }
-                let answer = law.force(&contact, &mut history, time_step);
-                if T::ROTATES {
-                    memory.put(sphere, history);
-                    torque += arm * answer.twist;
-                }
-                force += answer.force;
-                tally.add_contact(&answer, overlap);
-                tally.wall_contacts += 1;
-                tally.wall_power += answer.force.dot(wall_velocity);
-                tally.wall_axial_force += answer.force.z;
-            });
-            bodies.acceleration[grain] = force;
-            if T::ROTATES {
-                bodies.angular_acceleration[grain] = torque;
-                for ended in memory.end_grain(grain) {
-                    tally.history_reset += law.tangential.stored_energy(ended);
-                }
-            }
+            let state = GrainState {
+                centre: bodies.position[grain],
+                velocity: bodies.velocity[grain],
+                angular_velocity: bodies.angular_velocity[grain],
+                diameter: bodies.diameter[grain],
+            };
+            self.add_force(
+                law,
+                grain,
+                &state,
+                (
+                    &mut bodies.acceleration[grain],
+                    &mut bodies.angular_acceleration[grain],
+                ),
+                memory,
+                time_step,
+                tally,
+            );
         }
         if T::ROTATES {
             memory.end();
         }
     }
+
+    /// Adds the force and torque of the wall on one grain; grains come in their order, between [`WallMemory::begin`] and
+    /// [`WallMemory::end`] if contacts remember.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn add_force<N: NormalLaw, T: TangentialLaw>(
+        &self,
+        law: &ContactLaw<N, T>,
+        grain: usize,
+        state: &GrainState,
+        (on_grain, torque_on_grain): (&mut DVec3, &mut DVec3),
+        memory: &mut WallMemory<T::History<f64>>,
+        time_step: f64,
+        tally: &mut Tally,
+    ) {
+        let GrainState {
+            centre,
+            velocity,
+            angular_velocity,
+            diameter,
+        } = *state;
+        let wall_diameter = self.lattice.sphere_diameter;
+        let (mut force, mut torque) = (*on_grain, *torque_on_grain);
+        let reach = 0.5 * (diameter + wall_diameter);
+        let reduced_radius = diameter * wall_diameter / (2.0 * (diameter + wall_diameter));
+        self.for_each_touching(centre, diameter, |sphere, separation, wall_velocity| {
+            let distance = separation.length();
+            let overlap = reach - distance;
+            // Rounding may leave a sphere at the very edge of reach; coincident centres have no normal.
+            if overlap <= 0.0 || distance == 0.0 {
+                return;
+            }
+            let arm = 0.5 * (diameter - overlap);
+            let contact = Contact {
+                overlap,
+                distance,
+                normal: separation * (1.0 / distance),
+                relative_velocity: velocity - wall_velocity,
+                reduced_radius,
+                spin: if T::ROTATES {
+                    arm * angular_velocity
+                } else {
+                    DVec3::ZERO
+                },
+            };
+            let mut history = T::History::<f64>::default();
+            if T::ROTATES {
+                history = memory.take(grain, sphere);
+            }
+            let answer = law.force(&contact, &mut history, time_step);
+            if T::ROTATES {
+                memory.put(sphere, history);
+                torque += arm * answer.twist;
+            }
+            force += answer.force;
+            tally.add_contact(&answer, overlap);
+            tally.wall_contacts += 1;
+            tally.wall_power += answer.force.dot(wall_velocity);
+            tally.wall_axial_force += answer.force.z;
+        });
+        *on_grain = force;
+        if T::ROTATES {
+            *torque_on_grain = torque;
+            for ended in memory.end_grain(grain) {
+                tally.history_reset += law.tangential.stored_energy(ended);
+            }
+        }
+    }
+}
+
+/// What a contact with the wall asks of a grain.
+pub(crate) struct GrainState {
+    pub(crate) centre: DVec3,
+    pub(crate) velocity: DVec3,
+    pub(crate) angular_velocity: DVec3,
+    pub(crate) diameter: f64,
 }
 
 /// Least whole number that is not below x: by truncation, for rounding is a library call on the plainest processors.
