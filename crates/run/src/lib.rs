@@ -20,10 +20,10 @@ pub use error::RunError;
 pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use peristalsis_configuration::Configuration;
-pub use recorder::Recorder;
+pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use stopping::Stopping;
-pub use summary::{Status, Summary};
+pub use summary::{Status, Summary, ThresholdTime};
 pub use tables::{profile_table, timeseries_table};
 
 /// Version of this program.

@@ -5,6 +5,10 @@ use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{Observer, Sample, WallFault, WaveFrameProfile, note_wall_faults};
 
+/// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
+/// between the branches of the flow is known only when many runs have ended.
+pub const THRESHOLDS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
+
 /// Samples, period averages, the search for the transition, and the profile in the wave's frame.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
@@ -14,6 +18,8 @@ pub struct Recorder {
     /// J/Jmax of each whole period.
     averages: Vec<f64>,
     detector: Option<TransitionDetector>,
+    /// A search at each of [`THRESHOLDS`]; none where there is no ratio of flow rates to watch.
+    ladder: Vec<TransitionDetector>,
     profile: WaveFrameProfile,
     wall_faults: Vec<WallFault>,
 }
@@ -26,24 +32,23 @@ impl Recorder {
             InitialState::Jammed => Direction::Downward,
         };
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
-        let detector = configuration
+        let period = configuration
             .drive
             .period()
-            .filter(|_| configuration.grains.number > 0)
-            .map(|period| {
-                TransitionDetector::new(
-                    direction,
-                    configuration.observe.transition_threshold,
-                    period,
-                )
-                .expect("a validated configuration has a threshold and a period in range")
-            });
+            .filter(|_| configuration.grains.number > 0);
+        let detector_at = |threshold: f64| {
+            let period = period?;
+            let detector = TransitionDetector::new(direction, threshold, period)
+                .expect("a validated configuration has a threshold and a period in range");
+            Some(detector)
+        };
         Self {
             observer: Observer::new(simulation),
             samples: Vec::new(),
             samples_per_period,
             averages: Vec::new(),
-            detector,
+            detector: detector_at(configuration.observe.transition_threshold),
+            ladder: THRESHOLDS.into_iter().filter_map(detector_at).collect(),
             profile: WaveFrameProfile::new(
                 configuration.observe.profile_bins as usize,
                 samples_per_period,
@@ -69,11 +74,15 @@ impl Recorder {
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
                 self.detector = None;
+                self.ladder.clear();
             }
         }
     }
 
     fn push(&mut self, average: f64) -> Option<()> {
+        for detector in &mut self.ladder {
+            detector.push(average).ok()?;
+        }
         self.detector.as_mut()?.push(average).ok().map(|_| ())
     }
 
@@ -111,6 +120,12 @@ impl Recorder {
     #[must_use]
     pub fn transition_time(&self) -> Option<f64> {
         self.transition()?.observed()
+    }
+
+    /// Time of the transition \[t\] at each of [`THRESHOLDS`], where it has been found.
+    #[must_use]
+    pub fn transition_times(&self) -> [Option<f64>; THRESHOLDS.len()] {
+        core::array::from_fn(|place| self.ladder.get(place)?.outcome().observed())
     }
 
     /// Time of a crossing \[t\] that has not lasted long enough yet.

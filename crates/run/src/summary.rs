@@ -4,6 +4,7 @@ use peristalsis_analysis::mean_with_error;
 use peristalsis_observe::{Sample, WallFault};
 
 use crate::assemble::newtonian_reference;
+use crate::recorder::THRESHOLDS;
 use crate::run::Run;
 use crate::{REVISION, VERSION};
 
@@ -19,6 +20,15 @@ pub enum Status {
     Interrupted,
     /// A grain moved too far in one step.
     Diverged,
+}
+
+/// The transition as another threshold sees it.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ThresholdTime {
+    /// J/Jmax whose crossing counts.
+    pub threshold: f64,
+    /// tau \[t\], where there was a transition.
+    pub time: Option<f64>,
 }
 
 /// The outcome of a run; missing numbers are `null` in JSON.
@@ -46,6 +56,8 @@ pub struct Summary {
     pub censored: bool,
     /// J/Jmax whose crossing counts as the transition.
     pub transition_threshold: f64,
+    /// tau \[t\] at other thresholds.
+    pub transition_times: Vec<ThresholdTime>,
     /// J/Jmax of a Newtonian fluid in this tube, phi = b/a.
     pub newtonian_flow_rate_ratio: Option<f64>,
     /// The same for the clear bore, phi = b/(a - d/2).
@@ -126,6 +138,11 @@ impl Summary {
             transition_time,
             censored: transition_time.is_none(),
             transition_threshold: configuration.observe.transition_threshold,
+            transition_times: THRESHOLDS
+                .into_iter()
+                .zip(recorder.transition_times())
+                .map(|(threshold, time)| ThresholdTime { threshold, time })
+                .collect(),
             newtonian_flow_rate_ratio: newtonian.map(|reference| reference.0),
             newtonian_flow_rate_ratio_clear_bore: newtonian.and_then(|reference| reference.1),
             escaped: last.map_or(0, |sample| sample.escaped as u64),

@@ -85,6 +85,15 @@ const COLUMNS: &[RowColumn] = &[
     column("transition_time", "t", Real, "tau; missing where there was none", |o| Cell::optional(o.summary.transition_time)),
     column("censored", "", Boolean, "whether the run ended before a transition", |o| Cell::Boolean(o.summary.censored)),
     column("transition_threshold", "1", Real, "J/Jmax whose crossing counts as the transition", |o| Cell::Real(o.summary.transition_threshold)),
+    column("transition_time_10", "t", Real, "tau with the threshold 0.1; missing where there was none", |o| Cell::optional(o.summary.transition_times[0].time)),
+    column("transition_time_20", "t", Real, "tau with the threshold 0.2; missing where there was none", |o| Cell::optional(o.summary.transition_times[1].time)),
+    column("transition_time_30", "t", Real, "tau with the threshold 0.3; missing where there was none", |o| Cell::optional(o.summary.transition_times[2].time)),
+    column("transition_time_40", "t", Real, "tau with the threshold 0.4; missing where there was none", |o| Cell::optional(o.summary.transition_times[3].time)),
+    column("transition_time_50", "t", Real, "tau with the threshold 0.5; missing where there was none", |o| Cell::optional(o.summary.transition_times[4].time)),
+    column("transition_time_60", "t", Real, "tau with the threshold 0.6; missing where there was none", |o| Cell::optional(o.summary.transition_times[5].time)),
+    column("transition_time_70", "t", Real, "tau with the threshold 0.7; missing where there was none", |o| Cell::optional(o.summary.transition_times[6].time)),
+    column("transition_time_80", "t", Real, "tau with the threshold 0.8; missing where there was none", |o| Cell::optional(o.summary.transition_times[7].time)),
+    column("transition_time_90", "t", Real, "tau with the threshold 0.9; missing where there was none", |o| Cell::optional(o.summary.transition_times[8].time)),
     column("flow_rate_ratio", "1", Real, "late mean of J/Jmax, grains inside", |o| Cell::Real(o.summary.flow_rate_ratio)),
     column("flow_rate_ratio_error", "1", Real, "its standard error from block averages", |o| Cell::Real(o.summary.flow_rate_ratio_error)),
     column("flow_rate_ratio_raw", "1", Real, "late mean of J/Jmax of all grains", |o| Cell::Real(o.summary.flow_rate_ratio_raw)),
@@ -168,7 +177,8 @@ impl Row {
     /// Every row of a table that has the columns of rows; others are left out.
     ///
     /// # Errors
-    /// A sentence: the column that is missing or of another kind, or the text that is no identity.
+    /// A sentence: the column that is missing (columns of reals may be) or of another kind, or the text that is no
+    /// identity.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
         let identities = table
             .texts("identity")
@@ -258,11 +268,15 @@ fn joined(columns: impl IntoIterator<Item = Column>) -> Table {
         .expect("the columns of a row have distinct names and one length")
 }
 
-/// One value of a column of another table; an empty column of a CSV file reads as reals.
+/// One value of a column of another table, missing where it has no such column of reals; an empty column of a CSV file
+/// reads as reals.
 fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, String> {
-    let found = table
-        .column(column.name)
-        .map_err(|error| error.to_string())?;
+    let found = match table.column(column.name) {
+        Ok(found) => found,
+        // Written by a version that did not measure it yet.
+        Err(_) if column.kind == Real => return Ok(Values::Real(vec![f64::NAN])),
+        Err(error) => return Err(error.to_string()),
+    };
     match (column.kind, &found.values) {
         (Real, Values::Real(values)) => Ok(Values::Real(vec![values[row]])),
         (Real, Values::Integer(values)) => Ok(Values::Real(vec![values[row] as f64])),
