@@ -1,0 +1,96 @@
+//! What the studies have found so far.
+
+use std::collections::BTreeMap;
+
+use peristalsis_formats::{Table, parquet};
+use peristalsis_study::Store;
+
+use crate::error::ClaimError;
+use crate::runs::Run;
+
+/// The results of one study.
+#[derive(Clone, Debug)]
+pub struct StudyResults {
+    store: Store,
+    /// Finished runs in the order of the axes.
+    pub runs: Vec<Run>,
+    /// Runs of the study that are not finished.
+    pub missing: usize,
+}
+
+/// The results of the studies that are there, by name.
+#[derive(Clone, Debug, Default)]
+pub struct Evidence {
+    studies: BTreeMap<String, StudyResults>,
+}
+
+impl Evidence {
+    /// Adds the results of a study.
+    ///
+    /// # Errors
+    /// Errors of reading the store.
+    pub fn add(&mut self, store: Store) -> Result<(), ClaimError> {
+        let survey = store.survey()?;
+        let runs = Run::all_of(&store.rows()?)?;
+        let missing = survey.plan.runs().len().saturating_sub(runs.len());
+        self.studies.insert(
+            survey.study.name,
+            StudyResults {
+                store,
+                runs,
+                missing,
+            },
+        );
+        Ok(())
+    }
+
+    /// The results of a study.
+    ///
+    /// # Errors
+    /// [`ClaimError::NoSuchStudy`].
+    pub fn study(&self, name: &str) -> Result<&StudyResults, ClaimError> {
+        self.studies
+            .get(name)
+            .ok_or_else(|| ClaimError::NoSuchStudy(name.to_owned()))
+    }
+}
+
+impl StudyResults {
+    /// The time series of a run; `None` where only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub fn series(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+        let Ok(identity) = run.identity.parse() else {
+            return Ok(None);
+        };
+        let path = self.store.run_folder(identity).join("timeseries.parquet");
+        if !path.is_file() {
+            return Ok(None);
+        }
+        Ok(Some(parquet::read(&path)?))
+    }
+
+    /// J/Jmax averaged over each period of a run; `None` where only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub fn period_averages(&self, run: &Run) -> Result<Option<Vec<f64>>, ClaimError> {
+        let Some(table) = self.series(run)? else {
+            return Ok(None);
+        };
+        let (period, ratio) = (table.reals("period")?, table.reals("flow_rate_ratio")?);
+        let mut averages: Vec<f64> = Vec::new();
+        let (mut sum, mut number) = (0.0, 0.0);
+        for (end, ratio) in period.iter().zip(ratio) {
+            sum += ratio;
+            number += 1.0;
+            // A row ends at its `period`; the last row of a period ends at a whole number.
+            if (end - (averages.len() + 1) as f64).abs() < 1e-6 {
+                averages.push(sum / number);
+                (sum, number) = (0.0, 0.0);
+            }
+        }
+        Ok(Some(averages))
+    }
+}

@@ -1,0 +1,19 @@
+//! The claims of the source, and what our studies say of them.
+//!
+//! A [`Claim`] names the studies that it needs and turns what they found, the [`Evidence`], into a [`Finding`]: numbers
+//! with errors, tables, figures, and a [`Verdict`]. One claim is one file in `claims/` and one row of [`CLAIMS`]. The
+//! studies are those of the folder `studies/` of this repository, in two sizes ([`Size`]). Nothing here prints or exits.
+
+mod claim;
+mod error;
+mod evidence;
+mod finding;
+mod runs;
+mod studies;
+
+pub use claim::{CLAIMS, Claim};
+pub use error::ClaimError;
+pub use evidence::{Evidence, StudyResults};
+pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+pub use runs::{Lattice, Run, Start};
+pub use studies::{STUDIES, Size, StudyFile};

@@ -1,0 +1,200 @@
+//! Finished runs as analyses see them: one typed row each.
+
+use peristalsis_analysis::Transition;
+use peristalsis_formats::{FormatError, Table};
+use peristalsis_run::THRESHOLDS;
+
+/// How the grains stood at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Start {
+    /// J = 0.
+    Rest,
+    /// J = Jmax.
+    Jammed,
+}
+
+/// Arrangement of the wall spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Lattice {
+    /// Spheres a ring.
+    pub spheres_per_ring: i64,
+    /// Rings a wavelength.
+    pub rings_per_wave: i64,
+}
+
+impl Lattice {
+    /// 24 x 26, nearly smooth.
+    pub const FINE: Self = Self {
+        spheres_per_ring: 24,
+        rings_per_wave: 26,
+    };
+    /// 12 x 14, rough.
+    pub const COARSE: Self = Self {
+        spheres_per_ring: 12,
+        rings_per_wave: 14,
+    };
+
+    /// "fine", "coarse", or the numbers.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::FINE => "fine".to_owned(),
+            Self::COARSE => "coarse".to_owned(),
+            Self {
+                spheres_per_ring,
+                rings_per_wave,
+            } => format!("{spheres_per_ring} × {rings_per_wave}"),
+        }
+    }
+}
+
+/// One finished run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Identity.
+    pub identity: String,
+    /// Initial state.
+    pub start: Start,
+    /// Arrangement of the wall spheres.
+    pub lattice: Lattice,
+    /// w \[d\]; NaN under stress control.
+    pub width: f64,
+    /// c/lambda \[1/t\].
+    pub strain_rate: f64,
+    /// rho.
+    pub volume_fraction: f64,
+    /// N.
+    pub grains: i64,
+    /// a \[d\].
+    pub radius: f64,
+    /// lambda \[d\].
+    pub wavelength: f64,
+    /// Waves in the tube.
+    pub waves: i64,
+    /// Time reached \[t\].
+    pub time: f64,
+    /// Late mean of J/Jmax.
+    pub flow_rate_ratio: f64,
+    /// Its standard error.
+    pub flow_rate_ratio_error: f64,
+    /// Grains outside at the end.
+    pub escaped: i64,
+    /// Transition time \[t\] at each of [`THRESHOLDS`]; NaN where there was none.
+    pub transition_times: [f64; THRESHOLDS.len()],
+    /// Values of the axes of the study that are not among the fields above, by key.
+    pub axes: Vec<(String, f64)>,
+}
+
+impl Run {
+    /// The transition at a threshold, the nearest of [`THRESHOLDS`]; censored at the end of the run where there was none.
+    #[must_use]
+    pub fn transition(&self, threshold: f64) -> Transition {
+        let place = THRESHOLDS
+            .iter()
+            .enumerate()
+            .min_by(|(_, one), (_, other)| {
+                (*one - threshold)
+                    .abs()
+                    .total_cmp(&(*other - threshold).abs())
+            })
+            .map_or(0, |(place, _)| place);
+        let time = self.transition_times[place];
+        if time.is_nan() {
+            return Transition::Censored { time: self.time };
+        }
+        Transition::At {
+            time,
+            period: (time * self.strain_rate) as u64,
+        }
+    }
+
+    /// Period of the wave \[t\].
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        1.0 / self.strain_rate
+    }
+
+    /// Value of an axis of the study by its key.
+    #[must_use]
+    pub fn axis(&self, key: &str) -> Option<f64> {
+        self.axes
+            .iter()
+            .find(|(name, _)| name == key)
+            .map(|(_, value)| *value)
+    }
+
+    /// Fraction of the grains outside at the end.
+    #[must_use]
+    pub fn escaped_fraction(&self) -> f64 {
+        self.escaped as f64 / self.grains.max(1) as f64
+    }
+
+    /// The rows of a study's table.
+    ///
+    /// # Errors
+    /// A column that is missing or of another kind.
+    pub fn all_of(table: &Table) -> Result<Vec<Self>, FormatError> {
+        if table.rows() == 0 {
+            return Ok(Vec::new());
+        }
+        let identity = table.texts("identity")?;
+        let start = table.texts("initial_state")?;
+        let integers = |name| table.integers(name);
+        let reals = |name| table.reals(name);
+        let (spheres, rings) = (integers("spheres_per_ring")?, integers("rings_per_wave")?);
+        let (width, strain_rate) = (reals("width")?, reals("strain_rate")?);
+        let (volume_fraction, grains) = (reals("volume_fraction")?, integers("grains")?);
+        let (radius, wavelength, waves) =
+            (reals("radius")?, reals("wavelength")?, integers("waves")?);
+        let time = reals("time")?;
+        let (ratio, error) = (reals("flow_rate_ratio")?, reals("flow_rate_ratio_error")?);
+        let escaped = integers("escaped")?;
+        let ladder: Vec<&[f64]> = (1..=THRESHOLDS.len())
+            .map(|place| table.reals(&format!("transition_time_{}", 10 * place)))
+            .collect::<Result<_, _>>()?;
+        let axes: Vec<(&str, Vec<f64>)> = table
+            .columns()
+            .iter()
+            .filter(|column| column.name.contains('.'))
+            .filter_map(|column| {
+                let name = column.name.as_str();
+                let values = match (table.reals(name), table.integers(name)) {
+                    (Ok(reals), _) => reals.to_vec(),
+                    (_, Ok(integers)) => integers.iter().map(|value| *value as f64).collect(),
+                    _ => return None,
+                };
+                Some((name, values))
+            })
+            .collect();
+        Ok((0..table.rows())
+            .map(|row| Self {
+                identity: identity[row].clone(),
+                start: if start[row] == "jammed" {
+                    Start::Jammed
+                } else {
+                    Start::Rest
+                },
+                lattice: Lattice {
+                    spheres_per_ring: spheres[row],
+                    rings_per_wave: rings[row],
+                },
+                width: width[row],
+                strain_rate: strain_rate[row],
+                volume_fraction: volume_fraction[row],
+                grains: grains[row],
+                radius: radius[row],
+                wavelength: wavelength[row],
+                waves: waves[row],
+                time: time[row],
+                flow_rate_ratio: ratio[row],
+                flow_rate_ratio_error: error[row],
+                escaped: escaped[row],
+                transition_times: core::array::from_fn(|place| ladder[place][row]),
+                axes: axes
+                    .iter()
+                    .map(|(name, values)| ((*name).to_owned(), values[row]))
+                    .collect(),
+            })
+            .collect())
+    }
+}

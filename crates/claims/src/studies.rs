@@ -1,0 +1,53 @@
+//! The study files behind the claims, as they stand in `studies/` of this repository.
+
+/// How large a design is run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Size {
+    /// A few runs of everything: minutes.
+    Quick,
+    /// Enough for verdicts: hours.
+    Full,
+}
+
+/// A study in both sizes; both have the same name, and so share a store and the runs that they have in common.
+#[derive(Clone, Copy, Debug)]
+pub struct StudyFile {
+    /// Name of the study.
+    pub name: &'static str,
+    /// Path of the full design within the repository.
+    pub path: &'static str,
+    quick: &'static str,
+    full: &'static str,
+}
+
+impl StudyFile {
+    /// The text of the study file.
+    #[must_use]
+    pub fn text(&self, size: Size) -> &'static str {
+        match size {
+            Size::Quick => self.quick,
+            Size::Full => self.full,
+        }
+    }
+
+    /// The study of this name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<&'static Self> {
+        STUDIES.iter().find(|study| study.name == name)
+    }
+}
+
+/// Both files of a study by its name.
+macro_rules! study {
+    ($name:literal) => {
+        StudyFile {
+            name: $name,
+            path: concat!("studies/", $name, ".toml"),
+            quick: include_str!(concat!("../../../studies/quick/", $name, ".toml")),
+            full: include_str!(concat!("../../../studies/", $name, ".toml")),
+        }
+    };
+}
+
+/// All studies behind the claims.
+pub const STUDIES: &[StudyFile] = &[study!("divergence-fine")];
