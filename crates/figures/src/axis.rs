@@ -31,6 +31,15 @@ pub(crate) struct Tick {
 /// Decades below which a logarithmic axis labels 2 and 5 too.
 const FEW_DECADES: f64 = 1.6;
 
+/// Labels below which those of a logarithmic axis stand at powers of ten only.
+const MOST_FOR_POWERS: usize = 4;
+
+/// Values between which a short logarithmic axis is labelled with plain numbers.
+const PLAIN: (f64, f64) = (1e-3, 2e4);
+
+/// Labels that an axis needs to tell its scale.
+const LEAST_LABELS: usize = 2;
+
 /// Slack for comparisons of numbers that rounding may have moved.
 const ROUNDING: f64 = 1e-9;
 
@@ -75,6 +84,15 @@ impl Axis {
         }
     }
 
+    /// An axis of a scale from the least to the largest value exactly; both positive where it is logarithmic.
+    pub(crate) fn exact(scale: Scale, (least, largest): (f64, f64)) -> Self {
+        Self {
+            scale,
+            least,
+            largest,
+        }
+    }
+
     /// Least and largest value.
     pub(crate) fn range(&self) -> (f64, f64) {
         (self.least, self.largest)
@@ -99,7 +117,44 @@ impl Axis {
         }
     }
 
+    /// Ticks at round numbers with as many labels as stand apart on an axis of some length, and no more than the most.
+    ///
+    /// `extent` is the room that a label takes along the axis, its gap to the next included. Two labels stand on every
+    /// axis, even where they come close: one alone would not tell a scale.
+    pub(crate) fn fitting_ticks(
+        &self,
+        length: f64,
+        most: usize,
+        extent: impl Fn(&str) -> f64,
+    ) -> Vec<Tick> {
+        let stand_apart = |ticks: &[Tick]| {
+            let labelled: Vec<(f64, f64)> = ticks
+                .iter()
+                .filter_map(|tick| {
+                    let label = tick.label.as_ref()?;
+                    Some((length * self.fraction(tick.value), extent(label)))
+                })
+                .collect();
+            labelled
+                .windows(2)
+                .all(|pair| pair[1].0 - pair[0].0 >= (pair[0].1 + pair[1].1) / 2.0)
+        };
+        (2..=most.max(2))
+            .rev()
+            .map(|most| self.ticks(most))
+            .find(|ticks| stand_apart(ticks))
+            .unwrap_or_else(|| self.ticks(2))
+    }
+
     fn linear_ticks(&self, most: usize) -> Vec<Tick> {
+        // A short axis may hold fewer round numbers than it has room for; closer ones tell its scale.
+        (most..=4 * most)
+            .map(|most| self.round_ticks(most))
+            .find(|ticks| labels_of(ticks) >= LEAST_LABELS)
+            .unwrap_or_else(|| self.round_ticks(most))
+    }
+
+    fn round_ticks(&self, most: usize) -> Vec<Tick> {
         let wanted = (self.largest - self.least) / most as f64;
         let (mut factor, mut exponent) = (1.0, libm::floor(libm::log10(wanted)));
         let reduced = wanted / libm::pow(10.0, exponent);
@@ -133,6 +188,7 @@ impl Axis {
     fn logarithmic_ticks(&self, most: usize) -> Vec<Tick> {
         let decades = libm::log10(self.largest / self.least);
         let stride = (decades / most as f64).ceil().max(1.0);
+        let plain = decades < FEW_DECADES && self.least >= PLAIN.0 && self.largest <= PLAIN.1;
         let (first, last) = (
             libm::floor(libm::log10(self.least)),
             libm::ceil(libm::log10(self.largest)),
@@ -147,8 +203,15 @@ impl Axis {
                 }
                 let labelled = match multiple {
                     1 => exponent.rem_euclid(stride) == 0.0,
-                    2 | 5 => decades < FEW_DECADES,
+                    2 | 5 => decades < FEW_DECADES && most >= MOST_FOR_POWERS,
                     _ => false,
+                };
+                let label = || {
+                    if plain {
+                        decimal(value, (-exponent).max(0.0) as usize)
+                    } else {
+                        power_label(multiple, exponent)
+                    }
                 };
                 ticks.push(Tick {
                     value,
@@ -157,12 +220,21 @@ impl Axis {
                     } else {
                         MINOR_TICK
                     },
-                    label: labelled.then(|| power_label(multiple, exponent)),
+                    label: labelled.then(label),
                 });
             }
         }
-        ticks
+        if labels_of(&ticks) >= LEAST_LABELS {
+            ticks
+        } else {
+            // Less than a decade may hold no power of ten at all.
+            self.linear_ticks(most)
+        }
     }
+}
+
+fn labels_of(ticks: &[Tick]) -> usize {
+    ticks.iter().filter(|tick| tick.label.is_some()).count()
 }
 
 /// How the labels of one linear axis are written: all with the same decimals and the same power of ten.
@@ -296,6 +368,47 @@ mod tests {
         );
         let short = Axis::with_margin(Scale::Logarithmic, (1.0, 6.0), 0.0);
         assert_eq!(labels(&short, 6), ["1", "2", "5"]);
+    }
+
+    #[test]
+    fn an_axis_with_room_for_two_labels_has_two() {
+        for range in [
+            (-0.12, 0.31),
+            (-0.4, 0.9),
+            (0.13, 0.19),
+            (-3.0, 7.0),
+            (2.51, 2.93),
+        ] {
+            for most in 0..4 {
+                let found = labels(&Axis::linear(range), most);
+                assert!((2..=5).contains(&found.len()), "{range:?}: {found:?}");
+            }
+        }
+        let axis = Axis::exact(Scale::Logarithmic, (3.2, 4.4));
+        assert!(labels(&axis, 3).len() >= 2, "{:?}", labels(&axis, 3));
+    }
+
+    #[test]
+    fn labels_that_fit_stand_apart() {
+        let axis = Axis::linear((0.0, 1.0));
+        for length in [20.0, 50.0, 120.0, 400.0] {
+            let ticks = axis.fitting_ticks(length, 8, |_| 15.0);
+            let places: Vec<f64> = ticks
+                .iter()
+                .filter(|tick| tick.label.is_some())
+                .map(|tick| length * axis.fraction(tick.value))
+                .collect();
+            assert!(
+                places.windows(2).all(|pair| pair[1] - pair[0] >= 15.0) || places.len() == 3,
+                "{length}: {places:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_short_logarithmic_axis_has_plain_numbers() {
+        let axis = Axis::exact(Scale::Logarithmic, (0.02, 0.2));
+        assert_eq!(labels(&axis, 6), ["0.02", "0.05", "0.1", "0.2"]);
     }
 
     #[test]

@@ -1,4 +1,5 @@
-//! Colours that stay apart for colour-blind readers: the Okabe-Ito palette, and a diverging map for signed values.
+//! Colours that stay apart for colour-blind readers: the Okabe-Ito palette, a sequential map for amounts and a
+//! diverging one for signed values.
 
 /// A colour with opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,6 +44,22 @@ const DIVERGING: [Colour; 9] = [
     Colour::new(236, 142, 112),
     Colour::new(204, 64, 66),
     Colour::new(134, 8, 36),
+];
+
+/// Dark violet through green to yellow, lighter all the way, in equal steps of the argument (viridis, van der Walt and
+/// Smith 2015, dedicated to the public domain).
+const SEQUENTIAL: [Colour; 11] = [
+    Colour::new(68, 1, 84),
+    Colour::new(72, 36, 117),
+    Colour::new(65, 68, 135),
+    Colour::new(53, 95, 141),
+    Colour::new(42, 120, 142),
+    Colour::new(33, 145, 140),
+    Colour::new(34, 168, 132),
+    Colour::new(68, 191, 112),
+    Colour::new(122, 209, 81),
+    Colour::new(189, 223, 38),
+    Colour::new(253, 231, 37),
 ];
 
 /// Steps of the diverging map on either side of 0: few enough that the spheres of a snapshot share their shadings.
@@ -91,6 +108,13 @@ pub(crate) fn diverging(value: f64) -> Colour {
     DIVERGING[below].towards(DIVERGING[below + 1], position - below as f64)
 }
 
+/// Colour of an amount scaled to 0..1: darkest at 0, lightest at 1; values beyond are clamped.
+pub(crate) fn sequential(value: f64) -> Colour {
+    let position = value.clamp(0.0, 1.0) * (SEQUENTIAL.len() - 1) as f64;
+    let below = (position.floor() as usize).min(SEQUENTIAL.len() - 2);
+    SEQUENTIAL[below].towards(SEQUENTIAL[below + 1], position - below as f64)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -103,6 +127,21 @@ mod tests {
         assert!(rest.red == rest.blue && rest.red > 245, "{rest:?}");
         assert_eq!(diverging(7.0), along);
         assert_eq!(diverging(-7.0), against);
+    }
+
+    #[test]
+    fn the_sequential_map_grows_lighter_all_the_way() {
+        let lightness = |step: i32| {
+            let colour = sequential(f64::from(step) / 40.0);
+            0.30 * f64::from(colour.red)
+                + 0.59 * f64::from(colour.green)
+                + 0.11 * f64::from(colour.blue)
+        };
+        assert!((0..40).all(|step| lightness(step) < lightness(step + 1)));
+        assert_eq!(
+            (sequential(-1.0), sequential(2.0)),
+            (SEQUENTIAL[0], SEQUENTIAL[10])
+        );
     }
 
     #[test]

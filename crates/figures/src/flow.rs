@@ -195,8 +195,8 @@ impl FlowFigure<'_> {
     fn entries(&self) -> Vec<Entry> {
         let line = |stroke, meaning: &str| Entry {
             line: Some(stroke),
-            band: None,
             meaning: meaning.to_owned(),
+            ..Entry::default()
         };
         let mut entries = vec![line(Stroke::solid(SKY.faint(0.8), 0.8), "samples")];
         if self.averages.is_some() {
@@ -211,6 +211,7 @@ impl FlowFigure<'_> {
                 line: Some(LATE),
                 band: Some(ORANGE.faint(0.35)),
                 meaning,
+                ..Entry::default()
             });
         }
         if let Some(newtonian) = self.newtonian {

@@ -1,16 +1,28 @@
-//! What the lines of a figure mean, written below the frame where it covers nothing.
+//! What the lines and marks of a figure mean, written below the frame or in a free part of it.
 
 use crate::colour::{BLACK, Colour};
-use crate::drawing::{Anchor, Drawing, Rectangle, Stroke};
+use crate::drawing::{Anchor, Drawing, Outline, Point, Rectangle, Stroke};
 use crate::style::LEGEND_SIZE;
 use crate::text::Text;
 
-/// Sample of a line, or of a band with a line in its middle, beside its meaning.
-#[derive(Clone, Debug)]
+/// Sample of a band, a line and a mark, one upon the other, beside their meaning.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Entry {
     pub(crate) line: Option<Stroke>,
     pub(crate) band: Option<Colour>,
+    pub(crate) mark: Option<Mark>,
     pub(crate) meaning: String,
+}
+
+/// Sample of a mark.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mark {
+    pub(crate) outline: Outline,
+    pub(crate) fill: Colour,
+    pub(crate) stroke: Stroke,
+    /// Straight lines beside it, relative to its place.
+    pub(crate) bars: Vec<[Point; 2]>,
+    pub(crate) bar_stroke: Stroke,
 }
 
 /// A list of entries on a grid; a long entry takes several columns.
@@ -39,6 +51,8 @@ struct Place {
     span: usize,
 }
 
+/// Space above the first row.
+pub(crate) const TOP_SPACE: f64 = 4.0;
 const SAMPLE_WIDTH: f64 = 17.0;
 const SAMPLE_GAP: f64 = 4.0;
 const COLUMN_GAP: f64 = 10.0;
@@ -67,6 +81,31 @@ impl Legend {
             .map(|columns| places(&widths, columns, (room + COLUMN_GAP) / columns as f64))
             .min_by_key(|places| rows_of(places))
             .unwrap_or_default();
+        Self::set(entries, texts, widths, places)
+    }
+
+    /// Sets the entries below each other in some columns, each as wide as its entries.
+    pub(crate) fn list(entries: Vec<Entry>, columns: usize) -> Self {
+        let texts: Vec<Text> = entries
+            .iter()
+            .map(|entry| Text::new(&entry.meaning, LEGEND_SIZE))
+            .collect();
+        let widths: Vec<f64> = texts
+            .iter()
+            .map(|text| SAMPLE_WIDTH + SAMPLE_GAP + text.width)
+            .collect();
+        let columns = columns.min(MOST_COLUMNS);
+        let places = (0..entries.len())
+            .map(|index| Place {
+                row: index / columns,
+                column: index % columns,
+                span: 1,
+            })
+            .collect();
+        Self::set(entries, texts, widths, places)
+    }
+
+    fn set(entries: Vec<Entry>, texts: Vec<Text>, widths: Vec<f64>, places: Vec<Place>) -> Self {
         let rows = rows_of(&places);
         let starts = column_starts(&places, &widths);
         let cells: Vec<Cell> = entries
@@ -86,12 +125,17 @@ impl Legend {
         Self { cells, rows, width }
     }
 
+    /// Width on the page.
+    pub(crate) fn width(&self) -> f64 {
+        self.width
+    }
+
     /// Height on the page, 0 without entries.
     pub(crate) fn height(&self) -> f64 {
         if self.cells.is_empty() {
             0.0
         } else {
-            4.0 + ROW_HEIGHT * self.rows as f64
+            TOP_SPACE + ROW_HEIGHT * self.rows as f64
         }
     }
 
@@ -100,7 +144,7 @@ impl Legend {
         let layer = drawing.layer("legend", None);
         for cell in &self.cells {
             let start = (left + right - self.width) / 2.0 + cell.start;
-            let middle = top + 4.0 + ROW_HEIGHT * (cell.row as f64 + 0.5);
+            let middle = top + TOP_SPACE + ROW_HEIGHT * (cell.row as f64 + 0.5);
             if let Some(colour) = cell.entry.band {
                 let area = Rectangle {
                     left: start,
@@ -112,6 +156,19 @@ impl Legend {
             }
             if let Some(stroke) = cell.entry.line {
                 layer.segment((start, middle), (start + SAMPLE_WIDTH, middle), stroke);
+            }
+            if let Some(mark) = &cell.entry.mark {
+                let place = Point {
+                    x: start + SAMPLE_WIDTH / 2.0,
+                    y: middle,
+                };
+                let moved = |end: Point| Point {
+                    x: place.x + end.x,
+                    y: place.y + end.y,
+                };
+                let bars = mark.bars.iter().map(|bar| bar.map(moved)).collect();
+                layer.segments(bars, mark.bar_stroke);
+                layer.marks(mark.outline.clone(), vec![place], mark.fill, mark.stroke);
             }
             let place = (
                 start + SAMPLE_WIDTH + SAMPLE_GAP,
@@ -174,8 +231,8 @@ mod tests {
             .iter()
             .map(|meaning| Entry {
                 line,
-                band: None,
                 meaning: (*meaning).to_owned(),
+                ..Entry::default()
             })
             .collect()
     }

@@ -25,8 +25,10 @@
 //! ```
 
 mod axis;
+pub mod chart;
 mod colour;
 mod colour_bar;
+mod colour_scale;
 mod drawing;
 mod envelope;
 mod error;
@@ -34,19 +36,24 @@ mod flow;
 mod legend;
 mod panel;
 mod profile;
+mod quantity;
 mod series;
 mod snapshot;
+mod space_time;
 mod style;
 mod text;
 mod wall;
 
 pub use axis::Scale;
+pub use colour_scale::{ColourScale, Palette};
 pub use drawing::Drawing;
 pub use error::FigureError;
 pub use flow::{FlowFigure, LateMean, NewtonianReference, Transition};
 pub use profile::ProfileFigure;
+pub use quantity::{Quantity, Units};
 pub use series::{Profile, Series};
 pub use snapshot::{SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
+pub use space_time::SpaceTimeFigure;
 pub use style::Width;
 pub use text::escape;
 pub use wall::WallFigure;

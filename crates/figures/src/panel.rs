@@ -1,6 +1,6 @@
 //! One coordinate system: a frame with ticks on all sides, and the map from values to places on the page.
 
-use crate::axis::Axis;
+use crate::axis::{Axis, Tick};
 use crate::colour::{BLACK, Colour};
 use crate::drawing::{Anchor, Drawing, Point, Rectangle, Stroke};
 use crate::series::Sample;
@@ -13,7 +13,7 @@ use crate::text::{DIGIT_HEIGHT, Text};
 const ROOM_PER_LABEL_ACROSS: f64 = 38.0;
 const ROOM_PER_LABEL_UP: f64 = 13.5;
 /// Gap between a frame and the labels of its ticks.
-const TICK_GAP: f64 = 3.0;
+pub(crate) const TICK_GAP: f64 = 3.0;
 
 /// A frame with two axes.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +32,16 @@ pub(crate) struct Labels<'a> {
     pub(crate) y: &'a str,
     /// Letter of the panel in a figure of several.
     pub(crate) letter: Option<char>,
+}
+
+/// Ticks of a frame, and where the name of its vertical axis stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Ticks {
+    pub(crate) x: Vec<Tick>,
+    pub(crate) y: Vec<Tick>,
+    /// Baseline of the name of the vertical axis from the left edge of the page; without it the frame shares the axis
+    /// of the one at its left and has no numbers.
+    pub(crate) y_baseline: Option<f64>,
 }
 
 impl Panel {
@@ -91,10 +101,25 @@ impl Panel {
 
     /// Draws the frame, its ticks and its labels.
     pub(crate) fn draw_frame(&self, drawing: &mut Drawing, labels: &Labels<'_>) {
+        let ticks = Ticks {
+            x: self.x.ticks(labels_across(self.frame.width)),
+            y: self.y.ticks(labels_up(self.frame.height)),
+            y_baseline: Some(LABEL_BASELINE),
+        };
+        self.draw_ticked_frame(drawing, labels, &ticks);
+    }
+
+    /// Draws the frame and its labels with ticks that were chosen already.
+    pub(crate) fn draw_ticked_frame(
+        &self,
+        drawing: &mut Drawing,
+        labels: &Labels<'_>,
+        ticks: &Ticks,
+    ) {
         let frame = self.frame;
         let pen = Stroke::solid(BLACK, FRAME_WEIGHT);
         let layer = drawing.layer("axes", None);
-        for tick in self.x.ticks(labels_across(frame.width)) {
+        for tick in &ticks.x {
             let place = self.across(tick.value);
             layer.segment(
                 (place, frame.bottom()),
@@ -112,7 +137,7 @@ impl Panel {
                 );
             }
         }
-        for tick in self.y.ticks(labels_up(frame.height)) {
+        for tick in &ticks.y {
             let place = self.up(tick.value);
             layer.segment((frame.left, place), (frame.left + tick.length, place), pen);
             layer.segment(
@@ -120,7 +145,7 @@ impl Panel {
                 (frame.right() - tick.length, place),
                 pen,
             );
-            if let Some(label) = &tick.label {
+            if let (Some(_), Some(label)) = (ticks.y_baseline, &tick.label) {
                 let baseline = place + DIGIT_HEIGHT * TICK_SIZE / 2.0;
                 layer.text(
                     (frame.left - TICK_GAP, baseline),
@@ -141,9 +166,11 @@ impl Panel {
                 BLACK,
             );
         }
-        let middle = (frame.top + frame.bottom()) / 2.0;
-        let text = Text::fitted(labels.y, LABEL_SIZE, frame.height);
-        layer.upward_text((LABEL_BASELINE, middle), Anchor::Middle, text, BLACK);
+        if let Some(baseline) = ticks.y_baseline {
+            let middle = (frame.top + frame.bottom()) / 2.0;
+            let text = Text::fitted(labels.y, LABEL_SIZE, frame.height);
+            layer.upward_text((baseline, middle), Anchor::Middle, text, BLACK);
+        }
         if let Some(letter) = labels.letter {
             // Outside of the frame, where it can cover nothing.
             let text = Text::new(&format!("({letter})"), LABEL_SIZE);

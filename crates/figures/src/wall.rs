@@ -137,20 +137,21 @@ impl WallFigure<'_> {
         let mut entries = vec![
             Entry {
                 line: Some(MEAN),
-                band: None,
                 meaning: "mean".to_owned(),
+                ..Entry::default()
             },
             Entry {
                 line: None,
                 band: Some(SKY.faint(0.4)),
                 meaning: "least to largest".to_owned(),
+                ..Entry::default()
             },
         ];
         if self.reference.is_some() {
             entries.push(Entry {
                 line: Some(REFERENCE),
-                band: None,
                 meaning: "tube at rest".to_owned(),
+                ..Entry::default()
             });
         }
         entries

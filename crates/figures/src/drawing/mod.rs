@@ -15,7 +15,10 @@ pub struct Drawing {
     width: f64,
     /// Points down.
     height: f64,
-    description: String,
+    title: String,
+    description: Option<String>,
+    /// What the names of definitions in the SVG begin with.
+    prefix: String,
     layers: Vec<Layer>,
 }
 
@@ -51,6 +54,8 @@ pub(crate) enum Dash {
     Solid,
     Dashed,
     Dotted,
+    /// Long and short strokes in turn.
+    DashDotted,
 }
 
 impl Dash {
@@ -60,6 +65,7 @@ impl Dash {
             Self::Solid => &[],
             Self::Dashed => &[4.0, 2.2],
             Self::Dotted => &[0.9, 1.6],
+            Self::DashDotted => &[4.0, 1.7, 0.9, 1.7],
         }
     }
 }
@@ -127,12 +133,61 @@ pub(crate) enum Shape {
         fill: Fill,
         stroke: Option<Stroke>,
     },
+    /// The same mark at many places.
+    Marks {
+        outline: Outline,
+        places: Vec<Point>,
+        fill: Colour,
+        stroke: Stroke,
+    },
+    /// Straight lines apart from each other, each from its first to its second point.
+    Segments {
+        segments: Vec<[Point; 2]>,
+        stroke: Stroke,
+    },
+    /// Equal cells of one colour each, row by row from the top left.
+    Cells {
+        area: Rectangle,
+        columns: usize,
+        colours: Vec<Colour>,
+    },
     Text {
         start: Point,
         reading: Reading,
         text: Text,
         colour: Colour,
     },
+}
+
+/// Closed outline of a mark, relative to its place.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Outline {
+    Circle { radius: f64 },
+    Polygon(Vec<Point>),
+}
+
+impl Outline {
+    /// The same outline lower on the page; a circle becomes a polygon, for only those stand off their place.
+    pub(crate) fn lowered(&self, by: f64) -> Self {
+        const CORNERS: u32 = 24;
+        let corners = match self {
+            Self::Circle { radius } => (0..CORNERS)
+                .map(|corner| {
+                    let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
+                    Point {
+                        x: radius * libm::cos(angle),
+                        y: radius * libm::sin(angle),
+                    }
+                })
+                .collect(),
+            Self::Polygon(corners) => corners.clone(),
+        };
+        let lowered = |corner: Point| Point {
+            y: corner.y + by,
+            ..corner
+        };
+        Self::Polygon(corners.into_iter().map(lowered).collect())
+    }
 }
 
 /// Shapes that belong together, with a name and perhaps a window outside of which nothing shows.
@@ -145,14 +200,50 @@ pub(crate) struct Layer {
 
 impl Drawing {
     /// A white page; width and height in points.
-    pub(crate) fn new(width: f64, height: f64, description: &str) -> Self {
-        let description = Text::new(description, 1.0).characters;
+    pub(crate) fn new(width: f64, height: f64, title: &str) -> Self {
+        let title = Text::new(title, 1.0).characters;
         Self {
             width,
             height,
-            description,
+            title,
+            description: None,
+            prefix: String::new(),
             layers: Vec::new(),
         }
+    }
+
+    /// The same figure with another `<title>` in its SVG, in markup: what a reader who does not see is told first.
+    #[must_use]
+    pub fn with_title(self, title: &str) -> Self {
+        let title = Text::new(title, 1.0).characters;
+        Self { title, ..self }
+    }
+
+    /// The same figure with a `<desc>` in its SVG, in markup: what can be seen, in words.
+    #[must_use]
+    pub fn with_description(self, description: &str) -> Self {
+        let description = Some(Text::new(description, 1.0).characters);
+        Self {
+            description,
+            ..self
+        }
+    }
+
+    /// The same figure with every `id` in its SVG beginning with a prefix, so that many figures can stand in one web
+    /// page without sharing an `id`; characters other than ASCII letters, digits, `-` and `_` become `-`.
+    ///
+    /// Without a prefix an `id` is made from what it names, so figures that share one mean the same by it.
+    #[must_use]
+    pub fn with_prefix(self, prefix: &str) -> Self {
+        let allowed = |character: char| {
+            if character.is_ascii_alphanumeric() || character == '_' {
+                character
+            } else {
+                '-'
+            }
+        };
+        let prefix = prefix.chars().map(allowed).collect();
+        Self { prefix, ..self }
     }
 
     /// Width of the page in millimetres.
@@ -176,6 +267,11 @@ impl Drawing {
     /// If the page is too large for memory or the encoder fails.
     pub fn png(&self) -> Result<Vec<u8>, FigureError> {
         png::picture(self)
+    }
+
+    /// Makes the page higher or lower.
+    pub(crate) fn extend_to(&mut self, height: f64) {
+        self.height = height;
     }
 
     /// Opens a layer above all others.
@@ -269,6 +365,38 @@ impl Layer {
             radius,
             fill,
             stroke,
+        });
+    }
+
+    /// The same mark at many places.
+    pub(crate) fn marks(
+        &mut self,
+        outline: Outline,
+        places: Vec<Point>,
+        fill: Colour,
+        stroke: Stroke,
+    ) {
+        self.shapes.push(Shape::Marks {
+            outline,
+            places,
+            fill,
+            stroke,
+        });
+    }
+
+    /// Straight lines apart from each other; nothing for none.
+    pub(crate) fn segments(&mut self, segments: Vec<[Point; 2]>, stroke: Stroke) {
+        if !segments.is_empty() {
+            self.shapes.push(Shape::Segments { segments, stroke });
+        }
+    }
+
+    /// Equal cells that fill an area, row by row from the top left.
+    pub(crate) fn cells(&mut self, area: Rectangle, columns: usize, colours: Vec<Colour>) {
+        self.shapes.push(Shape::Cells {
+            area,
+            columns,
+            colours,
         });
     }
 

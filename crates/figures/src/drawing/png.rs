@@ -6,7 +6,7 @@ use tiny_skia::{
 };
 use ttf_parser::OutlineBuilder;
 
-use super::{Drawing, Fill, Point, Reading, Rectangle, Shape, Stroke};
+use super::{Drawing, Fill, Outline, Point, Reading, Rectangle, Shape, Stroke};
 use crate::colour::{BLACK, Colour, WHITE};
 use crate::error::FigureError;
 
@@ -106,6 +106,32 @@ fn paint_shape(pixels: &mut Pixmap, shape: &Shape, mask: Option<&Mask>) {
                 stroke_path(pixels, &path, stroke, mask);
             }
         }
+        Shape::Marks {
+            outline,
+            places,
+            fill,
+            stroke,
+        } => {
+            if let Some(path) = marks(outline, places) {
+                pixels.fill_path(&path, &flat(*fill), FillRule::Winding, page(), mask);
+                stroke_path(pixels, &path, stroke, mask);
+            }
+        }
+        Shape::Segments { segments, stroke } => {
+            let mut builder = PathBuilder::new();
+            for [from, to] in segments {
+                builder.move_to(from.x as f32, from.y as f32);
+                builder.line_to(to.x as f32, to.y as f32);
+            }
+            if let Some(path) = builder.finish() {
+                stroke_path(pixels, &path, stroke, mask);
+            }
+        }
+        Shape::Cells {
+            area,
+            columns,
+            colours,
+        } => paint_cells(pixels, *area, *columns, colours, mask),
         Shape::Text {
             start,
             reading,
@@ -120,7 +146,7 @@ fn paint_shape(pixels: &mut Pixmap, shape: &Shape, mask: Option<&Mask>) {
                 }
             };
             for placed in &text.glyphs {
-                let mut outline = Outline(PathBuilder::new());
+                let mut outline = GlyphPath(PathBuilder::new());
                 placed.glyph.outline(&mut outline);
                 if let Some(path) = outline.0.finish() {
                     let scale = placed.scale as f32;
@@ -132,6 +158,76 @@ fn paint_shape(pixels: &mut Pixmap, shape: &Shape, mask: Option<&Mask>) {
             }
         }
     }
+}
+
+/// Paints whole pixels, each in the colour of the cell that its middle lies in.
+fn paint_cells(
+    pixels: &mut Pixmap,
+    area: Rectangle,
+    columns: usize,
+    colours: &[Colour],
+    mask: Option<&Mask>,
+) {
+    let rows = colours.len() / columns.max(1);
+    // On the page, so far from negative, and at most as many as the page has.
+    let pixel = |length: f64| (length * PIXELS_PER_POINT).round() as usize;
+    let (left, right) = (pixel(area.left), pixel(area.right()));
+    let (top, bottom) = (pixel(area.top), pixel(area.bottom()));
+    let (width, height) = (pixels.width() as usize, pixels.height() as usize);
+    let canvas = pixels.pixels_mut();
+    for y in top..bottom.min(height) {
+        let row = (2 * (y - top) + 1) * rows / (2 * (bottom - top));
+        for x in left..right.min(width) {
+            let column = (2 * (x - left) + 1) * columns / (2 * (right - left));
+            let place = y * width + x;
+            if mask.is_none_or(|mask| mask.data()[place] > 127) {
+                let colour = colour_of(colours[row * columns + column]);
+                canvas[place] = colour.premultiply().to_color_u8();
+            }
+        }
+    }
+}
+
+/// Cells as a PNG with one pixel a cell.
+pub(super) fn cells_picture(columns: usize, colours: &[Colour]) -> Vec<u8> {
+    let data: Vec<u8> = colours
+        .iter()
+        .flat_map(|colour| [colour.red, colour.green, colour.blue])
+        .collect();
+    let mut bytes = Vec::new();
+    let rows = colours.len() / columns.max(1);
+    let mut encoder = ::png::Encoder::new(&mut bytes, columns as u32, rows as u32);
+    encoder.set_color(::png::ColorType::Rgb);
+    encoder.set_depth(::png::BitDepth::Eight);
+    encoder
+        .write_header()
+        .and_then(|mut writer| writer.write_image_data(&data))
+        .expect("writing a picture of whole rows to memory cannot fail");
+    bytes
+}
+
+/// One path of all marks; none without a place.
+fn marks(outline: &Outline, places: &[Point]) -> Option<Path> {
+    let mut builder = PathBuilder::new();
+    for place in places {
+        match outline {
+            Outline::Circle { radius } => {
+                builder.push_circle(place.x as f32, place.y as f32, *radius as f32);
+            }
+            Outline::Polygon(corners) => {
+                for (index, corner) in corners.iter().enumerate() {
+                    let (x, y) = ((place.x + corner.x) as f32, (place.y + corner.y) as f32);
+                    if index == 0 {
+                        builder.move_to(x, y);
+                    } else {
+                        builder.line_to(x, y);
+                    }
+                }
+                builder.close();
+            }
+        }
+    }
+    builder.finish()
 }
 
 fn stroke_path(pixels: &mut Pixmap, path: &Path, stroke: &Stroke, mask: Option<&Mask>) {
@@ -237,9 +333,9 @@ fn encode(pixels: &Pixmap) -> Result<Vec<u8>, FigureError> {
 }
 
 /// Outline of a glyph in font units.
-struct Outline(PathBuilder);
+struct GlyphPath(PathBuilder);
 
-impl OutlineBuilder for Outline {
+impl OutlineBuilder for GlyphPath {
     fn move_to(&mut self, x: f32, y: f32) {
         self.0.move_to(x, y);
     }

@@ -1,29 +1,38 @@
 //! The drawing as an SVG document.
 //!
 //! Glyphs and shadings are defined once under names made from their content, so that several figures can share one
-//! web page; windows are nested `svg` elements, which need no name at all.
+//! web page, or with a prefix of the caller's; windows are nested `svg` elements, which need no name at all.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use ttf_parser::OutlineBuilder;
 
-use super::{Drawing, Fill, Layer, Point, Reading, Shape, Stroke};
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+
+use super::{Drawing, Fill, Layer, Outline, Point, Reading, Shape, Stroke};
 use crate::colour::Colour;
-use crate::drawing::png::{SPHERE_CENTRE, SPHERE_REACH, sphere_stops};
+use crate::drawing::png::{SPHERE_CENTRE, SPHERE_REACH, cells_picture, sphere_stops};
 use crate::text::{Face, Glyph};
 
 /// The whole document.
 pub(super) fn document(drawing: &Drawing) -> String {
-    let description = escape(&drawing.description);
+    let title = escape(&drawing.title);
     let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n<title>{description}</title>\n",
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n<title>{title}</title>\n",
         number(drawing.width_millimetres()),
         number(drawing.height_millimetres()),
         number(drawing.width),
         number(drawing.height),
     );
-    out.push_str(&definitions(&drawing.layers));
+    if let Some(description) = &drawing.description {
+        push(
+            &mut out,
+            format_args!("<desc>{}</desc>\n", escape(description)),
+        );
+    }
+    out.push_str(&definitions(&drawing.layers, &drawing.prefix));
     push(
         &mut out,
         format_args!(
@@ -33,13 +42,13 @@ pub(super) fn document(drawing: &Drawing) -> String {
         ),
     );
     for layer in &drawing.layers {
-        push_layer(&mut out, layer);
+        push_layer(&mut out, layer, &drawing.prefix);
     }
     out.push_str("</svg>\n");
     out
 }
 
-fn definitions(layers: &[Layer]) -> String {
+fn definitions(layers: &[Layer], prefix: &str) -> String {
     let mut glyphs = BTreeSet::new();
     let mut spheres = BTreeMap::new();
     for shape in layers.iter().flat_map(|layer| &layer.shapes) {
@@ -64,7 +73,7 @@ fn definitions(layers: &[Layer]) -> String {
         push(
             &mut out,
             format_args!(
-                "<radialGradient id=\"sphere-{name}\" cx=\"{SPHERE_CENTRE}\" cy=\"{SPHERE_CENTRE}\" r=\"{SPHERE_REACH}\">"
+                "<radialGradient id=\"{prefix}sphere-{name}\" cx=\"{SPHERE_CENTRE}\" cy=\"{SPHERE_CENTRE}\" r=\"{SPHERE_REACH}\">"
             ),
         );
         for (offset, shade) in sphere_stops(colour) {
@@ -79,18 +88,22 @@ fn definitions(layers: &[Layer]) -> String {
         out.push_str("</radialGradient>\n");
     }
     for glyph in glyphs {
-        let mut outline = Outline(String::new());
+        let mut outline = GlyphPath(String::new());
         glyph.outline(&mut outline);
         push(
             &mut out,
-            format_args!("<path id=\"{}\" d=\"{}\"/>\n", glyph_name(glyph), outline.0),
+            format_args!(
+                "<path id=\"{prefix}{}\" d=\"{}\"/>\n",
+                glyph_name(glyph),
+                outline.0
+            ),
         );
     }
     out.push_str("</defs>\n");
     out
 }
 
-fn push_layer(out: &mut String, layer: &Layer) {
+fn push_layer(out: &mut String, layer: &Layer, prefix: &str) {
     let end = match &layer.window {
         None => {
             push(out, format_args!("<g class=\"{}\">\n", layer.name));
@@ -110,12 +123,12 @@ fn push_layer(out: &mut String, layer: &Layer) {
         }
     };
     for shape in &layer.shapes {
-        push_shape(out, shape);
+        push_shape(out, shape, prefix);
     }
     out.push_str(end);
 }
 
-fn push_shape(out: &mut String, shape: &Shape) {
+fn push_shape(out: &mut String, shape: &Shape, prefix: &str) {
     match shape {
         Shape::Line { points, stroke } => {
             push(
@@ -145,13 +158,52 @@ fn push_shape(out: &mut String, shape: &Shape) {
         } => {
             let fill = match fill {
                 Fill::Flat(colour) => paint("fill", *colour),
-                Fill::Sphere(colour) => format!(" fill=\"url(#sphere-{})\"", colour.hexadecimal()),
+                Fill::Sphere(colour) => {
+                    format!(" fill=\"url(#{prefix}sphere-{})\"", colour.hexadecimal())
+                }
             };
             let stroke = stroke.as_ref().map(stroke_attributes).unwrap_or_default();
             let [x, y, radius] = [centre.x, centre.y, *radius].map(number);
             push(
                 out,
                 format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{fill}{stroke}/>\n"),
+            );
+        }
+        Shape::Marks {
+            outline,
+            places,
+            fill,
+            stroke,
+        } => {
+            push(
+                out,
+                format_args!(
+                    "<path d=\"{}\"{}{}/>\n",
+                    marks(outline, places),
+                    paint("fill", *fill),
+                    stroke_attributes(stroke)
+                ),
+            );
+        }
+        Shape::Segments { segments, stroke } => {
+            let path: String = segments.iter().map(|ends| polyline(ends)).collect();
+            push(
+                out,
+                format_args!("<path d=\"{path}\"{}/>\n", stroke_attributes(stroke)),
+            );
+        }
+        Shape::Cells {
+            area,
+            columns,
+            colours,
+        } => {
+            let [x, y, width, height] = [area.left, area.top, area.width, area.height].map(number);
+            let picture = STANDARD.encode(cells_picture(*columns, colours));
+            push(
+                out,
+                format_args!(
+                    "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{picture}\"/>\n"
+                ),
             );
         }
         Shape::Text {
@@ -182,7 +234,7 @@ fn push_shape(out: &mut String, shape: &Shape) {
                 push(
                     out,
                     format_args!(
-                        "<use href=\"#{}\" transform=\"translate({} {}) scale({:.6})\"/>",
+                        "<use href=\"#{prefix}{}\" transform=\"translate({} {}) scale({:.6})\"/>",
                         glyph_name(placed.glyph),
                         number(placed.x),
                         number(placed.y),
@@ -213,6 +265,42 @@ fn polyline(points: &[Point]) -> String {
         );
     }
     out
+}
+
+/// One path of all marks: absolute to each place, relative around it.
+fn marks(outline: &Outline, places: &[Point]) -> String {
+    let (start, rest) = match outline {
+        Outline::Circle { radius } => {
+            let (radius, diameter) = (number(*radius), number(2.0 * radius));
+            let start = Point { x: 0.0, y: 0.0 };
+            (
+                start,
+                format!(
+                    "m-{radius} 0a{radius} {radius} 0 1 0 {diameter} 0a{radius} {radius} 0 1 0-{diameter} 0z"
+                ),
+            )
+        }
+        Outline::Polygon(corners) => {
+            let steps = corners.windows(2).map(|pair| {
+                format!(
+                    "l{} {}",
+                    number(pair[1].x - pair[0].x),
+                    number(pair[1].y - pair[0].y)
+                )
+            });
+            (corners[0], steps.chain(["z".to_owned()]).collect())
+        }
+    };
+    places
+        .iter()
+        .map(|place| {
+            format!(
+                "M{} {}{rest}",
+                number(place.x + start.x),
+                number(place.y + start.y)
+            )
+        })
+        .collect()
 }
 
 fn paint(property: &str, colour: Colour) -> String {
@@ -275,9 +363,9 @@ fn push(out: &mut String, arguments: std::fmt::Arguments<'_>) {
 }
 
 /// Path data of a glyph in font units, turned so that y runs downwards.
-struct Outline(String);
+struct GlyphPath(String);
 
-impl Outline {
+impl GlyphPath {
     fn command(&mut self, letter: char, coordinates: &[f32]) {
         self.0.push(letter);
         for (index, pair) in coordinates.chunks_exact(2).enumerate() {
@@ -294,7 +382,7 @@ impl Outline {
     }
 }
 
-impl OutlineBuilder for Outline {
+impl OutlineBuilder for GlyphPath {
     fn move_to(&mut self, x: f32, y: f32) {
         self.command('M', &[x, y]);
     }

@@ -1,5 +1,7 @@
 //! Draws every figure from made-up data into a folder: `cargo run --example gallery -- FOLDER`.
 
+mod charts;
+
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::fs;
@@ -32,6 +34,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     save("snapshot_long", snapshot(100.0, Width::DoubleColumn)?)?;
     save("snapshot_short", snapshot(20.0, Width::SingleColumn)?)?;
     save("snapshot_wide", wide_snapshot()?)?;
+    for (name, drawing) in charts::all()? {
+        save(&name, drawing)?;
+    }
     Ok(())
 }
 
