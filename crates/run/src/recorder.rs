@@ -3,9 +3,11 @@
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
-use peristalsis_observe::{Observer, Sample, WallFault, WaveFrameProfile, note_wall_faults};
+use peristalsis_observe::{
+    Observer, Sample, WallFault, WaveByWave, WaveFlow, WaveFrameProfile, note_wall_faults,
+};
 
-/// Samples, period averages, the search for the transition, and the profile in the wave's frame.
+/// Samples, period averages, the search for the transition, the profile in the wave's frame and the flow of each wave.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     observer: Observer,
@@ -15,6 +17,7 @@ pub struct Recorder {
     averages: Vec<f64>,
     detector: Option<TransitionDetector>,
     profile: WaveFrameProfile,
+    waves: WaveByWave,
     wall_faults: Vec<WallFault>,
 }
 
@@ -48,13 +51,16 @@ impl Recorder {
                 configuration.observe.profile_bins as usize,
                 samples_per_period,
             ),
+            waves: WaveByWave::new(simulation, samples_per_period),
             wall_faults: Vec::new(),
         }
     }
 
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
+        let before = self.observer.clone();
         self.samples.push(self.observer.sample(simulation));
+        self.waves.add(&before, &self.observer, simulation);
         self.profile.add(simulation);
         note_wall_faults(simulation, &mut self.wall_faults);
         if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
@@ -93,6 +99,12 @@ impl Recorder {
     #[must_use]
     pub fn profile(&self) -> &WaveFrameProfile {
         &self.profile
+    }
+
+    /// The flow of each wave over each whole period, period by period.
+    #[must_use]
+    pub fn waves(&self) -> &[WaveFlow] {
+        self.waves.flows()
     }
 
     /// What went wrong with an elastic wall, the first of each kind.
