@@ -79,9 +79,10 @@ pub struct Sample {
 /// Makes samples of a simulation, one after another.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Observer {
-    time: f64,
-    cycles: f64,
-    unfolded: Vec<f64>,
+    pub(crate) time: f64,
+    pub(crate) cycles: f64,
+    /// z of the grains, turns round the tube counted \[d\].
+    pub(crate) unfolded: Vec<f64>,
     ledger: Ledger,
 }
 

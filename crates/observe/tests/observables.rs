@@ -7,7 +7,7 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    COLUMNS, FaultKind, Observer, TubeShape, WaveFrameProfile, note_wall_faults,
+    COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
@@ -125,6 +125,52 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
         for bin in &bins {
             let radius = 6.0 - 0.5 * (core::f64::consts::TAU * bin.position).sin();
             assert!((bin.radius - radius).abs() < 1e-9, "{bin:?}");
+        }
+    }
+}
+
+#[test]
+fn a_wave_keeps_the_grains_that_travel_with_it_and_passes_those_at_rest() {
+    for heading in [1.0, -1.0] {
+        // c = 1: two grains go with the wave just ahead of its rear throat, at z = 2.5 along the wave; one rests there,
+        // about to be left behind by the wave before and overtaken by this one.
+        let places =
+            [(3.0, 2.0), (4.0, -2.0), (2.4, 0.0)].map(|(z, x)| DVec3::new(x, 0.0, heading * z));
+        let mut bodies = Bodies::grains_at_rest(places.to_vec(), vec![1.0; 3]);
+        bodies.velocity[..2].fill(DVec3::new(0.0, 0.0, heading));
+        let mut simulation = Simulation::new(bodies, wall(heading, 0.5), parameters());
+        let mut observer = Observer::new(&simulation);
+        let mut waves = WaveByWave::new(&simulation, 20);
+        for _ in 0..59 {
+            simulation.advance(10).unwrap();
+            let before = observer.clone();
+            observer.sample(&simulation);
+            waves.add(&before, &observer, &simulation);
+        }
+        // The third period is not whole.
+        let flows = waves.flows();
+        assert_eq!(flows.len(), 4);
+        // (period, wave, grains, sum of dz/dt).
+        let expected = [
+            (1.0, 0, 2.0, 2.0),
+            (1.0, 1, 1.0, 0.0),
+            (2.0, 0, 3.0, 2.0),
+            (2.0, 1, 0.0, 0.0),
+        ];
+        for (flow, (period, wave, grains, sum)) in flows.iter().zip(expected) {
+            assert_eq!((flow.wave, flow.grains), (wave, grains), "{flow:?}");
+            assert!(
+                (flow.period - period).abs() < 1e-12 && (flow.time - 10.0 * period).abs() < 1e-9
+            );
+            assert!((flow.flow_rate - sum / 10.0).abs() < 1e-12, "{flow:?}");
+            if grains > 0.0 {
+                assert!(
+                    (flow.flow_rate_ratio - sum / grains).abs() < 1e-12,
+                    "{flow:?}"
+                );
+            } else {
+                assert!(flow.flow_rate_ratio.is_nan());
+            }
         }
     }
 }

@@ -9,13 +9,14 @@ use crate::error::RunError;
 use crate::pictures;
 use crate::run::Run;
 use crate::summary::Summary;
-use crate::tables::{profile_table, timeseries_table};
+use crate::tables::{profile_table, timeseries_table, waves_table};
 
 const CONFIGURATION: &str = "config.toml";
 const SUMMARY: &str = "summary.json";
 const TIMESERIES: &str = "timeseries.parquet";
 const TIMESERIES_CSV: &str = "timeseries.csv";
 const PROFILE: &str = "profile.parquet";
+const WAVES: &str = "waves.parquet";
 const STATE: &str = "state.checkpoint";
 
 /// A folder that holds one run, and no other.
@@ -84,7 +85,7 @@ impl RunFolder {
                 source: std::io::ErrorKind::NotADirectory.into(),
             });
         }
-        for name in [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, STATE] {
+        for name in [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, WAVES, STATE] {
             if path.join(name).symlink_metadata().is_ok() {
                 return Err(RunError::HoldsAnotherRun {
                     folder: path.to_owned(),
@@ -152,6 +153,7 @@ impl RunFolder {
             csv::write(&self.file(TIMESERIES_CSV), &timeseries)?;
         }
         parquet::write(&self.file(PROFILE), &profile_table(run)?)?;
+        parquet::write(&self.file(WAVES), &waves_table(run)?)?;
         self.save_state(run)?;
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
         for (name, drawing) in pictures::draw_all(run, summary)? {

@@ -24,7 +24,7 @@ pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
-pub use tables::{profile_table, timeseries_table};
+pub use tables::{profile_table, timeseries_table, waves_table};
 
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

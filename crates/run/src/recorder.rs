@@ -3,13 +3,15 @@
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
-use peristalsis_observe::{Observer, Sample, WallFault, WaveFrameProfile, note_wall_faults};
+use peristalsis_observe::{
+    Observer, Sample, WallFault, WaveByWave, WaveFlow, WaveFrameProfile, note_wall_faults,
+};
 
 /// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
 /// between the branches of the flow is known only when many runs have ended.
 pub const THRESHOLDS: [f64; 9] = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9];
 
-/// Samples, period averages, the search for the transition, and the profile in the wave's frame.
+/// Samples, period averages, the search for the transition, the profile in the wave's frame and the flow of each wave.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Recorder {
     observer: Observer,
@@ -21,6 +23,7 @@ pub struct Recorder {
     /// A search at each of [`THRESHOLDS`]; none where there is no ratio of flow rates to watch.
     ladder: Vec<TransitionDetector>,
     profile: WaveFrameProfile,
+    waves: WaveByWave,
     wall_faults: Vec<WallFault>,
 }
 
@@ -53,13 +56,16 @@ impl Recorder {
                 configuration.observe.profile_bins as usize,
                 samples_per_period,
             ),
+            waves: WaveByWave::new(simulation, samples_per_period),
             wall_faults: Vec::new(),
         }
     }
 
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
+        let before = self.observer.clone();
         self.samples.push(self.observer.sample(simulation));
+        self.waves.add(&before, &self.observer, simulation);
         self.profile.add(simulation);
         note_wall_faults(simulation, &mut self.wall_faults);
         if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
@@ -102,6 +108,12 @@ impl Recorder {
     #[must_use]
     pub fn profile(&self) -> &WaveFrameProfile {
         &self.profile
+    }
+
+    /// The flow of each wave over each whole period, period by period.
+    #[must_use]
+    pub fn waves(&self) -> &[WaveFlow] {
+        self.waves.flows()
     }
 
     /// What went wrong with an elastic wall, the first of each kind.

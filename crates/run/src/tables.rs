@@ -3,7 +3,7 @@
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_formats::{FormatError, Table, Values};
 use peristalsis_observe::columns::Scope;
-use peristalsis_observe::{COLUMNS, ProfileBin};
+use peristalsis_observe::{COLUMNS, ProfileBin, WaveFlow};
 
 use crate::run::Run;
 use crate::{REVISION, VERSION};
@@ -101,6 +101,48 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
             column(|bin| bin.largest_radius),
         );
     with_origin(table, configuration).build()
+}
+
+/// The flow wave by wave: one row for each wave of each whole period, period by period.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
+    let flows = run.recorder().waves();
+    let column = |value: fn(&WaveFlow) -> f64| Values::Real(flows.iter().map(value).collect());
+    let table = Table::builder()
+        .column(
+            "period",
+            "1",
+            "wavelengths that the wave has run by the end of the period that the row is about",
+            column(|flow| flow.period),
+        )
+        .column("time", "t", "end of that period", column(|flow| flow.time))
+        .column(
+            "wave",
+            "1",
+            "number of the wave, from 0 on along the wave: from throat to throat, moving with them",
+            Values::Integer(flows.iter().map(|flow| flow.wave.into()).collect()),
+        )
+        .column(
+            "grains",
+            "1",
+            "mean number of grains in the wave",
+            column(|flow| flow.grains),
+        )
+        .column(
+            "flow_rate",
+            "1/t",
+            "J of these grains along the wave: sum of dz/dt over lambda",
+            column(|flow| flow.flow_rate),
+        )
+        .column(
+            "flow_rate_ratio",
+            "1",
+            "J/Jmax of these grains",
+            column(|flow| flow.flow_rate_ratio),
+        );
+    with_origin(table, run.configuration()).build()
 }
 
 /// The bins of the late profile.

@@ -4,6 +4,7 @@ mod common;
 
 use peristalsis_run::{
     Run, RunFolder, RunState, Status, Summary, Written, profile_table, timeseries_table,
+    waves_table,
 };
 
 const STRAIN: &[&str] = &[
@@ -70,7 +71,9 @@ fn a_state_goes_on_to_the_same_bits() {
             parts = Run::resume(configuration.clone(), state).unwrap();
         }
         let parts = finish(parts);
-        let tables = |run: &Run| (timeseries_table(run).unwrap(), profile_table(run).unwrap());
+        let tables = |run: &Run| {
+            [timeseries_table, profile_table, waves_table].map(|table| table(run).unwrap())
+        };
         // Tables compare by bits, so that one NaN equals another.
         assert!(tables(&whole) == tables(&parts), "{preset} {settings:?}");
         assert_eq!(
@@ -108,7 +111,7 @@ fn a_folder_goes_on_to_the_same_bits() {
         let summary = Summary::of(&run, Status::Complete, None);
         folder.finish(&run, &summary, Written::Standard).unwrap();
 
-        for name in ["timeseries.parquet", "profile.parquet"] {
+        for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
             let [one, other] =
                 [&through, &stopped].map(|folder| std::fs::read(folder.join(name)).unwrap());
             assert!(one == other, "{name} differs");

@@ -16,6 +16,8 @@ const BYTES_A_NUMBER: f64 = 8.0;
 const BYTES_A_RUN: f64 = 36_000.0;
 /// Columns of a profile.
 const PROFILE_COLUMNS: f64 = 10.0;
+/// Columns of the flow wave by wave.
+const WAVES_COLUMNS: f64 = 6.0;
 
 /// What a study would take.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -93,7 +95,14 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
             } else {
                 0.0
             };
-            BYTES_A_RUN + BYTES_A_NUMBER * (columns * configuration.run.samples as f64 + profile)
+            let samples = configuration.run.samples as f64;
+            let waves = if study.record.waves {
+                let periods = samples / f64::from(configuration.observe.samples_per_period);
+                WAVES_COLUMNS * periods * f64::from(configuration.tube.waves)
+            } else {
+                0.0
+            };
+            BYTES_A_RUN + BYTES_A_NUMBER * (columns * samples + profile + waves)
         })
         .sum();
     Ok(StudyEstimate {

@@ -18,6 +18,8 @@ pub struct Record {
     pub columns: Option<Vec<String>>,
     /// Whether the profile in the wave's frame is kept.
     pub profile: bool,
+    /// Whether the flow of each wave over each period is kept.
+    pub waves: bool,
 }
 
 /// Identity of a run: the first 128 bits of a SHA-256 of all that determines its products.
@@ -51,10 +53,12 @@ impl Identity {
             None => text.push_str("all columns\n"),
             Some(columns) => text.push_str(&format!("columns {}\n", columns.join(" "))),
         }
-        text.push_str(&format!(
-            "profile {}\nreplicate {replicate}\n",
-            record.profile
-        ));
+        text.push_str(&format!("profile {}\n", record.profile));
+        // Said only where it is so: runs from before it could be asked for keep their identity.
+        if record.waves {
+            text.push_str("waves\n");
+        }
+        text.push_str(&format!("replicate {replicate}\n"));
         Self(leading(&Sha256::digest(text.as_bytes())))
     }
 }

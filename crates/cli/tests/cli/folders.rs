@@ -4,7 +4,7 @@ use std::path::Path;
 
 use crate::{Place, SMALL};
 
-const FILES: [&str; 12] = [
+const FILES: [&str; 13] = [
     "config.toml",
     "flow.png",
     "flow.svg",
@@ -17,6 +17,7 @@ const FILES: [&str; 12] = [
     "summary.json",
     "timeseries.csv",
     "timeseries.parquet",
+    "waves.parquet",
 ];
 
 fn names(folder: &Path) -> Vec<String> {
@@ -105,6 +106,7 @@ fn a_folder_that_holds_another_run_stays_as_it_is() {
         "summary.json",
         "timeseries.parquet",
         "profile.parquet",
+        "waves.parquet",
         "state.checkpoint",
     ] {
         let place = Place::new();

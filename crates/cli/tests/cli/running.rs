@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::{Place, SMALL, read_json};
 
 fn same_tables(place: &Place, one: &str, other: &str) {
-    for name in ["timeseries.parquet", "profile.parquet"] {
+    for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
         let [one, other] =
             [one, other].map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
         assert!(one == other, "{name} differs");

@@ -57,6 +57,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
         "timeseries.parquet",
         "timeseries.csv",
         "profile.parquet",
+        "waves.parquet",
         "flow.svg",
         "flow.png",
         "state.checkpoint",
@@ -86,6 +87,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
         "timeseries.parquet",
         "timeseries.csv",
         "profile.parquet",
+        "waves.parquet",
         "config.toml",
         "flow.svg",
     ] {

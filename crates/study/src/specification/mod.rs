@@ -137,10 +137,8 @@ impl Specification {
                 .map(|settled_periods| Stopping { settled_periods }),
             record: Record {
                 columns: columns(&table),
-                profile: !matches!(
-                    document::entry(&table, "record.profile").map(|entry| &entry.item.node),
-                    Some(Node::Boolean(false))
-                ),
+                profile: boolean(&table, "record.profile").unwrap_or(true),
+                waves: boolean(&table, "record.waves").unwrap_or(false),
             },
             refinement,
             axes,
@@ -390,6 +388,13 @@ fn columns(table: &Table) -> Option<Vec<String>> {
 fn text_of(table: &Table, path: &str) -> Option<String> {
     match &document::entry(table, path)?.item.node {
         Node::Text(text) => Some(text.clone()),
+        _ => None,
+    }
+}
+
+fn boolean(table: &Table, path: &str) -> Option<bool> {
+    match document::entry(table, path)?.item.node {
+        Node::Boolean(boolean) => Some(boolean),
         _ => None,
     }
 }

@@ -132,6 +132,12 @@ fn build() -> Value {
                         "default": true,
                         "description": "Whether the profile in the wave's frame is kept.",
                     },
+                    "waves": {
+                        "type": "boolean",
+                        "default": false,
+                        "description": "Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and \
+                                        number of the grains between two throats, a row for each wave of each period.",
+                    },
                 },
             },
         },

@@ -6,7 +6,9 @@ use std::path::{Path, PathBuf};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, atomic, parquet};
-use peristalsis_run::{Run, RunError, Stopping, Summary, profile_table, timeseries_table};
+use peristalsis_run::{
+    Run, RunError, Stopping, Summary, profile_table, timeseries_table, waves_table,
+};
 use serde_json::Value;
 
 use super::seal::{SEAL, Seal};
@@ -22,6 +24,7 @@ pub(crate) const STATEPOINT: &str = "signac_statepoint.json";
 const CHECKPOINTS: [&str; 2] = ["state.checkpoint", "state.checkpoint.1"];
 pub(crate) const TIMESERIES: &str = "timeseries.parquet";
 const PROFILE: &str = "profile.parquet";
+const WAVES: &str = "waves.parquet";
 const SUMMARY: &str = "summary.json";
 const ROW: &str = "row.csv";
 /// What the run took: the one file of a finished run that is not sealed, since it differs from one time to another.
@@ -237,6 +240,9 @@ impl RunFiles {
         if assignment.record.profile {
             products.push((PROFILE, parquet::encode(&profile_table(run)?)?));
         }
+        if assignment.record.waves {
+            products.push((WAVES, parquet::encode(&waves_table(run)?)?));
+        }
         products.push((SUMMARY, science.into_bytes()));
         products.push((ROW, row.to_csv().into_bytes()));
         for (name, bytes) in &products[1..] {
@@ -334,5 +340,9 @@ pub(crate) fn statepoint(assignment: &Assignment) -> Value {
         "columns": assignment.record.columns,
         "profile": assignment.record.profile,
     });
+    // Said only where it is so, as in the identity.
+    if assignment.record.waves {
+        statepoint["record"]["waves"] = true.into();
+    }
     statepoint
 }

@@ -10,12 +10,12 @@ use crate::{Place, SMALL, TWO_WORKERS, entries, flip};
 
 #[test]
 fn a_bit_that_flipped_in_any_product_is_found_and_computed_again() {
-    let place = Place::new(SMALL);
+    let place = Place::new(&SMALL.replace("[[axes]]", "[record]\nwaves = true\n[[axes]]"));
     place.complete();
     let tables = place.tables();
     let products = [
         "timeseries.parquet",
-        "profile.parquet",
+        "waves.parquet",
         "summary.json",
         "row.csv",
         "config.toml",

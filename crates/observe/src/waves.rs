@@ -1,0 +1,126 @@
+//! Flow wave by wave: how the grains that travel with each wave of the tube flow, period after period.
+
+use peristalsis_engine::{Simulation, Wall};
+
+use crate::sample::{Observer, has_escaped};
+use crate::shape::TubeShape;
+
+/// Where a wave ends and the next begins in the wave's frame \[lambda\]: at the throat, so that a wave is one belly.
+///
+/// Under strain control the radius is least at 0.25, under stress control the inward force is largest at 0.75.
+#[must_use]
+pub fn throat(wall: &Wall) -> f64 {
+    match wall {
+        Wall::Prescribed(_) => 0.25,
+        Wall::Elastic(_) => 0.75,
+    }
+}
+
+/// The grains in one wave over one period.
+///
+/// A wave is the stretch from one throat to the next and moves with the throats; grains come and go through them.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct WaveFlow {
+    /// End of the period \[t\].
+    pub time: f64,
+    /// Wavelengths that the wave has run by then.
+    pub period: f64,
+    /// Number of the wave, ascending along the wave from 0: the one whose rear throat is the first at z >= 0 at t = 0.
+    pub wave: u32,
+    /// Mean number of grains inside it.
+    pub grains: f64,
+    /// J of these grains along the wave, sum of dz/dt over lambda \[1/t\].
+    pub flow_rate: f64,
+    /// J/Jmax, Jmax = (grains) c/lambda; NaN for a static wave or without grains.
+    pub flow_rate_ratio: f64,
+}
+
+/// Sums over the samples of the period that is under way.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Sums {
+    /// Grains times samples.
+    grains: f64,
+    /// Displacements along the wave \[d\].
+    moved: f64,
+    /// Grains times the displacement of the wave \[d\].
+    carried: f64,
+}
+
+/// Adds up the flow of each wave; a grain counts for the wave that it is in half way through an interval between samples.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct WaveByWave {
+    samples_per_period: u64,
+    samples: u64,
+    duration: f64,
+    sums: Vec<Sums>,
+    flows: Vec<WaveFlow>,
+}
+
+impl WaveByWave {
+    /// Begins a period of so many samples.
+    #[must_use]
+    pub fn new(simulation: &Simulation, samples_per_period: u64) -> Self {
+        let waves = simulation.wall().lattice().waves as usize;
+        Self {
+            samples_per_period: samples_per_period.max(1),
+            samples: 0,
+            duration: 0.0,
+            sums: vec![Sums::default(); waves],
+            flows: Vec::new(),
+        }
+    }
+
+    /// Adds the interval between two states of the observer, of which `simulation` is at the end.
+    pub fn add(&mut self, before: &Observer, after: &Observer, simulation: &Simulation) {
+        let wall = simulation.wall();
+        let (heading, throat) = (wall.heading(), throat(wall));
+        let wavelength = wall.lattice().wavelength;
+        let waves = self.sums.len();
+        let half_way = 0.5 * (before.cycles + after.cycles) + throat;
+        let wave_run = (after.cycles - before.cycles) * wavelength;
+        let shape = TubeShape::of(simulation);
+        for (grain, (start, end)) in before.unfolded.iter().zip(&after.unfolded).enumerate() {
+            if has_escaped(simulation.bodies(), grain, &shape) {
+                continue;
+            }
+            let along = 0.5 * heading * (start + end) / wavelength - half_way;
+            // Rounding may lift a tiny negative remainder to the number of waves itself.
+            let wave = (along.floor().rem_euclid(waves as f64) as usize).min(waves - 1);
+            let sums = &mut self.sums[wave];
+            sums.grains += 1.0;
+            sums.moved += heading * (end - start);
+            sums.carried += wave_run;
+        }
+        self.samples += 1;
+        self.duration += after.time - before.time;
+        if self.samples == self.samples_per_period {
+            self.end_period(after, wavelength);
+        }
+    }
+
+    fn end_period(&mut self, now: &Observer, wavelength: f64) {
+        let samples = self.samples as f64;
+        let duration = self.duration;
+        let flows = self.sums.iter().enumerate().map(|(wave, sums)| WaveFlow {
+            time: now.time,
+            period: now.cycles,
+            wave: wave as u32,
+            grains: sums.grains / samples,
+            flow_rate: sums.moved / (wavelength * duration),
+            flow_rate_ratio: if sums.carried > 0.0 {
+                sums.moved / sums.carried
+            } else {
+                f64::NAN
+            },
+        });
+        self.flows.extend(flows);
+        self.sums.fill(Sums::default());
+        (self.samples, self.duration) = (0, 0.0);
+    }
+
+    /// Every wave of every whole period so far, period by period.
+    #[must_use]
+    pub fn flows(&self) -> &[WaveFlow] {
+        &self.flows
+    }
+}
