@@ -4,14 +4,20 @@
 //! with errors, tables, figures, and a [`Verdict`]. One claim is one file in `claims/` and one row of [`CLAIMS`]. The
 //! studies are those of the folder `studies/` of this repository, in two sizes ([`Size`]). Nothing here prints or exits.
 
+mod branches;
 mod claim;
+mod claims;
+mod collapse;
+mod critical;
 mod error;
 mod evidence;
 mod finding;
 mod runs;
 mod studies;
+mod text;
 
-pub use claim::{CLAIMS, Claim};
+pub use claim::Claim;
+pub use claims::CLAIMS;
 pub use error::ClaimError;
 pub use evidence::{Evidence, StudyResults};
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};

@@ -79,16 +79,28 @@ pub struct Run {
     pub flow_rate_ratio_error: f64,
     /// Grains outside at the end.
     pub escaped: i64,
+    /// Transition time \[t\] at the threshold of the study; NaN where there was none.
+    pub transition_time: f64,
+    /// That threshold, J/Jmax.
+    pub transition_threshold: f64,
     /// Transition time \[t\] at each of [`THRESHOLDS`]; NaN where there was none.
     pub transition_times: [f64; THRESHOLDS.len()],
+    /// Number of the replicate.
+    pub replicate: i64,
     /// Values of the axes of the study that are not among the fields above, by key.
     pub axes: Vec<(String, f64)>,
 }
 
 impl Run {
-    /// The transition at a threshold, the nearest of [`THRESHOLDS`]; censored at the end of the run where there was none.
+    /// The transition at the threshold of the study; censored at the end of the run where there was none.
     #[must_use]
-    pub fn transition(&self, threshold: f64) -> Transition {
+    pub fn transition(&self) -> Transition {
+        self.transition_of(self.transition_time)
+    }
+
+    /// The transition at another threshold, the nearest of [`THRESHOLDS`].
+    #[must_use]
+    pub fn transition_at(&self, threshold: f64) -> Transition {
         let place = THRESHOLDS
             .iter()
             .enumerate()
@@ -98,7 +110,10 @@ impl Run {
                     .total_cmp(&(*other - threshold).abs())
             })
             .map_or(0, |(place, _)| place);
-        let time = self.transition_times[place];
+        self.transition_of(self.transition_times[place])
+    }
+
+    fn transition_of(&self, time: f64) -> Transition {
         if time.is_nan() {
             return Transition::Censored { time: self.time };
         }
@@ -149,6 +164,8 @@ impl Run {
         let time = reals("time")?;
         let (ratio, error) = (reals("flow_rate_ratio")?, reals("flow_rate_ratio_error")?);
         let escaped = integers("escaped")?;
+        let (own_time, own_threshold) = (reals("transition_time")?, reals("transition_threshold")?);
+        let replicate = integers("replicate")?;
         let ladder: Vec<&[f64]> = (1..=THRESHOLDS.len())
             .map(|place| table.reals(&format!("transition_time_{}", 10 * place)))
             .collect::<Result<_, _>>()?;
@@ -189,6 +206,9 @@ impl Run {
                 flow_rate_ratio: ratio[row],
                 flow_rate_ratio_error: error[row],
                 escaped: escaped[row],
+                transition_time: own_time[row],
+                transition_threshold: own_threshold[row],
+                replicate: replicate[row],
                 transition_times: core::array::from_fn(|place| ladder[place][row]),
                 axes: axes
                     .iter()

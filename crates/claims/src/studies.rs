@@ -50,4 +50,21 @@ macro_rules! study {
 }
 
 /// All studies behind the claims.
-pub const STUDIES: &[StudyFile] = &[study!("divergence-fine")];
+pub const STUDIES: &[StudyFile] = &[
+    study!("divergence-fine"),
+    study!("divergence-coarse"),
+    study!("branches-fine"),
+    study!("branches-coarse"),
+    study!("flow-in-time"),
+    study!("second-moment"),
+    study!("jam-lifetime"),
+    study!("density-fine"),
+    study!("density-coarse"),
+    study!("small-strain-rate-coarse"),
+    study!("small-strain-rate-fine"),
+    study!("roughness"),
+    study!("restitution"),
+    study!("softness"),
+    study!("wavelength"),
+    study!("radius"),
+];

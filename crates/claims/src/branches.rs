@@ -1,0 +1,199 @@
+//! The two branches of the stationary flow and the jump between them.
+
+use peristalsis_analysis::{Jump, Uncertain, jump_height};
+
+use crate::runs::{Run, Start};
+
+/// Points of a branch that are continued to the jump by a straight line.
+const CONTINUED: usize = 3;
+/// A jump counts from this many of its errors on.
+const CLEAR: f64 = 4.0;
+/// A jump counts from this height on.
+const LEAST_JUMP: f64 = 0.1;
+
+/// The stationary flow at one width.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct BranchPoint {
+    /// w \[d\].
+    pub(crate) width: f64,
+    /// Mean of J/Jmax over the replicates.
+    pub(crate) mean: f64,
+    /// Its standard error from their scatter; from the blocks of the one run where there is but one.
+    pub(crate) error: f64,
+    /// Runs.
+    pub(crate) runs: usize,
+    /// Fraction of the grains outside, mean.
+    pub(crate) escaped: f64,
+}
+
+/// The stationary flow against the width, from one start.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Branch {
+    /// By ascending width.
+    pub(crate) points: Vec<BranchPoint>,
+}
+
+/// Where a branch falls most between two neighbouring widths.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Drop {
+    /// The width before the fall.
+    pub(crate) before: f64,
+    /// The width after it.
+    pub(crate) after: f64,
+    /// J/Jmax before and after.
+    pub(crate) ratio: (f64, f64),
+}
+
+impl Drop {
+    /// The width midway, with the bracket as its interval.
+    pub(crate) fn width(&self) -> Uncertain {
+        bracket(self.before, self.after)
+    }
+
+    /// J/Jmax midway.
+    pub(crate) fn threshold(&self) -> f64 {
+        0.5 * (self.ratio.0 + self.ratio.1)
+    }
+}
+
+/// A number of which only two bounds are known; its error is that of a uniform distribution between them.
+pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
+    let interval = peristalsis_analysis::Interval { lower, upper };
+    Uncertain {
+        value: 0.5 * (lower + upper),
+        error: (upper - lower) / 12_f64.sqrt(),
+        interval_68: interval,
+        interval_95: interval,
+    }
+}
+
+/// Mean and standard error; the error is not a number for a single value.
+pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let number = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / number;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (number * (number - 1.0))).sqrt())
+}
+
+impl Branch {
+    /// The branch that some runs of one tube at one strain rate show.
+    pub(crate) fn of<'a>(runs: impl Iterator<Item = &'a Run>, start: Start) -> Self {
+        let mut runs: Vec<&Run> = runs
+            .filter(|run| run.start == start && run.flow_rate_ratio.is_finite())
+            .collect();
+        runs.sort_by(|one, other| one.width.total_cmp(&other.width));
+        let points = runs
+            .chunk_by(|one, other| one.width == other.width)
+            .map(|group| {
+                let ratios: Vec<f64> = group.iter().map(|run| run.flow_rate_ratio).collect();
+                let (mean, mut error) = mean_and_error(&ratios);
+                if !error.is_finite() {
+                    error = group[0].flow_rate_ratio_error;
+                }
+                BranchPoint {
+                    width: group[0].width,
+                    mean,
+                    error,
+                    runs: group.len(),
+                    escaped: group.iter().map(|run| run.escaped_fraction()).sum::<f64>()
+                        / group.len() as f64,
+                }
+            })
+            .collect();
+        Self { points }
+    }
+
+    /// Where it falls most; `None` with a single width.
+    pub(crate) fn drop(&self) -> Option<Drop> {
+        self.points
+            .windows(2)
+            .map(|pair| Drop {
+                before: pair[0].width,
+                after: pair[1].width,
+                ratio: (pair[0].mean, pair[1].mean),
+            })
+            .max_by(|one, other| {
+                (one.ratio.0 - one.ratio.1).total_cmp(&(other.ratio.0 - other.ratio.1))
+            })
+    }
+
+    /// The jump at the largest fall, both sides continued to it as straight lines; `None` where a side is missing.
+    pub(crate) fn jump(&self) -> Option<Jump> {
+        let drop = self.drop()?;
+        let column = |points: &[&BranchPoint], value: fn(&BranchPoint) -> f64| -> Vec<f64> {
+            points.iter().map(|point| value(point)).collect()
+        };
+        let side = |points: Vec<&BranchPoint>| {
+            [
+                column(&points, |point| point.width),
+                column(&points, |point| point.mean),
+                // Replicates that agree to all digits still have an error.
+                column(&points, |point| point.error.max(1e-3)),
+            ]
+        };
+        let below: Vec<&BranchPoint> = self
+            .points
+            .iter()
+            .filter(|point| point.width <= drop.before)
+            .collect();
+        let upper = side(below[below.len().saturating_sub(CONTINUED)..].to_vec());
+        let lower = side(
+            self.points
+                .iter()
+                .filter(|point| point.width >= drop.after)
+                .take(CONTINUED)
+                .collect(),
+        );
+        let columns = |side: &'_ [Vec<f64>; 3]| [side[0].clone(), side[1].clone(), side[2].clone()];
+        let (upper, lower) = (columns(&upper), columns(&lower));
+        jump_height(
+            [&upper[0], &upper[1], &upper[2]],
+            [&lower[0], &lower[1], &lower[2]],
+            drop.width(),
+        )
+        .ok()
+    }
+
+    /// Whether the fall is a jump: high, and by many of its errors.
+    pub(crate) fn jumps(&self) -> bool {
+        self.jump().is_some_and(|jump| {
+            jump.height.value > LEAST_JUMP && jump.height.value > CLEAR * jump.height.error
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn branch(ratios: &[(f64, f64)]) -> Branch {
+        let point = |&(width, mean): &(f64, f64)| BranchPoint {
+            width,
+            mean,
+            error: 0.01,
+            runs: 10,
+            escaped: 0.0,
+        };
+        Branch {
+            points: ratios.iter().map(point).collect(),
+        }
+    }
+
+    #[test]
+    fn a_step_is_a_jump_and_a_slope_is_none() {
+        let step = branch(&[(2.5, 1.0), (2.6, 0.98), (2.7, 0.96), (2.72, 0.2), (2.8, 0.1), (2.9, 0.0)]);
+        let drop = step.drop().unwrap();
+        assert_eq!((drop.before, drop.after), (2.7, 2.72));
+        assert!((drop.threshold() - 0.58).abs() < 1e-12);
+        assert!((step.jump().unwrap().height.value - 0.745).abs() < 0.01);
+        assert!(step.jumps());
+        let slope: Vec<(f64, f64)> = (0..12).map(|k| (2.4 + 0.05 * f64::from(k), 1.0 - 0.09 * f64::from(k))).collect();
+        assert!(!branch(&slope).jumps());
+    }
+
+    #[test]
+    fn a_bracket_knows_its_ends() {
+        let width = bracket(2.7, 2.8);
+        assert!((width.value - 2.75).abs() < 1e-12 && width.interval_95.upper == 2.8);
+    }
+}

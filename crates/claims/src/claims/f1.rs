@@ -1,0 +1,240 @@
+//! F1: slow unjammed flow at large widths, a transition to fast jammed flow at small ones.
+
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
+use peristalsis_figures::{ColourScale, Quantity as Axis, Width};
+
+use super::{LATTICES, MOST_ESCAPED, label};
+use crate::branches::Branch;
+use crate::claim::Claim;
+use crate::critical::strain_rates;
+use crate::error::ClaimError;
+use crate::evidence::{Evidence, StudyResults};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::runs::{Lattice, Run, Start};
+use crate::text::{number, with_error};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F1",
+    title: "Slow unjammed flow, and a transition to fast jammed flow",
+    statement: "From rest: at large *w* the flow stays slow, steady and unjammed; at small *w* an unsteady unjammed flow turns \
+                at a time *τ* into a steady fast jammed flow with *J* near *J*_{max}.",
+    source: "talk",
+    studies: &["flow-in-time", "branches-fine", "branches-coarse"],
+    examine,
+};
+
+/// J/Jmax from which on a flow is near Jmax.
+const NEAR_ONE: f64 = 0.9;
+/// Distance below the jump \[d\] at which the jammed flow is read off.
+const BELOW: f64 = 0.1;
+/// Fraction of runs that must do as the claim says.
+const NEARLY_ALL: f64 = 0.95;
+
+/// What the branches of one lattice at one strain rate say.
+struct Kind {
+    lattice: Lattice,
+    strain_rate: f64,
+    /// Widths, replicates and runs behind it.
+    widths: usize,
+    replicates: usize,
+    runs: usize,
+    /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
+    slow: f64,
+    fast: f64,
+    /// J/Jmax just beyond the jump, and `BELOW` it, with errors.
+    slow_ratio: (f64, f64),
+    fast_ratio: (f64, f64),
+    escaped: f64,
+}
+
+impl Kind {
+    fn holds(&self) -> bool {
+        self.slow >= NEARLY_ALL && self.fast >= NEARLY_ALL && self.fast_ratio.0 >= NEAR_ONE
+    }
+}
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let mut kinds = Vec::new();
+    for (lattice, _, branches) in LATTICES {
+        let runs = &evidence.study(branches)?.runs;
+        for rate in strain_rates(runs.iter()) {
+            kinds.extend(kind(runs, lattice, rate));
+        }
+    }
+    let tight = |lattice: Lattice| {
+        kinds
+            .iter()
+            .filter(move |kind| kind.lattice == lattice && kind.escaped <= MOST_ESCAPED)
+    };
+    let of = |lattice: Lattice| Statistics {
+        strain_rates: tight(lattice).count(),
+        widths: tight(lattice).map(|kind| kind.widths).min().unwrap_or(0),
+        replicates: tight(lattice).map(|kind| kind.replicates).min().unwrap_or(0),
+        runs: tight(lattice).map(|kind| kind.runs).sum(),
+    };
+    let needed = Statistics::FOR_A_VERDICT;
+    let statistics = super::larger(of(Lattice::FINE), of(Lattice::COARSE));
+    if kinds.is_empty() {
+        return Ok(Finding::nothing("No runs yet.", statistics, &needed));
+    }
+    let counts: Vec<String> = LATTICES
+        .iter()
+        .map(|(lattice, ..)| {
+            format!(
+                "at {} of {} strain rates on the {} lattice",
+                tight(*lattice).filter(|kind| kind.holds()).count(),
+                tight(*lattice).count(),
+                lattice.name()
+            )
+        })
+        .collect();
+    let holds = LATTICES
+        .iter()
+        .any(|(lattice, ..)| tight(*lattice).count() > 0 && tight(*lattice).all(Kind::holds));
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!(
+            "Slow beyond the jump and above {NEAR_ONE} *J*_{{max}} well below it {}.",
+            counts.join(" and ")
+        ),
+        statistics,
+        &needed,
+    );
+    for kind in tight(Lattice::FINE) {
+        finding.quantities.push(Quantity {
+            name: format!(
+                "flow rate of the jammed state, fine lattice, strain rate {}",
+                kind.strain_rate
+            ),
+            symbol: "*J*/*J*_{max}".to_owned(),
+            unit: String::new(),
+            source: Some(1.0),
+            ours: Some(peristalsis_analysis::Uncertain::normal(
+                kind.fast_ratio.0,
+                kind.fast_ratio.1,
+            )),
+            method: format!("mean over replicates, {BELOW} d below the jump"),
+        });
+    }
+    finding.tables.push(ReportTable {
+        caption: format!(
+            "The two kinds of flow from rest: fraction of runs beyond the jump that stay slow, of runs below it that become \
+             fast, and *J*/*J*_{{max}} just beyond the jump and {BELOW} *d* below it."
+        ),
+        head: ["lattice", "*ε̇*", "stay slow", "become fast", "slow flow", "fast flow", "outside"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows: kinds
+            .iter()
+            .map(|kind| {
+                vec![
+                    kind.lattice.name(),
+                    number(kind.strain_rate, 3),
+                    number(kind.slow, 2),
+                    number(kind.fast, 2),
+                    with_error(kind.slow_ratio.0, kind.slow_ratio.1),
+                    with_error(kind.fast_ratio.0, kind.fast_ratio.1),
+                    number(kind.escaped, 2),
+                ]
+            })
+            .collect(),
+    });
+    finding.paragraphs.push(
+        "The fast flow is that of Jmax where the wave is fast: at small strain rates on the coarse lattice the jammed flow \
+         itself slows down continuously as the bottleneck widens, since grains have time to slip back through it."
+            .to_owned(),
+    );
+    finding.weaknesses.push(
+        "Which flow is the slow one is decided by where the stationary flow falls most between two widths, within 500 periods \
+         a run: next to *w*_{c} a transition may come later."
+            .to_owned(),
+    );
+    finding.figures.extend(in_time(evidence.study("flow-in-time")?)?);
+    Ok(finding)
+}
+
+fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
+    let here = || {
+        runs.iter().filter(move |run| {
+            run.lattice == lattice && run.strain_rate == strain_rate && run.start == Start::Rest
+        })
+    };
+    let branch = Branch::of(here(), Start::Rest);
+    let drop = branch.drop()?;
+    let threshold = drop.threshold();
+    let fraction = |beyond: bool| {
+        let side = || {
+            here().filter(move |run| {
+                if beyond {
+                    run.width >= drop.after
+                } else {
+                    run.width <= drop.before
+                }
+            })
+        };
+        let right = side().filter(|run| (run.flow_rate_ratio < threshold) == beyond);
+        right.count() as f64 / side().count().max(1) as f64
+    };
+    let fast = branch
+        .points
+        .iter()
+        .rfind(|point| point.width <= drop.before - BELOW)
+        .or(branch.points.first())?;
+    let slow = branch.points.iter().find(|point| point.width >= drop.after)?;
+    Some(Kind {
+        lattice,
+        strain_rate,
+        widths: branch.points.len(),
+        replicates: branch.points.iter().map(|point| point.runs).min()?,
+        runs: here().count(),
+        slow: fraction(true),
+        fast: fraction(false),
+        slow_ratio: (slow.mean, slow.error),
+        fast_ratio: (fast.mean, fast.error),
+        escaped: fast.escaped.max(slow.escaped),
+    })
+}
+
+/// J/Jmax in time for several widths, a panel a lattice; nothing where only rows were imported.
+fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
+    let mut panels = Vec::new();
+    let mut widths: Vec<f64> = Vec::new();
+    for lattice in [Lattice::COARSE, Lattice::FINE] {
+        let mut panel = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
+        let mut lines = 0;
+        let mut rate = 0.0;
+        for run in study
+            .runs
+            .iter()
+            .filter(|run| run.lattice == lattice && run.replicate == 0)
+        {
+            let Some(averages) = study.period_averages(run)? else {
+                continue;
+            };
+            let period: Vec<f64> = (0..averages.len()).map(|number| number as f64 + 0.5).collect();
+            panel = panel.with(Curve::new("", &period, &averages).tint(Tint::Value(run.width)));
+            widths.push(run.width);
+            rate = run.strain_rate;
+            lines += 1;
+        }
+        if lines > 0 {
+            panels.push(panel.title(&format!("{} lattice, *ε̇* = {rate}", lattice.name())));
+        }
+    }
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    let least = widths.iter().copied().fold(f64::INFINITY, f64::min);
+    let largest = widths.iter().copied().fold(0.0, f64::max);
+    let drawing = ChartFigure::grid(2, panels)
+        .share_y()
+        .colour_scale(ColourScale::new(&label(Axis::Width), least, largest.max(least + 0.01)))
+        .width(Width::DoubleColumn)
+        .description("Flow rate in time for several widths of the bottleneck.")
+        .draw()?;
+    Ok(Some(ReportFigure {
+        name: "flow-in-time".to_owned(),
+        caption: "*J*/*J*_{max}, averaged over each period, from rest for several widths of the bottleneck.".to_owned(),
+        drawing,
+    }))
+}

@@ -1,0 +1,206 @@
+//! F2: how the mean transition time diverges.
+
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
+use peristalsis_figures::{Quantity as Axis, Scale, Width};
+
+use super::{
+    LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics,
+};
+use crate::claim::Claim;
+use crate::critical::{Line, WINDOW, weighted_mean};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::text::{estimate, interval, number};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F2",
+    title: "The transition time diverges at the critical bottleneck",
+    statement: "From below, the transition time diverges as *τ* ~ (*w*_{c} − *w*)^{−1}.",
+    source: "talk",
+    studies: &[
+        "divergence-fine",
+        "divergence-coarse",
+        "branches-fine",
+        "branches-coarse",
+    ],
+    examine,
+};
+
+/// What the source says.
+const EXPONENT: f64 = 1.0;
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let mut statistics_found = Statistics::default();
+    let mut quantities = Vec::new();
+    let mut rows = Vec::new();
+    let mut panels = Vec::new();
+    let mut all_rates = Vec::new();
+    let mut means = Vec::new();
+    for study in LATTICES {
+        let lines = lines_of(evidence, study)?;
+        let fits = fitted(&lines);
+        let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
+        statistics_found = larger(statistics_found, statistics(&used));
+        all_rates.extend(lines.iter().map(|line| line.strain_rate));
+        panels.push(panel(&lines)?);
+        let name = study.0.name();
+        let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.exponent).collect();
+        if let Some(mean) = weighted_mean(&exponents) {
+            means.push((name.clone(), mean));
+            quantities.push(Quantity {
+                name: format!("exponent of the mean transition time, {name} lattice"),
+                symbol: "*α*".to_owned(),
+                unit: String::new(),
+                source: Some(EXPONENT),
+                ours: Some(mean),
+                method: format!(
+                    "weighted mean over {} strain rates of likelihood fits to the {WINDOW} widths next to *w*_{{c}}",
+                    exponents.len()
+                ),
+            });
+        }
+        for (line, fit) in &fits {
+            let windows = line.fits();
+            let range = windows
+                .iter()
+                .map(|(_, fit)| fit.exponent.value)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), value| {
+                    (least.min(value), largest.max(value))
+                });
+            rows.push(vec![
+                name.clone(),
+                number(line.strain_rate, 3),
+                number(line.threshold, 1),
+                estimate(&fit.critical_width),
+                estimate(&fit.exponent),
+                interval(&fit.exponent),
+                format!("{} … {}", number(range.0, 2), number(range.1, 2)),
+                format!("{}/{}", fit.observed, fit.observed + fit.censored),
+                number(line.escaped(), 2),
+            ]);
+        }
+        for line in lines.iter().filter(|line| !used.iter().any(|one| one.strain_rate == line.strain_rate)) {
+            rows.push(vec![
+                name.clone(),
+                number(line.strain_rate, 3),
+                number(line.threshold, 1),
+                "left out".to_owned(),
+                String::new(),
+                String::new(),
+                String::new(),
+                String::new(),
+                number(line.escaped(), 2),
+            ]);
+        }
+    }
+    if means.is_empty() {
+        return Ok(Finding::nothing(
+            "Too few runs had a transition.",
+            statistics_found,
+            &Statistics::FOR_A_VERDICT,
+        ));
+    }
+    let holds = means.iter().any(|(_, mean)| agrees(mean, EXPONENT));
+    let words: Vec<String> = means
+        .iter()
+        .map(|(name, mean)| format!("*α* = {} on the {name} lattice", estimate(mean)))
+        .collect();
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!(
+            "Next to the critical width {}; the source says 1.",
+            words.join(", ")
+        ),
+        statistics_found,
+        &Statistics::FOR_A_VERDICT,
+    );
+    finding.quantities = quantities;
+    finding.paragraphs.push(format!(
+        "The transition counts where the period-averaged flow passes the value midway between the two branches at that \
+         strain rate, and stays for three periods; runs that end before are censored, not dropped. Mean and scatter are \
+         fitted together by maximum likelihood, *τ* = *A*(*w*_{{c}} − *w*)^{{−*α*}} with a gamma distribution whose \
+         relative variance is a power of the distance as well, to the {WINDOW} largest widths at which at least half of \
+         the runs had a transition, and to all beyond."
+    ));
+    finding.tables.push(ReportTable {
+        caption: "Critical width and exponent at each strain rate; the range is over windows from four widths to all; \
+                  transitions seen of all runs in the window; fraction of grains outside the tube. Strain rates with \
+                  more than 5 per cent outside are left out."
+            .to_owned(),
+        head: [
+            "lattice", "*ε̇*", "threshold", "*w*_{c}", "*α*", "95 %", "range", "seen", "outside",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows,
+    });
+    finding.weaknesses.push(
+        "An effective exponent depends on how near to *w*_{c} the fit looks, since *w*_{c} is fitted too: see the range \
+         over windows. It falls toward the source's 1 as the window closes in."
+            .to_owned(),
+    );
+    let drawing = ChartFigure::grid(2, panels)
+        .share_y()
+        .colour_scale(rate_colours(all_rates.into_iter()))
+        .width(Width::DoubleColumn)
+        .description("Mean transition time against the width of the bottleneck for several strain rates.")
+        .draw()?;
+    finding.figures.push(ReportFigure {
+        name: "transition-times".to_owned(),
+        caption: "Mean transition time from rest against the width of the bottleneck, in periods, on the fine (a) and \
+                  the coarse lattice (b); arrows: widths at which most runs saw none; lines: fitted power laws."
+            .to_owned(),
+        drawing,
+    });
+    Ok(finding)
+}
+
+/// Mean transition times of one lattice with the fitted laws.
+fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
+    let mut panel = ChartPanel::new(&label(Axis::Width), &label(Axis::TransitionPeriod))
+        .y_scale(Scale::Logarithmic);
+    for (number, line) in lines.iter().enumerate() {
+        let (mut width, mut time, mut error, mut limit) = (vec![], vec![], vec![], vec![]);
+        for ensemble in line.ensembles() {
+            let seen = ensemble.observed >= ensemble.censored && ensemble.observed > 0;
+            let mean = ensemble.fit.map(|fit| fit.mean);
+            let value = if seen {
+                mean.map_or(ensemble.naive_mean.unwrap_or(f64::NAN), |mean| mean.value)
+            } else {
+                ensemble.watched
+            };
+            width.push(ensemble.width);
+            time.push(value * line.strain_rate);
+            error.push(mean.filter(|_| seen).map_or(0.0, |mean| mean.error * line.strain_rate));
+            limit.push(!seen);
+        }
+        if width.is_empty() {
+            continue;
+        }
+        let tint = Tint::Value(line.strain_rate);
+        let points = Points::new("", &width, &time)
+            .y_errors(&error)
+            .lower_limits(&limit)
+            .series(number)
+            .tint(tint);
+        panel = panel.with(points);
+        if let Some(fit) = line.fit(WINDOW) {
+            let from = line.window(WINDOW).map_or(width[0], |window| {
+                window.0.iter().copied().fold(f64::INFINITY, f64::min)
+            });
+            let critical = fit.critical_width.value;
+            let longest = time.iter().copied().fold(0.0, f64::max);
+            let curve: Vec<(f64, f64)> = spaced(from, critical, 200)
+                .into_iter()
+                .map(|width| (width, fit.at(width).0 * line.strain_rate))
+                .filter(|point| point.1.is_finite() && point.1 < 3.0 * longest)
+                .collect();
+            if curve.len() > 1 {
+                let (x, y): (Vec<f64>, Vec<f64>) = curve.into_iter().unzip();
+                panel = panel.with(Curve::new("", &x, &y).tint(tint).weight(0.8));
+            }
+        }
+    }
+    Ok(panel)
+}

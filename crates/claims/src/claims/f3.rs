@@ -1,0 +1,86 @@
+//! F3: whether transition times of several strain rates collapse.
+
+use super::{LATTICES, fitted, larger, lines_of, statistics};
+use crate::claim::Claim;
+use crate::collapse::{Collapsed, collapse, figure};
+use crate::critical::Line;
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Statistics, Verdict};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F3",
+    title: "Transition times of all strain rates collapse",
+    statement: "*τ* ~ *ε̇*^{−7/2} *f*((*w*_{c} − *w*)/*ε̇*^{3/2}) with *f*(*x*) ~ *x*^{−1} for *x* ~ 1: the data of several \
+                strain rates fall on one curve.",
+    source: "talk",
+    studies: &[
+        "divergence-fine",
+        "divergence-coarse",
+        "branches-fine",
+        "branches-coarse",
+    ],
+    examine,
+};
+
+/// Powers of the strain rate that the source gives: that of the time, and that of the distance.
+const EXPONENTS: [f64; 2] = [3.5, 1.5];
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let mut found: Vec<(String, Collapsed)> = Vec::new();
+    let mut statistics_found = Statistics::default();
+    for study in LATTICES {
+        let lines = lines_of(evidence, study)?;
+        let fits = fitted(&lines);
+        let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
+        statistics_found = larger(statistics_found, statistics(&used));
+        let mean = |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.mean);
+        if let Some(collapsed) = collapse(&fits, EXPONENTS, mean) {
+            found.push((study.0.name(), collapsed));
+        }
+    }
+    if found.is_empty() {
+        return Ok(Finding::nothing(
+            "Too few strain rates with transitions to compare.",
+            statistics_found,
+            &Statistics::FOR_A_VERDICT,
+        ));
+    }
+    let holds = found.iter().any(|(_, collapsed)| collapsed.agrees());
+    let words: Vec<String> = found
+        .iter()
+        .map(|(name, collapsed)| format!("{name} lattice: {}", collapsed.in_words()))
+        .collect();
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!("{}. The source says 7/2 and 3/2.", words.join("; ")),
+        statistics_found,
+        &Statistics::FOR_A_VERDICT,
+    );
+    for (name, collapsed) in &found {
+        finding.quantities.extend(collapsed.quantities(name, ["*a*", "*b*"]));
+        finding.tables.extend(collapsed.tables(name));
+    }
+    finding.paragraphs.push(
+        "*τε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*} with *w*_{c} of each strain rate as fitted for F2, and *a* and *b* \
+         free: Houdayer and Hartmann's *S* over the mean transition times, the least overlap of the curves constrained to \
+         one half. Errors by resampling the points within their errors. Where *f* is one power *x*^{−*α*} over the whole \
+         range, only *a* − *αb* is determined, and *a* and *b* apart only by its bend."
+            .to_owned(),
+    );
+    finding.weaknesses.push(
+        "*S* well above 1 says that the curves differ by more than their errors: then the collapse is approximate, and the \
+         errors of its exponents are too small."
+            .to_owned(),
+    );
+    finding.figures.push(figure(
+        &found,
+        EXPONENTS,
+        "collapse-of-transition-times",
+        ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"],
+        -1.0,
+        "Mean transition times scaled with the exponents of the source (left) and with those that collapse them best \
+         (right), lattice by lattice; dashed: slope −1.",
+    )?);
+    Ok(finding)
+}

@@ -1,0 +1,196 @@
+//! F4: how the scatter of the transition times diverges, and whether it collapses.
+
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
+use peristalsis_figures::{Quantity as Axis, Scale, Width};
+
+use super::{
+    LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics,
+};
+use crate::claim::Claim;
+use crate::collapse::{Collapsed, collapse, figure};
+use crate::critical::{Line, WINDOW, weighted_mean};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::text::{estimate, interval, number};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F4",
+    title: "The scatter of the transition times diverges faster",
+    statement: "*χ_{τ}* = ⟨*τ*^2⟩ − ⟨*τ*⟩^2 ~ (*w*_{c} − *w*)^{−3}, and *χ_{τ}* ~ *ε̇*^{−7} \
+                *g*((*w*_{c} − *w*)/*ε̇*^{3/2}) with *g*(*x*) ~ *x*^{−3} for *x* ~ 1.",
+    source: "talk",
+    studies: &[
+        "divergence-fine",
+        "divergence-coarse",
+        "branches-fine",
+        "branches-coarse",
+    ],
+    examine,
+};
+
+/// What the source says of chi_tau against the width, and of its scaling.
+const EXPONENT: f64 = 3.0;
+const SCALING: [f64; 2] = [7.0, 1.5];
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let mut statistics_found = Statistics::default();
+    let mut quantities = Vec::new();
+    let mut rows = Vec::new();
+    let mut panels = Vec::new();
+    let mut all_rates = Vec::new();
+    let mut means = Vec::new();
+    let mut collapses: Vec<(String, Collapsed)> = Vec::new();
+    for study in LATTICES {
+        let lines = lines_of(evidence, study)?;
+        let fits = fitted(&lines);
+        let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
+        statistics_found = larger(statistics_found, statistics(&used));
+        all_rates.extend(used.iter().map(|line| line.strain_rate));
+        panels.push(panel(&used)?);
+        let name = study.0.name();
+        let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.variance_exponent).collect();
+        if let Some(mean) = weighted_mean(&exponents) {
+            means.push((name.clone(), mean));
+            quantities.push(Quantity {
+                name: format!("exponent of the variance of the transition time, {name} lattice"),
+                symbol: "*β*".to_owned(),
+                unit: String::new(),
+                source: Some(EXPONENT),
+                ours: Some(mean),
+                method: format!(
+                    "weighted mean over {} strain rates of likelihood fits to the {WINDOW} widths next to *w*_{{c}}",
+                    exponents.len()
+                ),
+            });
+        }
+        for (line, fit) in &fits {
+            rows.push(vec![
+                name.clone(),
+                number(line.strain_rate, 3),
+                estimate(&fit.variance_exponent),
+                interval(&fit.variance_exponent),
+                estimate(&fit.scatter_exponent),
+                format!("{:.1e}", fit.chance_probability),
+            ]);
+        }
+        let variance =
+            |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.variance);
+        if let Some(collapsed) = collapse(&fits, SCALING, variance) {
+            quantities.extend(collapsed.quantities(&format!("variance, {name}"), ["*a_{χ}*", "*b_{χ}*"]));
+            collapses.push((name, collapsed));
+        }
+    }
+    if means.is_empty() {
+        return Ok(Finding::nothing(
+            "Too few runs had a transition.",
+            statistics_found,
+            &Statistics::FOR_A_VERDICT,
+        ));
+    }
+    let holds = means.iter().any(|(_, mean)| agrees(mean, EXPONENT));
+    let words: Vec<String> = means
+        .iter()
+        .map(|(name, mean)| format!("*β* = {} on the {name} lattice", estimate(mean)))
+        .collect();
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!("{}; the source says 3.", words.join(", ")),
+        statistics_found,
+        &Statistics::FOR_A_VERDICT,
+    );
+    finding.quantities = quantities;
+    finding.paragraphs.push(
+        "The exponent *β* = 2*α* + *q* comes from the same likelihood as that of F2, in which the relative variance \
+         *χ_{τ}*/*τ*^2 ~ (*w*_{c} − *w*)^{−*q*} is fitted along. The last column is the probability that a transition that \
+         begins by chance at a constant rate, *χ_{τ}*/*τ*^2 = 1 at every width, would give such transition times: nucleation \
+         by chance is excluded where it is small (see Q5)."
+            .to_owned(),
+    );
+    finding.tables.push(ReportTable {
+        caption: "Exponent of the variance, that of the relative variance, and the probability of pure chance.".to_owned(),
+        head: ["lattice", "*ε̇*", "*β*", "95 %", "*q*", "chance"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    });
+    finding.weaknesses.push(
+        "A variance from 30 runs has a relative error of a quarter at each width, and all of its rise hangs on the few widths \
+         next to *w*_{c}."
+            .to_owned(),
+    );
+    let drawing = ChartFigure::grid(2, panels)
+        .share_y()
+        .colour_scale(rate_colours(all_rates.into_iter()))
+        .width(Width::DoubleColumn)
+        .description("Variance of the transition time against the width of the bottleneck for several strain rates.")
+        .draw()?;
+    finding.figures.push(ReportFigure {
+        name: "transition-time-variance".to_owned(),
+        caption: "Variance of the transition time against the width of the bottleneck, in periods squared, on the fine (a) \
+                  and the coarse lattice (b), with the fitted power laws."
+            .to_owned(),
+        drawing,
+    });
+    if !collapses.is_empty() {
+        finding.figures.push(figure(
+            &collapses,
+            SCALING,
+            "collapse-of-variances",
+            ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"],
+            -3.0,
+            "Variances scaled with the exponents of the source (left) and with those that collapse them best (right); \
+             dashed: slope −3.",
+        )?);
+    }
+    Ok(finding)
+}
+
+/// Variances of one lattice with the fitted laws.
+fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
+    let mut panel = ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2")
+        .y_scale(Scale::Logarithmic);
+    for (number, line) in lines.iter().enumerate() {
+        let squared = line.strain_rate * line.strain_rate;
+        let (mut width, mut variance, mut error) = (vec![], vec![], vec![]);
+        for ensemble in line.ensembles() {
+            let Some(fit) = ensemble.fit.filter(|_| ensemble.observed >= ensemble.censored) else {
+                continue;
+            };
+            if fit.variance.value > 0.0 {
+                width.push(ensemble.width);
+                variance.push(fit.variance.value * squared);
+                error.push(fit.variance.error * squared);
+            }
+        }
+        if width.is_empty() {
+            continue;
+        }
+        let tint = Tint::Value(line.strain_rate);
+        panel = panel.with(
+            Points::new("", &width, &variance)
+                .y_errors(&error)
+                .series(number)
+                .tint(tint),
+        );
+        if let Some(fit) = line.fit(WINDOW) {
+            let from = line.window(WINDOW).map_or(width[0], |window| {
+                window.0.iter().copied().fold(f64::INFINITY, f64::min)
+            });
+            let largest = variance.iter().copied().fold(0.0, f64::max);
+            let curve: Vec<(f64, f64)> = spaced(from, fit.critical_width.value, 200)
+                .into_iter()
+                .map(|width| {
+                    let (mean, relative) = fit.at(width);
+                    (width, mean * mean * relative * squared)
+                })
+                .filter(|point| point.1.is_finite() && point.1 < 3.0 * largest)
+                .collect();
+            if curve.len() > 1 {
+                let (x, y): (Vec<f64>, Vec<f64>) = curve.into_iter().unzip();
+                panel = panel.with(Curve::new("", &x, &y).tint(tint).weight(0.8));
+            }
+        }
+    }
+    Ok(panel)
+}

@@ -1,0 +1,248 @@
+//! F6: the stationary flow jumps, which a Newtonian fluid's does not.
+
+use peristalsis_analysis::{Bootstrap, Uncertain, dip_test, histogram, two_peaks};
+use peristalsis_figures::chart::{
+    Bars, ChartFigure, ChartPanel, Line as Curve, Pattern, Points, Tint,
+};
+use peristalsis_figures::{Quantity as Axis, Width};
+use peristalsis_physics::newtonian::Newtonian;
+
+use super::{LATTICES, MOST_ESCAPED, label, larger, rate_colours, spaced};
+use crate::branches::Branch;
+use crate::claim::Claim;
+use crate::critical::{strain_rates, weighted_mean};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::runs::{Lattice, Run, Start};
+use crate::text::{estimate, number};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F6",
+    title: "The stationary flow jumps at the critical bottleneck",
+    statement: "The stationary *J*/*J*_{max} against *w* jumps at *w*_{c}(*ε̇*): a discontinuous transition, which Newtonian \
+                peristalsis does not have.",
+    source: "talk",
+    studies: &["branches-fine", "branches-coarse"],
+    examine,
+};
+
+/// Widths about the jump, as a distance, whose runs make the histogram.
+const NEAR: f64 = 0.05;
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let needed = Statistics::FOR_A_VERDICT;
+    let mut found = Statistics::default();
+    let mut rows = Vec::new();
+    let mut panels = Vec::new();
+    let mut quantities = Vec::new();
+    let mut rates = Vec::new();
+    let mut verdicts = Vec::new();
+    let mut near_all: Vec<f64> = Vec::new();
+    for (lattice, _, study) in LATTICES {
+        let runs = &evidence.study(study)?.runs;
+        let mut panel = ChartPanel::new(&label(Axis::Width), &label(Axis::FlowRateRatio))
+            .y_range(-0.05..=1.1)
+            .title(&format!("{} lattice", lattice.name()));
+        let (mut jumping, mut tight) = (0, 0);
+        let mut statistics = Statistics {
+            widths: usize::MAX,
+            replicates: usize::MAX,
+            ..Statistics::default()
+        };
+        let mut heights = Vec::new();
+        for (place, rate) in strain_rates(runs.iter()).into_iter().enumerate() {
+            let here = || runs.iter().filter(move |run| run.strain_rate == rate);
+            let branch = Branch::of(here(), Start::Rest);
+            let (Some(drop), false) = (branch.drop(), branch.points.is_empty()) else {
+                continue;
+            };
+            rates.push(rate);
+            let column = |value: fn(&crate::branches::BranchPoint) -> f64| -> Vec<f64> {
+                branch.points.iter().map(value).collect()
+            };
+            panel = panel.with(
+                Points::new("", &column(|p| p.width), &column(|p| p.mean))
+                    .y_errors(&column(|p| if p.error.is_finite() { p.error } else { 0.0 }))
+                    .series(place)
+                    .tint(Tint::Value(rate))
+                    .joined(),
+            );
+            let escaped = branch
+                .points
+                .iter()
+                .filter(|point| (point.width - drop.before).abs() < 2.0 * NEAR)
+                .map(|point| point.escaped)
+                .fold(0.0, f64::max);
+            let near = near(here(), drop.before, drop.after);
+            let test = dip_test(&near, Bootstrap { resamples: 500, seed: 7 }).ok();
+            let peaks = two_peaks(&near).ok();
+            if escaped <= MOST_ESCAPED {
+                tight += 1;
+                jumping += usize::from(branch.jumps());
+                statistics.strain_rates += 1;
+                statistics.widths = statistics.widths.min(branch.points.len());
+                let least = branch.points.iter().map(|point| point.runs).min().unwrap_or(0);
+                statistics.replicates = statistics.replicates.min(least);
+                statistics.runs += here().count();
+                near_all.extend(near.iter().filter(|_| lattice == Lattice::FINE));
+            }
+            let height = branch.jump().map(|jump| jump.height);
+            if let Some(height) = height.filter(|_| escaped <= MOST_ESCAPED) {
+                heights.push(height);
+                quantities.push(Quantity {
+                    name: format!("height of the jump, {} lattice, strain rate {rate}", lattice.name()),
+                    symbol: "Δ*J*/*J*_{max}".to_owned(),
+                    unit: String::new(),
+                    source: None,
+                    ours: Some(height),
+                    method: "both branches continued to the jump by straight lines".to_owned(),
+                });
+            }
+            rows.push(vec![
+                lattice.name(),
+                number(rate, 3),
+                format!("{} … {}", number(drop.before, 3), number(drop.after, 3)),
+                height.map_or("–".to_owned(), |height| estimate(&height)),
+                if branch.jumps() { "jump" } else { "none seen" }.to_owned(),
+                peaks.map_or("–".to_owned(), |peaks| {
+                    if peaks.is_double() { "two" } else { "one" }.to_owned()
+                }),
+                test.map_or("–".to_owned(), |test| number(test.probability, 3)),
+                number(escaped, 2),
+            ]);
+        }
+        if statistics.strain_rates == 0 {
+            statistics = Statistics::default();
+        }
+        found = larger(found, statistics);
+        verdicts.push((lattice, jumping, tight));
+        drop_heights(&mut quantities, lattice, &heights);
+        panels.push(newtonian(panel));
+    }
+    if rates.is_empty() {
+        return Ok(Finding::nothing("No runs yet.", found, &needed));
+    }
+    let holds = verdicts.iter().any(|(_, jumping, tight)| *tight > 0 && jumping == tight);
+    let words: Vec<String> = verdicts
+        .iter()
+        .map(|(lattice, jumping, tight)| {
+            format!("at {jumping} of {tight} strain rates on the {} lattice", lattice.name())
+        })
+        .collect();
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!(
+            "A jump by more than 0.1 and four of its errors between neighbouring widths {}. The Newtonian curve is smooth.",
+            words.join(" and ")
+        ),
+        found,
+        &needed,
+    );
+    finding.quantities = quantities;
+    finding.tables.push(ReportTable {
+        caption: format!(
+            "The largest fall of the stationary flow from rest: bracket in *w*, height, whether it counts as a jump, number \
+             of peaks of *J*/*J*_{{max}} over the runs within {NEAR} *d* of it (two normal peaks against one), probability of \
+             so deep a dip with one peak (Hartigan), fraction of grains outside."
+        ),
+        head: ["lattice", "*ε̇*", "*w*_{c}", "height", "", "peaks", "dip", "outside"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+    });
+    finding.paragraphs.push(
+        "Runs of 500 periods from rest, the last quarter averaged; at each strain rate the widths close in on the jump by \
+         bisection. The Newtonian flow of a tube with the same wall (no inertia, long wave, no mean pressure) rises smoothly \
+         as the bottleneck narrows, whether its bore is reckoned to the centres of the wall spheres (black) or is the clear \
+         one (grey)."
+            .to_owned(),
+    );
+    finding.weaknesses.push(
+        "A steep continuous rise within the bracket would look the same; the bracket is 0.02 *d* or less in the full design."
+            .to_owned(),
+    );
+    finding.figures.push(ReportFigure {
+        name: "stationary-flow".to_owned(),
+        caption: "Stationary *J*/*J*_{max} from rest against the width of the bottleneck, beside that of a Newtonian fluid \
+                  (dashed; grey: the clear bore)."
+            .to_owned(),
+        drawing: ChartFigure::grid(2, panels)
+            .share_y()
+            .colour_scale(rate_colours(rates.into_iter()))
+            .width(Width::DoubleColumn)
+            .description("Stationary flow rate against width for several strain rates, with a jump at each.")
+            .draw()?,
+    });
+    if let Ok(counts) = histogram(&near_all, -0.05, 1.05, 22) {
+        let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
+        if heights.iter().sum::<f64>() > 0.0 {
+            let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs")
+                .with(Bars::new("", &counts.edges, &heights));
+            finding.figures.push(ReportFigure {
+                name: "two-peaks".to_owned(),
+                caption: format!(
+                    "Stationary *J*/*J*_{{max}} of all runs from rest within {NEAR} *d* of the jump, fine lattice, all strain \
+                     rates."
+                ),
+                drawing: ChartFigure::new(panel)
+                    .description("Histogram with two peaks.")
+                    .draw()?,
+            });
+        }
+    }
+    Ok(finding)
+}
+
+/// J/Jmax of the runs from rest within reach of the jump.
+fn near<'a>(runs: impl Iterator<Item = &'a Run>, before: f64, after: f64) -> Vec<f64> {
+    runs.filter(|run| run.start == Start::Rest)
+        .filter(|run| run.width > before - NEAR && run.width < after + NEAR)
+        .map(|run| run.flow_rate_ratio)
+        .filter(|ratio| ratio.is_finite())
+        .collect()
+}
+
+/// The mean height over strain rates, before the heights themselves.
+fn drop_heights(quantities: &mut Vec<Quantity>, lattice: Lattice, heights: &[Uncertain]) {
+    if let Some(mean) = weighted_mean(heights) {
+        quantities.insert(
+            0,
+            Quantity {
+                name: format!("height of the jump, {} lattice, mean", lattice.name()),
+                symbol: "Δ*J*/*J*_{max}".to_owned(),
+                unit: String::new(),
+                source: None,
+                ours: Some(mean),
+                method: format!("weighted mean over {} strain rates", heights.len()),
+            },
+        );
+    }
+}
+
+/// The panel with the flow of a Newtonian fluid.
+fn newtonian(panel: ChartPanel) -> ChartPanel {
+    // Radius of the tube to the centres of the wall spheres, and half a diameter.
+    let (radius, half) = (1.5, 0.5);
+    let widths = spaced(2.4, 3.0, 60);
+    let ratios = |inset: f64| -> Vec<f64> {
+        widths
+            .iter()
+            .map(|width| {
+                Newtonian::from_width(width - 2.0 * inset, radius - inset, 0.0)
+                    .map_or(f64::NAN, |fluid| fluid.flow_rate_ratio())
+            })
+            .collect()
+    };
+    panel
+        .with(
+            Curve::new("Newtonian", &widths, &ratios(0.0))
+                .tint(Tint::Black)
+                .pattern(Pattern::Dashed),
+        )
+        .with(
+            Curve::new("Newtonian, clear bore", &widths, &ratios(half))
+                .tint(Tint::Grey)
+                .pattern(Pattern::Dashed),
+        )
+}

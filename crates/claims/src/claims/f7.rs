@@ -1,0 +1,169 @@
+//! F7: how the critical width depends on the strain rate.
+
+use peristalsis_analysis::{LineFit, Uncertain, fit_line, fit_parabola};
+use peristalsis_figures::chart::{Band, ChartFigure, ChartPanel, Line as Curve, Pattern, Points, Tint};
+use peristalsis_figures::{Quantity as Axis, Width};
+
+use super::{LATTICES, agrees, fitted, label, larger, lines_of, spaced, statistics};
+use crate::claim::Claim;
+use crate::critical::Line;
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::text::{estimate, interval, number};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F7",
+    title: "The critical bottleneck narrows linearly with the strain rate",
+    statement: "*w*_{c} = −3.75 *ε̇* + *w*_{max}.",
+    source: "talk",
+    studies: &[
+        "divergence-fine",
+        "divergence-coarse",
+        "branches-fine",
+        "branches-coarse",
+    ],
+    examine,
+};
+
+/// What the source says.
+const SLOPE: f64 = -3.75;
+/// Smallest error of a critical width \[d\] that a fit uses: half of the spacing of the widths about it.
+const LEAST_ERROR: f64 = 0.003;
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let needed = Statistics::FOR_A_VERDICT;
+    let mut found = Statistics::default();
+    let mut quantities = Vec::new();
+    let mut rows = Vec::new();
+    let mut words = Vec::new();
+    let mut holds = false;
+    let mut panel = ChartPanel::new(&label(Axis::StrainRate), &label(Axis::CriticalWidth)).x_range(0.0..);
+    for (place, study) in LATTICES.into_iter().enumerate() {
+        let lines = lines_of(evidence, study)?;
+        let fits = fitted(&lines);
+        let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
+        found = larger(found, statistics(&used));
+        let name = study.0.name();
+        let rate: Vec<f64> = used.iter().map(|line| line.strain_rate).collect();
+        let critical: Vec<Uncertain> = fits.iter().map(|(_, fit)| fit.critical_width).collect();
+        let width: Vec<f64> = critical.iter().map(|one| one.value).collect();
+        let error: Vec<f64> = critical.iter().map(|one| one.error.max(LEAST_ERROR)).collect();
+        if rate.is_empty() {
+            continue;
+        }
+        panel = panel.with(
+            Points::new(&format!("{name} lattice"), &rate, &width)
+                .y_errors(&error)
+                .series(place),
+        );
+        let Ok(line) = fit_line(&rate, &width, &error) else {
+            continue;
+        };
+        let stretched = stretched(&line);
+        let linearity = fit_parabola(&rate, &width, &error).ok();
+        holds |= agrees(&stretched, SLOPE);
+        words.push(format!(
+            "{} on the {name} lattice",
+            estimate(&stretched)
+        ));
+        panel = with_line(panel, &line, &rate, place);
+        for (symbol, what, source, ours) in [
+            ("d*w*_{c}/d*ε̇*", "slope of the critical width", Some(SLOPE), stretched),
+            ("*w*_{max}", "critical width at strain rate 0", None, line.intercept),
+        ] {
+            quantities.push(Quantity {
+                name: format!("{what}, {name} lattice"),
+                symbol: symbol.to_owned(),
+                unit: if source.is_some() { "d t" } else { "d" }.to_owned(),
+                source,
+                ours: Some(ours),
+                method: format!(
+                    "weighted line through {} strain rates; χ^2 = {} for {} degrees of freedom, error stretched by {}",
+                    rate.len(),
+                    number(line.chi_squared, 1),
+                    line.degrees_of_freedom,
+                    number(line.scale_factor(), 1),
+                ),
+            });
+        }
+        for (rate, critical) in rate.iter().zip(&critical) {
+            rows.push(vec![
+                name.clone(),
+                number(*rate, 3),
+                estimate(critical),
+                interval(critical),
+            ]);
+        }
+        if let Some(curve) = linearity {
+            quantities.push(Quantity {
+                name: format!("curvature of the critical width, {name} lattice"),
+                symbol: "*w*_{c}″/2".to_owned(),
+                unit: "d t^2".to_owned(),
+                source: Some(0.0),
+                ours: Some(curve.quadratic),
+                method: format!("parabola; probability of a line: {}", number(curve.linearity, 3)),
+            });
+        }
+    }
+    if words.is_empty() {
+        return Ok(Finding::nothing("Too few strain rates with a critical width.", found, &needed));
+    }
+    panel = panel.with(
+        Curve::new("slope −3.75 (talk)", &[0.02, 0.12], &[3.0 - 0.075, 3.0 - 0.45])
+            .tint(Tint::Black)
+            .pattern(Pattern::Dotted),
+    );
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        format!("The slope is {}; the source says −3.75.", words.join(" and ")),
+        found,
+        &needed,
+    );
+    finding.quantities = quantities;
+    finding.paragraphs.push(
+        "*w*_{c} of each strain rate is that of the power law of F2. The arrangement of the wall spheres, which the source does \
+         not give, decides the slope: see Q2."
+            .to_owned(),
+    );
+    finding.tables.push(ReportTable {
+        caption: "Critical width of each strain rate.".to_owned(),
+        head: ["lattice", "*ε̇*", "*w*_{c}/*d*", "95 %"].map(str::to_owned).to_vec(),
+        rows,
+    });
+    finding.weaknesses.push(
+        "Where *χ*^2 exceeds its degrees of freedom, the line or the errors of *w*_{c} are not the whole truth; the error of \
+         the slope is then stretched by Birge's ratio."
+            .to_owned(),
+    );
+    finding.figures.push(ReportFigure {
+        name: "critical-width".to_owned(),
+        caption: "Critical width against strain rate on both lattices with fitted lines and their 68 per cent bands; dotted: \
+                  the slope of the source through *w*_{max} = 2*a*."
+            .to_owned(),
+        drawing: ChartFigure::new(panel)
+            .width(Width::SingleColumn)
+            .description("Critical width against strain rate with fitted lines.")
+            .draw()?,
+    });
+    Ok(finding)
+}
+
+/// The slope with its error stretched to the scatter about the line.
+fn stretched(line: &LineFit) -> Uncertain {
+    Uncertain::normal(line.slope.value, line.slope.error * line.scale_factor())
+}
+
+fn with_line(panel: ChartPanel, line: &LineFit, rates: &[f64], place: usize) -> ChartPanel {
+    let largest = rates.iter().copied().fold(0.0, f64::max);
+    let x = spaced(0.0, largest, 40);
+    let at: Vec<Uncertain> = x.iter().map(|rate| line.at(*rate)).collect();
+    let reach = line.scale_factor();
+    let side = |sign: f64| -> Vec<f64> {
+        at.iter().map(|one| one.value + sign * reach * one.error).collect()
+    };
+    let middle: Vec<f64> = at.iter().map(|one| one.value).collect();
+    panel
+        .with(Band::new("", &x, &side(-1.0), &side(1.0)).series(place))
+        .with(Curve::new("", &x, &middle).series(place).weight(0.8))
+}

@@ -1,0 +1,290 @@
+//! F8: what the volume fraction changes.
+
+use peristalsis_analysis::{Uncertain, fit_line};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
+use peristalsis_figures::{Quantity as Axis, Width};
+
+use super::label;
+use crate::branches::Branch;
+use crate::claim::Claim;
+use crate::critical::{Line, WINDOW, lines_at_own_threshold, weighted_mean};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::runs::{Run, Start};
+use crate::text::{estimate, number, with_error};
+
+pub(super) const CLAIM: Claim = Claim {
+    id: "F8",
+    title: "Denser grains flow slower, at the same critical bottleneck",
+    statement: "At one *ε̇*, for 0.15 ≤ *ρ* ≤ 0.60: *J*/*J*_{max} decreases with *ρ*, *w*_{c} hardly depends on *ρ*, and \
+                *α* ~ 1.",
+    source: "talk",
+    studies: &["density-fine", "density-coarse"],
+    examine,
+};
+
+/// For this claim: one strain rate, four densities.
+const NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 8,
+    replicates: 10,
+    runs: 320,
+};
+/// Densities that a verdict takes.
+const DENSITIES: usize = 4;
+/// Change of w_c over the range of densities, as a fraction of w_c, up to which it hardly depends on them.
+const HARDLY: f64 = 0.02;
+/// Width at which the flow of all densities is compared \[d\]: all of them are jammed there.
+const COMPARED: f64 = 2.6;
+
+/// One density.
+struct Density {
+    fraction: f64,
+    branch: Branch,
+    critical: Option<Uncertain>,
+    exponent: Option<Uncertain>,
+    ratio: Option<(f64, f64)>,
+    statistics: Statistics,
+}
+
+fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+    let mut found = Statistics::default();
+    let mut parts = Vec::new();
+    let mut quantities = Vec::new();
+    let mut rows = Vec::new();
+    let mut panels: Vec<ChartPanel> = Vec::new();
+    let mut enough = false;
+    let mut holds = false;
+    for (lattice, study) in [("fine", "density-fine"), ("coarse", "density-coarse")] {
+        let densities = densities(&evidence.study(study)?.runs);
+        if densities.is_empty() {
+            continue;
+        }
+        let least = densities
+            .iter()
+            .map(|density| density.statistics)
+            .reduce(|one, other| Statistics {
+                strain_rates: 1,
+                widths: one.widths.min(other.widths),
+                replicates: one.replicates.min(other.replicates),
+                runs: one.runs + other.runs,
+            })
+            .unwrap_or_default();
+        found = super::larger(found, least);
+        enough |= densities.len() >= DENSITIES;
+        let judged = judge(&densities);
+        holds |= judged.all();
+        parts.push(format!("{lattice} lattice: {}", judged.in_words()));
+        quantities.extend(judged.quantities(lattice));
+        rows.extend(densities.iter().map(|density| {
+            vec![
+                lattice.to_owned(),
+                number(density.fraction, 2),
+                density.ratio.map_or("–".to_owned(), |(mean, error)| with_error(mean, error)),
+                density.critical.map_or("–".to_owned(), |one| estimate(&one)),
+                density.exponent.map_or("–".to_owned(), |one| estimate(&one)),
+            ]
+        }));
+        panels.extend(panels_of(lattice, &densities));
+    }
+    if parts.is_empty() {
+        return Ok(Finding::nothing("No runs yet.", found, &NEEDED));
+    }
+    let needed = if enough {
+        NEEDED
+    } else {
+        // Too few densities never suffice.
+        Statistics { strain_rates: usize::MAX, ..NEEDED }
+    };
+    let mut finding = Finding::new(
+        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        parts.join(". "),
+        found,
+        &needed,
+    );
+    finding.needed = NEEDED;
+    finding.quantities = quantities;
+    finding.paragraphs.push(format!(
+        "J/Jmax of the jammed flow is compared at *w* = {COMPARED} *d*; *w*_{{c}} and *α* are those of the power law of F2 at \
+         each density, the threshold midway up that density's jump; where no power law could be fitted, *w*_{{c}} is the middle \
+         of the bracket of the jump. “Hardly” is taken as a change by less than {} per cent from the least to the largest \
+         density.",
+        100.0 * HARDLY
+    ));
+    finding.tables.push(ReportTable {
+        caption: format!("Density dependence: flow at *w* = {COMPARED} *d*, critical width, exponent of the transition time."),
+        head: ["lattice", "*ρ*", "*J*/*J*_{max}", "*w*_{c}/*d*", "*α*"].map(str::to_owned).to_vec(),
+        rows,
+    });
+    finding.weaknesses.push(
+        "One strain rate a lattice: 0.1 on the fine, 0.05 on the coarse one. At 0.60 these soft grains overlap strongly."
+            .to_owned(),
+    );
+    finding.figures.push(ReportFigure {
+        name: "density".to_owned(),
+        caption: "Density dependence on the fine and the coarse lattice: stationary flow against width, critical width against \
+                  density, exponent against density."
+            .to_owned(),
+        drawing: ChartFigure::grid(3, panels)
+            .width(Width::DoubleColumn)
+            .description("Three panels for each lattice about the density dependence.")
+            .draw()?,
+    });
+    Ok(finding)
+}
+
+fn densities(runs: &[Run]) -> Vec<Density> {
+    // The number of grains is whole, so that fractions differ a little from those asked for.
+    let key = |run: &Run| (run.volume_fraction * 100.0).round();
+    let mut keys: Vec<f64> = runs.iter().map(key).collect();
+    keys.sort_by(f64::total_cmp);
+    keys.dedup();
+    keys.into_iter()
+        .map(|wanted| {
+            let here: Vec<Run> = runs.iter().filter(|run| key(run) == wanted).cloned().collect();
+            let branch = Branch::of(here.iter(), Start::Rest);
+            let line = lines_at_own_threshold(&here).into_iter().next();
+            let fit = line.as_ref().and_then(|line: &Line<'_>| line.fit(WINDOW));
+            let ratio = branch
+                .points
+                .iter()
+                .find(|point| (point.width - COMPARED).abs() < 0.06)
+                .map(|point| (point.mean, point.error));
+            Density {
+                fraction: here[0].volume_fraction,
+                critical: fit
+                    .map(|fit| fit.critical_width)
+                    .or_else(|| branch.drop().map(|drop| drop.width())),
+                exponent: fit.map(|fit| fit.exponent),
+                ratio,
+                statistics: Statistics {
+                    strain_rates: 1,
+                    widths: branch.points.len(),
+                    replicates: branch.points.iter().map(|point| point.runs).min().unwrap_or(0),
+                    runs: here.len(),
+                },
+                branch,
+            }
+        })
+        .collect()
+}
+
+/// The three parts of the claim.
+struct Judged {
+    slower: bool,
+    change: Option<Uncertain>,
+    relative_change: f64,
+    exponent: Option<Uncertain>,
+}
+
+fn judge(densities: &[Density]) -> Judged {
+    let ratios: Vec<f64> = densities
+        .iter()
+        .filter_map(|density| Some(density.ratio?.0))
+        .collect();
+    let (mut fraction, mut width, mut error) = (vec![], vec![], vec![]);
+    for density in densities {
+        if let Some(critical) = density.critical {
+            fraction.push(density.fraction);
+            width.push(critical.value);
+            error.push(critical.error.max(0.003));
+        }
+    }
+    let change = fit_line(&fraction, &width, &error).ok().map(|line| {
+        let stretch = line.scale_factor();
+        Uncertain::normal(line.slope.value, line.slope.error * stretch)
+    });
+    let (least, largest) = width
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(least, largest), value| {
+            (least.min(*value), largest.max(*value))
+        });
+    let exponents: Vec<Uncertain> = densities.iter().filter_map(|density| density.exponent).collect();
+    Judged {
+        slower: ratios.len() > 1 && ratios.windows(2).all(|pair| pair[1] < pair[0]),
+        change,
+        relative_change: (largest - least) / largest,
+        exponent: weighted_mean(&exponents),
+    }
+}
+
+impl Judged {
+    fn all(&self) -> bool {
+        self.slower
+            && self.relative_change < HARDLY
+            && self.exponent.is_some_and(|exponent| super::agrees(&exponent, 1.0))
+    }
+
+    fn in_words(&self) -> String {
+        format!(
+            "the flow {} with density, *w*_{{c}} changes by {} per cent over the range, *α* = {}",
+            if self.slower { "decreases" } else { "does not always decrease" },
+            number(100.0 * self.relative_change, 1),
+            self.exponent.map_or("–".to_owned(), |one| estimate(&one)),
+        )
+    }
+
+    fn quantities(&self, lattice: &str) -> Vec<Quantity> {
+        vec![
+            Quantity {
+                name: format!("change of the critical width with the volume fraction, {lattice} lattice"),
+                symbol: "d*w*_{c}/d*ρ*".to_owned(),
+                unit: "d".to_owned(),
+                source: Some(0.0),
+                ours: self.change,
+                method: "weighted line through the densities".to_owned(),
+            },
+            Quantity {
+                name: format!("exponent of the mean transition time, all densities, {lattice} lattice"),
+                symbol: "*α*".to_owned(),
+                unit: String::new(),
+                source: Some(1.0),
+                ours: self.exponent,
+                method: "weighted mean over the densities".to_owned(),
+            },
+        ]
+    }
+}
+
+fn panels_of(lattice: &str, densities: &[Density]) -> [ChartPanel; 3] {
+    let mut flow = ChartPanel::new(&label(Axis::Width), &label(Axis::FlowRateRatio))
+        .y_range(-0.05..=1.1)
+        .title(&format!("{lattice} lattice"));
+    for (place, density) in densities.iter().enumerate() {
+        let points = &density.branch.points;
+        let column = |value: fn(&crate::branches::BranchPoint) -> f64| -> Vec<f64> {
+            points.iter().map(value).collect()
+        };
+        flow = flow.with(
+            Points::new(
+                &format!("*ρ* = {}", number(density.fraction, 2)),
+                &column(|point| point.width),
+                &column(|point| point.mean),
+            )
+            .y_errors(&column(|point| if point.error.is_finite() { point.error } else { 0.0 }))
+            .series(place)
+            .joined(),
+        );
+    }
+    let against = |name: String, value: &dyn Fn(&Density) -> Option<Uncertain>| {
+        let known: Vec<(f64, Uncertain)> = densities
+            .iter()
+            .filter_map(|density| Some((density.fraction, value(density)?)))
+            .filter(|(_, one)| one.error.is_finite())
+            .collect();
+        let panel = ChartPanel::new(&label(Axis::VolumeFraction), &name);
+        if known.is_empty() {
+            return panel.with(Points::new("", &[0.15, 0.6], &[1.0, 1.0]).open());
+        }
+        let x: Vec<f64> = known.iter().map(|one| one.0).collect();
+        let y: Vec<f64> = known.iter().map(|one| one.1.value).collect();
+        let error: Vec<f64> = known.iter().map(|one| one.1.error).collect();
+        panel.with(Points::new("", &x, &y).y_errors(&error))
+    };
+    [
+        flow,
+        against(label(Axis::CriticalWidth), &|density| density.critical),
+        against("exponent, *α*".to_owned(), &|density| density.exponent),
+    ]
+}

@@ -1,0 +1,122 @@
+//! One claim a file, and what they share.
+
+mod f1;
+mod f2;
+mod f3;
+mod f4;
+mod f5;
+mod f6;
+mod f7;
+mod f8;
+mod f9;
+mod q1;
+mod q2;
+mod q3;
+mod q4;
+mod q5;
+
+use peristalsis_analysis::{ScatterLawFit, Uncertain};
+use peristalsis_figures::{ColourScale, Quantity as Axis, Units};
+
+use crate::claim::Claim;
+use crate::critical::{Line, Thresholds, WINDOW, lines};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::finding::Statistics;
+use crate::runs::Lattice;
+
+/// All claims, in the order of the report.
+pub const CLAIMS: &[Claim] = &[
+    f1::CLAIM,
+    f2::CLAIM,
+    f3::CLAIM,
+    f4::CLAIM,
+    f5::CLAIM,
+    f6::CLAIM,
+    f7::CLAIM,
+    f8::CLAIM,
+    f9::CLAIM,
+    q1::CLAIM,
+    q2::CLAIM,
+    q3::CLAIM,
+    q4::CLAIM,
+    q5::CLAIM,
+];
+
+/// Fraction of grains outside the tube beyond which a strain rate is left out of fits: another system flows then.
+const MOST_ESCAPED: f64 = 0.05;
+
+/// Both lattices with the names of their studies of transition times and of branches.
+const LATTICES: [(Lattice, &str, &str); 2] = [
+    (Lattice::FINE, "divergence-fine", "branches-fine"),
+    (Lattice::COARSE, "divergence-coarse", "branches-coarse"),
+];
+
+/// Label of an axis.
+fn label(quantity: Axis) -> String {
+    quantity.label(Units::Linear)
+}
+
+/// The lines of the study of transition times on one lattice, watched midway between the branches.
+fn lines_of<'a>(
+    evidence: &'a Evidence,
+    (lattice, divergence, branches): (Lattice, &str, &str),
+) -> Result<Vec<Line<'a>>, ClaimError> {
+    let thresholds = Thresholds::of(&evidence.study(branches)?.runs, lattice);
+    Ok(lines(&evidence.study(divergence)?.runs, lattice, &thresholds))
+}
+
+/// The lines that hold their grains, each with its fit; those of which too many grains are outside are left out.
+fn fitted<'a, 'b>(lines: &'b [Line<'a>]) -> Vec<(&'b Line<'a>, ScatterLawFit)> {
+    lines
+        .iter()
+        .filter(|line| line.escaped() <= MOST_ESCAPED)
+        .filter_map(|line| Some((line, line.fit(WINDOW)?)))
+        .collect()
+}
+
+/// How much is behind some lines.
+fn statistics(lines: &[&Line<'_>]) -> Statistics {
+    Statistics {
+        strain_rates: lines.len(),
+        widths: lines.iter().map(|line| line.widths().len()).min().unwrap_or(0),
+        replicates: lines.iter().map(|line| line.replicates()).min().unwrap_or(0),
+        runs: lines.iter().map(|line| line.number()).sum(),
+    }
+}
+
+/// The better of two.
+fn larger(one: Statistics, other: Statistics) -> Statistics {
+    let sum = one.runs + other.runs;
+    let best = if (one.strain_rates, one.runs) >= (other.strain_rates, other.runs) {
+        one
+    } else {
+        other
+    };
+    Statistics { runs: sum, ..best }
+}
+
+/// Colours for strain rates.
+fn rate_colours(rates: impl Iterator<Item = f64>) -> ColourScale {
+    let (least, largest) = rates.fold((f64::INFINITY, 0.0_f64), |(least, largest), rate| {
+        (least.min(rate), largest.max(rate))
+    });
+    let (least, largest) = if least < largest {
+        (least, largest)
+    } else {
+        (0.02, 0.2)
+    };
+    ColourScale::new(&label(Axis::StrainRate), least, largest).logarithmic()
+}
+
+/// Whether a value is within two standard errors of what the source says.
+fn agrees(found: &Uncertain, source: f64) -> bool {
+    found.deviations_from(source).abs() <= 2.0
+}
+
+/// Equally spaced numbers from end to end.
+fn spaced(from: f64, to: f64, count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|place| from + (to - from) * place as f64 / (count.max(2) - 1) as f64)
+        .collect()
+}

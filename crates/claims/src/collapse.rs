@@ -1,0 +1,292 @@
+//! Collapse of the curves of several strain rates, with free exponents.
+
+use peristalsis_analysis::{
+    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, LEAST_OVERLAP, Scaling, ScatterLawFit,
+    Uncertain, WidthEnsemble,
+};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Points, Tint};
+use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Units, Width};
+
+use crate::critical::Line;
+use crate::error::ClaimError;
+use crate::finding::{Quantity, ReportFigure, ReportTable};
+use crate::text::{estimate, number};
+
+/// Searches for the best collapse, resamples for its errors, and the seed of both.
+const STARTS: usize = 12;
+const RESAMPLES: usize = 200;
+const SEED: u64 = 20_120_331;
+/// First steps of the exponents.
+const STEPS: [f64; 2] = [0.3, 0.15];
+
+/// Curves of several strain rates, and how well they collapse.
+#[derive(Clone, Debug)]
+pub(crate) struct Collapsed {
+    /// Fitted critical width of each curve.
+    critical: Vec<f64>,
+    curves: Vec<Curve>,
+    /// Exponents of the source, and S there.
+    claimed: ([f64; 2], Option<(f64, f64)>),
+    fit: CollapseFit,
+    exponents: Vec<Uncertain>,
+    left_out: Vec<(f64, Vec<f64>)>,
+}
+
+/// Collapses a quantity of the transition times, mean or variance; `None` where too few strain rates have it.
+pub(crate) fn collapse(
+    fits: &[(&Line<'_>, ScatterLawFit)],
+    claimed: [f64; 2],
+    quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
+) -> Option<Collapsed> {
+    let mut critical = Vec::new();
+    let mut curves = Vec::new();
+    for (line, fit) in fits {
+        let points: Vec<CurvePoint> = line
+            .ensembles()
+            .iter()
+            .filter(|ensemble| ensemble.observed >= 3 * ensemble.censored && ensemble.observed > 2)
+            .filter(|ensemble| ensemble.width < fit.critical_width.value)
+            .filter(|ensemble| {
+                ensemble
+                    .naive_mean
+                    .is_some_and(|mean| mean > 3.0 * line.period())
+            })
+            .filter_map(|ensemble| {
+                let found = quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
+                Some(CurvePoint {
+                    x: ensemble.width,
+                    y: found.value,
+                    error: found.error,
+                })
+            })
+            .collect();
+        if points.len() >= 3 {
+            critical.push(fit.critical_width.value);
+            curves.push(Curve {
+                parameter: line.strain_rate,
+                points,
+            });
+        }
+    }
+    if curves.len() < 3 {
+        return None;
+    }
+    let scaling = Scaling::CriticalKnown(critical.clone());
+    let transform = |parameters: &[f64], curve: usize, parameter: f64, point: CurvePoint| {
+        scaling.apply(parameters, curve, parameter, point)
+    };
+    let collapse = Collapse {
+        curves: &curves,
+        transform: &transform,
+        least_overlap: LEAST_OVERLAP,
+    };
+    let fit = collapse.fit(&claimed, &STEPS, STARTS, SEED).ok()?;
+    let bootstrap = Bootstrap {
+        resamples: RESAMPLES,
+        seed: SEED,
+    };
+    let exponents = collapse.bootstrap(&fit, &STEPS, bootstrap).ok()?.estimates;
+    let left_out = collapse
+        .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
+        .map(|fits| {
+            curves
+                .iter()
+                .zip(fits)
+                .map(|(curve, fit)| (curve.parameter, fit.parameters))
+                .collect()
+        })
+        .unwrap_or_default();
+    let claimed_quality = collapse
+        .quality(&claimed)
+        .ok()
+        .map(|found| (found.quality, found.overlap));
+    Some(Collapsed {
+        critical,
+        claimed: (claimed, claimed_quality),
+        fit,
+        exponents,
+        left_out,
+        curves,
+    })
+}
+
+impl Collapsed {
+    /// Whether both exponents of the source lie within the range that leaving out one curve, or the errors, span.
+    pub(crate) fn agrees(&self) -> bool {
+        (0..2).all(|place| {
+            let found = &self.exponents[place];
+            let (least, largest) = self.range(place);
+            let reach = 2.0 * found.error;
+            (least - reach..=largest + reach).contains(&self.claimed.0[place])
+        })
+    }
+
+    /// Range of an exponent over fits without one of the curves.
+    fn range(&self, place: usize) -> (f64, f64) {
+        let value = self.exponents[place].value;
+        self.left_out
+            .iter()
+            .map(|(_, parameters)| parameters[place])
+            .fold((value, value), |(least, largest), value| {
+                (least.min(value), largest.max(value))
+            })
+    }
+
+    /// The exponents with the quality of the collapse.
+    pub(crate) fn in_words(&self) -> String {
+        format!(
+            "*a* = {}, *b* = {} with *S* = {} at an overlap of {}",
+            estimate(&self.exponents[0]),
+            estimate(&self.exponents[1]),
+            number(self.fit.quality.quality, 1),
+            number(self.fit.quality.overlap, 2),
+        )
+    }
+
+    /// The exponents as quantities.
+    pub(crate) fn quantities(&self, name: &str, symbols: [&str; 2]) -> Vec<Quantity> {
+        let words = ["power of the strain rate in the time", "power of the strain rate in the distance"];
+        (0..2)
+            .map(|place| Quantity {
+                name: format!("{}, {name} lattice", words[place]),
+                symbol: symbols[place].to_owned(),
+                unit: String::new(),
+                source: Some(self.claimed.0[place]),
+                ours: Some(self.exponents[place]),
+                method: format!(
+                    "collapse of {} curves, resampled points",
+                    self.curves.len()
+                ),
+            })
+            .collect()
+    }
+
+    /// Quality at the exponents of the source and at the best, and the fits without one curve.
+    pub(crate) fn tables(&self, name: &str) -> Vec<ReportTable> {
+        let mut rows = vec![vec![
+            "source".to_owned(),
+            number(self.claimed.0[0], 2),
+            number(self.claimed.0[1], 2),
+            self.claimed.1.map_or("–".to_owned(), |found| number(found.0, 1)),
+            self.claimed.1.map_or("–".to_owned(), |found| number(found.1, 2)),
+        ]];
+        rows.push(vec![
+            "best".to_owned(),
+            estimate(&self.exponents[0]),
+            estimate(&self.exponents[1]),
+            number(self.fit.quality.quality, 1),
+            number(self.fit.quality.overlap, 2),
+        ]);
+        rows.extend(self.left_out.iter().map(|(rate, parameters)| {
+            vec![
+                format!("without *ε̇* = {rate}"),
+                number(parameters[0], 2),
+                number(parameters[1], 2),
+                String::new(),
+                String::new(),
+            ]
+        }));
+        vec![ReportTable {
+            caption: format!(
+                "Collapse on the {name} lattice: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
+            ),
+            head: ["", "*a*", "*b*", "*S*", "overlap"].map(str::to_owned).to_vec(),
+            rows,
+        }]
+    }
+
+    /// The scaled points of every curve: abscissa, ordinate, error.
+    fn scaled(&self, exponents: &[f64]) -> Vec<(f64, [Vec<f64>; 3])> {
+        let scaling = Scaling::CriticalKnown(self.critical.clone());
+        self.curves
+            .iter()
+            .enumerate()
+            .map(|(place, curve)| {
+                let mut columns: [Vec<f64>; 3] = Default::default();
+                for point in &curve.points {
+                    let scaled = scaling.apply(exponents, place, curve.parameter, *point);
+                    // The scaling works in logarithms.
+                    let (x, y) = (scaled.x.exp(), scaled.y.exp());
+                    for (column, value) in columns.iter_mut().zip([x, y, y * scaled.error]) {
+                        column.push(value);
+                    }
+                }
+                (curve.parameter, columns)
+            })
+            .collect()
+    }
+}
+
+/// Both lattices scaled as the source says, and as collapses best.
+pub(crate) fn figure(
+    found: &[(String, Collapsed)],
+    claimed: [f64; 2],
+    name: &str,
+    [x_label, y_label]: [&str; 2],
+    slope: f64,
+    caption: &str,
+) -> Result<ReportFigure, ClaimError> {
+    let mut panels = Vec::new();
+    for (lattice, collapsed) in found {
+        let best = &collapsed.fit.parameters;
+        let titles = [
+            format!("{lattice}, exponents of the source"),
+            format!("{lattice}, {} and {}", number(best[0], 2), number(best[1], 2)),
+        ];
+        for (title, exponents) in titles.iter().zip([claimed.to_vec(), best.clone()]) {
+            let is_claimed = exponents == claimed;
+            let mut panel = ChartPanel::new(
+                if is_claimed { x_label } else { "(*w*_{c} − *w*)/*ε̇*^{*b*}" },
+                if is_claimed { y_label } else { "scaled by *ε̇*^{*a*}" },
+            )
+            .title(title)
+            .x_scale(Scale::Logarithmic)
+            .y_scale(Scale::Logarithmic);
+            let scaled = collapsed.scaled(&exponents);
+            for (number, (rate, [x, y, error])) in scaled.iter().enumerate() {
+                panel = panel.with(
+                    Points::new("", x, y)
+                        .y_errors(error)
+                        .series(number)
+                        .tint(Tint::Value(*rate)),
+                );
+            }
+            let all = || scaled.iter().flat_map(|(_, [x, y, _])| x.iter().zip(y));
+            let (least, largest) = all().fold((f64::INFINITY, 0.0_f64), |(least, largest), (x, _)| {
+                (least.min(*x), largest.max(*x))
+            });
+            let middle = all()
+                .map(|(x, y)| y.ln() - slope * x.ln())
+                .sum::<f64>()
+                / all().count().max(1) as f64;
+            let ends = [least, largest];
+            panel = panel.with(
+                Drawn::new("", &ends, &ends.map(|x| (middle + slope * x.ln()).exp()))
+                    .tint(Tint::Black)
+                    .pattern(Pattern::Dashed)
+                    .weight(0.8),
+            );
+            panels.push(panel);
+        }
+    }
+    let rates = || {
+        found
+            .iter()
+            .flat_map(|(_, collapsed)| collapsed.curves.iter().map(|curve| curve.parameter))
+    };
+    let scale = ColourScale::new(
+        &Axis::StrainRate.label(Units::Linear),
+        rates().fold(f64::INFINITY, f64::min),
+        rates().fold(0.0, f64::max),
+    )
+    .logarithmic();
+    Ok(ReportFigure {
+        name: name.to_owned(),
+        caption: caption.to_owned(),
+        drawing: ChartFigure::grid(2, panels)
+            .colour_scale(scale)
+            .width(Width::DoubleColumn)
+            .description("Scaled curves of several strain rates.")
+            .draw()?,
+    })
+}

@@ -1,0 +1,278 @@
+//! Transition times at one strain rate, and the power laws fitted to them.
+
+use peristalsis_analysis::{
+    Family, ScatterLawFit, Transition, Uncertain, WidthEnsemble, ensembles_by_width,
+    fit_law_with_scatter,
+};
+use peristalsis_run::THRESHOLDS;
+
+use crate::branches::{Branch, mean_and_error};
+use crate::runs::{Lattice, Run, Start};
+
+/// Widths closest to the critical one that a fit uses, of those at which at least half of the runs had a transition.
+pub(crate) const WINDOW: usize = 6;
+/// Mean transition time, in periods, below which averages over periods do not resolve it.
+const RESOLVED: f64 = 3.0;
+
+/// The runs from rest of one tube at one strain rate, watched at one threshold.
+#[derive(Clone, Debug)]
+pub(crate) struct Line<'a> {
+    /// The wall.
+    pub(crate) lattice: Lattice,
+    /// c/lambda \[1/t\].
+    pub(crate) strain_rate: f64,
+    /// J/Jmax whose crossing counts.
+    pub(crate) threshold: f64,
+    runs: Vec<&'a Run>,
+}
+
+/// Thresholds midway between the branches at the strain rates where these are known.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Thresholds {
+    /// Strain rate and threshold, ascending.
+    known: Vec<(f64, f64)>,
+}
+
+impl Thresholds {
+    /// The thresholds that the branches from rest of one lattice suggest.
+    pub(crate) fn of(runs: &[Run], lattice: Lattice) -> Self {
+        let known = strain_rates(runs.iter().filter(|run| run.lattice == lattice))
+            .into_iter()
+            .filter_map(|rate| {
+                let here = runs
+                    .iter()
+                    .filter(|run| run.lattice == lattice && run.strain_rate == rate);
+                Some((rate, Branch::of(here, Start::Rest).drop()?.threshold()))
+            })
+            .collect();
+        Self { known }
+    }
+
+    /// The threshold at a strain rate, between known ones on a straight line, of [`THRESHOLDS`] the nearest.
+    pub(crate) fn at(&self, strain_rate: f64) -> f64 {
+        let above = self.known.iter().find(|known| known.0 >= strain_rate);
+        let below = self.known.iter().rev().find(|known| known.0 <= strain_rate);
+        let wanted = match (below, above) {
+            (Some(below), Some(above)) if above.0 > below.0 => {
+                below.1
+                    + (above.1 - below.1) * (strain_rate - below.0) / (above.0 - below.0)
+            }
+            (Some(one), _) | (None, Some(one)) => one.1,
+            (None, None) => 0.5,
+        };
+        THRESHOLDS
+            .into_iter()
+            .min_by(|one, other| (one - wanted).abs().total_cmp(&(other - wanted).abs()))
+            .unwrap_or(0.5)
+    }
+}
+
+/// The distinct strain rates, ascending.
+pub(crate) fn strain_rates<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<f64> {
+    let mut rates: Vec<f64> = runs.map(|run| run.strain_rate).collect();
+    rates.sort_by(f64::total_cmp);
+    rates.dedup();
+    rates
+}
+
+/// The lines of a study, by ascending strain rate.
+pub(crate) fn lines<'a>(runs: &'a [Run], lattice: Lattice, thresholds: &Thresholds) -> Vec<Line<'a>> {
+    let of_lattice = || {
+        runs.iter()
+            .filter(move |run| run.lattice == lattice && run.start == Start::Rest)
+    };
+    strain_rates(of_lattice())
+        .into_iter()
+        .map(|strain_rate| Line {
+            lattice,
+            strain_rate,
+            threshold: thresholds.at(strain_rate),
+            runs: of_lattice()
+                .filter(|run| run.strain_rate == strain_rate)
+                .collect(),
+        })
+        .collect()
+}
+
+/// The lines of some runs, watched at the threshold nearest to that of the study.
+pub(crate) fn lines_at_own_threshold(runs: &[Run]) -> Vec<Line<'_>> {
+    let Some(lattice) = runs.first().map(|run| run.lattice) else {
+        return Vec::new();
+    };
+    let mut known: Vec<(f64, f64)> = runs
+        .iter()
+        .map(|run| (run.strain_rate, run.transition_threshold))
+        .collect();
+    known.sort_by(|one, other| one.0.total_cmp(&other.0));
+    known.dedup_by(|one, other| one.0 == other.0);
+    lines(runs, lattice, &Thresholds { known })
+}
+
+impl Line<'_> {
+    /// The same runs watched at another threshold.
+    pub(crate) fn at_threshold(&self, threshold: f64) -> Self {
+        Self {
+            threshold,
+            ..self.clone()
+        }
+    }
+
+    /// Width and transition of every run.
+    pub(crate) fn columns(&self) -> (Vec<f64>, Vec<Transition>) {
+        self.runs
+            .iter()
+            .map(|run| (run.width, run.transition_at(self.threshold)))
+            .unzip()
+    }
+
+    /// Period of the wave \[t\].
+    pub(crate) fn period(&self) -> f64 {
+        1.0 / self.strain_rate
+    }
+
+    /// Distinct widths, ascending.
+    pub(crate) fn widths(&self) -> Vec<f64> {
+        let mut widths: Vec<f64> = self.runs.iter().map(|run| run.width).collect();
+        widths.sort_by(f64::total_cmp);
+        widths.dedup();
+        widths
+    }
+
+    /// Runs of the width that has fewest.
+    pub(crate) fn replicates(&self) -> usize {
+        self.widths()
+            .into_iter()
+            .map(|width| self.runs.iter().filter(|run| run.width == width).count())
+            .min()
+            .unwrap_or(0)
+    }
+
+    /// Runs.
+    pub(crate) fn number(&self) -> usize {
+        self.runs.len()
+    }
+
+    /// Most grains outside the tube, as a fraction, at any width from which on the fits look.
+    pub(crate) fn escaped(&self) -> f64 {
+        let from = self.window(WINDOW).map_or(f64::NEG_INFINITY, |window| window.0[0]);
+        let fractions: Vec<f64> = self
+            .runs
+            .iter()
+            .filter(|run| run.width >= from)
+            .map(|run| run.escaped_fraction())
+            .collect();
+        if fractions.is_empty() {
+            return 0.0;
+        }
+        mean_and_error(&fractions).0
+    }
+
+    /// The transition times at each width.
+    pub(crate) fn ensembles(&self) -> Vec<WidthEnsemble> {
+        let (width, transitions) = self.columns();
+        ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default()
+    }
+
+    /// The runs at the last widths at which at least half of the runs had a transition that averages over periods
+    /// resolve, and at all beyond; `None` with fewer than three such widths.
+    pub(crate) fn window(&self, number: usize) -> Option<(Vec<f64>, Vec<Transition>)> {
+        let usable: Vec<f64> = self
+            .ensembles()
+            .iter()
+            .filter(|ensemble| ensemble.observed >= ensemble.censored)
+            .filter(|ensemble| {
+                ensemble
+                    .naive_mean
+                    .is_some_and(|mean| mean > RESOLVED * self.period())
+            })
+            .map(|ensemble| ensemble.width)
+            .collect();
+        if usable.len() < 3 {
+            return None;
+        }
+        let from = usable[usable.len().saturating_sub(number)];
+        let (width, transitions) = self.columns();
+        Some(
+            width
+                .into_iter()
+                .zip(transitions)
+                .filter(|(width, _)| *width >= from)
+                .unzip(),
+        )
+    }
+
+    /// Power laws of mean and scatter in a window of so many widths next to the critical one.
+    pub(crate) fn fit(&self, number: usize) -> Option<ScatterLawFit> {
+        let (width, transitions) = self.window(number)?;
+        fit_law_with_scatter(&width, &transitions).ok()
+    }
+
+    /// Power laws in all windows, from four widths to all: stability against the choice.
+    pub(crate) fn fits(&self) -> Vec<(usize, ScatterLawFit)> {
+        (4..=self.widths().len())
+            .filter_map(|number| {
+                let (width, _) = self.window(number)?;
+                let mut distinct = width;
+                distinct.sort_by(f64::total_cmp);
+                distinct.dedup();
+                Some((number, self.fit(number)?))
+            })
+            .fold(Vec::new(), |mut fits: Vec<(usize, ScatterLawFit)>, (number, fit)| {
+                // Beyond the last usable width nothing changes.
+                if fits.last().is_none_or(|last| last.1 != fit) {
+                    fits.push((number, fit));
+                }
+                fits
+            })
+    }
+}
+
+/// Weighted mean of several estimates; the error grows with their scatter where that exceeds their errors (Birge's
+/// ratio). `None` without a finite one.
+pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
+    let usable: Vec<&Uncertain> = estimates
+        .iter()
+        .filter(|one| one.value.is_finite() && one.error.is_finite() && one.error > 0.0)
+        .collect();
+    if usable.is_empty() {
+        return None;
+    }
+    let weights: f64 = usable.iter().map(|one| one.error.powi(-2)).sum();
+    let mean = usable
+        .iter()
+        .map(|one| one.value * one.error.powi(-2))
+        .sum::<f64>()
+        / weights;
+    let chi_squared: f64 = usable
+        .iter()
+        .map(|one| ((one.value - mean) / one.error).powi(2))
+        .sum();
+    let freedom = (usable.len() - 1).max(1) as f64;
+    let ratio = (chi_squared / freedom).max(1.0).sqrt();
+    Some(Uncertain::normal(mean, ratio / weights.sqrt()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn estimates_that_scatter_widen_the_error_of_their_mean() {
+        let agreeing = weighted_mean(&[Uncertain::normal(1.0, 0.1), Uncertain::normal(1.0, 0.1)]);
+        assert!((agreeing.unwrap().error - 0.1 / 2_f64.sqrt()).abs() < 1e-12);
+        let scattered = weighted_mean(&[Uncertain::normal(0.0, 0.1), Uncertain::normal(2.0, 0.1)]).unwrap();
+        assert!((scattered.value - 1.0).abs() < 1e-12 && (scattered.error - 1.0).abs() < 1e-12);
+        assert!(weighted_mean(&[]).is_none());
+    }
+
+    #[test]
+    fn thresholds_lie_between_known_ones() {
+        let thresholds = Thresholds {
+            known: vec![(0.05, 0.3), (0.1, 0.62)],
+        };
+        assert_eq!(thresholds.at(0.05), 0.3);
+        assert_eq!(thresholds.at(0.075), 0.5);
+        assert_eq!(thresholds.at(0.2), 0.6);
+        assert_eq!(Thresholds::default().at(0.1), 0.5);
+    }
+}
