@@ -11,7 +11,7 @@
 //! An SVG can stand in a web page among others: [`Drawing::with_prefix`] keeps their names apart,
 //! [`Drawing::with_title`] and [`Drawing::with_description`] tell what is to be seen. Its letters are drawn once and
 //! referred to, lengths have two decimals, curves are thinned to what can be seen and fields are embedded as pictures:
-//! a chart takes some 40 kB, each thousand points 40 kB more, or 120 kB with error bars.
+//! a chart takes some 40 kB, each thousand points 60 kB more, or 140 kB with error bars.
 //!
 //! Labels are written in a small markup: `*x*` is italic, `_{...}` and `^{...}` (or one character without braces) set
 //! subscripts and superscripts, a combining dot (U+0307) after a letter sets a dot above it, and a backslash takes
