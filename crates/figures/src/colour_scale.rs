@@ -35,6 +35,7 @@ const BAR_STEPS: usize = 128;
 /// Gap between a frame and the bar at its right.
 const BAR_GAP: f64 = 7.0;
 const ROOM_PER_LABEL: f64 = 13.5;
+const MOST_LABELS: usize = 6;
 const REACH_ON_WHITE: f64 = 0.9;
 
 impl ColourScale {
@@ -106,10 +107,11 @@ impl ColourScale {
     }
 
     fn ticks(&self, height: f64) -> Vec<Tick> {
-        self.axis()
-            .fitting_ticks(height, (height / ROOM_PER_LABEL) as usize, |_| {
-                ROOM_PER_LABEL - 3.0
-            })
+        self.axis().fitting_ticks(
+            height,
+            ((height / ROOM_PER_LABEL) as usize).min(MOST_LABELS),
+            |_| ROOM_PER_LABEL - 3.0,
+        )
     }
 
     fn numbers_width(&self, height: f64) -> f64 {

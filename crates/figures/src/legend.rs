@@ -31,6 +31,8 @@ pub(crate) struct Legend {
     cells: Vec<Cell>,
     rows: usize,
     width: f64,
+    /// Width of the samples.
+    sample: f64,
 }
 
 /// An entry with its row and its distance from the left of the list.
@@ -54,6 +56,8 @@ struct Place {
 /// Space above the first row.
 pub(crate) const TOP_SPACE: f64 = 4.0;
 const SAMPLE_WIDTH: f64 = 17.0;
+/// Width of samples that are marks only.
+const MARK_WIDTH: f64 = 7.0;
 const SAMPLE_GAP: f64 = 4.0;
 const COLUMN_GAP: f64 = 10.0;
 const ROW_HEIGHT: f64 = 9.2;
@@ -81,7 +85,7 @@ impl Legend {
             .map(|columns| places(&widths, columns, (room + COLUMN_GAP) / columns as f64))
             .min_by_key(|places| rows_of(places))
             .unwrap_or_default();
-        Self::set(entries, texts, widths, places)
+        Self::set(entries, texts, places, SAMPLE_WIDTH)
     }
 
     /// Sets the entries below each other in some columns, each as wide as its entries.
@@ -90,10 +94,10 @@ impl Legend {
             .iter()
             .map(|entry| Text::new(&entry.meaning, LEGEND_SIZE))
             .collect();
-        let widths: Vec<f64> = texts
+        let are_marks = entries
             .iter()
-            .map(|text| SAMPLE_WIDTH + SAMPLE_GAP + text.width)
-            .collect();
+            .all(|entry| entry.line.is_none() && entry.band.is_none());
+        let sample = if are_marks { MARK_WIDTH } else { SAMPLE_WIDTH };
         let columns = columns.min(MOST_COLUMNS);
         let places = (0..entries.len())
             .map(|index| Place {
@@ -102,10 +106,14 @@ impl Legend {
                 span: 1,
             })
             .collect();
-        Self::set(entries, texts, widths, places)
+        Self::set(entries, texts, places, sample)
     }
 
-    fn set(entries: Vec<Entry>, texts: Vec<Text>, widths: Vec<f64>, places: Vec<Place>) -> Self {
+    fn set(entries: Vec<Entry>, texts: Vec<Text>, places: Vec<Place>, sample: f64) -> Self {
+        let widths: Vec<f64> = texts
+            .iter()
+            .map(|text| sample + SAMPLE_GAP + text.width)
+            .collect();
         let rows = rows_of(&places);
         let starts = column_starts(&places, &widths);
         let cells: Vec<Cell> = entries
@@ -121,8 +129,13 @@ impl Legend {
             .collect();
         let width = cells
             .iter()
-            .fold(0.0, |width: f64, cell| width.max(cell.end()));
-        Self { cells, rows, width }
+            .fold(0.0, |width: f64, cell| width.max(cell.end(sample)));
+        Self {
+            cells,
+            rows,
+            width,
+            sample,
+        }
     }
 
     /// Width on the page.
@@ -149,17 +162,17 @@ impl Legend {
                 let area = Rectangle {
                     left: start,
                     top: middle - 2.6,
-                    width: SAMPLE_WIDTH,
+                    width: self.sample,
                     height: 5.2,
                 };
                 layer.rectangle(area, colour);
             }
             if let Some(stroke) = cell.entry.line {
-                layer.segment((start, middle), (start + SAMPLE_WIDTH, middle), stroke);
+                layer.segment((start, middle), (start + self.sample, middle), stroke);
             }
             if let Some(mark) = &cell.entry.mark {
                 let place = Point {
-                    x: start + SAMPLE_WIDTH / 2.0,
+                    x: start + self.sample / 2.0,
                     y: middle,
                 };
                 let moved = |end: Point| Point {
@@ -171,7 +184,7 @@ impl Legend {
                 layer.marks(mark.outline.clone(), vec![place], mark.fill, mark.stroke);
             }
             let place = (
-                start + SAMPLE_WIDTH + SAMPLE_GAP,
+                start + self.sample + SAMPLE_GAP,
                 middle + 0.35 * LEGEND_SIZE,
             );
             layer.text(place, Anchor::Start, cell.text.clone(), BLACK);
@@ -181,8 +194,8 @@ impl Legend {
 
 impl Cell {
     /// Distance of the entry's end from the left of the list.
-    fn end(&self) -> f64 {
-        self.start + SAMPLE_WIDTH + SAMPLE_GAP + self.text.width
+    fn end(&self, sample: f64) -> f64 {
+        self.start + sample + SAMPLE_GAP + self.text.width
     }
 }
 
@@ -263,9 +276,9 @@ mod tests {
             room,
         );
         for pair in legend.cells.windows(2) {
-            assert!(pair[0].end() <= room && pair[1].end() <= room);
+            assert!(pair[0].end(SAMPLE_WIDTH) <= room && pair[1].end(SAMPLE_WIDTH) <= room);
             if pair[0].row == pair[1].row {
-                assert!(pair[0].end() < pair[1].start);
+                assert!(pair[0].end(SAMPLE_WIDTH) < pair[1].start);
             }
         }
     }

@@ -119,14 +119,12 @@ impl Panel {
         let frame = self.frame;
         let pen = Stroke::solid(BLACK, FRAME_WEIGHT);
         let layer = drawing.layer("axes", None);
+        let mut marks = Vec::new();
         for tick in &ticks.x {
             let place = self.across(tick.value);
-            layer.segment(
-                (place, frame.bottom()),
-                (place, frame.bottom() - tick.length),
-                pen,
-            );
-            layer.segment((place, frame.top), (place, frame.top + tick.length), pen);
+            for (edge, inside) in [(frame.bottom(), -tick.length), (frame.top, tick.length)] {
+                marks.push([edge, edge + inside].map(|y| Point { x: place, y }));
+            }
             if let (Some(_), Some(label)) = (labels.x, &tick.label) {
                 let baseline = frame.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
                 layer.text(
@@ -139,12 +137,9 @@ impl Panel {
         }
         for tick in &ticks.y {
             let place = self.up(tick.value);
-            layer.segment((frame.left, place), (frame.left + tick.length, place), pen);
-            layer.segment(
-                (frame.right(), place),
-                (frame.right() - tick.length, place),
-                pen,
-            );
+            for (edge, inside) in [(frame.left, tick.length), (frame.right(), -tick.length)] {
+                marks.push([edge, edge + inside].map(|x| Point { x, y: place }));
+            }
             if let (Some(_), Some(label)) = (ticks.y_baseline, &tick.label) {
                 let baseline = place + DIGIT_HEIGHT * TICK_SIZE / 2.0;
                 layer.text(
@@ -155,6 +150,7 @@ impl Panel {
                 );
             }
         }
+        layer.segments(marks, pen);
         layer.outline(frame, pen);
         if let Some(label) = labels.x {
             let middle = (frame.left + frame.right()) / 2.0;

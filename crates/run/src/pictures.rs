@@ -319,6 +319,7 @@ fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
         start: 0.0,
         length,
         period: Some(tube),
+        wavelength: Some(configuration.tube.wavelength),
         velocity_limit: 1.0,
         length_unit: "*d*",
         width: Width::DoubleColumn,

@@ -32,7 +32,7 @@ fn label(quantity: Quantity) -> String {
 }
 
 /// Every chart by its name.
-pub fn all() -> Result<Vec<(String, Drawing)>, Box<dyn Error>> {
+pub(crate) fn all() -> Result<Vec<(String, Drawing)>, Box<dyn Error>> {
     let mut drawings = Vec::new();
     for (suffix, width) in [("", Width::SingleColumn), ("_wide", Width::DoubleColumn)] {
         let mut add =
@@ -339,7 +339,7 @@ fn hysteresis(width: Width) -> Drawn {
             }
         })
     };
-    let errors = [0.015; 11];
+    let errors = [0.03; 11];
     let panel = ChartPanel::new(&label(Quantity::Width), &label(Quantity::FlowRateRatio))
         .y_range(0.0..=1.1)
         .with(Window::new("hysteresis", 2.7, 2.9))

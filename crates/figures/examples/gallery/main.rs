@@ -9,7 +9,8 @@ use std::path::PathBuf;
 
 use peristalsis_figures::{
     Drawing, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale, Series,
-    SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Transition, WallFigure, Width,
+    SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall, Transition,
+    WallFigure, Width,
 };
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -34,6 +35,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     save("snapshot_long", snapshot(100.0, Width::DoubleColumn)?)?;
     save("snapshot_short", snapshot(20.0, Width::SingleColumn)?)?;
     save("snapshot_wide", wide_snapshot()?)?;
+    save("snapshot_stack", stacked_snapshots(Width::SingleColumn)?)?;
+    save(
+        "snapshot_stack_wide",
+        stacked_snapshots(Width::DoubleColumn)?,
+    )?;
     for (name, drawing) in charts::all()? {
         save(&name, drawing)?;
     }
@@ -343,6 +349,33 @@ fn wide_snapshot() -> Result<Drawing, Box<dyn Error>> {
         length: 40.0,
         period: Some(40.0),
         ..SnapshotFigure::default()
+    };
+    Ok(figure.draw()?)
+}
+
+/// Unjammed flow above jammed, two of ten waves of each.
+fn stacked_snapshots(width: Width) -> Result<Drawing, Box<dyn Error>> {
+    let spheres = wall_spheres(1.9, 0.5, 10.0, 20.0, 12, 0.714);
+    let unjammed = grains(45, 2.0, 0.5, 10.0, 20.0, 0.75);
+    let mut jammed = unjammed.clone();
+    for grain in &mut jammed {
+        grain.axial_velocity = 0.95 + 0.1 * grain.sphere.depth;
+    }
+    let snapshot = |grains| SnapshotFigure {
+        grains,
+        wall: SnapshotWall::Spheres(&spheres),
+        length: 20.0,
+        period: Some(100.0),
+        wavelength: Some(10.0),
+        ..SnapshotFigure::default()
+    };
+    let figure = SnapshotStack {
+        title: "*w* = 2.75 *d*, *ε\u{307}* = 0.05, *ρ* = 0.15",
+        snapshots: &[
+            ("(a)  unjammed, *t*/*T* = 3", snapshot(&unjammed)),
+            ("(b)  jammed, *t*/*T* = 40", snapshot(&jammed)),
+        ],
+        width,
     };
     Ok(figure.draw()?)
 }

@@ -14,9 +14,7 @@ use crate::text::Text;
 pub(super) struct Checked {
     pub(super) x: (f64, f64),
     pub(super) y: (f64, f64),
-    /// Free space left and right, as fractions of the axis.
-    pub(super) x_free: (f64, f64),
-    /// Free space below and above.
+    /// Free space below and above, as fractions of the axis.
     pub(super) y_free: (f64, f64),
     /// Some points are lower limits, whose arrows need room.
     pub(super) has_limits: bool,
@@ -58,7 +56,6 @@ impl Checked {
         Ok(Self {
             x: extent(check.x),
             y,
-            x_free: (MARGIN, MARGIN),
             y_free: (if stands { 0.0 } else { MARGIN }, MARGIN),
             has_limits: panel.layers.iter().any(
                 |layer| matches!(layer, ChartLayer::Points(points) if points.lower_limits.contains(&true)),

@@ -3,17 +3,19 @@
 use super::ChartFigure;
 use super::check::Checked;
 use super::paint::ARROW;
-use super::panel::{AxisWish, ChartPanel};
+use super::panel::{AxisWish, ChartPanel, MARGIN};
 use crate::axis::{Axis, Tick};
 use crate::drawing::{Drawing, Rectangle};
 use crate::error::FigureError;
 use crate::panel::{BOTTOM_MARGIN, Labels, Panel, TICK_GAP, Ticks, title_space};
-use crate::style::{LABEL_BASELINE, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_SIZE};
+use crate::style::{LABEL_BASELINE, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_SIZE, Width};
 use crate::text::Text;
 
 /// Height of a frame over its width: in a lone panel two columns wide, and otherwise.
 const WIDE_ASPECT: f64 = 0.45;
 const ASPECT: f64 = 0.72;
+/// A frame is no lower than this unless it is asked for.
+const LEAST_HEIGHT: f64 = 85.0;
 const TOP_MARGIN: f64 = 4.0;
 /// Space above a frame for its letter and title.
 const HEADER_SPACE: f64 = 9.5;
@@ -28,6 +30,9 @@ const NUMBER_ROOM: f64 = 9.0;
 /// Points of an axis for each label at most.
 const ROOM_ACROSS: f64 = 26.0;
 const ROOM_UP: f64 = 13.5;
+/// About as many labels as an axis bears without a crowd, however long.
+const MOST_ACROSS: usize = 9;
+const MOST_UP: usize = 7;
 /// First guess of the space at the left of a frame, from which its height follows.
 const USUAL_LEFT: f64 = 32.0;
 
@@ -55,55 +60,20 @@ impl Layout {
         let columns = figure.columns;
         let count = figure.panels.len();
         let guess = (page - USUAL_LEFT * columns as f64 - RIGHT_MARGIN) / columns as f64;
-        let aspect = if columns == 1 && page > 400.0 {
+        let aspect = if columns == 1 && figure.width == Width::DoubleColumn {
             WIDE_ASPECT
         } else {
             ASPECT
         };
         let height = figure
             .panel_height
-            .map_or(guess * aspect, |height| height * POINTS_PER_MILLIMETRE);
+            .map_or((guess * aspect).max(LEAST_HEIGHT), |height| {
+                height * POINTS_PER_MILLIMETRE
+            });
         let axes = axes(figure, height)?;
+        let spaces = Spaces::of(figure, &axes, height);
+        let width = (page - spaces.right - spaces.left.iter().sum::<f64>()) / columns as f64;
         let rows = count.div_ceil(columns);
-        let bears_x = |index: usize| !figure.shares_x || index + columns >= count;
-        let bears_y = |index: usize| !figure.shares_y || index % columns == 0;
-
-        // Space at the left of each column: gap, name and numbers of its widest vertical axis.
-        let numbers = |index: usize| widest(&y_ticks(&axes[index].y, height));
-        let lefts: Vec<f64> = (0..columns)
-            .map(|column| {
-                let outer = if column == 0 { 0.0 } else { GAP };
-                (column..count)
-                    .step_by(columns)
-                    .filter(|&index| bears_y(index))
-                    .map(|index| outer + LABEL_BASELINE + NAME_GAP + numbers(index) + TICK_GAP)
-                    .fold(outer, f64::max)
-            })
-            .collect();
-        let right = figure
-            .colour_scale
-            .as_ref()
-            .map_or(RIGHT_MARGIN, |scale| scale.space(height));
-        // Numbers at the ends of horizontal axes reach over the frames by as much as the frames are wide, nearly.
-        let free = page - right - lefts.iter().sum::<f64>();
-        let first = free / columns as f64;
-        let over = |index: usize| overhang(&axes[index].x, first);
-        let mut gaps = lefts.clone();
-        for column in 1..columns {
-            for index in (column..count).step_by(columns) {
-                if bears_x(index) && bears_x(index - 1) {
-                    let needed = over(index - 1).1 + over(index).0 + NUMBER_GAP;
-                    gaps[column] = gaps[column].max(needed);
-                }
-            }
-        }
-        let last = (0..count)
-            .filter(|index| {
-                (index % columns == columns - 1 || index + 1 == count) && bears_x(*index)
-            })
-            .map(|index| over(index).1 + 2.0)
-            .fold(right, f64::max);
-        let width = (page - last - gaps.iter().sum::<f64>()) / columns as f64;
 
         let header = if figure.has_headers() {
             HEADER_SPACE
@@ -115,9 +85,9 @@ impl Layout {
         for row in 0..rows {
             let mut left = 0.0;
             let mut has_names = false;
-            for (column, gap) in gaps.iter().enumerate() {
+            for (column, space) in spaces.left.iter().enumerate() {
                 let index = row * columns + column;
-                left += gap;
+                left += space;
                 if index < count {
                     let frame = Rectangle {
                         left,
@@ -125,7 +95,7 @@ impl Layout {
                         width,
                         height,
                     };
-                    has_names |= bears_x(index);
+                    has_names |= bears_x(figure, index);
                     let Axes { x, y } = axes[index];
                     let y_ticks = y_ticks(&y, height);
                     let baseline = left - TICK_GAP - widest(&y_ticks) - NAME_GAP;
@@ -134,9 +104,9 @@ impl Layout {
                         ticks: Ticks {
                             x: x_ticks(&x, width),
                             y: y_ticks,
-                            y_baseline: bears_y(index).then_some(baseline),
+                            y_baseline: bears_y(figure, index).then_some(baseline),
                         },
-                        bears_x: bears_x(index),
+                        bears_x: bears_x(figure, index),
                     });
                 }
                 left += width;
@@ -167,6 +137,72 @@ impl Layout {
             height: most(Rectangle::bottom) - top,
         }
     }
+}
+
+/// Free space beside the frames, in points.
+struct Spaces {
+    /// At the left of each column.
+    left: Vec<f64>,
+    /// At the right of the last.
+    right: f64,
+}
+
+impl Spaces {
+    fn of(figure: &ChartFigure, axes: &[Axes], height: f64) -> Self {
+        let (columns, count) = (figure.columns, axes.len());
+        let panels = |column: usize| (column..count).step_by(columns);
+        // Name and numbers of the widest vertical axis.
+        let names = |column: usize| {
+            let outer = if column == 0 { 0.0 } else { GAP };
+            panels(column)
+                .filter(|&index| bears_y(figure, index))
+                .map(|index| {
+                    let numbers = widest(&y_ticks(&axes[index].y, height));
+                    outer + LABEL_BASELINE + NAME_GAP + numbers + TICK_GAP
+                })
+                .fold(outer, f64::max)
+        };
+        let left: Vec<f64> = (0..columns).map(names).collect();
+        let right = figure
+            .colour_scale
+            .as_ref()
+            .map_or(RIGHT_MARGIN, |scale| scale.space(height));
+        // The numbers at the ends of a horizontal axis reach over it, nearly alike for nearly equal widths.
+        let width = (figure.width.points() - right - left.iter().sum::<f64>()) / columns as f64;
+        let over = |index: usize| {
+            if bears_x(figure, index) {
+                overhang(&axes[index].x, width)
+            } else {
+                (0.0, 0.0)
+            }
+        };
+        let between = |column: usize| {
+            panels(column)
+                .filter(|_| column > 0)
+                .map(|index| over(index - 1).1 + over(index).0 + NUMBER_GAP)
+                .fold(0.0, f64::max)
+        };
+        Self {
+            right: panels(columns - 1)
+                .map(|index| over(index).1 + 2.0)
+                .fold(right, f64::max),
+            left: left
+                .into_iter()
+                .enumerate()
+                .map(|(column, space)| space.max(between(column)))
+                .collect(),
+        }
+    }
+}
+
+/// Whether a panel has numbers below it.
+fn bears_x(figure: &ChartFigure, index: usize) -> bool {
+    !figure.shares_x || index + figure.columns >= figure.panels.len()
+}
+
+/// Whether a panel has numbers at its left.
+fn bears_y(figure: &ChartFigure, index: usize) -> bool {
+    !figure.shares_y || index.is_multiple_of(figure.columns)
 }
 
 impl Seat {
@@ -212,12 +248,16 @@ fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
                 (&figure.panels[other].y, checked[other].y)
             })?;
             let has_limits = row.iter().any(|&other| checked[other].has_limits);
-            let mut y_free = checked[index].y_free;
+            // All that share an axis must have the same free space on it.
+            let mut y_free = row.iter().fold((f64::INFINITY, 0.0_f64), |free, &other| {
+                let (below, above) = checked[other].y_free;
+                (free.0.min(below), free.1.max(above))
+            });
             if has_limits {
                 y_free.1 = y_free.1.max((ARROW + 3.0) / height).min(0.4);
             }
             Ok(Axes {
-                x: x.0.axis("x", x.1, checked[index].x_free)?,
+                x: x.0.axis("x", x.1, (MARGIN, MARGIN))?,
                 y: y.0.axis("y", y.1, y_free)?,
             })
         })
@@ -251,13 +291,17 @@ fn shared<'a>(
 }
 
 fn x_ticks(axis: &Axis, width: f64) -> Vec<Tick> {
-    axis.fitting_ticks(width, (width / ROOM_ACROSS) as usize, |label| {
-        Text::new(label, TICK_SIZE).width + NUMBER_GAP
-    })
+    axis.fitting_ticks(
+        width,
+        ((width / ROOM_ACROSS) as usize).min(MOST_ACROSS),
+        |label| Text::new(label, TICK_SIZE).width + NUMBER_GAP,
+    )
 }
 
 fn y_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
-    axis.fitting_ticks(height, (height / ROOM_UP) as usize, |_| NUMBER_ROOM)
+    axis.fitting_ticks(height, ((height / ROOM_UP) as usize).min(MOST_UP), |_| {
+        NUMBER_ROOM
+    })
 }
 
 fn widest(ticks: &[Tick]) -> f64 {

@@ -132,7 +132,7 @@ impl Pattern {
             Self::Solid => Dash::Solid,
             Self::Dashed => Dash::Dashed,
             Self::Dotted => Dash::Dotted,
-            Self::DashDotted => Dash::DashDotted,
+            Self::DashDotted => Dash::Alternating,
         }
     }
 }

@@ -36,6 +36,8 @@ mod panel;
 mod path;
 mod placement;
 mod points;
+#[cfg(test)]
+mod tests;
 mod texts;
 
 pub use layer::{Band, Bars, ChartLayer, Corner, Line, Note, Reference, Window};
@@ -200,6 +202,8 @@ impl ChartFigure {
         // The height of the page is known when the legends have their places.
         let mut drawing = Drawing::new(width, bottom, &self.summary());
         draw_title(&mut drawing, &self.title, width);
+        // Panels often hold the same series: each is explained once.
+        let mut explained: Vec<Entry> = Vec::new();
         let mut below: Vec<Entry> = Vec::new();
         for (number, (seat, chart)) in layout.seats.iter().zip(&self.panels).enumerate() {
             let painter = Painter {
@@ -211,16 +215,16 @@ impl ChartFigure {
             seat.draw_frame(&mut drawing, chart);
             self.draw_header(&mut drawing, seat, chart, number);
             painter.draw_texts(&mut drawing, &mut obstacles);
-            let entries = painter.entries();
+            let mut entries = painter.entries();
+            entries.retain(|entry| !explained.contains(entry));
+            explained.extend(entries.iter().cloned());
             let placed = match self.legend {
                 LegendPlace::Inside => draw_inside(&mut drawing, seat, &obstacles, &entries),
                 LegendPlace::Below => false,
                 LegendPlace::Hidden => true,
             };
             if !placed {
-                let unknown = entries.into_iter().filter(|entry| !below.contains(entry));
-                let unknown: Vec<Entry> = unknown.collect();
-                below.extend(unknown);
+                below.extend(entries);
             }
         }
         if let Some(scale) = &self.colour_scale {

@@ -172,15 +172,15 @@ impl Painter<'_> {
             };
             if area.height > 0.0 {
                 obstacles.area(area);
-                if !bars.outlined {
-                    layer.rectangle(area, colour.faint(BAR_OPACITY));
-                }
             }
             outline.extend([(left, top), (right, top)].map(|(x, y)| Point { x, y }));
         }
         if let (Some(&first), Some(&last)) = (outline.first(), outline.last()) {
             outline.insert(0, Point { y: foot, ..first });
             outline.push(Point { y: foot, ..last });
+        }
+        if !bars.outlined {
+            layer.polygon(outline.iter().copied(), colour.faint(BAR_OPACITY));
         }
         layer.line(outline, Stroke::solid(colour, self.outline_weight(bars)));
     }
@@ -270,7 +270,8 @@ impl Painter<'_> {
             .collect();
         let place = |row: usize| self.panel.place(points.x[row], points.y[row]);
         if points.joined {
-            let line = rows.iter().map(|&row| place(row));
+            let line: Vec<Point> = rows.iter().map(|&row| place(row)).collect();
+            obstacles.line(&line);
             drawing
                 .layer("joins", Some(frame))
                 .line(line, Stroke::solid(colour.faint(0.55), 0.6));
@@ -352,7 +353,8 @@ impl Painter<'_> {
         let white = crate::colour::WHITE;
         Mark {
             outline: marker.outline(radius),
-            fill: if open { white } else { colour },
+            // An open mark lets see what lies below it.
+            fill: if open { white.faint(0.2) } else { colour },
             // A white edge keeps marks apart that lie over each other.
             stroke: if open {
                 Stroke::solid(colour, 0.75)

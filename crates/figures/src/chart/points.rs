@@ -5,7 +5,7 @@ use super::look::{Look, Marker, Tint};
 /// Measured points, with errors where they are known.
 ///
 /// A row with a coordinate that is not finite is left out; an error that is not finite is unknown and has no bar. Each
-/// point takes some 40 bytes of an SVG, with its error bar 120: ten thousand are a file of a megabyte.
+/// point takes some 60 bytes of an SVG, with its error bar 140: ten thousand are a file of a megabyte.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Points {
     pub(super) name: String,

@@ -55,7 +55,7 @@ pub(crate) enum Dash {
     Dashed,
     Dotted,
     /// Long and short strokes in turn.
-    DashDotted,
+    Alternating,
 }
 
 impl Dash {
@@ -65,7 +65,7 @@ impl Dash {
             Self::Solid => &[],
             Self::Dashed => &[4.0, 2.2],
             Self::Dotted => &[0.9, 1.6],
-            Self::DashDotted => &[4.0, 1.7, 0.9, 1.7],
+            Self::Alternating => &[4.0, 1.7, 0.9, 1.7],
         }
     }
 }

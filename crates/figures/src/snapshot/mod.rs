@@ -1,18 +1,16 @@
 //! Grains in a part of the tube, seen from the side.
 
+mod stack;
 mod view;
 
-use view::View;
+pub use stack::SnapshotStack;
+use stack::{Prepared, draw_stack};
 
-use crate::axis::Axis;
-use crate::colour::BLACK;
-use crate::colour_bar::{BAR_HEIGHT, draw_colour_bar};
-use crate::drawing::{Anchor, Drawing, Rectangle};
+use crate::axis::decimal;
+use crate::drawing::Drawing;
 use crate::error::{FigureError, finite, positive};
-use crate::panel::{Panel, draw_title, left_margin, title_space};
 use crate::series::{Sample, Series, extent};
-use crate::style::{LABEL_SIZE, LABEL_SPACE, RIGHT_MARGIN, TICK_SPACE, Width};
-use crate::text::Text;
+use crate::style::Width;
 
 /// A sphere as the side view needs it, lengths in one unit.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -64,6 +62,8 @@ pub struct SnapshotFigure<'a> {
     pub length: f64,
     /// Length of a periodic tube: spheres also show where their images lie in the part.
     pub period: Option<f64>,
+    /// Wavelength, so that a part of a periodic tube can say how many of its waves it shows.
+    pub wavelength: Option<f64>,
     /// Axial velocity, over the wave speed, of the deepest colours.
     pub velocity_limit: f64,
     /// Unit of length, in markup, for instance `*d*`.
@@ -81,6 +81,7 @@ impl Default for SnapshotFigure<'_> {
             start: 0.0,
             length: 0.0,
             period: None,
+            wavelength: None,
             velocity_limit: 1.0,
             length_unit: "*d*",
             width: Width::DoubleColumn,
@@ -97,96 +98,64 @@ const MARGIN: f64 = 0.06;
 /// Greatest distance of a drawn wall sphere from the plane of the cut, in diameters: half a diameter would leave gaps
 /// where the wall is stretched.
 const SLICE: f64 = 0.75;
-const ROW_GAP: f64 = 4.0;
 
 impl SnapshotFigure<'_> {
     /// Lays the figure out.
     ///
     /// # Errors
-    /// If the length, the period, the velocity limit or a diameter is not positive, if a coordinate or velocity is not
+    /// If the length, the period, the wavelength, the velocity limit or a diameter is not positive, if a coordinate or velocity is not
     /// finite, or if neither a grain nor a wall is given.
     pub fn draw(&self) -> Result<Drawing, FigureError> {
-        let start = finite("start of the snapshot", self.start)?;
-        let length = positive("length of the snapshot", self.length)?;
-        let limit = positive("velocity limit", self.velocity_limit)?;
-        let shifts = match self.period {
-            Some(period) => vec![0.0, -positive("period of the tube", period)?, period],
-            None => vec![0.0],
-        };
+        draw_stack(self.title, self.width, &[("", *self)])
+    }
+
+    /// What is drawn of it, checked and in order.
+    fn prepared(&self) -> Result<Prepared, FigureError> {
         let grains = self.ordered_grains()?;
         let spheres = self.cut_spheres()?;
         let outline = match self.wall {
             SnapshotWall::Outline(series) => series.pieces("wall outline")?,
             SnapshotWall::Hidden | SnapshotWall::Spheres(_) => Vec::new(),
         };
-        let reach = self.reach(&grains, &spheres, &outline)?;
+        let period = self
+            .period
+            .map(|period| positive("period of the tube", period))
+            .transpose()?;
+        Ok(Prepared {
+            start: finite("start of the snapshot", self.start)?,
+            length: positive("length of the snapshot", self.length)?,
+            limit: positive("velocity limit", self.velocity_limit)?,
+            shifts: period.map_or(vec![0.0], |period| vec![0.0, -period, period]),
+            reach: self.reach(&grains, &spheres, &outline)?,
+            diameter: mean_diameter(&grains, &spheres),
+            extent: self.shown_extent()?,
+            grains,
+            spheres,
+            outline,
+        })
+    }
 
-        let width = self.width.points();
-        let y = Axis::linear((-reach, reach));
-        let diameter = mean_diameter(&grains, &spheres);
-        let row_beside = |left: f64| {
-            let room = width - left - RIGHT_MARGIN - 4.0;
-            let row_length = row_length(length, room, diameter);
-            (room, row_length, 2.0 * reach * room / row_length)
+    /// How much of the tube is shown, in markup; nothing where it is all of it.
+    fn shown_extent(&self) -> Result<String, FigureError> {
+        let Some(period) = self.period else {
+            return Ok(String::new());
         };
-        // The numbers on the vertical axis need room that the height of a row, and so they, depend on.
-        let left = left_margin(&y, row_beside(left_margin(&y, 0.0)).2);
-        let (room, row_length, height) = row_beside(left);
-        let scale = room / row_length;
-        let rows = (length / row_length - 1e-9).ceil().max(1.0) as usize;
-        let pitch = height + TICK_SPACE + ROW_GAP;
-        let top = title_space(self.title) + 4.0;
-        let page_height = top + pitch * rows as f64 + LABEL_SPACE + BAR_HEIGHT + TICK_SPACE + 1.0;
-        let mut drawing = Drawing::new(
-            width,
-            page_height,
-            &format!("Snapshot of the tube from the side: {}", self.title),
-        );
-
-        draw_title(&mut drawing, self.title, width);
-        for row in 0..rows {
-            let from = start + row_length * row as f64;
-            let to = (from + row_length).min(start + length);
-            let frame = Rectangle {
-                left,
-                top: top + pitch * row as f64,
-                width: (to - from) * scale,
-                height,
-            };
-            let view = View {
-                panel: Panel {
-                    frame,
-                    x: Axis::linear((from, to)),
-                    y,
-                },
-                scale,
-            };
-            view.draw_wall(&mut drawing, &spheres, &outline, &shifts);
-            view.draw_grains(&mut drawing, &grains, &shifts, limit);
-            view.draw_frame(&mut drawing, self.length_unit);
+        if self.length >= period * (1.0 - 1e-9) {
+            return Ok(String::new());
         }
-        let bottom = top + pitch * rows as f64 - ROW_GAP;
-        let label = if self.length_unit.is_empty() {
-            "*z*".to_owned()
-        } else {
-            format!("*z*/{}", self.length_unit)
+        let number = |value: f64| {
+            let number = decimal(value, 1);
+            number.strip_suffix(".0").unwrap_or(&number).to_owned()
         };
-        let layer = drawing.layer("axes", None);
-        layer.text(
-            (left + room / 2.0, bottom + LABEL_SIZE),
-            Anchor::Middle,
-            Text::new(&label, LABEL_SIZE),
-            BLACK,
-        );
-        let fastest = extent(grains.iter().map(|grain| grain.axial_velocity));
-        draw_colour_bar(
-            &mut drawing,
-            left + room / 2.0,
-            bottom + LABEL_SPACE + 3.0,
-            limit,
-            fastest,
-        );
-        Ok(drawing)
+        let (unit, name) = match self.wavelength {
+            Some(wavelength) => (positive("wavelength", wavelength)?, "waves"),
+            None => (1.0, self.length_unit),
+        };
+        Ok(format!(
+            "{} of {} {name} shown",
+            number(self.length / unit),
+            number(period / unit)
+        ))
     }
 
     /// Checked grains, from the furthest to the nearest.

@@ -1,0 +1,297 @@
+//! What a chart draws, read off its shapes.
+
+use super::*;
+use crate::axis::Scale;
+use crate::drawing::{Outline, Point, Shape};
+
+fn figure(panel: ChartPanel) -> Drawing {
+    ChartFigure::new(panel).draw().expect("drawable")
+}
+
+fn panel() -> ChartPanel {
+    ChartPanel::new("*x*", "*y*")
+        .x_range(0.0..=10.0)
+        .y_range(0.0..=10.0)
+}
+
+/// Two guides at 0 and 10 tell where values lie on the page.
+fn ruler(drawing: &Drawing) -> impl Fn(Point) -> (f64, f64) + use<> {
+    let frame = outline(drawing);
+    let (left, bottom, right, top) = frame;
+    move |point| {
+        (
+            10.0 * (point.x - left) / (right - left),
+            10.0 * (bottom - point.y) / (bottom - top),
+        )
+    }
+}
+
+/// Left, bottom, right and top of the first frame.
+fn outline(drawing: &Drawing) -> (f64, f64, f64, f64) {
+    let corners = drawing
+        .shapes("axes")
+        .into_iter()
+        .find_map(|shape| match shape {
+            Shape::Line { points, .. } => Some(points),
+            _ => None,
+        })
+        .expect("a frame");
+    (corners[0].x, corners[2].y, corners[1].x, corners[0].y)
+}
+
+fn marks(drawing: &Drawing) -> Vec<(Outline, Vec<Point>, f64)> {
+    drawing
+        .shapes("points")
+        .into_iter()
+        .map(|shape| match shape {
+            Shape::Marks {
+                outline,
+                places,
+                fill,
+                ..
+            } => (outline.clone(), places.clone(), fill.opacity),
+            other => panic!("points are marks, not {other:?}"),
+        })
+        .collect()
+}
+
+fn segments(drawing: &Drawing, name: &str) -> Vec<[Point; 2]> {
+    drawing
+        .shapes(name)
+        .into_iter()
+        .flat_map(|shape| match shape {
+            Shape::Segments { segments, .. } => segments.clone(),
+            other => panic!("segments, not {other:?}"),
+        })
+        .collect()
+}
+
+fn close(found: (f64, f64), expected: (f64, f64)) -> bool {
+    (found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9
+}
+
+#[test]
+fn points_stand_at_their_values_and_gaps_are_left_out() {
+    let drawing = figure(panel().with(Points::new(
+        "a",
+        &[1.0, f64::NAN, 5.0, 12.0],
+        &[2.0, 3.0, 10.0, 4.0],
+    )));
+    let value = ruler(&drawing);
+    let found = marks(&drawing);
+    let places: Vec<(f64, f64)> = found[0].1.iter().map(|&place| value(place)).collect();
+    assert_eq!(places.len(), 2, "neither the gap nor the point outside");
+    assert!(close(places[0], (1.0, 2.0)) && close(places[1], (5.0, 10.0)));
+}
+
+#[test]
+fn asymmetric_errors_reach_below_and_above() {
+    let points = Points::new("a", &[4.0], &[5.0])
+        .asymmetric_y_errors(&[1.0], &[3.0])
+        .asymmetric_x_errors(&[0.5], &[f64::NAN]);
+    let drawing = figure(panel().with(points));
+    let value = ruler(&drawing);
+    let bars: Vec<[(f64, f64); 2]> = segments(&drawing, "error bars")
+        .into_iter()
+        .map(|bar| bar.map(&value))
+        .collect();
+    assert!(close(bars[0][0], (4.0, 4.0)) && close(bars[0][1], (4.0, 8.0)));
+    let across = bars[3];
+    assert!(close(across[0], (3.5, 5.0)) && close(across[1], (4.0, 5.0)));
+    assert_eq!(bars.len(), 5, "an unknown error has no cap");
+}
+
+#[test]
+fn a_lower_limit_is_open_and_has_an_arrow_upwards() {
+    let points = Points::new("a", &[2.0, 4.0], &[3.0, 5.0]).lower_limits(&[false, true]);
+    let drawing = figure(panel().with(points));
+    let found = marks(&drawing);
+    assert_eq!(found.len(), 2);
+    assert!(found[0].2 > found[1].2, "filled, then open");
+    let shaft = segments(&drawing, "error bars")[0];
+    assert_eq!(shaft[0], found[1].1[0]);
+    assert!(shaft[1].y < shaft[0].y - 5.0 && shaft[1].x == shaft[0].x);
+}
+
+#[test]
+fn arrows_of_lower_limits_stay_in_the_panel() {
+    let points = Points::new("a", &[2.0, 4.0], &[3.0, 5.0]).lower_limits(&[false, true]);
+    let drawing = figure(
+        ChartPanel::new("x", "y")
+            .y_scale(Scale::Logarithmic)
+            .with(points),
+    );
+    let (_, _, _, top) = outline(&drawing);
+    assert!(
+        segments(&drawing, "error bars")
+            .iter()
+            .flatten()
+            .all(|end| end.y > top)
+    );
+}
+
+#[test]
+fn series_differ_in_marker_and_colour_and_a_fit_shares_its_colour() {
+    let x = [1.0, 2.0];
+    let drawing = figure(
+        panel()
+            .with(Points::new("a", &x, &x))
+            .with(Points::new("b", &x, &x))
+            .with(Line::new("fit of b", &x, &x).series(1)),
+    );
+    let shapes = drawing.shapes("points");
+    let (
+        Shape::Marks {
+            outline: one,
+            fill: first,
+            ..
+        },
+        Shape::Marks {
+            outline: other,
+            fill: second,
+            ..
+        },
+    ) = (shapes[0], shapes[1])
+    else {
+        panic!("marks")
+    };
+    assert_ne!(one, other);
+    assert_ne!(first, second);
+    let Shape::Line { stroke, .. } = drawing.shapes("lines")[0] else {
+        panic!("a line")
+    };
+    assert_eq!(stroke.colour, *second);
+}
+
+#[test]
+fn an_error_bar_to_nought_on_a_logarithmic_axis_reaches_the_frame() {
+    let chart = ChartPanel::new("x", "y")
+        .y_scale(Scale::Logarithmic)
+        .y_range(0.1..=10.0)
+        .with(Points::new("a", &[1.0, 2.0], &[1.0, 2.0]).y_errors(&[1.5, 0.5]));
+    let drawing = figure(chart);
+    let (_, bottom, ..) = outline(&drawing);
+    assert!((segments(&drawing, "error bars")[0][0].y - bottom).abs() < 1e-9);
+}
+
+#[test]
+fn the_legend_covers_no_curve() {
+    let x: Vec<f64> = (0..=100).map(|index| f64::from(index) / 10.0).collect();
+    // A curve through three corners leaves the lower right one.
+    let y: Vec<f64> = x
+        .iter()
+        .map(|x| if *x < 2.0 { 4.9 * x } else { 9.8 })
+        .collect();
+    let drawing = figure(panel().with(Line::new("a curve", &x, &y)));
+    let value = ruler(&drawing);
+    let Shape::Text { start, .. } = drawing
+        .shapes("legend")
+        .into_iter()
+        .find(|shape| matches!(shape, Shape::Text { .. }))
+        .expect("a legend")
+    else {
+        panic!("text")
+    };
+    let (across, up) = value(*start);
+    // Letters rise by less than half a unit above their baseline.
+    assert!(across > 2.5 && up + 0.5 < 9.8 && up > 0.0, "{across} {up}");
+}
+
+#[test]
+fn a_legend_without_room_goes_below_the_figure() {
+    let x: Vec<f64> = (0..=200).map(|index| f64::from(index) / 20.0).collect();
+    let y: Vec<f64> = (0..=200).map(|index| f64::from(index % 2) * 10.0).collect();
+    let drawing = figure(panel().with(Line::new("noise", &x, &y)));
+    let (_, bottom, ..) = outline(&drawing);
+    let below = drawing
+        .shapes("legend")
+        .into_iter()
+        .all(|shape| match shape {
+            Shape::Text { start, .. } => start.y > bottom,
+            Shape::Line { points, .. } => points[0].y > bottom,
+            _ => true,
+        });
+    assert!(below);
+}
+
+#[test]
+fn a_band_and_a_line_of_one_name_share_an_entry() {
+    let x = [0.0, 10.0];
+    let drawing = figure(
+        panel()
+            .with(Line::new("fit", &x, &[1.0, 2.0]).series(0))
+            .with(Band::new("fit", &x, &[0.5, 1.5], &[1.5, 2.5]).series(0)),
+    );
+    let texts = drawing
+        .shapes("legend")
+        .into_iter()
+        .filter(|shape| matches!(shape, Shape::Text { .. }))
+        .count();
+    assert_eq!(texts, 1);
+}
+
+#[test]
+fn steps_and_bars_hold_their_heights() {
+    let drawing = figure(
+        panel()
+            .with(Line::new("", &[1.0, 4.0, 6.0], &[8.0, 3.0, 3.0]).stepped())
+            .with(Bars::new("", &[0.0, 1.0, 2.0], &[2.0, 5.0])),
+    );
+    let value = ruler(&drawing);
+    let Shape::Line { points, .. } = drawing.shapes("lines")[0] else {
+        panic!("a line")
+    };
+    assert!(close(value(points[1]), (4.0, 8.0)) && close(value(points[2]), (4.0, 3.0)));
+    let Shape::Polygon { points, .. } = drawing.shapes("bars")[0] else {
+        panic!("bars are filled")
+    };
+    let corners = [
+        (0.0, 0.0),
+        (0.0, 2.0),
+        (1.0, 2.0),
+        (1.0, 5.0),
+        (2.0, 5.0),
+        (2.0, 0.0),
+    ];
+    assert_eq!(points.len(), corners.len());
+    assert!(
+        points
+            .iter()
+            .zip(corners)
+            .all(|(&point, corner)| close(value(point), corner))
+    );
+}
+
+#[test]
+fn panels_that_share_an_axis_have_one_range_and_one_row_of_numbers() {
+    let chart = |top: f64| ChartPanel::new("x", "y").with(Line::new("", &[0.0, 1.0], &[0.0, top]));
+    let numbers = |shares: bool| {
+        let figure = ChartFigure::grid(2, [chart(1.0), chart(100.0)]);
+        let figure = if shares { figure.share_y() } else { figure };
+        let drawing = figure.draw().expect("drawable");
+        let lines = drawing.shapes("lines");
+        let (Shape::Line { points: low, .. }, Shape::Line { points: high, .. }) =
+            (lines[0], lines[1])
+        else {
+            panic!("lines")
+        };
+        let names = drawing
+            .shapes("axes")
+            .into_iter()
+            .filter(|shape| matches!(shape, Shape::Text { text, .. } if text.characters == "y"))
+            .count();
+        ((low[1].y - high[1].y).abs(), names)
+    };
+    assert_eq!(numbers(true).1, 1);
+    assert!(numbers(true).0 > 50.0);
+    assert_eq!(numbers(false).1, 2);
+    assert!(numbers(false).0 < 1e-9);
+}
+
+#[test]
+fn letters_go_on_after_the_alphabet() {
+    assert_eq!(
+        [0, 25, 26, 27, 52].map(letter),
+        ["a", "z", "aa", "ab", "ba"]
+    );
+}
