@@ -181,13 +181,22 @@ mod tests {
 
     #[test]
     fn a_step_is_a_jump_and_a_slope_is_none() {
-        let step = branch(&[(2.5, 1.0), (2.6, 0.98), (2.7, 0.96), (2.72, 0.2), (2.8, 0.1), (2.9, 0.0)]);
+        let step = branch(&[
+            (2.5, 1.0),
+            (2.6, 0.98),
+            (2.7, 0.96),
+            (2.72, 0.2),
+            (2.8, 0.1),
+            (2.9, 0.0),
+        ]);
         let drop = step.drop().unwrap();
         assert_eq!((drop.before, drop.after), (2.7, 2.72));
         assert!((drop.threshold() - 0.58).abs() < 1e-12);
         assert!((step.jump().unwrap().height.value - 0.745).abs() < 0.01);
         assert!(step.jumps());
-        let slope: Vec<(f64, f64)> = (0..12).map(|k| (2.4 + 0.05 * f64::from(k), 1.0 - 0.09 * f64::from(k))).collect();
+        let slope: Vec<(f64, f64)> = (0..12)
+            .map(|k| (2.4 + 0.05 * f64::from(k), 1.0 - 0.09 * f64::from(k)))
+            .collect();
         assert!(!branch(&slope).jumps());
     }
 

@@ -20,4 +20,3 @@ pub struct Claim {
     /// What the evidence says.
     pub examine: fn(&Evidence) -> Result<Finding, ClaimError>,
 }
-

@@ -52,7 +52,8 @@ pub(crate) fn collapse(
                     .is_some_and(|mean| mean > 3.0 * line.period())
             })
             .filter_map(|ensemble| {
-                let found = quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
+                let found =
+                    quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
                 Some(CurvePoint {
                     x: ensemble.width,
                     y: found.value,
@@ -145,7 +146,10 @@ impl Collapsed {
 
     /// The exponents as quantities.
     pub(crate) fn quantities(&self, name: &str, symbols: [&str; 2]) -> Vec<Quantity> {
-        let words = ["power of the strain rate in the time", "power of the strain rate in the distance"];
+        let words = [
+            "power of the strain rate in the time",
+            "power of the strain rate in the distance",
+        ];
         (0..2)
             .map(|place| Quantity {
                 name: format!("{}, {name} lattice", words[place]),
@@ -153,10 +157,7 @@ impl Collapsed {
                 unit: String::new(),
                 source: Some(self.claimed.0[place]),
                 ours: Some(self.exponents[place]),
-                method: format!(
-                    "collapse of {} curves, resampled points",
-                    self.curves.len()
-                ),
+                method: format!("collapse of {} curves, resampled points", self.curves.len()),
             })
             .collect()
     }
@@ -167,8 +168,12 @@ impl Collapsed {
             "source".to_owned(),
             number(self.claimed.0[0], 2),
             number(self.claimed.0[1], 2),
-            self.claimed.1.map_or("–".to_owned(), |found| number(found.0, 1)),
-            self.claimed.1.map_or("–".to_owned(), |found| number(found.1, 2)),
+            self.claimed
+                .1
+                .map_or("–".to_owned(), |found| number(found.0, 1)),
+            self.claimed
+                .1
+                .map_or("–".to_owned(), |found| number(found.1, 2)),
         ]];
         rows.push(vec![
             "best".to_owned(),
@@ -190,7 +195,9 @@ impl Collapsed {
             caption: format!(
                 "Collapse on the {name} lattice: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
             ),
-            head: ["", "*a*", "*b*", "*S*", "overlap"].map(str::to_owned).to_vec(),
+            head: ["", "*a*", "*b*", "*S*", "overlap"]
+                .map(str::to_owned)
+                .to_vec(),
             rows,
         }]
     }
@@ -231,13 +238,25 @@ pub(crate) fn figure(
         let best = &collapsed.fit.parameters;
         let titles = [
             format!("{lattice}, exponents of the source"),
-            format!("{lattice}, {} and {}", number(best[0], 2), number(best[1], 2)),
+            format!(
+                "{lattice}, {} and {}",
+                number(best[0], 2),
+                number(best[1], 2)
+            ),
         ];
         for (title, exponents) in titles.iter().zip([claimed.to_vec(), best.clone()]) {
             let is_claimed = exponents == claimed;
             let mut panel = ChartPanel::new(
-                if is_claimed { x_label } else { "(*w*_{c} − *w*)/*ε̇*^{*b*}" },
-                if is_claimed { y_label } else { "scaled by *ε̇*^{*a*}" },
+                if is_claimed {
+                    x_label
+                } else {
+                    "(*w*_{c} − *w*)/*ε̇*^{*b*}"
+                },
+                if is_claimed {
+                    y_label
+                } else {
+                    "scaled by *ε̇*^{*a*}"
+                },
             )
             .title(title)
             .x_scale(Scale::Logarithmic)
@@ -252,12 +271,11 @@ pub(crate) fn figure(
                 );
             }
             let all = || scaled.iter().flat_map(|(_, [x, y, _])| x.iter().zip(y));
-            let (least, largest) = all().fold((f64::INFINITY, 0.0_f64), |(least, largest), (x, _)| {
-                (least.min(*x), largest.max(*x))
-            });
-            let middle = all()
-                .map(|(x, y)| y.ln() - slope * x.ln())
-                .sum::<f64>()
+            let (least, largest) = all()
+                .fold((f64::INFINITY, 0.0_f64), |(least, largest), (x, _)| {
+                    (least.min(*x), largest.max(*x))
+                });
+            let middle = all().map(|(x, y)| y.ln() - slope * x.ln()).sum::<f64>()
                 / all().count().max(1) as f64;
             let ends = [least, largest];
             panel = panel.with(

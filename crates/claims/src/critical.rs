@@ -1,8 +1,8 @@
 //! Transition times at one strain rate, and the power laws fitted to them.
 
 use peristalsis_analysis::{
-    Family, ScatterLawFit, Transition, Uncertain, WidthEnsemble, ensembles_by_width,
-    fit_law_with_scatter,
+    Family, FractionCrossing, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
+    ensembles_by_width, fit_law_with_scatter, fraction_crossing,
 };
 use peristalsis_run::THRESHOLDS;
 
@@ -17,8 +17,6 @@ const RESOLVED: f64 = 3.0;
 /// The runs from rest of one tube at one strain rate, watched at one threshold.
 #[derive(Clone, Debug)]
 pub(crate) struct Line<'a> {
-    /// The wall.
-    pub(crate) lattice: Lattice,
     /// c/lambda \[1/t\].
     pub(crate) strain_rate: f64,
     /// J/Jmax whose crossing counts.
@@ -54,8 +52,7 @@ impl Thresholds {
         let below = self.known.iter().rev().find(|known| known.0 <= strain_rate);
         let wanted = match (below, above) {
             (Some(below), Some(above)) if above.0 > below.0 => {
-                below.1
-                    + (above.1 - below.1) * (strain_rate - below.0) / (above.0 - below.0)
+                below.1 + (above.1 - below.1) * (strain_rate - below.0) / (above.0 - below.0)
             }
             (Some(one), _) | (None, Some(one)) => one.1,
             (None, None) => 0.5,
@@ -76,7 +73,11 @@ pub(crate) fn strain_rates<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<f64> 
 }
 
 /// The lines of a study, by ascending strain rate.
-pub(crate) fn lines<'a>(runs: &'a [Run], lattice: Lattice, thresholds: &Thresholds) -> Vec<Line<'a>> {
+pub(crate) fn lines<'a>(
+    runs: &'a [Run],
+    lattice: Lattice,
+    thresholds: &Thresholds,
+) -> Vec<Line<'a>> {
     let of_lattice = || {
         runs.iter()
             .filter(move |run| run.lattice == lattice && run.start == Start::Rest)
@@ -84,7 +85,6 @@ pub(crate) fn lines<'a>(runs: &'a [Run], lattice: Lattice, thresholds: &Threshol
     strain_rates(of_lattice())
         .into_iter()
         .map(|strain_rate| Line {
-            lattice,
             strain_rate,
             threshold: thresholds.at(strain_rate),
             runs: of_lattice()
@@ -154,7 +154,9 @@ impl Line<'_> {
 
     /// Most grains outside the tube, as a fraction, at any width from which on the fits look.
     pub(crate) fn escaped(&self) -> f64 {
-        let from = self.window(WINDOW).map_or(f64::NEG_INFINITY, |window| window.0[0]);
+        let from = self
+            .window(WINDOW)
+            .map_or(f64::NEG_INFINITY, |window| window.0[0]);
         let fractions: Vec<f64> = self
             .runs
             .iter()
@@ -201,6 +203,21 @@ impl Line<'_> {
         )
     }
 
+    /// The width at which half of the runs have a transition before their end.
+    pub(crate) fn crossing(&self) -> Option<FractionCrossing> {
+        let (width, jammed): (Vec<f64>, Vec<bool>) = self
+            .runs
+            .iter()
+            .map(|run| {
+                (
+                    run.width,
+                    run.transition_at(self.threshold).observed().is_some(),
+                )
+            })
+            .unzip();
+        fraction_crossing(&width, &jammed).ok()
+    }
+
     /// Power laws of mean and scatter in a window of so many widths next to the critical one.
     pub(crate) fn fit(&self, number: usize) -> Option<ScatterLawFit> {
         let (width, transitions) = self.window(number)?;
@@ -217,13 +234,16 @@ impl Line<'_> {
                 distinct.dedup();
                 Some((number, self.fit(number)?))
             })
-            .fold(Vec::new(), |mut fits: Vec<(usize, ScatterLawFit)>, (number, fit)| {
-                // Beyond the last usable width nothing changes.
-                if fits.last().is_none_or(|last| last.1 != fit) {
-                    fits.push((number, fit));
-                }
-                fits
-            })
+            .fold(
+                Vec::new(),
+                |mut fits: Vec<(usize, ScatterLawFit)>, (number, fit)| {
+                    // Beyond the last usable width nothing changes.
+                    if fits.last().is_none_or(|last| last.1 != fit) {
+                        fits.push((number, fit));
+                    }
+                    fits
+                },
+            )
     }
 }
 
@@ -260,7 +280,8 @@ mod tests {
     fn estimates_that_scatter_widen_the_error_of_their_mean() {
         let agreeing = weighted_mean(&[Uncertain::normal(1.0, 0.1), Uncertain::normal(1.0, 0.1)]);
         assert!((agreeing.unwrap().error - 0.1 / 2_f64.sqrt()).abs() < 1e-12);
-        let scattered = weighted_mean(&[Uncertain::normal(0.0, 0.1), Uncertain::normal(2.0, 0.1)]).unwrap();
+        let scattered =
+            weighted_mean(&[Uncertain::normal(0.0, 0.1), Uncertain::normal(2.0, 0.1)]).unwrap();
         assert!((scattered.value - 1.0).abs() < 1e-12 && (scattered.error - 1.0).abs() < 1e-12);
         assert!(weighted_mean(&[]).is_none());
     }

@@ -61,10 +61,22 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn series(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+        self.product(run, "timeseries.parquet")
+    }
+
+    /// The flow of each wave over each period of a run; `None` where it was not kept, or only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub fn waves(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+        self.product(run, "waves.parquet")
+    }
+
+    fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
         let Ok(identity) = run.identity.parse() else {
             return Ok(None);
         };
-        let path = self.store.run_folder(identity).join("timeseries.parquet");
+        let path = self.store.run_folder(identity).join(name);
         if !path.is_file() {
             return Ok(None);
         }

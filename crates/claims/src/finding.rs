@@ -12,7 +12,9 @@ pub enum Verdict {
     Reproduced,
     /// It does not.
     Differs,
-    /// The statistics do not allow a verdict, or what they show is neither.
+    /// A question that the source left open has an answer.
+    Answered,
+    /// The statistics do not allow a verdict, or what they show is none.
     Open,
 }
 
@@ -23,6 +25,7 @@ impl Verdict {
         match self {
             Self::Reproduced => "reproduced",
             Self::Differs => "differs",
+            Self::Answered => "answered",
             Self::Open => "open",
         }
     }
@@ -146,7 +149,12 @@ fn uncertain<S: Serializer>(number: &Option<Uncertain>, serializer: S) -> Result
 impl Finding {
     /// A finding of which nothing but the verdict is known yet; the verdict is open where the statistics do not suffice.
     #[must_use]
-    pub fn new(verdict: Verdict, summary: String, statistics: Statistics, needed: &Statistics) -> Self {
+    pub fn new(
+        verdict: Verdict,
+        summary: String,
+        statistics: Statistics,
+        needed: &Statistics,
+    ) -> Self {
         let verdict = if statistics.suffice(needed) {
             verdict
         } else {

@@ -9,6 +9,7 @@ mod claim;
 mod claims;
 mod collapse;
 mod critical;
+mod crossing;
 mod error;
 mod evidence;
 mod finding;

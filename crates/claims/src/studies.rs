@@ -67,4 +67,5 @@ pub const STUDIES: &[StudyFile] = &[
     study!("softness"),
     study!("wavelength"),
     study!("radius"),
+    study!("length"),
 ];

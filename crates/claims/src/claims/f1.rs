@@ -69,7 +69,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let of = |lattice: Lattice| Statistics {
         strain_rates: tight(lattice).count(),
         widths: tight(lattice).map(|kind| kind.widths).min().unwrap_or(0),
-        replicates: tight(lattice).map(|kind| kind.replicates).min().unwrap_or(0),
+        replicates: tight(lattice)
+            .map(|kind| kind.replicates)
+            .min()
+            .unwrap_or(0),
         runs: tight(lattice).map(|kind| kind.runs).sum(),
     };
     let needed = Statistics::FOR_A_VERDICT;
@@ -92,7 +95,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .iter()
         .any(|(lattice, ..)| tight(*lattice).count() > 0 && tight(*lattice).all(Kind::holds));
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!(
             "Slow beyond the jump and above {NEAR_ONE} *J*_{{max}} well below it {}.",
             counts.join(" and ")
@@ -149,7 +156,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
          a run: next to *w*_{c} a transition may come later."
             .to_owned(),
     );
-    finding.figures.extend(in_time(evidence.study("flow-in-time")?)?);
+    finding
+        .figures
+        .extend(in_time(evidence.study("flow-in-time")?)?);
     Ok(finding)
 }
 
@@ -180,7 +189,10 @@ fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
         .iter()
         .rfind(|point| point.width <= drop.before - BELOW)
         .or(branch.points.first())?;
-    let slow = branch.points.iter().find(|point| point.width >= drop.after)?;
+    let slow = branch
+        .points
+        .iter()
+        .find(|point| point.width >= drop.after)?;
     Some(Kind {
         lattice,
         strain_rate,
@@ -200,7 +212,8 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
     let mut panels = Vec::new();
     let mut widths: Vec<f64> = Vec::new();
     for lattice in [Lattice::COARSE, Lattice::FINE] {
-        let mut panel = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
+        let mut panel =
+            ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
         let mut lines = 0;
         let mut rate = 0.0;
         for run in study
@@ -211,7 +224,9 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
             let Some(averages) = study.period_averages(run)? else {
                 continue;
             };
-            let period: Vec<f64> = (0..averages.len()).map(|number| number as f64 + 0.5).collect();
+            let period: Vec<f64> = (0..averages.len())
+                .map(|number| number as f64 + 0.5)
+                .collect();
             panel = panel.with(Curve::new("", &period, &averages).tint(Tint::Value(run.width)));
             widths.push(run.width);
             rate = run.strain_rate;
@@ -228,7 +243,11 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
     let largest = widths.iter().copied().fold(0.0, f64::max);
     let drawing = ChartFigure::grid(2, panels)
         .share_y()
-        .colour_scale(ColourScale::new(&label(Axis::Width), least, largest.max(least + 0.01)))
+        .colour_scale(ColourScale::new(
+            &label(Axis::Width),
+            least,
+            largest.max(least + 0.01),
+        ))
         .width(Width::DoubleColumn)
         .description("Flow rate in time for several widths of the bottleneck.")
         .draw()?;

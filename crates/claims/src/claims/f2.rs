@@ -3,9 +3,7 @@
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::{
-    LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics,
-};
+use super::{LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics};
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, weighted_mean};
 use crate::error::ClaimError;
@@ -29,6 +27,8 @@ pub(super) const CLAIM: Claim = Claim {
 
 /// What the source says.
 const EXPONENT: f64 = 1.0;
+/// Other thresholds that the fits are made with, relative to the one midway.
+const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut statistics_found = Statistics::default();
@@ -37,14 +37,15 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut panels = Vec::new();
     let mut all_rates = Vec::new();
     let mut means = Vec::new();
+    let mut sensitivity: Vec<Vec<String>> = Vec::new();
     for study in LATTICES {
         let lines = lines_of(evidence, study)?;
         let fits = fitted(&lines);
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         statistics_found = larger(statistics_found, statistics(&used));
         all_rates.extend(lines.iter().map(|line| line.strain_rate));
-        panels.push(panel(&lines)?);
         let name = study.0.name();
+        panels.push(panel(&lines)?.title(&format!("{name} lattice")));
         let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.exponent).collect();
         if let Some(mean) = weighted_mean(&exponents) {
             means.push((name.clone(), mean));
@@ -62,12 +63,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         }
         for (line, fit) in &fits {
             let windows = line.fits();
-            let range = windows
-                .iter()
-                .map(|(_, fit)| fit.exponent.value)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), value| {
-                    (least.min(value), largest.max(value))
-                });
+            let range = windows.iter().map(|(_, fit)| fit.exponent.value).fold(
+                (f64::INFINITY, f64::NEG_INFINITY),
+                |(least, largest), value| (least.min(value), largest.max(value)),
+            );
             rows.push(vec![
                 name.clone(),
                 number(line.strain_rate, 3),
@@ -79,8 +78,26 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 format!("{}/{}", fit.observed, fit.observed + fit.censored),
                 number(line.escaped(), 2),
             ]);
+            sensitivity.push(
+                [name.clone(), number(line.strain_rate, 3)]
+                    .into_iter()
+                    .chain(SHIFTS.map(|shift| {
+                        let fit = line.at_threshold(line.threshold + shift).fit(WINDOW);
+                        fit.map_or("–".to_owned(), |fit| {
+                            format!(
+                                "{}; {}",
+                                estimate(&fit.critical_width),
+                                estimate(&fit.exponent)
+                            )
+                        })
+                    }))
+                    .collect(),
+            );
         }
-        for line in lines.iter().filter(|line| !used.iter().any(|one| one.strain_rate == line.strain_rate)) {
+        for line in lines
+            .iter()
+            .filter(|line| !used.iter().any(|one| one.strain_rate == line.strain_rate))
+        {
             rows.push(vec![
                 name.clone(),
                 number(line.strain_rate, 3),
@@ -107,7 +124,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .map(|(name, mean)| format!("*α* = {} on the {name} lattice", estimate(mean)))
         .collect();
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!(
             "Next to the critical width {}; the source says 1.",
             words.join(", ")
@@ -135,6 +156,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .to_vec(),
         rows,
     });
+    finding.tables.push(ReportTable {
+        caption: "Sensitivity: *w*_{c} and *α* with the threshold lower by 0.1, as it is, and higher by 0.1.".to_owned(),
+        head: ["lattice", "*ε̇*", "−0.1", "midway", "+0.1"].map(str::to_owned).to_vec(),
+        rows: sensitivity,
+    });
     finding.weaknesses.push(
         "An effective exponent depends on how near to *w*_{c} the fit looks, since *w*_{c} is fitted too: see the range \
          over windows. It falls toward the source's 1 as the window closes in."
@@ -144,7 +170,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .share_y()
         .colour_scale(rate_colours(all_rates.into_iter()))
         .width(Width::DoubleColumn)
-        .description("Mean transition time against the width of the bottleneck for several strain rates.")
+        .description(
+            "Mean transition time against the width of the bottleneck for several strain rates.",
+        )
         .draw()?;
     finding.figures.push(ReportFigure {
         name: "transition-times".to_owned(),
@@ -172,7 +200,10 @@ fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
             };
             width.push(ensemble.width);
             time.push(value * line.strain_rate);
-            error.push(mean.filter(|_| seen).map_or(0.0, |mean| mean.error * line.strain_rate));
+            error.push(
+                mean.filter(|_| seen)
+                    .map_or(0.0, |mean| mean.error * line.strain_rate),
+            );
             limit.push(!seen);
         }
         if width.is_empty() {

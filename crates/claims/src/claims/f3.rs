@@ -34,7 +34,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let fits = fitted(&lines);
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         statistics_found = larger(statistics_found, statistics(&used));
-        let mean = |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.mean);
+        let mean =
+            |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.mean);
         if let Some(collapsed) = collapse(&fits, EXPONENTS, mean) {
             found.push((study.0.name(), collapsed));
         }
@@ -52,13 +53,19 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .map(|(name, collapsed)| format!("{name} lattice: {}", collapsed.in_words()))
         .collect();
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!("{}. The source says 7/2 and 3/2.", words.join("; ")),
         statistics_found,
         &Statistics::FOR_A_VERDICT,
     );
     for (name, collapsed) in &found {
-        finding.quantities.extend(collapsed.quantities(name, ["*a*", "*b*"]));
+        finding
+            .quantities
+            .extend(collapsed.quantities(name, ["*a*", "*b*"]));
         finding.tables.extend(collapsed.tables(name));
     }
     finding.paragraphs.push(

@@ -3,9 +3,7 @@
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::{
-    LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics,
-};
+use super::{LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics};
 use crate::claim::Claim;
 use crate::collapse::{Collapsed, collapse, figure};
 use crate::critical::{Line, WINDOW, weighted_mean};
@@ -47,8 +45,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         statistics_found = larger(statistics_found, statistics(&used));
         all_rates.extend(used.iter().map(|line| line.strain_rate));
-        panels.push(panel(&used)?);
         let name = study.0.name();
+        panels.push(panel(&used)?.title(&format!("{name} lattice")));
         let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.variance_exponent).collect();
         if let Some(mean) = weighted_mean(&exponents) {
             means.push((name.clone(), mean));
@@ -77,7 +75,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let variance =
             |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.variance);
         if let Some(collapsed) = collapse(&fits, SCALING, variance) {
-            quantities.extend(collapsed.quantities(&format!("variance, {name}"), ["*a_{χ}*", "*b_{χ}*"]));
+            quantities
+                .extend(collapsed.quantities(&format!("variance, {name}"), ["*a_{χ}*", "*b_{χ}*"]));
             collapses.push((name, collapsed));
         }
     }
@@ -94,7 +93,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .map(|(name, mean)| format!("*β* = {} on the {name} lattice", estimate(mean)))
         .collect();
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!("{}; the source says 3.", words.join(", ")),
         statistics_found,
         &Statistics::FOR_A_VERDICT,
@@ -148,13 +151,16 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
 
 /// Variances of one lattice with the fitted laws.
 fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
-    let mut panel = ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2")
-        .y_scale(Scale::Logarithmic);
+    let mut panel =
+        ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2").y_scale(Scale::Logarithmic);
     for (number, line) in lines.iter().enumerate() {
         let squared = line.strain_rate * line.strain_rate;
         let (mut width, mut variance, mut error) = (vec![], vec![], vec![]);
         for ensemble in line.ensembles() {
-            let Some(fit) = ensemble.fit.filter(|_| ensemble.observed >= ensemble.censored) else {
+            let Some(fit) = ensemble
+                .fit
+                .filter(|_| ensemble.observed >= ensemble.censored)
+            else {
                 continue;
             };
             if fit.variance.value > 0.0 {

@@ -5,7 +5,7 @@ use peristalsis_figures::chart::{
     Bars, ChartFigure, ChartPanel, Line as Curve, Pattern, Points, Tint,
 };
 use peristalsis_figures::{Quantity as Axis, Width};
-use peristalsis_physics::newtonian::Newtonian;
+use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
 use super::{LATTICES, MOST_ESCAPED, label, larger, rate_colours, spaced};
 use crate::branches::Branch;
@@ -75,14 +75,26 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 .map(|point| point.escaped)
                 .fold(0.0, f64::max);
             let near = near(here(), drop.before, drop.after);
-            let test = dip_test(&near, Bootstrap { resamples: 500, seed: 7 }).ok();
+            let test = dip_test(
+                &near,
+                Bootstrap {
+                    resamples: 500,
+                    seed: 7,
+                },
+            )
+            .ok();
             let peaks = two_peaks(&near).ok();
             if escaped <= MOST_ESCAPED {
                 tight += 1;
                 jumping += usize::from(branch.jumps());
                 statistics.strain_rates += 1;
                 statistics.widths = statistics.widths.min(branch.points.len());
-                let least = branch.points.iter().map(|point| point.runs).min().unwrap_or(0);
+                let least = branch
+                    .points
+                    .iter()
+                    .map(|point| point.runs)
+                    .min()
+                    .unwrap_or(0);
                 statistics.replicates = statistics.replicates.min(least);
                 statistics.runs += here().count();
                 near_all.extend(near.iter().filter(|_| lattice == Lattice::FINE));
@@ -91,7 +103,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             if let Some(height) = height.filter(|_| escaped <= MOST_ESCAPED) {
                 heights.push(height);
                 quantities.push(Quantity {
-                    name: format!("height of the jump, {} lattice, strain rate {rate}", lattice.name()),
+                    name: format!(
+                        "height of the jump, {} lattice, strain rate {rate}",
+                        lattice.name()
+                    ),
                     symbol: "Δ*J*/*J*_{max}".to_owned(),
                     unit: String::new(),
                     source: None,
@@ -123,15 +138,24 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     if rates.is_empty() {
         return Ok(Finding::nothing("No runs yet.", found, &needed));
     }
-    let holds = verdicts.iter().any(|(_, jumping, tight)| *tight > 0 && jumping == tight);
+    let holds = verdicts
+        .iter()
+        .any(|(_, jumping, tight)| *tight > 0 && jumping == tight);
     let words: Vec<String> = verdicts
         .iter()
         .map(|(lattice, jumping, tight)| {
-            format!("at {jumping} of {tight} strain rates on the {} lattice", lattice.name())
+            format!(
+                "at {jumping} of {tight} strain rates on the {} lattice",
+                lattice.name()
+            )
         })
         .collect();
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!(
             "A jump by more than 0.1 and four of its errors between neighbouring widths {}. The Newtonian curve is smooth.",
             words.join(" and ")
@@ -177,8 +201,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     if let Ok(counts) = histogram(&near_all, -0.05, 1.05, 22) {
         let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
         if heights.iter().sum::<f64>() > 0.0 {
-            let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs")
-                .with(Bars::new("", &counts.edges, &heights));
+            let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(Bars::new(
+                "",
+                &counts.edges,
+                &heights,
+            ));
             finding.figures.push(ReportFigure {
                 name: "two-peaks".to_owned(),
                 caption: format!(
@@ -229,7 +256,7 @@ fn newtonian(panel: ChartPanel) -> ChartPanel {
         widths
             .iter()
             .map(|width| {
-                Newtonian::from_width(width - 2.0 * inset, radius - inset, 0.0)
+                NewtonianPeristalsis::from_width(width - 2.0 * inset, radius - inset, 0.0)
                     .map_or(f64::NAN, |fluid| fluid.flow_rate_ratio())
             })
             .collect()

@@ -81,9 +81,15 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             vec![
                 lattice.to_owned(),
                 number(density.fraction, 2),
-                density.ratio.map_or("–".to_owned(), |(mean, error)| with_error(mean, error)),
-                density.critical.map_or("–".to_owned(), |one| estimate(&one)),
-                density.exponent.map_or("–".to_owned(), |one| estimate(&one)),
+                density
+                    .ratio
+                    .map_or("–".to_owned(), |(mean, error)| with_error(mean, error)),
+                density
+                    .critical
+                    .map_or("–".to_owned(), |one| estimate(&one)),
+                density
+                    .exponent
+                    .map_or("–".to_owned(), |one| estimate(&one)),
             ]
         }));
         panels.extend(panels_of(lattice, &densities));
@@ -95,10 +101,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         NEEDED
     } else {
         // Too few densities never suffice.
-        Statistics { strain_rates: usize::MAX, ..NEEDED }
+        Statistics {
+            strain_rates: usize::MAX,
+            ..NEEDED
+        }
     };
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         parts.join(". "),
         found,
         &needed,
@@ -142,7 +155,11 @@ fn densities(runs: &[Run]) -> Vec<Density> {
     keys.dedup();
     keys.into_iter()
         .map(|wanted| {
-            let here: Vec<Run> = runs.iter().filter(|run| key(run) == wanted).cloned().collect();
+            let here: Vec<Run> = runs
+                .iter()
+                .filter(|run| key(run) == wanted)
+                .cloned()
+                .collect();
             let branch = Branch::of(here.iter(), Start::Rest);
             let line = lines_at_own_threshold(&here).into_iter().next();
             let fit = line.as_ref().and_then(|line: &Line<'_>| line.fit(WINDOW));
@@ -161,7 +178,12 @@ fn densities(runs: &[Run]) -> Vec<Density> {
                 statistics: Statistics {
                     strain_rates: 1,
                     widths: branch.points.len(),
-                    replicates: branch.points.iter().map(|point| point.runs).min().unwrap_or(0),
+                    replicates: branch
+                        .points
+                        .iter()
+                        .map(|point| point.runs)
+                        .min()
+                        .unwrap_or(0),
                     runs: here.len(),
                 },
                 branch,
@@ -200,7 +222,10 @@ fn judge(densities: &[Density]) -> Judged {
         .fold((f64::INFINITY, 0.0_f64), |(least, largest), value| {
             (least.min(*value), largest.max(*value))
         });
-    let exponents: Vec<Uncertain> = densities.iter().filter_map(|density| density.exponent).collect();
+    let exponents: Vec<Uncertain> = densities
+        .iter()
+        .filter_map(|density| density.exponent)
+        .collect();
     Judged {
         slower: ratios.len() > 1 && ratios.windows(2).all(|pair| pair[1] < pair[0]),
         change,
@@ -213,13 +238,19 @@ impl Judged {
     fn all(&self) -> bool {
         self.slower
             && self.relative_change < HARDLY
-            && self.exponent.is_some_and(|exponent| super::agrees(&exponent, 1.0))
+            && self
+                .exponent
+                .is_some_and(|exponent| super::agrees(&exponent, 1.0))
     }
 
     fn in_words(&self) -> String {
         format!(
             "the flow {} with density, *w*_{{c}} changes by {} per cent over the range, *α* = {}",
-            if self.slower { "decreases" } else { "does not always decrease" },
+            if self.slower {
+                "decreases"
+            } else {
+                "does not always decrease"
+            },
             number(100.0 * self.relative_change, 1),
             self.exponent.map_or("–".to_owned(), |one| estimate(&one)),
         )
@@ -228,7 +259,9 @@ impl Judged {
     fn quantities(&self, lattice: &str) -> Vec<Quantity> {
         vec![
             Quantity {
-                name: format!("change of the critical width with the volume fraction, {lattice} lattice"),
+                name: format!(
+                    "change of the critical width with the volume fraction, {lattice} lattice"
+                ),
                 symbol: "d*w*_{c}/d*ρ*".to_owned(),
                 unit: "d".to_owned(),
                 source: Some(0.0),
@@ -236,7 +269,9 @@ impl Judged {
                 method: "weighted line through the densities".to_owned(),
             },
             Quantity {
-                name: format!("exponent of the mean transition time, all densities, {lattice} lattice"),
+                name: format!(
+                    "exponent of the mean transition time, all densities, {lattice} lattice"
+                ),
                 symbol: "*α*".to_owned(),
                 unit: String::new(),
                 source: Some(1.0),
@@ -262,7 +297,13 @@ fn panels_of(lattice: &str, densities: &[Density]) -> [ChartPanel; 3] {
                 &column(|point| point.width),
                 &column(|point| point.mean),
             )
-            .y_errors(&column(|point| if point.error.is_finite() { point.error } else { 0.0 }))
+            .y_errors(&column(|point| {
+                if point.error.is_finite() {
+                    point.error
+                } else {
+                    0.0
+                }
+            }))
             .series(place)
             .joined(),
         );

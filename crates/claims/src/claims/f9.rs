@@ -63,13 +63,20 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         Statistics {
             strain_rates: tight().count(),
             widths: tight().map(|one| one.statistics.widths).min().unwrap_or(0),
-            replicates: tight().map(|one| one.statistics.replicates).min().unwrap_or(0),
+            replicates: tight()
+                .map(|one| one.statistics.replicates)
+                .min()
+                .unwrap_or(0),
             runs: tight().map(|one| one.statistics.runs).sum(),
         }
     };
     let found = super::larger(of(Lattice::FINE), of(Lattice::COARSE));
     if loops.is_empty() {
-        return Ok(Finding::nothing("No runs from both starts yet.", found, &needed));
+        return Ok(Finding::nothing(
+            "No runs from both starts yet.",
+            found,
+            &needed,
+        ));
     }
     let has_loop = |one: &&Loop| {
         one.at_least.is_some_and(|least| least > 0.0)
@@ -85,7 +92,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let looping = tight().filter(has_loop).count();
     let holds = looping >= 4 && closed > 0;
     let mut finding = Finding::new(
-        if holds { Verdict::Reproduced } else { Verdict::Differs },
+        if holds {
+            Verdict::Reproduced
+        } else {
+            Verdict::Differs
+        },
         format!(
             "The two starts end in different flows at {looping} of {} strain rates; jammed flow unjams within the run's 500 \
              periods at some width at {unjammed} of them, with a loop at {closed}.",
@@ -97,7 +108,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     for one in loops.iter().filter(|one| one.escaped <= MOST_ESCAPED) {
         if let Some(distance) = one.distance {
             finding.quantities.push(Quantity {
-                name: format!("width of the loop, {} lattice, strain rate {}", one.lattice.name(), one.strain_rate),
+                name: format!(
+                    "width of the loop, {} lattice, strain rate {}",
+                    one.lattice.name(),
+                    one.strain_rate
+                ),
                 symbol: "*w*_{c}′ − *w*_{c}".to_owned(),
                 unit: "d".to_owned(),
                 source: None,
@@ -131,7 +146,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             })
             .collect(),
     });
-    finding.tables.extend(lifetimes(&evidence.study("jam-lifetime")?.runs));
+    finding
+        .tables
+        .extend(lifetimes(&evidence.study("jam-lifetime")?.runs));
     finding.paragraphs.push(
         "Where the wave is fast and the wall smooth, a jam that is once there does not break up in 500 periods at any width, \
          not even in a straight tube: nothing but the roughness of the wall slows grains that move together. *w*_{c}′ in the \
@@ -173,14 +190,21 @@ fn loop_of(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Loop> {
         .or_else(|| Some(drop.width()));
     let outlives = jammed.1.iter().all(|jammed| *jammed);
     let largest = jammed.0.iter().copied().fold(0.0, f64::max);
-    let least_of = |branch: &Branch| branch.points.iter().map(|point| point.runs).min().unwrap_or(0);
+    let least_of = |branch: &Branch| {
+        branch
+            .points
+            .iter()
+            .map(|point| point.runs)
+            .min()
+            .unwrap_or(0)
+    };
     Some(Loop {
         lattice,
         strain_rate,
         critical,
         critical_jammed: found.as_ref().map(|found| found.from_jammed.width),
         distance: found.as_ref().map(|found| found.loop_width),
-        at_least: (found.is_none() && outlives).then(|| largest - drop.after),
+        at_least: (found.is_none() && outlives).then_some(largest - drop.after),
         escaped: from_rest
             .points
             .iter()
@@ -201,7 +225,10 @@ fn loop_of(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Loop> {
 /// How long jams last in tubes too wide for them.
 fn lifetimes(runs: &[Run]) -> Option<ReportTable> {
     let key = |run: &Run| (run.lattice, run.strain_rate.to_bits(), run.width.to_bits());
-    let mut sorted: Vec<&Run> = runs.iter().filter(|run| run.start == Start::Jammed).collect();
+    let mut sorted: Vec<&Run> = runs
+        .iter()
+        .filter(|run| run.start == Start::Jammed)
+        .collect();
     sorted.sort_by_key(|run| key(run));
     let rows: Vec<Vec<String>> = sorted
         .chunk_by(|one, other| key(one) == key(other))
@@ -263,17 +290,30 @@ fn figure(loops: &[Loop]) -> Result<Option<ReportFigure>, ClaimError> {
         .map(|one| {
             let mut panel = ChartPanel::new(&label(Axis::Width), &label(Axis::FlowRateRatio))
                 .y_range(-0.05..=1.1)
-                .title(&format!("{} lattice, *ε̇* = {}", one.lattice.name(), one.strain_rate));
+                .title(&format!(
+                    "{} lattice, *ε̇* = {}",
+                    one.lattice.name(),
+                    one.strain_rate
+                ));
             if let (Some(rest), Some(jammed)) = (one.critical, one.critical_jammed)
                 && jammed.value > rest.value
             {
                 panel = panel.with(Window::new("both states", rest.value, jammed.value));
             }
-            for (series, name, branch) in [(0, "from rest", &one.from_rest), (1, "from jammed", &one.from_jammed)] {
-                let points = Points::new(name, &column(branch, |p| p.width), &column(branch, |p| p.mean))
-                    .y_errors(&column(branch, |p| if p.error.is_finite() { p.error } else { 0.0 }))
-                    .series(series)
-                    .joined();
+            for (series, name, branch) in [
+                (0, "from rest", &one.from_rest),
+                (1, "from jammed", &one.from_jammed),
+            ] {
+                let points = Points::new(
+                    name,
+                    &column(branch, |p| p.width),
+                    &column(branch, |p| p.mean),
+                )
+                .y_errors(&column(branch, |p| {
+                    if p.error.is_finite() { p.error } else { 0.0 }
+                }))
+                .series(series)
+                .joined();
                 panel = panel.with(if series == 1 { points.open() } else { points });
             }
             panel
@@ -284,11 +324,15 @@ fn figure(loops: &[Loop]) -> Result<Option<ReportFigure>, ClaimError> {
     }
     Ok(Some(ReportFigure {
         name: "hysteresis".to_owned(),
-        caption: "Stationary flow from rest and from jammed: both states exist in the shaded window.".to_owned(),
+        caption:
+            "Stationary flow from rest and from jammed: both states exist in the shaded window."
+                .to_owned(),
         drawing: ChartFigure::grid(2, panels)
             .share_y()
             .width(Width::DoubleColumn)
-            .description("Two branches of the stationary flow with a window of widths in which both exist.")
+            .description(
+                "Two branches of the stationary flow with a window of widths in which both exist.",
+            )
             .draw()?,
     }))
 }

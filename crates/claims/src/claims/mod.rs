@@ -63,7 +63,11 @@ fn lines_of<'a>(
     (lattice, divergence, branches): (Lattice, &str, &str),
 ) -> Result<Vec<Line<'a>>, ClaimError> {
     let thresholds = Thresholds::of(&evidence.study(branches)?.runs, lattice);
-    Ok(lines(&evidence.study(divergence)?.runs, lattice, &thresholds))
+    Ok(lines(
+        &evidence.study(divergence)?.runs,
+        lattice,
+        &thresholds,
+    ))
 }
 
 /// The lines that hold their grains, each with its fit; those of which too many grains are outside are left out.
@@ -79,8 +83,16 @@ fn fitted<'a, 'b>(lines: &'b [Line<'a>]) -> Vec<(&'b Line<'a>, ScatterLawFit)> {
 fn statistics(lines: &[&Line<'_>]) -> Statistics {
     Statistics {
         strain_rates: lines.len(),
-        widths: lines.iter().map(|line| line.widths().len()).min().unwrap_or(0),
-        replicates: lines.iter().map(|line| line.replicates()).min().unwrap_or(0),
+        widths: lines
+            .iter()
+            .map(|line| line.widths().len())
+            .min()
+            .unwrap_or(0),
+        replicates: lines
+            .iter()
+            .map(|line| line.replicates())
+            .min()
+            .unwrap_or(0),
         runs: lines.iter().map(|line| line.number()).sum(),
     }
 }

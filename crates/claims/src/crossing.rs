@@ -1,0 +1,52 @@
+//! Where half of the runs from rest have a transition.
+
+use peristalsis_analysis::{FractionCrossing, fraction_crossing};
+
+use crate::finding::Statistics;
+use crate::runs::{Run, Start};
+
+/// The width at which half of some runs from rest have a transition at the threshold of their study; `None` where all of
+/// them have one, or none.
+pub(crate) fn crossing(runs: &[&Run]) -> Option<FractionCrossing> {
+    let (width, jammed): (Vec<f64>, Vec<bool>) = runs
+        .iter()
+        .filter(|run| run.start == Start::Rest)
+        .map(|run| (run.width, run.transition().observed().is_some()))
+        .unzip();
+    fraction_crossing(&width, &jammed).ok()
+}
+
+/// Runs with the same key, by ascending key.
+pub(crate) fn grouped<K: PartialOrd + Copy>(
+    runs: &[Run],
+    key: impl Fn(&Run) -> K,
+) -> Vec<(K, Vec<&Run>)> {
+    let mut keyed: Vec<(K, &Run)> = runs.iter().map(|run| (key(run), run)).collect();
+    keyed.sort_by(|one, other| {
+        one.0
+            .partial_cmp(&other.0)
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    keyed
+        .chunk_by(|one, other| one.0 == other.0)
+        .map(|group| (group[0].0, group.iter().map(|(_, run)| *run).collect()))
+        .collect()
+}
+
+/// How much is behind some runs that differ in width and replicate.
+pub(crate) fn behind(runs: &[&Run]) -> Statistics {
+    let mut widths: Vec<f64> = runs.iter().map(|run| run.width).collect();
+    widths.sort_by(f64::total_cmp);
+    let replicates = widths
+        .chunk_by(|one, other| one == other)
+        .map(<[f64]>::len)
+        .min()
+        .unwrap_or(0);
+    widths.dedup();
+    Statistics {
+        strain_rates: 1,
+        widths: widths.len(),
+        replicates,
+        runs: runs.len(),
+    }
+}
