@@ -11,7 +11,8 @@ use crate::runs::Run;
 /// The results of one study.
 #[derive(Clone, Debug)]
 pub struct StudyResults {
-    store: Store,
+    /// Where the products of the runs are; `None` for rows from elsewhere.
+    store: Option<Store>,
     /// Finished runs in the order of the axes.
     pub runs: Vec<Run>,
     /// Runs of the study that are not finished.
@@ -36,12 +37,22 @@ impl Evidence {
         self.studies.insert(
             survey.study.name,
             StudyResults {
-                store,
+                store: Some(store),
                 runs,
                 missing,
             },
         );
         Ok(())
+    }
+
+    /// Adds runs as the results of a study, without their time series.
+    pub fn add_runs(&mut self, name: &str, runs: Vec<Run>) {
+        let results = StudyResults {
+            store: None,
+            runs,
+            missing: 0,
+        };
+        self.studies.insert(name.to_owned(), results);
     }
 
     /// The results of a study.
@@ -73,10 +84,10 @@ impl StudyResults {
     }
 
     fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
-        let Ok(identity) = run.identity.parse() else {
+        let (Some(store), Ok(identity)) = (&self.store, run.identity.parse()) else {
             return Ok(None);
         };
-        let path = self.store.run_folder(identity).join(name);
+        let path = store.run_folder(identity).join(name);
         if !path.is_file() {
             return Ok(None);
         }
