@@ -20,6 +20,7 @@ pub use error::RunError;
 pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use peristalsis_configuration::Configuration;
+pub use pictures::snapshot_stack;
 pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use stopping::Stopping;

@@ -4,8 +4,8 @@ use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_engine::Wall;
 use peristalsis_figures::{
     Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale,
-    Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Transition, WallFigure,
-    Width,
+    Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall, Transition,
+    WallFigure, Width,
 };
 use peristalsis_observe::TubeShape;
 
@@ -247,82 +247,131 @@ fn wall(run: &Run) -> Result<Drawing, FigureError> {
 }
 
 fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
-    let configuration = run.configuration();
-    let simulation = run.simulation();
-    let bodies = simulation.bodies();
-    let tube = simulation.wall().lattice().length();
-    let heading = simulation.wall().heading();
-    let speed = configuration.wave_speed();
-    // Drawn with the wave running to the right.
-    let along = |z: f64| if heading > 0.0 { z } else { tube - z };
-    let length =
-        configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
-    // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
-    let shows = |body: &usize| {
-        let position = bodies.position[*body];
-        let (place, margin) = (along(position.z), bodies.diameter[*body]);
-        position.x.hypot(position.y) < SNAPSHOT_RADII * configuration.tube.radius
-            && (place < length + margin || place > tube - margin)
-    };
-    let grains: Vec<SnapshotGrain> = (0..bodies.grains)
-        .filter(shows)
-        .map(|grain| SnapshotGrain {
-            sphere: SnapshotSphere {
-                along: along(bodies.position[grain].z),
-                across: bodies.position[grain].y,
-                depth: bodies.position[grain].x,
-                diameter: bodies.diameter[grain],
-            },
-            axial_velocity: if speed > 0.0 {
-                heading * bodies.velocity[grain].z / speed
-            } else {
-                0.0
-            },
-        })
+    Scene::of(run).figure().draw()
+}
+
+/// The final states of several runs above each other, each with a label in markup: one scale, one bar of colours.
+///
+/// # Errors
+/// If a figure cannot be drawn, for instance without a run.
+pub fn snapshot_stack(runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
+    let scenes: Vec<Scene> = runs.iter().map(|(_, run)| Scene::of(run)).collect();
+    let snapshots: Vec<(&str, SnapshotFigure<'_>)> = runs
+        .iter()
+        .zip(&scenes)
+        .map(|((label, _), scene)| (*label, scene.figure()))
         .collect();
-    let points = 400;
-    let shape = TubeShape::of(simulation);
-    let outline: (Vec<f64>, Vec<f64>) = (0..=points)
-        .map(|point| {
-            let place = length * f64::from(point) / f64::from(points);
-            (place, shape.radius(along(place).rem_euclid(tube)))
-        })
-        .unzip();
-    let spheres: Vec<SnapshotSphere> = match simulation.wall() {
-        Wall::Prescribed(_) => Vec::new(),
-        Wall::Elastic(_) => (bodies.grains..bodies.number())
-            .filter(shows)
-            .map(|sphere| SnapshotSphere {
-                along: along(bodies.position[sphere].z),
-                across: bodies.position[sphere].y,
-                depth: bodies.position[sphere].x,
-                diameter: bodies.diameter[sphere],
-            })
-            .collect(),
-    };
-    let title = format!(
-        "{},  *t*/*T* = {:.2}",
-        title(configuration),
-        simulation.wall().cycles()
-    );
-    SnapshotFigure {
-        title: &title,
-        grains: &grains,
-        wall: if spheres.is_empty() {
-            SnapshotWall::Outline(Series {
-                x: &outline.0,
-                y: &outline.1,
-            })
-        } else {
-            SnapshotWall::Spheres(&spheres)
-        },
-        start: 0.0,
-        length,
-        period: Some(tube),
-        wavelength: Some(configuration.tube.wavelength),
-        velocity_limit: 1.0,
-        length_unit: "*d*",
+    SnapshotStack {
+        title: "",
+        snapshots: &snapshots,
         width: Width::DoubleColumn,
     }
     .draw()
+}
+
+/// What a snapshot shows of a run.
+struct Scene {
+    title: String,
+    grains: Vec<SnapshotGrain>,
+    /// Where the wall is, place by place.
+    outline: (Vec<f64>, Vec<f64>),
+    /// The spheres of an elastic wall.
+    spheres: Vec<SnapshotSphere>,
+    length: f64,
+    tube: f64,
+    wavelength: f64,
+}
+
+impl Scene {
+    fn figure(&self) -> SnapshotFigure<'_> {
+        SnapshotFigure {
+            title: &self.title,
+            grains: &self.grains,
+            wall: if self.spheres.is_empty() {
+                SnapshotWall::Outline(Series {
+                    x: &self.outline.0,
+                    y: &self.outline.1,
+                })
+            } else {
+                SnapshotWall::Spheres(&self.spheres)
+            },
+            start: 0.0,
+            length: self.length,
+            period: Some(self.tube),
+            wavelength: Some(self.wavelength),
+            velocity_limit: 1.0,
+            length_unit: "*d*",
+            width: Width::DoubleColumn,
+        }
+    }
+
+    fn of(run: &Run) -> Self {
+        let configuration = run.configuration();
+        let simulation = run.simulation();
+        let bodies = simulation.bodies();
+        let tube = simulation.wall().lattice().length();
+        let heading = simulation.wall().heading();
+        let speed = configuration.wave_speed();
+        // Drawn with the wave running to the right.
+        let along = |z: f64| if heading > 0.0 { z } else { tube - z };
+        let length =
+            configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
+        // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
+        let shows = |body: &usize| {
+            let position = bodies.position[*body];
+            let (place, margin) = (along(position.z), bodies.diameter[*body]);
+            position.x.hypot(position.y) < SNAPSHOT_RADII * configuration.tube.radius
+                && (place < length + margin || place > tube - margin)
+        };
+        let grains: Vec<SnapshotGrain> = (0..bodies.grains)
+            .filter(shows)
+            .map(|grain| SnapshotGrain {
+                sphere: SnapshotSphere {
+                    along: along(bodies.position[grain].z),
+                    across: bodies.position[grain].y,
+                    depth: bodies.position[grain].x,
+                    diameter: bodies.diameter[grain],
+                },
+                axial_velocity: if speed > 0.0 {
+                    heading * bodies.velocity[grain].z / speed
+                } else {
+                    0.0
+                },
+            })
+            .collect();
+        let points = 400;
+        let shape = TubeShape::of(simulation);
+        let outline: (Vec<f64>, Vec<f64>) = (0..=points)
+            .map(|point| {
+                let place = length * f64::from(point) / f64::from(points);
+                (place, shape.radius(along(place).rem_euclid(tube)))
+            })
+            .unzip();
+        let spheres: Vec<SnapshotSphere> = match simulation.wall() {
+            Wall::Prescribed(_) => Vec::new(),
+            Wall::Elastic(_) => (bodies.grains..bodies.number())
+                .filter(shows)
+                .map(|sphere| SnapshotSphere {
+                    along: along(bodies.position[sphere].z),
+                    across: bodies.position[sphere].y,
+                    depth: bodies.position[sphere].x,
+                    diameter: bodies.diameter[sphere],
+                })
+                .collect(),
+        };
+        let title = format!(
+            "{},  *t*/*T* = {:.2}",
+            title(configuration),
+            simulation.wall().cycles()
+        );
+        Self {
+            title,
+            grains,
+            outline,
+            spheres,
+            length,
+            tube,
+            wavelength: configuration.tube.wavelength,
+        }
+    }
 }

@@ -3,6 +3,9 @@
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Width};
 
+use peristalsis_configuration::{Configuration, Sources};
+use peristalsis_run::{RunError, snapshot_stack};
+
 use super::{LATTICES, MOST_ESCAPED, label};
 use crate::branches::Branch;
 use crate::claim::Claim;
@@ -159,6 +162,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     finding
         .figures
         .extend(in_time(evidence.study("flow-in-time")?)?);
+    finding.figures.push(snapshots()?);
     Ok(finding)
 }
 
@@ -256,4 +260,42 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
         caption: "*J*/*J*_{max}, averaged over each period, from rest for several widths of the bottleneck.".to_owned(),
         drawing,
     }))
+}
+
+/// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the fine lattice, after so many periods.
+const SNAPSHOTS: [(f64, &str); 2] = [
+    (2.9, "unjammed, *w* = 2.9 *d*"),
+    (2.5, "jammed, *w* = 2.5 *d*"),
+];
+
+/// Both kinds of flow, coloured by the axial velocity; two runs of a tenth of a second.
+fn snapshots() -> Result<ReportFigure, ClaimError> {
+    let mut runs = Vec::new();
+    for (width, name) in SNAPSHOTS {
+        let overrides = [
+            format!("drive.width={width}"),
+            "drive.strain_rate=0.1".to_owned(),
+            "run.periods=60".to_owned(),
+        ];
+        let configuration = Configuration::from_sources(&Sources {
+            file: None,
+            preset: Some("frictionless-fine"),
+            overrides: &overrides,
+        })
+        .map_err(RunError::from)?;
+        let mut run = peristalsis_run::Run::new(configuration)?;
+        while !run.is_complete() {
+            run.advance()?;
+        }
+        runs.push((name, run));
+    }
+    let labelled: Vec<(&str, &peristalsis_run::Run)> =
+        runs.iter().map(|(name, run)| (*name, run)).collect();
+    Ok(ReportFigure {
+        name: "snapshots".to_owned(),
+        caption: "Unjammed and jammed flow after 60 periods from rest, *ε̇* = 0.1, fine lattice; the wave runs to the right, \
+                  colours are axial velocities over the wave's speed."
+            .to_owned(),
+        drawing: snapshot_stack(&labelled)?,
+    })
 }

@@ -67,7 +67,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             continue;
         }
         panel = with_points(panel, &diverging, &format!("{name} lattice"), place);
-        for (how, critical) in [("divergence of the mean time", &diverging)] {
+        for (how, critical) in [(DIVERGENCE, &diverging), ("half of the runs jam", &half)] {
             let [rate, width, error] = columns(critical);
             let Ok(line) = fit_line(&rate, &width, &error) else {
                 continue;
@@ -133,7 +133,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding.tables.push(ReportTable {
         caption: "Critical width of each strain rate, where half of the runs jam and where the mean time diverges.".to_owned(),
-        head: ["lattice", "*ε̇*", "*w*_{c}/*d*", "95 %"]
+        head: ["lattice", "*ε̇*", "half jam", "bracket", "divergence", "95 %", "outside"]
             .map(str::to_owned)
             .to_vec(),
         rows,

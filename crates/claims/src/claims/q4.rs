@@ -44,6 +44,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         ChartPanel::new(&label(Axis::Width), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
     let mut times = ChartPanel::new(&label(Axis::Width), &label(Axis::TransitionPeriod))
         .y_scale(Scale::Logarithmic);
+    let mut timed = false;
     let mut rows = Vec::new();
     let mut quantities = Vec::new();
     // Waves with width, mean time and its error, to compare lengths at the same width.
@@ -92,6 +93,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             let x: Vec<f64> = known.iter().map(|one| one.0).collect();
             let y: Vec<f64> = known.iter().map(|one| one.1.value * rate).collect();
             let error: Vec<f64> = known.iter().map(|one| one.1.error * rate).collect();
+            timed = true;
             times = times.with(
                 Points::new(&name, &x, &y)
                     .y_errors(&error)
@@ -177,7 +179,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         name: "length".to_owned(),
         caption: "Stationary flow (a) and mean transition time (b) in tubes of several lengths."
             .to_owned(),
-        drawing: ChartFigure::grid(2, [flow, times])
+        drawing: ChartFigure::grid(2, [flow].into_iter().chain(timed.then_some(times)))
             .width(Width::DoubleColumn)
             .description("Flow and transition time for several lengths of the tube.")
             .draw()?,
