@@ -104,7 +104,7 @@ mod tests {
         // 20 grains, J alternating between 3 and 5: 20/4; N - T J alternates by 5 about 0.
         let late = samples(|time| Sample {
             inside: 20.0,
-            flow_rate: if (2.0 * time) as u32 % 2 == 0 {
+            flow_rate: if ((2.0 * time) as u32).is_multiple_of(2) {
                 3.0
             } else {
                 5.0
