@@ -7,6 +7,7 @@ use crate::options::{
     WaveDirection, Waveform,
 };
 use crate::schedule::Schedule;
+use crate::units::Units;
 
 /// Everything that determines one run; what is alternative in TOML is resolved to one value.
 ///
@@ -29,6 +30,8 @@ pub struct Configuration {
     pub run: Run,
     /// What is measured.
     pub observe: Observe,
+    /// What the units m, d, t are in SI, where that was said.
+    pub units: Option<Units>,
 }
 
 /// The grains.
@@ -149,6 +152,8 @@ pub struct Drive {
     pub strain_rate: f64,
     /// Shape of the wave.
     pub waveform: Waveform,
+    /// g, body force on the grains: force over mass along the wave, negative against it \[d t^-2\].
+    pub body_force: f64,
     /// Which way it runs; forward is towards -z under strain control, towards +z under stress control.
     pub direction: WaveDirection,
     /// Parameters that follow time, each at most once; empty: all are constant from t = 0 on. In the order of
@@ -298,6 +303,24 @@ impl Configuration {
     #[must_use]
     pub fn wave_speed(&self) -> f64 {
         self.drive.strain_rate * self.tube.wavelength
+    }
+
+    /// Mean mass of a grain: that of its mean cubed diameter \[m\].
+    #[must_use]
+    pub fn mean_grain_mass(&self) -> f64 {
+        self.grains.mean_cubed_diameter()
+    }
+
+    /// Pressure rise over one wavelength that the wave has to pump against \[m d^-1 t^-2\]: the weight of the grains of a
+    /// wavelength under the body force g over the section of the straight tube, Dp = -N <m> g lambda/(L pi a^2).
+    #[must_use]
+    pub fn pressure_rise(&self) -> f64 {
+        let Tube {
+            radius, wavelength, ..
+        } = self.tube;
+        let weight = self.grains.number as f64 * self.mean_grain_mass() * self.drive.body_force;
+        // One zero, not two.
+        0.0 - weight * wavelength / (self.tube.length() * PI * radius * radius)
     }
 
     /// Amplitude b = a - w/2 of the wall's radius \[d\]; `None` under stress control.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::configuration::{Configuration, Control, NormalLaw};
+use crate::units::Elasticity;
 
 /// A value that is written.
 pub(crate) enum Value {
@@ -45,7 +46,7 @@ impl Value {
 pub(crate) enum Role {
     /// It does.
     Physics,
-    /// Only how long it is followed, and what is measured.
+    /// Only how long it is followed, what is measured, and in which units it is told.
     Extent,
 }
 
@@ -151,6 +152,19 @@ impl Configuration {
         );
         let threshold = Value::Number(observe.transition_threshold);
         entries.extent("observe", "transition_threshold", threshold);
+        if let Some(units) = &self.units {
+            let (elastic_key, elastic) = match units.elasticity {
+                Elasticity::Stiffness { stiffness, .. } => ("stiffness", stiffness),
+                Elasticity::YoungModulus { young_modulus, .. } => ("young_modulus", young_modulus),
+            };
+            for (key, value) in [
+                ("grain_diameter", units.grain_diameter),
+                ("density", units.density),
+                (elastic_key, elastic),
+            ] {
+                entries.extent("units", key, Value::Number(value));
+            }
+        }
         entries
     }
 
@@ -226,6 +240,10 @@ impl Configuration {
         entries.numbers("drive", &[("strain_rate", drive.strain_rate)]);
         entries.add("drive", "waveform", Value::name(drive.waveform));
         entries.add("drive", "direction", Value::name(drive.direction));
+        // Said only where there is one: configurations from before it could be given keep their hashes.
+        if drive.body_force != 0.0 {
+            entries.numbers("drive", &[("body_force", drive.body_force)]);
+        }
         if drive.schedules.is_empty() {
             entries.add("drive", "schedule", Value::Name("sudden".into()));
         }
@@ -278,6 +296,20 @@ impl Configuration {
         if let (Some(period), Some(periods)) = (self.drive.period(), self.run.periods) {
             derived.push(("period", Value::Number(period)));
             derived.push(("periods", Value::Number(periods)));
+        }
+        if self.drive.body_force != 0.0 {
+            derived.push(("pressure_rise", Value::Number(self.pressure_rise())));
+        }
+        if let Some(units) = &self.units {
+            derived.extend([
+                ("unit_mass_kg", Value::Number(units.mass())),
+                ("unit_length_m", Value::Number(units.length())),
+                ("unit_time_s", Value::Number(units.time())),
+                (
+                    "wave_frequency_hz",
+                    Value::Number(self.drive.strain_rate / units.time()),
+                ),
+            ]);
         }
         derived.extend([
             ("duration", Value::Number(self.run.duration)),

@@ -25,6 +25,7 @@ pub(crate) struct Keys {
     pub(crate) initial: InitialKeys,
     pub(crate) run: RunKeys,
     pub(crate) observe: ObserveKeys,
+    pub(crate) units: UnitsKeys,
 }
 
 /// The grains: how many and how large. Exactly one of number, volume_fraction and number_density is given.
@@ -115,8 +116,8 @@ pub(crate) struct TubeKeys {
     pub(crate) rings_per_wave: Option<u32>,
 }
 
-/// The travelling wave that drives the grains. Exactly one of strain_rate and wave_speed is given; under strain control
-/// exactly one of width and amplitude, under stress control force_amplitude.
+/// The travelling wave that drives the grains. Exactly one of strain_rate, wave_speed and units.wave_frequency is given;
+/// under strain control exactly one of width and amplitude, under stress control force_amplitude.
 #[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct DriveKeys {
@@ -125,7 +126,7 @@ pub(crate) struct DriveKeys {
     /// Width of the bottleneck w = 2 (a - b) between the centres of wall spheres, at most 2 a; strain control.
     #[schemars(extend("x-unit" = "d", "minimum" = 0))]
     pub(crate) width: Option<f64>,
-    /// Amplitude b of the radius R = a + b sin(2 pi (c t + z)/lambda), at most a; strain control.
+    /// Amplitude b of the radius R = a + b g((c t + z)/lambda), g the waveform, at most a; strain control.
     #[schemars(extend("x-unit" = "d", "minimum" = 0))]
     pub(crate) amplitude: Option<f64>,
     /// Amplitude f^P of the radial force on each wall sphere; stress control.
@@ -140,6 +141,11 @@ pub(crate) struct DriveKeys {
     /// Shape of the wave.
     #[schemars(extend("default" = "sine"))]
     pub(crate) waveform: Option<Waveform>,
+    /// Body force on the grains g, force over mass along the wave: negative is back pressure, against which the wave has to
+    /// pump. With grains of several sizes it acts as gravity along the tube. The pressure rise over a wavelength that it
+    /// stands for is N <m> (-g) lambda/(L pi a^2).
+    #[schemars(extend("x-unit" = "d t^-2", "minimum" = -1e6, "maximum" = 1e6, "default" = 0))]
+    pub(crate) body_force: Option<f64>,
     /// Which way the wave runs: forward is towards -z under strain control and towards +z under stress control, as the
     /// source writes them. Flow rates are positive along the wave in either case.
     #[schemars(extend("default" = "forward"))]
@@ -308,4 +314,26 @@ pub(crate) struct ObserveKeys {
     /// J/Jmax that the period average crosses at a transition, upward from rest and downward from jammed.
     #[schemars(extend("x-unit" = "1", "minimum" = -2, "maximum" = 2, "default" = defaults::TRANSITION_THRESHOLD))]
     pub(crate) transition_threshold: Option<f64>,
+}
+
+/// What the units m, d and t are in SI: grain_diameter, density, and by contact.law stiffness (linear) or young_modulus
+/// (hertz), all three or none. Results are then also given in kg, m, s, Pa and W; the trajectory does not depend on them.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct UnitsKeys {
+    /// Diameter of a grain whose diameter is 1 here: the unit of length d.
+    #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub(crate) grain_diameter: Option<f64>,
+    /// Density of the grains' material; the unit of mass is that of a sphere of diameter d, m = pi density d^3/6.
+    #[schemars(extend("x-unit" = "kg m^-3", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub(crate) density: Option<f64>,
+    /// Stiffness of a contact, what contact.normal_stiffness stands for: it fixes the unit of time, sqrt(m/k) for k = 1.
+    #[schemars(extend("x-unit" = "N m^-1", "exclusiveMinimum" = 0, "maximum" = 1e15))]
+    pub(crate) stiffness: Option<f64>,
+    /// Young's modulus, what contact.young_modulus stands for: it fixes the unit of time, sqrt(m/(Y d)) for Y = 1.
+    #[schemars(extend("x-unit" = "Pa", "exclusiveMinimum" = 0, "maximum" = 1e15))]
+    pub(crate) young_modulus: Option<f64>,
+    /// Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and drive.wave_speed.
+    #[schemars(extend("x-unit" = "Hz", "minimum" = 0, "maximum" = 1e9))]
+    pub(crate) wave_frequency: Option<f64>,
 }

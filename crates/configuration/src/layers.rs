@@ -11,7 +11,11 @@ pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
         "grains.number_density",
     ],
     &["drive.width", "drive.amplitude"],
-    &["drive.strain_rate", "drive.wave_speed"],
+    &[
+        "drive.strain_rate",
+        "drive.wave_speed",
+        "units.wave_frequency",
+    ],
     &["run.periods", "run.duration"],
 ];
 
@@ -52,7 +56,11 @@ pub(crate) const SWITCHES: [Switch; 4] = [
         owners: &[
             (
                 "linear",
-                &["contact.normal_stiffness", "contact.normal_damping"],
+                &[
+                    "contact.normal_stiffness",
+                    "contact.normal_damping",
+                    "units.stiffness",
+                ],
             ),
             (
                 "hertz",
@@ -61,6 +69,7 @@ pub(crate) const SWITCHES: [Switch; 4] = [
                     "contact.poisson_ratio",
                     "contact.dissipation_time",
                     "contact.dissipation_form",
+                    "units.young_modulus",
                 ],
             ),
         ],

@@ -37,6 +37,7 @@ mod schedule;
 mod schema;
 mod source;
 mod suggestion;
+mod units;
 
 pub use configuration::{
     Configuration, Contact, Control, Drive, ElasticWall, Friction, Grains, Initial, NormalLaw,
@@ -53,3 +54,4 @@ pub use presets::{PRESETS, Preset, preset};
 pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
 pub use schema::schema;
 pub use source::{Origin, SourceFile, Sources};
+pub use units::{Elasticity, Units};

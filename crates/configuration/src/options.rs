@@ -45,12 +45,16 @@ pub(crate) enum ControlName {
     Stress,
 }
 
-/// Shape of the wave.
+/// Shape of the wave; the throat is at phase 3/4 and as deep, a - b, in all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Waveform {
-    /// sin(2 pi phase).
+    /// sin(2 pi phase): throats and bellies alike.
     Sine,
+    /// One smooth squeeze, cos^2, over half of each wavelength; elsewhere the tube is straight, of radius a.
+    Bolus,
+    /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
+    Roller,
 }
 
 /// Which way the wave runs.

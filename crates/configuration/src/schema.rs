@@ -112,25 +112,35 @@ fn remove_null(object: &mut Map<String, Value>) {
     }
 }
 
+/// Of two alternatives only one: said in their table, or for two tables in the document.
 fn exclude_one_another(schema: &mut Value, group: &[&str]) {
-    let pairs = group.iter().enumerate().flat_map(|(index, one)| {
-        group[index + 1..]
-            .iter()
-            .map(move |other| (last_name(one), last_name(other)))
-    });
-    let refused: Vec<Value> = pairs
-        .map(|(one, other)| json!({"not": {"required": [one, other]}}))
-        .collect();
-    let table = group[0].split('.').next().unwrap_or_default();
-    let object = &mut schema["properties"][table];
-    match object.get_mut("allOf") {
-        Some(Value::Array(all)) => all.extend(refused),
-        _ => object["allOf"] = Value::Array(refused),
+    for (index, one) in group.iter().enumerate() {
+        for other in &group[index + 1..] {
+            let [(table, one), (other_table, other)] = [split(one), split(other)];
+            if table == other_table {
+                let refused = json!({"not": {"required": [one, other]}});
+                refuse(&mut schema["properties"][table], refused);
+            } else {
+                let both = json!({
+                    "required": [table, other_table],
+                    "properties": { table: {"required": [one]}, other_table: {"required": [other]} },
+                });
+                refuse(schema, json!({ "not": both }));
+            }
+        }
     }
 }
 
-fn last_name(key: &str) -> &str {
-    key.rsplit('.').next().unwrap_or(key)
+fn refuse(object: &mut Value, refused: Value) {
+    match object.get_mut("allOf") {
+        Some(Value::Array(all)) => all.push(refused),
+        _ => object["allOf"] = json!([refused]),
+    }
+}
+
+/// Table and name of a key.
+fn split(key: &str) -> (&str, &str) {
+    key.split_once('.').unwrap_or(("", key))
 }
 
 /// Full names of all keys and tables, from the schema.
@@ -205,7 +215,7 @@ mod tests {
         let schema = cached();
         assert_eq!(schema["additionalProperties"], json!(false));
         for table in [
-            "grains", "contact", "tube", "drive", "wall", "initial", "run", "observe",
+            "grains", "contact", "tube", "drive", "wall", "initial", "run", "observe", "units",
         ] {
             assert_eq!(
                 schema["properties"][table]["additionalProperties"],

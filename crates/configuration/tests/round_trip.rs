@@ -46,14 +46,21 @@ fn overrides() -> impl Strategy<Value = Vec<String>> {
         ]),
     ];
     let contact = prop_oneof![
-        Just(words(&["contact.law=linear", "contact.normal_damping=0.1"])),
         Just(words(&[
-            "contact.law=hertz",
-            "contact.dissipation_form=printed"
+            "contact.law=linear",
+            "contact.normal_damping=0.1",
+            "units.stiffness=3.21",
         ])),
         Just(words(&[
+            "contact.law=hertz",
+            "contact.dissipation_form=printed",
+            "units.young_modulus=1.23e5",
+        ])),
+        Just(words(&[
+            "contact.law=linear",
             "contact.static_friction=0.7",
-            "contact.kinetic_friction=0.123456789"
+            "contact.kinetic_friction=0.123456789",
+            "units.stiffness=3.21",
         ])),
     ];
     let step = (1e-3..0.2).prop_map(|step: f64| format!("run.time_step={step:?}"));
@@ -63,6 +70,13 @@ fn overrides() -> impl Strategy<Value = Vec<String>> {
             format!("initial.axial_velocity={velocity:?}"),
             "tube.rings_per_wave=16".into(),
             "tube.radius=1.7".into(),
+            format!(
+                "drive.body_force={:?}",
+                0.1 * velocity.trunc().max(velocity)
+            ),
+            "drive.waveform=bolus".into(),
+            "units.grain_diameter=0.0012345".into(),
+            "units.density=2654.321".into(),
         ]
     });
     (grains, rate, length, drive, contact, step, rest).prop_map(
@@ -236,6 +250,9 @@ const LEAVES: &[&str] = &[
     "run.seed",
     "run.integrator",
     "observe.late_fraction",
+    "units.density",
+    "units.wave_frequency",
+    "drive.strain_rate",
     "width",
     "preset",
 ];
@@ -303,7 +320,8 @@ fn deep_and_long_texts_are_survived() {
 fn the_hash_is_of_what_matters() {
     let base = preset("frictionless", &[]);
     let of = |overrides: &[&str]| preset("frictionless", &words(overrides));
-    let same: [&[&str]; 6] = [
+    let same: [&[&str]; 7] = [
+        &["drive.body_force=-0.0", "drive.waveform=sine"],
         &["grains.number=203"],
         &["drive.amplitude=0.125"],
         &["drive.wave_speed=0.5"],
@@ -319,7 +337,16 @@ fn the_hash_is_of_what_matters() {
         );
         assert_eq!(of(overrides).run_hash(), base.run_hash(), "{overrides:?}");
     }
-    let longer: [&[&str]; 2] = [&["run.periods=41"], &["observe.profile_bins=40"]];
+    let longer: [&[&str]; 3] = [
+        &["run.periods=41"],
+        &["observe.profile_bins=40"],
+        // The same grains told in SI as well.
+        &[
+            "units.grain_diameter=1e-3",
+            "units.density=2500",
+            "units.stiffness=10",
+        ],
+    ];
     for overrides in longer {
         assert_eq!(
             of(overrides).physics_hash(),
@@ -328,11 +355,13 @@ fn the_hash_is_of_what_matters() {
         );
         assert_ne!(of(overrides).run_hash(), base.run_hash(), "{overrides:?}");
     }
-    let other: [&[&str]; 12] = [
+    let other: [&[&str]; 14] = [
         &["grains.number=202"],
         &["drive.width=2.7500000000000004"],
         &["drive.strain_rate=0.1"],
         &["drive.direction=backward"],
+        &["drive.waveform=roller"],
+        &["drive.body_force=-1e-300"],
         &["run.seed=2"],
         &["run.time_step=0.04"],
         &["run.integrator=adams_bashforth"],

@@ -96,6 +96,16 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
     tally
 }
 
+/// Adds the body force, force over mass along +z, to the accelerations of the grains.
+pub(crate) fn add_body_force(bodies: &mut Bodies, body_force: f64) {
+    // Nothing added leaves even the sign of a zero as it is.
+    if body_force != 0.0 {
+        for acceleration in &mut bodies.acceleration[..bodies.grains] {
+            acceleration.z += body_force;
+        }
+    }
+}
+
 /// Adds the forces and torques of contacts between moving spheres.
 fn add_pairs<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,

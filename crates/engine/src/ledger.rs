@@ -85,8 +85,8 @@ impl Tally {
 
 /// Energies accumulated since the start of the run, by the trapezoidal rule over the steps.
 ///
-/// kinetic + potential = initial + wall + drive + keep - normal - tangential - sliding - drag - network - reset, up to
-/// the integrator's error: [`Ledger::residual`]. All in m d^2/t^2.
+/// kinetic + potential = initial + wall + drive + keep + body - normal - tangential - sliding - drag - network - reset, up
+/// to the integrator's error: [`Ledger::residual`]. All in m d^2/t^2. The work of the body force is exact.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Ledger {
     /// Kinetic and potential energy at the start.
@@ -97,7 +97,11 @@ pub struct Ledger {
     pub drive_work: f64,
     /// Work of what removes the mean force of an elastic wall.
     pub keep_work: f64,
-    /// Integral of |power that enters|: the scale of the residual.
+    /// Work of the body force on the grains, up to the end of the last advance.
+    pub body_work: f64,
+    /// Sum m z of the grains at the start, from which that work is counted \[m d\].
+    pub initial_axial_moment: f64,
+    /// Integral of |power of wall and drive|: with the body's work the scale of the residual.
     pub gross_work: f64,
     /// Lost along the normals of contacts.
     pub normal_dissipated: f64,
@@ -141,7 +145,7 @@ impl Ledger {
         self.gross_work += work.abs();
     }
 
-    /// Work that entered.
+    /// Work of wall and drive.
     #[must_use]
     pub fn input(&self) -> f64 {
         self.wall_work + self.drive_work + self.keep_work
@@ -161,16 +165,17 @@ impl Ledger {
     /// Energy that the ledger cannot account for, for kinetic plus potential energy `energy` now.
     #[must_use]
     pub fn residual(&self, energy: f64) -> f64 {
-        energy - self.initial_energy - self.input() + self.dissipated()
+        energy - self.initial_energy - self.input() - self.body_work + self.dissipated()
     }
 
-    /// |residual| over the integral of |power that enters|; over the initial energy where next to nothing entered; 0
-    /// where nothing is missing.
+    /// |residual| over the integral of |power of wall and drive| and the |work of the body force|; over the initial energy
+    /// where next to nothing entered; 0 where nothing is missing.
     #[must_use]
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
-        let scale = if self.gross_work > LEAST_WORK * self.initial_energy {
-            self.gross_work
+        let entered = self.gross_work + self.body_work.abs();
+        let scale = if entered > LEAST_WORK * self.initial_energy {
+            entered
         } else {
             self.initial_energy
         };

@@ -11,11 +11,12 @@ use crate::error::EngineError;
 use crate::fast;
 use crate::fast::machine::Instructions;
 use crate::fast::sorted::{Course, Sorted, Sorting};
-use crate::forces::{Contacts, evaluate};
+use crate::forces::{Contacts, add_body_force, evaluate};
 use crate::integrate::{Integrator, Past, Runaway};
 use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
 use crate::wall::Wall;
+use crate::wall::contacts::{WallContact, for_each_contact};
 use crate::wall::memory::WallMemory;
 
 /// How a simulation is computed.
@@ -31,6 +32,8 @@ pub struct Parameters {
     pub skin: f64,
     /// Which kernel computes the forces.
     pub kernel: Kernel,
+    /// Body force on the grains: force over mass along +z, the same at all times \[d/t^2\].
+    pub body_force: f64,
 }
 
 /// Which kernel computes the forces. They agree up to rounding.
@@ -82,6 +85,7 @@ impl Simulation {
         let Self { system, memory, .. } = &mut simulation;
         memory.with_law(parameters.contact.normal, StartForces { system });
         system.ledger.initial_energy = system.energy();
+        system.ledger.initial_axial_moment = system.axial_moment();
         simulation.choose_kernel(None);
         simulation
     }
@@ -144,10 +148,12 @@ impl Simulation {
             memory,
             sorted,
         } = self;
-        match sorted {
+        let outcome = match sorted {
             None => memory.with_law(system.parameters.contact.normal, Advance { system, steps }),
             Some(sorted) => system.advance_sorted(sorted, steps),
-        }
+        };
+        system.book_body_force();
+        outcome
     }
 
     /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
@@ -230,6 +236,17 @@ impl Simulation {
         self.system.ledger.relative_residual(self.system.energy())
     }
 
+    /// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
+    ///
+    /// The forces are those of the last step but for the velocities, which the integrator has corrected since.
+    pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
+        let System { bodies, wall, .. } = &self.system;
+        match self.system.parameters.contact.normal {
+            Normal::Linear(normal) => self.memory.visit(normal, bodies, wall, visit),
+            Normal::Hertz(normal) => self.memory.visit(normal, bodies, wall, visit),
+        }
+    }
+
     /// Everything that a restart needs to go on with the same bits.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
@@ -284,6 +301,10 @@ impl Simulation {
         system.ledger = snapshot.ledger;
         system.step = snapshot.step;
         system.wall.move_to(system.time());
+        // Contacts with an elastic wall are found in the list.
+        if let (Memory::Smooth(contacts), Wall::Elastic(_)) = (&mut *memory, &system.wall) {
+            contacts.refresh(&system.bodies, &system.wall, parameters.skin);
+        }
         if let Memory::Frictional(_, contacts) = memory {
             contacts.refresh(&system.bodies, &system.wall, parameters.skin);
             for (i, j, history) in snapshot.pair_histories {
@@ -316,6 +337,23 @@ impl System {
 }
 
 impl System {
+    /// First moment of the grains' mass along the tube, sum m z with turns round it counted \[m d\].
+    fn axial_moment(&self) -> f64 {
+        let length = self.wall.lattice().length();
+        (0..self.bodies.grains)
+            .map(|i| self.bodies.mass[i] * self.bodies.unfolded(i, length))
+            .sum()
+    }
+
+    /// The work of the body force, g sum m (z - z_0): exact whatever the path, so that no step need look at it.
+    fn book_body_force(&mut self) {
+        let body_force = self.parameters.body_force;
+        if body_force != 0.0 {
+            self.ledger.body_work =
+                body_force * (self.axial_moment() - self.ledger.initial_axial_moment);
+        }
+    }
+
     fn advance_sorted(&mut self, sorted: &mut Sorted, steps: u64) -> Result<(), EngineError> {
         let Self {
             bodies,
@@ -336,6 +374,7 @@ impl System {
             ledger,
             step,
             time_step: parameters.time_step,
+            body_force: parameters.body_force,
             limit: *limit,
         };
         let outcome = match parameters.contact.normal {
@@ -367,6 +406,28 @@ trait WithLaw {
 }
 
 impl Memory {
+    /// Calls `visit` for each contact with the wall.
+    fn visit<N: NormalLaw>(
+        &self,
+        normal: N,
+        bodies: &Bodies,
+        wall: &Wall,
+        visit: impl FnMut(WallContact),
+    ) {
+        match self {
+            Self::Smooth(contacts) => {
+                let tangential = Frictionless;
+                let law = ContactLaw { normal, tangential };
+                for_each_contact(&law, bodies, wall, contacts, visit);
+            }
+            Self::Frictional(tangential, contacts) => {
+                let tangential = *tangential;
+                let law = ContactLaw { normal, tangential };
+                for_each_contact(&law, bodies, wall, contacts, visit);
+            }
+        }
+    }
+
     /// The one place where names of laws become types.
     fn with_law<W: WithLaw>(&mut self, normal: Normal, work: W) -> W::Answer {
         match (normal, self) {
@@ -424,6 +485,7 @@ impl WithLaw for StartForces<'_> {
         } = self.system;
         contacts.refresh(bodies, wall, parameters.skin);
         *tally = evaluate(law, bodies, wall, contacts, 0.0);
+        add_body_force(bodies, parameters.body_force);
     }
 }
 
@@ -460,6 +522,7 @@ impl WithLaw for Advance<'_> {
             integrator,
             time_step,
             skin,
+            body_force,
             ..
         } = system.parameters;
         let length = system.wall.lattice().length();
@@ -495,6 +558,7 @@ impl WithLaw for Advance<'_> {
             wall.move_to(time);
             contacts.refresh(bodies, wall, skin);
             let after = evaluate(law, bodies, wall, contacts, time_step);
+            add_body_force(bodies, body_force);
             if let Some(stored) = stored_before_jump {
                 ledger.add_jump(after.contact_energy - stored);
             }

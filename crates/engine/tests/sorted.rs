@@ -65,8 +65,9 @@ fn tube() -> impl Strategy<Value = (Wall, f64)> {
         any::<bool>(),
         0.0..0.3_f64,
         0.0..40.0_f64,
+        prop::sample::select(Waveform::ALL.to_vec()),
     )
-        .prop_map(|(lattice, width, forward, strain_rate, start)| {
+        .prop_map(|(lattice, width, forward, strain_rate, start, waveform)| {
             // A phase at time 0 that is not always the same: the wave has run for a while when the grains come.
             let frequency = Schedule::constant(strain_rate + start * 0.05);
             let radius = if lattice.spheres_per_ring == WIDE.spheres_per_ring {
@@ -77,7 +78,7 @@ fn tube() -> impl Strategy<Value = (Wall, f64)> {
             let wall = PrescribedWall::new(
                 lattice,
                 radius,
-                Waveform::Sine,
+                waveform,
                 if forward { 1.0 } else { -1.0 },
                 Schedule::constant(1.5 - 0.5 * width),
                 frequency,

@@ -8,8 +8,10 @@ use common::{
 };
 use glam::DVec3;
 use peristalsis_engine::initial::{InitialState, LARGEST_MEAN_OVERLAP, Packing, pack};
+use peristalsis_engine::wall::PrescribedWall;
 use peristalsis_engine::{Bodies, EngineError, Integrator, Simulation, Wall};
 use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
+use peristalsis_physics::wall::{Schedule, Waveform};
 
 fn packing(number: usize, state: InitialState, seed: u64) -> Packing {
     Packing {
@@ -128,6 +130,33 @@ fn a_jammed_start_fills_the_bellies_and_moves_with_the_wave() {
         .filter(|place| place.z < 10.0)
         .count();
     assert!(first > bodies.grains / 4 && first < 3 * bodies.grains / 4);
+}
+
+/// A tube squeezed once a wavelength: half way between the throats, both ways round.
+#[test]
+fn a_jammed_start_fills_the_straight_parts_of_a_squeezed_tube() {
+    for waveform in [Waveform::Bolus, Waveform::Roller] {
+        for heading in [1.0, -1.0] {
+            let wall = Wall::Prescribed(PrescribedWall::new(
+                coarse(2),
+                1.5,
+                waveform,
+                heading,
+                Schedule::constant(0.4),
+                Schedule::constant(0.1),
+            ));
+            let jammed = packing(number(0.1, 20.0), InitialState::Jammed, 1);
+            let (bodies, _) = pack(&jammed, &wall, LINEAR).unwrap();
+            for position in &bodies.position {
+                // The throat is at phase 3/4, the wave -heading z/lambda.
+                let phase = (-heading * position.z / 10.0).rem_euclid(1.0);
+                assert!(
+                    (0.0..0.55).contains(&phase) || phase > 0.95,
+                    "{waveform:?}: {phase}"
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -26,6 +26,8 @@ pub enum Scope {
     Friction,
     /// Those with an elastic wall.
     ElasticWall,
+    /// Those with a body force on the grains.
+    BodyForce,
 }
 
 const fn row(
@@ -44,7 +46,7 @@ const fn row(
     }
 }
 
-use Scope::{Always, ElasticWall, Friction};
+use Scope::{Always, BodyForce, ElasticWall, Friction};
 
 /// All columns, in order.
 #[rustfmt::skip]
@@ -60,6 +62,8 @@ pub const COLUMNS: &[Column] = &[
     row("granular_temperature", "m d^2/t^2", Always, "sum m |v - <v>|^2/(3 N)", |s| s.granular_temperature),
     row("contacts", "1", Always, "contacts of a grain, wall included", |s| s.contacts),
     row("largest_overlap", "d", Always, "largest overlap at the end of the interval", |s| s.largest_overlap),
+    row("axial_displacement", "d", Always, "mean axial displacement of the grains inside since the start, along the wave", |s| s.axial_displacement),
+    row("axial_displacement_variance", "d^2", Always, "its variance over the grains: grows as 2 D t where they disperse", |s| s.axial_displacement_variance),
     row("escaped", "1", Always, "grains whose centre lies outside R + d/2", |s| s.escaped),
     row("inside", "1", Always, "grains inside", |s| s.inside),
     row("wall_axial_force", "m d/t^2", Always, "axial force of the wall on the grains, along the wave", |s| s.wall_axial_force),
@@ -88,4 +92,6 @@ pub const COLUMNS: &[Column] = &[
     row("wall_axial_displacement", "d", ElasticWall, "mean axial displacement of the wall, along the wave", |s| s.wall_axial_displacement),
     row("wall_axial_displacement_rms", "d", ElasticWall, "root mean square axial displacement of the wall", |s| s.wall_axial_displacement_rms),
     row("wall_azimuthal_displacement_rms", "d", ElasticWall, "root mean square azimuthal displacement of the wall", |s| s.wall_azimuthal_displacement_rms),
+    row("body_power", "m d^2/t^3", BodyForce, "mean power of the body force on the grains; negative where they are pumped against it", |s| s.body_power),
+    row("body_work", "m d^2/t^2", BodyForce, "ledger: work of the body force", |s| s.ledger.body_work),
 ];

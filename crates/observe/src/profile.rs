@@ -1,4 +1,7 @@
-//! Profiles in the frame of the wave: density, axial velocity and temperature against (z - c t)/lambda.
+//! Profiles in the frame of the wave: density, axial velocity, temperature and the forces of the wall against
+//! (z - c t)/lambda.
+
+use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_engine::Simulation;
@@ -20,6 +23,20 @@ struct Sums {
     least_radius: f64,
     largest_radius: f64,
     looks: f64,
+    wall: WallSums,
+}
+
+/// Sums over the contacts with the wall whose points lie in one bin.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+struct WallSums {
+    /// Axial force on the grains along the normals of contacts, along the wave.
+    normal: f64,
+    /// Axial force on the grains by friction.
+    tangential: f64,
+    /// Radial force of the grains on the wall, outward.
+    outward: f64,
+    /// Places looked at, samples times waves.
+    looks: f64,
 }
 
 impl Sums {
@@ -39,6 +56,10 @@ impl Sums {
             self.largest_radius = self.largest_radius.max(other.largest_radius);
         }
         self.looks += other.looks;
+        self.wall.normal += other.wall.normal;
+        self.wall.tangential += other.wall.tangential;
+        self.wall.outward += other.wall.outward;
+        self.wall.looks += other.wall.looks;
     }
 
     /// Adds what is seen of the tube at `places` places that are alike.
@@ -92,6 +113,24 @@ pub struct ProfileBin {
     pub least_radius: f64,
     /// Largest radius seen \[d\].
     pub largest_radius: f64,
+    /// Axial force of the wall on the grains along the normals of contacts, per length of tube \[m/t^2\], with its error.
+    pub wall_normal_force: (f64, f64),
+    /// Axial force of the wall on the grains by friction, per length of tube \[m/t^2\], with its error.
+    pub wall_tangential_force: (f64, f64),
+    /// Pressure on the wall: radial force per area 2 pi R dz, outward \[m/(d t^2)\], with its error.
+    pub wall_pressure: (f64, f64),
+    /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
+    /// without that of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
+    pub wall_shear: (f64, f64),
+}
+
+/// Axial force of the wall on the grains of one wavelength, along the wave \[m d/t^2\], each with its error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallForce {
+    /// Along the normals of contacts.
+    pub normal: (f64, f64),
+    /// By friction.
+    pub tangential: (f64, f64),
 }
 
 impl WaveFrameProfile {
@@ -120,11 +159,7 @@ impl WaveFrameProfile {
         let lattice = wall.lattice();
         let (heading, cycles) = (wall.heading(), wall.cycles());
         let shape = TubeShape::of(simulation);
-        let bin_of = |z: f64| {
-            let position = heading * z / lattice.wavelength - cycles;
-            let folded = position - position.floor();
-            ((folded * bins as f64) as usize).min(bins - 1)
-        };
+        let bin_of = |z: f64| bin_of(heading * z / lattice.wavelength - cycles, bins);
         let (different_waves, alike) = if shape.is_periodic() {
             (1, lattice.waves)
         } else {
@@ -154,6 +189,34 @@ impl WaveFrameProfile {
         }
     }
 
+    /// Adds the forces between grains and wall as they are now, to the block of the last [`WaveFrameProfile::add`].
+    ///
+    /// Every contact has to be found again: do it at some samples only.
+    pub fn add_wall_forces(&mut self, simulation: &Simulation) {
+        let bins = self.bins;
+        let Some(last) = self.blocks.last_mut() else {
+            return;
+        };
+        let wall = simulation.wall();
+        let (heading, cycles) = (wall.heading(), wall.cycles());
+        let lattice = wall.lattice();
+        for sums in last.iter_mut() {
+            sums.wall.looks += f64::from(lattice.waves);
+        }
+        simulation.for_each_wall_contact(|contact| {
+            let point = contact.point;
+            let bin = bin_of(heading * point.z / lattice.wavelength - cycles, bins);
+            let from_axis = (point.x * point.x + point.y * point.y).sqrt();
+            let force = contact.normal_force + contact.tangential_force;
+            let sums = &mut last[bin].wall;
+            sums.normal += heading * contact.normal_force.z;
+            sums.tangential += heading * contact.tangential_force.z;
+            if from_axis > 0.0 {
+                sums.outward -= (force.x * point.x + force.y * point.y) / from_axis;
+            }
+        });
+    }
+
     fn begin_block(&mut self) {
         if self.blocks.len() == MOST_BLOCKS {
             let merged = self
@@ -181,35 +244,26 @@ impl WaveFrameProfile {
     /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one.
     #[must_use]
     pub fn late(&self, fraction: f64, wavelength: f64) -> Vec<ProfileBin> {
-        let blocks = self.blocks.len();
-        let taken = ((blocks as f64 * fraction).round() as usize).clamp(1.min(blocks), blocks);
-        let late = &self.blocks[blocks - taken..];
-        let groups: Vec<Vec<Sums>> = late
-            .chunks(late.len().div_ceil(10).max(1))
-            .map(|group| {
-                let mut sums = vec![Sums::default(); self.bins];
-                for block in group {
-                    for (into, from) in sums.iter_mut().zip(block) {
-                        into.add(from);
-                    }
-                }
-                sums
-            })
+        let groups = self.late_groups(fraction);
+        let totals: Vec<Sums> = (0..self.bins)
+            .map(|bin| total(groups.iter().map(|group| &group[bin])))
             .collect();
+        let bin_width = wavelength / self.bins as f64;
+        let mean_radius = |bin: usize| totals[bin].radius / totals[bin].looks;
         (0..self.bins)
             .map(|bin| {
-                let mut total = Sums::default();
-                for group in &groups {
-                    total.add(&group[bin]);
-                }
-                let bin_width = wavelength / self.bins as f64;
+                let total = totals[bin];
                 let with_error = |value: &dyn Fn(&Sums) -> f64| {
-                    let values: Vec<f64> = groups
-                        .iter()
-                        .map(|group| value(&group[bin]))
-                        .filter(|value| value.is_finite())
-                        .collect();
-                    (value(&total), standard_error(&values))
+                    let groups = groups.iter().map(|group| value(&group[bin]));
+                    (value(&total), standard_error(groups))
+                };
+                let per_length = |wall: &WallSums| 1.0 / (wall.looks * bin_width);
+                let (before, after) = ((bin + self.bins - 1) % self.bins, (bin + 1) % self.bins);
+                let radius = mean_radius(bin);
+                let slope = (mean_radius(after) - mean_radius(before)) / (2.0 * bin_width);
+                let per_area = |wall: &WallSums| per_length(wall) / (TAU * radius);
+                let shear = |wall: &WallSums| {
+                    (slope * wall.outward - wall.normal - wall.tangential) * per_area(wall)
                 };
                 ProfileBin {
                     position: (bin as f64 + 0.5) / self.bins as f64,
@@ -219,13 +273,69 @@ impl WaveFrameProfile {
                     radius: total.radius / total.looks,
                     least_radius: total.least_radius,
                     largest_radius: total.largest_radius,
+                    wall_normal_force: with_error(&|sums| {
+                        sums.wall.normal * per_length(&sums.wall)
+                    }),
+                    wall_tangential_force: with_error(&|sums| {
+                        sums.wall.tangential * per_length(&sums.wall)
+                    }),
+                    wall_pressure: with_error(&|sums| sums.wall.outward * per_area(&sums.wall)),
+                    wall_shear: with_error(&|sums| shear(&sums.wall)),
                 }
+            })
+            .collect()
+    }
+
+    /// The axial force of the wall on the grains of one wavelength over the same part, throat and belly together.
+    #[must_use]
+    pub fn late_wall_force(&self, fraction: f64) -> WallForce {
+        let groups: Vec<Sums> = self.late_groups(fraction).iter().map(total).collect();
+        let all = total(&groups);
+        // Every bin was looked at as often.
+        let looks = |sums: &Sums| sums.wall.looks / self.bins as f64;
+        let with_error = |value: fn(&WallSums) -> f64| {
+            let of = |sums: &Sums| value(&sums.wall) / looks(sums);
+            (of(&all), standard_error(groups.iter().map(of)))
+        };
+        WallForce {
+            normal: with_error(|wall| wall.normal),
+            tangential: with_error(|wall| wall.tangential),
+        }
+    }
+
+    /// The last part of the blocks in up to ten equal groups.
+    fn late_groups(&self, fraction: f64) -> Vec<Vec<Sums>> {
+        let blocks = self.blocks.len();
+        let taken = ((blocks as f64 * fraction).round() as usize).clamp(1.min(blocks), blocks);
+        let late = &self.blocks[blocks - taken..];
+        late.chunks(late.len().div_ceil(10).max(1))
+            .map(|group| {
+                (0..self.bins)
+                    .map(|bin| total(group.iter().map(|block| &block[bin])))
+                    .collect()
             })
             .collect()
     }
 }
 
-fn standard_error(values: &[f64]) -> f64 {
+/// The bin of a position in the wave's frame.
+fn bin_of(position: f64, bins: usize) -> usize {
+    let folded = position - position.floor();
+    ((folded * bins as f64) as usize).min(bins - 1)
+}
+
+/// Sums of sums.
+fn total<'a>(sums: impl IntoIterator<Item = &'a Sums>) -> Sums {
+    let mut total = Sums::default();
+    for sums in sums {
+        total.add(sums);
+    }
+    total
+}
+
+/// Standard error of the mean of what is finite of the values; NaN below two.
+fn standard_error(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     let number = values.len() as f64;
     if values.len() < 2 {
         return f64::NAN;

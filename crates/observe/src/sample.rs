@@ -35,6 +35,10 @@ pub struct Sample {
     pub contacts: f64,
     /// Part of the grains' contacts that slide; NaN without contacts.
     pub sliding_fraction: f64,
+    /// Mean axial displacement of the grains since the start, along the wave \[d\].
+    pub axial_displacement: f64,
+    /// Variance of the axial displacements, `<(z - z_0 - <z - z_0>)^2>`: it grows as 2 D t where grains disperse \[d^2\].
+    pub axial_displacement_variance: f64,
     /// Largest overlap at the end of the interval \[d\].
     pub largest_overlap: f64,
     /// Grains whose centre lies outside R + d/2.
@@ -45,6 +49,8 @@ pub struct Sample {
     pub wall_axial_force: f64,
     /// Mean power that wall or drive put in.
     pub wall_power: f64,
+    /// Mean power of the body force on the grains: negative where they are pumped against it.
+    pub body_power: f64,
     /// Mean power lost in contacts, drag and dashpots.
     pub dissipated_power: f64,
     /// Elastic energy of contacts, wall network and tethers.
@@ -83,13 +89,24 @@ pub struct Observer {
     pub(crate) cycles: f64,
     /// z of the grains, turns round the tube counted \[d\].
     pub(crate) unfolded: Vec<f64>,
+    /// The same at the start of the run.
+    start: Vec<f64>,
     ledger: Ledger,
 }
 
 impl Observer {
-    /// Begins an interval now.
+    /// Begins an interval now, and counts displacements from here.
     #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
+        let now = Self::at(simulation, Vec::new());
+        Self {
+            start: now.unfolded.clone(),
+            ..now
+        }
+    }
+
+    /// Begins an interval now; displacements count from `start`.
+    fn at(simulation: &Simulation, start: Vec<f64>) -> Self {
         let length = simulation.wall().lattice().length();
         let bodies = simulation.bodies();
         Self {
@@ -98,13 +115,15 @@ impl Observer {
             unfolded: (0..bodies.grains)
                 .map(|i| bodies.unfolded(i, length))
                 .collect(),
+            start,
             ledger: *simulation.ledger(),
         }
     }
 
     /// Ends the interval, begins the next, and answers what happened between.
     pub fn sample(&mut self, simulation: &Simulation) -> Sample {
-        let before = core::mem::replace(self, Self::new(simulation));
+        let now = Self::at(simulation, core::mem::take(&mut self.start));
+        let before = core::mem::replace(self, now);
         let wall = simulation.wall();
         let bodies = simulation.bodies();
         let (tally, ledger) = (simulation.tally(), simulation.ledger());
@@ -115,6 +134,7 @@ impl Observer {
 
         let shape = TubeShape::of(simulation);
         let (mut inside, mut flux, mut flux_raw, mut flux_now) = (0.0, 0.0, 0.0, 0.0);
+        let (mut displaced, mut displaced_squared) = (0.0, 0.0);
         for grain in 0..bodies.grains {
             let moved = self.unfolded[grain] - before.unfolded[grain];
             flux_raw += moved;
@@ -122,6 +142,9 @@ impl Observer {
                 inside += 1.0;
                 flux += moved;
                 flux_now += bodies.velocity[grain].z;
+                let since_start = heading * (self.unfolded[grain] - self.start[grain]);
+                displaced += since_start;
+                displaced_squared += since_start * since_start;
             }
         }
         let rate = |flux: f64| heading * flux / (length * interval);
@@ -150,11 +173,14 @@ impl Observer {
             granular_temperature: granular_temperature(bodies),
             contacts: if grains > 0.0 { contacts / grains } else { 0.0 },
             sliding_fraction: tally.sliding_contacts as f64 / distinct_contacts,
+            axial_displacement: displaced / inside,
+            axial_displacement_variance: variance(inside, displaced, displaced_squared),
             largest_overlap: tally.largest_overlap,
             escaped: grains - inside,
             inside,
             wall_axial_force: heading * tally.wall_axial_force,
             wall_power: (ledger.input() - before.ledger.input()) / interval,
+            body_power: (ledger.body_work - before.ledger.body_work) / interval,
             dissipated_power: (ledger.dissipated() - before.ledger.dissipated()) / interval,
             potential_energy: tally.potential_energy(),
             contact_energy: tally.contact_energy,
@@ -182,6 +208,14 @@ pub fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
     let half = 0.5 * bodies.diameter[grain];
     // Nearly all grains are within the throat's radius, and need no look at the wall where they are.
     beyond(shape.least_radius() + half) && beyond(shape.radius(position.z) + half)
+}
+
+/// Variance of so many numbers of which sum and sum of squares are known; NaN of none.
+fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
+    let mean = sum / number;
+    let variance = sum_of_squares / number - mean * mean;
+    // Rounding may leave less than nothing.
+    if variance < 0.0 { 0.0 } else { variance }
 }
 
 fn granular_temperature(bodies: &Bodies) -> f64 {

@@ -7,7 +7,8 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile, note_wall_faults,
+    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile,
+    note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
@@ -45,6 +46,7 @@ fn parameters() -> Parameters {
         time_step: 0.05,
         skin: 0.3,
         kernel: peristalsis_engine::Kernel::default(),
+        body_force: 0.0,
     }
 }
 
@@ -172,6 +174,102 @@ fn a_wave_keeps_the_grains_that_travel_with_it_and_passes_those_at_rest() {
                 assert!(flow.flow_rate_ratio.is_nan());
             }
         }
+    }
+}
+
+/// Two grains press on a straight wall from within, at rest: what the profile says of the wall is what is done to them.
+#[test]
+fn what_the_wall_does_is_what_the_grains_feel() {
+    for heading in [1.0, -1.0] {
+        let places = [DVec3::new(5.4, 0.0, 3.2), DVec3::new(0.0, -5.4, 13.2)];
+        let bodies = Bodies::grains_at_rest(places.to_vec(), vec![1.0; 2]);
+        let simulation = Simulation::new(bodies, wall(heading, 0.0), parameters());
+        let bodies = simulation.bodies();
+        let mut axial = 0.0;
+        let mut outward = 0.0;
+        for (place, force) in bodies.position.iter().zip(&bodies.acceleration) {
+            axial += heading * force.z;
+            let from_axis = DVec3::new(place.x, place.y, 0.0).normalize();
+            outward -= force.dot(from_axis);
+        }
+        assert!(axial.abs() > 1e-3 && outward > 0.1, "{axial} {outward}");
+        let mut profile = WaveFrameProfile::new(10, 1);
+        profile.add(&simulation);
+        profile.add_wall_forces(&simulation);
+        let force = profile.late_wall_force(1.0);
+        assert!(
+            (force.normal.0 - 0.5 * axial).abs() < 1e-9,
+            "{force:?} {axial}"
+        );
+        assert_eq!(force.tangential.0, 0.0);
+        let bins = profile.late(1.0, 10.0);
+        // R = 6 everywhere: a bin has the area 2 pi 6 in each of the two waves.
+        let pressure: f64 = bins.iter().map(|bin| bin.wall_pressure.0).sum();
+        let expected = 0.5 * outward / (core::f64::consts::TAU * 6.0);
+        // The contacts' radial directions are a little apart from those of the centres.
+        assert!(
+            (pressure / expected - 1.0).abs() < 0.02,
+            "{pressure} {expected}"
+        );
+        let shear: f64 = bins.iter().map(|bin| bin.wall_shear.0).sum();
+        assert!((shear + 0.5 * axial / (core::f64::consts::TAU * 6.0)).abs() < 1e-9);
+    }
+}
+
+/// Free grains drift apart ballistically: the variance since an origin a time s ago is 0.0675 s^2.
+#[test]
+fn dispersion_counts_from_an_origin_of_the_late_part() {
+    // Side by side, so that they never meet.
+    let places = [-3.0, -1.0, 1.0, 3.0].map(|x| DVec3::new(x, 0.0, 3.0));
+    let mut bodies = Bodies::grains_at_rest(places.to_vec(), vec![1.0; 4]);
+    bodies.velocity[..3].fill(DVec3::new(0.0, 0.0, 0.5));
+    bodies.velocity[3].z = -0.1;
+    let mut simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
+    let mut observer = Observer::new(&simulation);
+    let mut dispersion = AxialDispersion::new(&observer);
+    // More periods, of a time unit each, than origins are kept.
+    for _ in 0..100 {
+        simulation.advance(20).unwrap();
+        observer.sample(&simulation);
+        dispersion.end_period(&observer, &simulation);
+    }
+    let ballistic = |origin: f64, from: f64| -> Vec<f64> {
+        (from as u32..100)
+            .map(|period| 0.5 * 0.0675 * (2.0 * (f64::from(period) - origin) + 1.0))
+            .collect()
+    };
+    let close = |start: f64, expected: Vec<f64>| {
+        let found = dispersion.rates_from(start);
+        assert_eq!(found.len(), expected.len(), "{start}");
+        for (found, expected) in found.iter().zip(expected) {
+            assert!(
+                (found - expected).abs() < 1e-9,
+                "{start}: {found} {expected}"
+            );
+        }
+    };
+    // Origins are 8 periods apart by now; the first period after each is left out.
+    close(0.0, ballistic(0.0, 1.0));
+    close(75.0, ballistic(80.0, 81.0));
+    close(80.0, ballistic(80.0, 81.0));
+    // None has two periods behind it from here on: since the last before.
+    close(97.0, ballistic(96.0, 97.0));
+    assert!(dispersion.rates_from(1e9).is_empty());
+}
+
+#[test]
+fn displacements_count_from_the_start() {
+    for heading in [1.0, -1.0] {
+        let mut simulation = free_flight(heading);
+        let mut observer = Observer::new(&simulation);
+        let mut sample = observer.sample(&simulation);
+        for _ in 0..3 {
+            simulation.advance(40).unwrap();
+            sample = observer.sample(&simulation);
+        }
+        // v_z = 0.5, 0.5, 0.5, -0.1: mean 0.35, variance 0.0675, for 6 t and through the seam.
+        assert!((sample.axial_displacement - heading * 0.35 * 6.0).abs() < 1e-12);
+        assert!((sample.axial_displacement_variance - 0.0675 * 36.0).abs() < 1e-12);
     }
 }
 

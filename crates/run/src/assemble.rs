@@ -67,6 +67,19 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
             configuration::Kernel::Fast => Kernel::Fast,
             configuration::Kernel::Reference => Kernel::Reference,
         },
+        body_force: heading(configuration) * configuration.drive.body_force,
+    }
+}
+
+/// +1 for a wave towards +z, -1 towards -z: the source writes that of the strain-controlled tube as running towards -z.
+fn heading(configuration: &Configuration) -> f64 {
+    let along = match configuration.drive.direction {
+        configuration::WaveDirection::Forward => 1.0,
+        configuration::WaveDirection::Backward => -1.0,
+    };
+    match configuration.drive.control {
+        Control::Strain { .. } => -along,
+        Control::Stress { .. } => along,
     }
 }
 
@@ -127,11 +140,10 @@ pub fn walls(configuration: &Configuration) -> Wall {
     let drive = &configuration.drive;
     let waveform = match drive.waveform {
         configuration::Waveform::Sine => Waveform::Sine,
+        configuration::Waveform::Bolus => Waveform::Bolus,
+        configuration::Waveform::Roller => Waveform::Roller,
     };
-    let along = match drive.direction {
-        configuration::WaveDirection::Forward => 1.0,
-        configuration::WaveDirection::Backward => -1.0,
-    };
+    let heading = heading(configuration);
     let frequency = schedule(
         configuration,
         ScheduledParameter::StrainRate,
@@ -141,12 +153,11 @@ pub fn walls(configuration: &Configuration) -> Wall {
         Control::Strain { width } => {
             let widths = schedule(configuration, ScheduledParameter::Width, width);
             let amplitude = widths.map(|width| tube.radius - 0.5 * width);
-            // The source writes this wave as running towards -z.
             Wall::Prescribed(PrescribedWall::new(
                 lattice,
                 tube.radius,
                 waveform,
-                -along,
+                heading,
                 amplitude,
                 frequency,
             ))
@@ -181,7 +192,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
                 force_amplitude,
             ),
             frequency,
-            heading: along,
+            heading,
             waveform,
             angle: match angle {
                 configuration::DriveAngle::Reference => DriveAngle::Reference,
@@ -217,14 +228,15 @@ fn schedule(
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
 /// pressure rise; the second is missing where the clear bore closes. `None` under stress control, where the width
-/// follows a schedule, and for a static wave.
+/// follows a schedule, for a static wave and for waveforms other than the sine.
 #[must_use]
 pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
     let schedules = &configuration.drive.schedules;
     let changes = schedules
         .iter()
         .any(|schedule| schedule.parameter == ScheduledParameter::Width);
-    if changes || configuration.drive.period().is_none() {
+    let sine = configuration.drive.waveform == configuration::Waveform::Sine;
+    if changes || !sine || configuration.drive.period().is_none() {
         return None;
     }
     let amplitude = configuration.amplitude()?;

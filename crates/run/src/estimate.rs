@@ -9,6 +9,8 @@ use peristalsis_physics::contact::{Normal, NormalLaw};
 use crate::RunError;
 use crate::assemble::{contact_model, walls};
 use crate::run::Run;
+use crate::si::SiEstimate;
+use crate::softness;
 
 /// Steps that a contact should last.
 const STEPS_PER_CONTACT: f64 = 15.0;
@@ -57,6 +59,8 @@ pub struct Estimate {
     pub contact_time: f64,
     /// J/Jmax of a Newtonian fluid in this tube.
     pub newtonian_flow_rate_ratio: Option<f64>,
+    /// The same in SI, where the units are said.
+    pub si: Option<SiEstimate>,
     /// Expected seconds, from a short trial on this machine.
     pub expected_seconds: f64,
     /// What looks doubtful.
@@ -85,6 +89,10 @@ pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
         contact_time: contact_time(configuration),
         newtonian_flow_rate_ratio: crate::newtonian_reference(configuration)
             .map(|reference| reference.0),
+        si: configuration
+            .units
+            .as_ref()
+            .map(|units| SiEstimate::of(configuration, units)),
         expected_seconds: trial.expected_seconds,
         warnings,
     })
@@ -182,9 +190,12 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
             ),
         });
     }
+    if let Some(units) = &configuration.units {
+        warnings.extend(softness::warning(configuration, units));
+    }
     if let Wall::Prescribed(wall) = walls(configuration) {
         let wave = wall.wave();
-        let widest = wave.mean_radius + wave.amplitude.abs();
+        let widest = wave.mean_radius + wave.amplitude.abs() * wave.waveform.largest();
         let passing = wall.lattice().largest_passing_radius(widest);
         if passing > LEAKING_RADIUS {
             warnings.push(Warning {

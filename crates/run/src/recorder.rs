@@ -4,7 +4,8 @@ use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
-    Observer, Sample, WallFault, WaveByWave, WaveFlow, WaveFrameProfile, note_wall_faults,
+    AxialDispersion, Observer, Sample, WallFault, WaveByWave, WaveFlow, WaveFrameProfile,
+    note_wall_faults,
 };
 
 /// Thresholds of J/Jmax at which every run notes its transition besides the configured one: which of them lies midway
@@ -23,7 +24,10 @@ pub struct Recorder {
     /// A search at each of [`THRESHOLDS`]; none where there is no ratio of flow rates to watch.
     ladder: Vec<TransitionDetector>,
     profile: WaveFrameProfile,
+    /// Samples from one look at the forces of the wall to the next.
+    wall_interval: u64,
     waves: WaveByWave,
+    dispersion: AxialDispersion,
     wall_faults: Vec<WallFault>,
 }
 
@@ -45,8 +49,10 @@ impl Recorder {
                 .expect("a validated configuration has a threshold and a period in range");
             Some(detector)
         };
+        let observer = Observer::new(simulation);
         Self {
-            observer: Observer::new(simulation),
+            dispersion: AxialDispersion::new(&observer),
+            observer,
             samples: Vec::new(),
             samples_per_period,
             averages: Vec::new(),
@@ -56,6 +62,7 @@ impl Recorder {
                 configuration.observe.profile_bins as usize,
                 samples_per_period,
             ),
+            wall_interval: wall_interval(configuration.run.steps_per_sample, samples_per_period),
             waves: WaveByWave::new(simulation, samples_per_period),
             wall_faults: Vec::new(),
         }
@@ -67,6 +74,9 @@ impl Recorder {
         self.samples.push(self.observer.sample(simulation));
         self.waves.add(&before, &self.observer, simulation);
         self.profile.add(simulation);
+        if (self.samples.len() as u64).is_multiple_of(self.wall_interval) {
+            self.profile.add_wall_forces(simulation);
+        }
         note_wall_faults(simulation, &mut self.wall_faults);
         if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
             let first = self.samples.len() - self.samples_per_period as usize;
@@ -77,6 +87,7 @@ impl Recorder {
                 .sum::<f64>()
                 / period.len() as f64;
             self.averages.push(average);
+            self.dispersion.end_period(&self.observer, simulation);
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
                 self.detector = None;
@@ -116,6 +127,12 @@ impl Recorder {
         self.waves.flows()
     }
 
+    /// How the grains disperse along the tube.
+    #[must_use]
+    pub fn dispersion(&self) -> &AxialDispersion {
+        &self.dispersion
+    }
+
     /// What went wrong with an elastic wall, the first of each kind.
     #[must_use]
     pub fn wall_faults(&self) -> &[WallFault] {
@@ -152,5 +169,38 @@ impl Recorder {
         let number = self.samples.len();
         let taken = ((number as f64 * fraction).round() as usize).clamp(1.min(number), number);
         &self.samples[number - taken..]
+    }
+}
+
+/// Steps from one look at the forces of the wall to the next, at least: a look takes as long as some steps.
+const STEPS_BETWEEN_LOOKS: u64 = 100;
+
+/// Samples from one look at the forces of the wall to the next: prime to those of a period, so that all phases between
+/// wave and lattice have their turn.
+fn wall_interval(steps_per_sample: u64, samples_per_period: u64) -> u64 {
+    let least = STEPS_BETWEEN_LOOKS.div_ceil(steps_per_sample.max(1));
+    (least..)
+        .find(|&interval| greatest_common_divisor(interval, samples_per_period) == 1)
+        .unwrap_or(least)
+}
+
+fn greatest_common_divisor(mut one: u64, mut other: u64) -> u64 {
+    while other > 0 {
+        (one, other) = (other, one % other);
+    }
+    one
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn looks_at_the_wall_are_rare_and_meet_every_phase() {
+        assert_eq!(wall_interval(20, 20), 7);
+        assert_eq!(wall_interval(10, 20), 11);
+        assert_eq!(wall_interval(250, 20), 1);
+        assert_eq!(wall_interval(100, 1), 1);
+        assert_eq!(wall_interval(1, 30), 101);
     }
 }

@@ -14,7 +14,7 @@ use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 5;
+const STATE_LAYOUT: u32 = 6;
 
 /// A simulation together with what has been measured of it.
 #[derive(Clone, Debug)]

@@ -4,8 +4,10 @@ use peristalsis_analysis::mean_with_error;
 use peristalsis_observe::{Sample, WallFault};
 
 use crate::assemble::newtonian_reference;
+use crate::late::{Pumping, Residence, axial_dispersion, error_of};
 use crate::recorder::THRESHOLDS;
 use crate::run::Run;
+use crate::si::SiSummary;
 use crate::{REVISION, VERSION};
 
 /// How a run ended.
@@ -76,6 +78,32 @@ pub struct Summary {
     pub contacts: f64,
     /// Late mean power that wall or drive put in.
     pub wall_power: f64,
+    /// Its standard error.
+    pub wall_power_error: f64,
+    /// What is known of pumping against a body force, where there is one.
+    pub pumping: Option<Pumping>,
+    /// Axial force of the wall on the grains of one wavelength along the normals of contacts, along the wave: late mean.
+    pub wall_normal_force: f64,
+    /// Its standard error.
+    pub wall_normal_force_error: f64,
+    /// The same by friction.
+    pub wall_tangential_force: f64,
+    /// Its standard error.
+    pub wall_tangential_force_error: f64,
+    /// Late mean of the pressure on the wall \[m/(d t^2)\].
+    pub wall_pressure: f64,
+    /// Largest late mean of it over the phases of the wave.
+    pub wall_pressure_largest: f64,
+    /// Mean time that a grain takes through the tube's length, N/J of the late means (Little's law) \[t\]; missing where
+    /// the flow does not go along the wave.
+    pub residence_time: Option<f64>,
+    /// Its standard error.
+    pub residence_time_error: Option<f64>,
+    /// D, coefficient of axial dispersion: half the rate at which the variance of axial displacements since an origin in
+    /// the late part grows from period to period \[d^2/t\].
+    pub axial_dispersion: f64,
+    /// Its standard error.
+    pub axial_dispersion_error: f64,
     /// Late mean power lost.
     pub dissipated_power: f64,
     /// Late mean of the smallest bottleneck, between centres of wall spheres \[d\].
@@ -98,6 +126,8 @@ pub struct Summary {
     pub grain_steps_per_second: f64,
     /// Seconds that engine and observables took.
     pub seconds: f64,
+    /// The same in SI, where the units were said.
+    pub si: Option<SiSummary>,
     /// What went wrong with an elastic wall: when, where, and the likely cause.
     pub wall_diagnosis: Vec<String>,
     /// Version of the program.
@@ -119,12 +149,21 @@ impl Summary {
         let estimate = mean_with_error(&ratios).ok();
         let mean =
             |value: fn(&Sample) -> f64| late.iter().map(value).sum::<f64>() / late.len() as f64;
+        let error = |value: fn(&Sample) -> f64| error_of(late.iter().map(value));
+        let profile = recorder
+            .profile()
+            .late(run.late_fraction(), configuration.tube.wavelength);
+        let wall_force = recorder.profile().late_wall_force(run.late_fraction());
+        let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
+        let residence = Residence::of(late);
+        let (axial_dispersion, axial_dispersion_error) =
+            axial_dispersion(late, recorder.dispersion());
         let newtonian = newtonian_reference(configuration);
         let simulation = run.simulation();
         let seconds = run.elapsed().as_secs_f64();
         let grain_steps = configuration.grains.number as f64 * simulation.step() as f64;
         let transition_time = recorder.transition_time();
-        Self {
+        let mut summary = Self {
             status,
             message,
             grains: configuration.grains.number,
@@ -156,6 +195,18 @@ impl Summary {
             granular_temperature: mean(|sample| sample.granular_temperature),
             contacts: mean(|sample| sample.contacts),
             wall_power: mean(|sample| sample.wall_power),
+            wall_power_error: error(|sample| sample.wall_power),
+            pumping: Pumping::of(configuration, late),
+            wall_normal_force: wall_force.normal.0,
+            wall_normal_force_error: wall_force.normal.1,
+            wall_tangential_force: wall_force.tangential.0,
+            wall_tangential_force_error: wall_force.tangential.1,
+            wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
+            wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
+            residence_time: residence.map(|residence| residence.time),
+            residence_time_error: residence.map(|residence| residence.error),
+            axial_dispersion,
+            axial_dispersion_error,
             dissipated_power: mean(|sample| sample.dissipated_power),
             bottleneck: mean(|sample| sample.bottleneck),
             steps: simulation.step(),
@@ -176,9 +227,15 @@ impl Summary {
                 .iter()
                 .map(WallFault::in_words)
                 .collect(),
+            si: None,
             version: VERSION,
             revision: REVISION,
-        }
+        };
+        summary.si = configuration
+            .units
+            .as_ref()
+            .map(|units| SiSummary::of(&summary, configuration, units));
+        summary
     }
 }
 

@@ -99,6 +99,54 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
             "d",
             "largest radius seen",
             column(|bin| bin.largest_radius),
+        )
+        .column(
+            "wall_normal_force",
+            "m/t^2",
+            "axial force of the wall on the grains along the normals of contacts, per length of tube, along the wave",
+            column(|bin| bin.wall_normal_force.0),
+        )
+        .column(
+            "wall_normal_force_error",
+            "m/t^2",
+            "its standard error",
+            column(|bin| bin.wall_normal_force.1),
+        )
+        .column(
+            "wall_tangential_force",
+            "m/t^2",
+            "axial force of the wall on the grains by friction, per length of tube, along the wave",
+            column(|bin| bin.wall_tangential_force.0),
+        )
+        .column(
+            "wall_tangential_force_error",
+            "m/t^2",
+            "its standard error",
+            column(|bin| bin.wall_tangential_force.1),
+        )
+        .column(
+            "wall_pressure",
+            "m/(d t^2)",
+            "pressure on the wall: radial force per area 2 pi R dz, outward",
+            column(|bin| bin.wall_pressure.0),
+        )
+        .column(
+            "wall_pressure_error",
+            "m/(d t^2)",
+            "its standard error",
+            column(|bin| bin.wall_pressure.1),
+        )
+        .column(
+            "wall_shear",
+            "m/(d t^2)",
+            "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure",
+            column(|bin| bin.wall_shear.0),
+        )
+        .column(
+            "wall_shear_error",
+            "m/(d t^2)",
+            "its standard error",
+            column(|bin| bin.wall_shear.1),
         );
     with_origin(table, configuration).build()
 }
@@ -157,6 +205,7 @@ fn applies(scope: Scope, configuration: &Configuration) -> bool {
     match scope {
         Scope::Always => true,
         Scope::Friction => configuration.contact.friction.is_some(),
+        Scope::BodyForce => configuration.drive.body_force != 0.0,
         Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
     }
 }

@@ -26,8 +26,13 @@ const NO_FRICTION: &[&str] = &["contact.static_friction=0", "contact.kinetic_fri
 
 /// Preset and settings of one model each.
 fn models() -> Vec<(&'static str, Vec<&'static str>)> {
-    // The preset as it is: equal smooth grains, in the kernel made for them.
-    let mut models = vec![("frictionless", STRAIN.to_vec())];
+    // The preset as it is: equal smooth grains, in the kernel made for them; and pumped against a pressure.
+    let against = ["drive.body_force=-0.003", "drive.waveform=roller"];
+    let mut models = vec![
+        ("frictionless", STRAIN.to_vec()),
+        ("frictionless", [STRAIN, &against].concat()),
+        ("frictional", [STRESS, &against].concat()),
+    ];
     for integrator in ["run.integrator=verlet", "run.integrator=adams_bashforth"] {
         for law in ["contact.law=linear", "contact.law=hertz"] {
             for friction in [FRICTION, NO_FRICTION] {
@@ -79,6 +84,11 @@ fn a_state_goes_on_to_the_same_bits() {
         assert_eq!(
             whole.simulation().bodies(),
             parts.simulation().bodies(),
+            "{preset} {settings:?}"
+        );
+        assert_eq!(
+            whole.recorder().dispersion(),
+            parts.recorder().dispersion(),
             "{preset} {settings:?}"
         );
         assert!(whole.simulation().step() > 300);

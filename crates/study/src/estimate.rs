@@ -15,7 +15,7 @@ const BYTES_A_NUMBER: f64 = 8.0;
 /// Bytes of a run besides its tables, in blocks of the disk: configuration, row, summary, seal.
 const BYTES_A_RUN: f64 = 36_000.0;
 /// Columns of a profile.
-const PROFILE_COLUMNS: f64 = 10.0;
+const PROFILE_COLUMNS: f64 = 18.0;
 /// Columns of the flow wave by wave.
 const WAVES_COLUMNS: f64 = 6.0;
 

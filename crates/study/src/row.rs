@@ -2,7 +2,7 @@
 
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
-use peristalsis_run::Summary;
+use peristalsis_run::{Pumping, Summary};
 
 use crate::identity::Identity;
 use crate::plan::state_name;
@@ -41,6 +41,21 @@ struct RowColumn {
     description: &'static str,
     kind: ValueKind,
     value: fn(&Origin<'_>) -> Cell,
+    /// Whether rows from before it may lack it, and hold no number there.
+    came_later: bool,
+}
+
+/// A column of numbers that came later than the first stores.
+const fn later(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    value: fn(&Origin<'_>) -> Cell,
+) -> RowColumn {
+    RowColumn {
+        came_later: true,
+        ..column(name, unit, Real, description, value)
+    }
 }
 
 const fn column(
@@ -56,6 +71,7 @@ const fn column(
         description,
         kind,
         value,
+        came_later: false,
     }
 }
 
@@ -85,15 +101,15 @@ const COLUMNS: &[RowColumn] = &[
     column("transition_time", "t", Real, "tau; missing where there was none", |o| Cell::optional(o.summary.transition_time)),
     column("censored", "", Boolean, "whether the run ended before a transition", |o| Cell::Boolean(o.summary.censored)),
     column("transition_threshold", "1", Real, "J/Jmax whose crossing counts as the transition", |o| Cell::Real(o.summary.transition_threshold)),
-    column("transition_time_10", "t", Real, "tau with the threshold 0.1; missing where there was none", |o| Cell::optional(o.summary.transition_times[0].time)),
-    column("transition_time_20", "t", Real, "tau with the threshold 0.2; missing where there was none", |o| Cell::optional(o.summary.transition_times[1].time)),
-    column("transition_time_30", "t", Real, "tau with the threshold 0.3; missing where there was none", |o| Cell::optional(o.summary.transition_times[2].time)),
-    column("transition_time_40", "t", Real, "tau with the threshold 0.4; missing where there was none", |o| Cell::optional(o.summary.transition_times[3].time)),
-    column("transition_time_50", "t", Real, "tau with the threshold 0.5; missing where there was none", |o| Cell::optional(o.summary.transition_times[4].time)),
-    column("transition_time_60", "t", Real, "tau with the threshold 0.6; missing where there was none", |o| Cell::optional(o.summary.transition_times[5].time)),
-    column("transition_time_70", "t", Real, "tau with the threshold 0.7; missing where there was none", |o| Cell::optional(o.summary.transition_times[6].time)),
-    column("transition_time_80", "t", Real, "tau with the threshold 0.8; missing where there was none", |o| Cell::optional(o.summary.transition_times[7].time)),
-    column("transition_time_90", "t", Real, "tau with the threshold 0.9; missing where there was none", |o| Cell::optional(o.summary.transition_times[8].time)),
+    later("transition_time_10", "t", "tau with the threshold 0.1; missing where there was none", |o| Cell::optional(o.summary.transition_times[0].time)),
+    later("transition_time_20", "t", "tau with the threshold 0.2; missing where there was none", |o| Cell::optional(o.summary.transition_times[1].time)),
+    later("transition_time_30", "t", "tau with the threshold 0.3; missing where there was none", |o| Cell::optional(o.summary.transition_times[2].time)),
+    later("transition_time_40", "t", "tau with the threshold 0.4; missing where there was none", |o| Cell::optional(o.summary.transition_times[3].time)),
+    later("transition_time_50", "t", "tau with the threshold 0.5; missing where there was none", |o| Cell::optional(o.summary.transition_times[4].time)),
+    later("transition_time_60", "t", "tau with the threshold 0.6; missing where there was none", |o| Cell::optional(o.summary.transition_times[5].time)),
+    later("transition_time_70", "t", "tau with the threshold 0.7; missing where there was none", |o| Cell::optional(o.summary.transition_times[6].time)),
+    later("transition_time_80", "t", "tau with the threshold 0.8; missing where there was none", |o| Cell::optional(o.summary.transition_times[7].time)),
+    later("transition_time_90", "t", "tau with the threshold 0.9; missing where there was none", |o| Cell::optional(o.summary.transition_times[8].time)),
     column("flow_rate_ratio", "1", Real, "late mean of J/Jmax, grains inside", |o| Cell::Real(o.summary.flow_rate_ratio)),
     column("flow_rate_ratio_error", "1", Real, "its standard error from block averages", |o| Cell::Real(o.summary.flow_rate_ratio_error)),
     column("flow_rate_ratio_raw", "1", Real, "late mean of J/Jmax of all grains", |o| Cell::Real(o.summary.flow_rate_ratio_raw)),
@@ -111,6 +127,23 @@ const COLUMNS: &[RowColumn] = &[
     column("bottleneck", "d", Real, "late mean of the smallest bottleneck", |o| Cell::Real(o.summary.bottleneck)),
     column("time_step", "t", Real, "length of a step", |o| Cell::Real(o.summary.time_step)),
     column("steps", "1", Integer, "steps done", |o| Cell::whole(o.summary.steps)),
+    later("body_force", "d/t^2", "force over mass on the grains along the wave; negative is back pressure", |o| Cell::Real(o.configuration.drive.body_force)),
+    later("pressure_rise", "m/(d t^2)", "pressure rise over a wavelength that the body force stands for", |o| Cell::Real(o.configuration.pressure_rise())),
+    later("wall_power_error", "m d^2/t^3", "standard error of wall_power", |o| Cell::Real(o.summary.wall_power_error)),
+    later("useful_power", "m d^2/t^3", "late mean power of the flow against the body force", |o| pumping(o, |p| p.useful_power)),
+    later("useful_power_error", "m d^2/t^3", "its standard error", |o| pumping(o, |p| p.useful_power_error)),
+    later("pumping_efficiency", "1", "useful power over wall power", |o| pumping(o, |p| p.efficiency)),
+    later("pumping_efficiency_error", "1", "its standard error", |o| pumping(o, |p| p.efficiency_error)),
+    later("wall_normal_force", "m d/t^2", "late mean axial force of the wall on the grains of a wavelength along the normals of contacts", |o| Cell::Real(o.summary.wall_normal_force)),
+    later("wall_normal_force_error", "m d/t^2", "its standard error", |o| Cell::Real(o.summary.wall_normal_force_error)),
+    later("wall_tangential_force", "m d/t^2", "the same by friction", |o| Cell::Real(o.summary.wall_tangential_force)),
+    later("wall_tangential_force_error", "m d/t^2", "its standard error", |o| Cell::Real(o.summary.wall_tangential_force_error)),
+    later("wall_pressure", "m/(d t^2)", "late mean pressure on the wall", |o| Cell::Real(o.summary.wall_pressure)),
+    later("wall_pressure_largest", "m/(d t^2)", "largest late mean pressure on the wall over the phases of the wave", |o| Cell::Real(o.summary.wall_pressure_largest)),
+    later("residence_time", "t", "late mean time of a grain through the tube, N/J; missing where the flow is not along the wave", |o| Cell::optional(o.summary.residence_time)),
+    later("residence_time_error", "t", "its standard error", |o| Cell::optional(o.summary.residence_time_error)),
+    later("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", |o| Cell::Real(o.summary.axial_dispersion)),
+    later("axial_dispersion_error", "d^2/t", "its standard error", |o| Cell::Real(o.summary.axial_dispersion_error)),
     column("version", "", Text, "version of the program", |o| Cell::Text(o.summary.version.into())),
     column("revision", "", Text, "revision of its source", |o| Cell::Text(o.summary.revision.into())),
 ];
@@ -120,6 +153,11 @@ fn status_name(summary: &Summary) -> &'static str {
         peristalsis_run::Status::Settled => "settled",
         _ => "complete",
     }
+}
+
+/// A number that only runs with a body force have.
+fn pumping(origin: &Origin<'_>, value: fn(&Pumping) -> f64) -> Cell {
+    Cell::optional(origin.summary.pumping.as_ref().map(value))
 }
 
 fn width(configuration: &Configuration) -> Option<f64> {
@@ -177,7 +215,7 @@ impl Row {
     /// Every row of a table that has the columns of rows; others are left out.
     ///
     /// # Errors
-    /// A sentence: the column that is missing (columns of reals may be) or of another kind, or the text that is no
+    /// A sentence: the column that is missing (columns that came later may be) or of another kind, or the text that is no
     /// identity.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
         let identities = table
@@ -268,14 +306,11 @@ fn joined(columns: impl IntoIterator<Item = Column>) -> Table {
         .expect("the columns of a row have distinct names and one length")
 }
 
-/// One value of a column of another table, missing where it has no such column of reals; an empty column of a CSV file
-/// reads as reals.
+/// One value of a column of another table; an empty column of a CSV file reads as reals.
 fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, String> {
     let found = match table.column(column.name) {
-        Ok(found) => found,
-        // Written by a version that did not measure it yet.
-        Err(_) if column.kind == Real => return Ok(Values::Real(vec![f64::NAN])),
-        Err(error) => return Err(error.to_string()),
+        Err(_) if column.came_later => return Ok(Values::Real(vec![f64::NAN])),
+        found => found.map_err(|error| error.to_string())?,
     };
     match (column.kind, &found.values) {
         (Real, Values::Real(values)) => Ok(Values::Real(vec![values[row]])),
@@ -289,5 +324,36 @@ fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, Strin
             found: other.kind(),
         }
         .to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows sealed or exported before columns were added are no less whole.
+    #[test]
+    fn rows_from_before_a_column_hold_no_number_there() {
+        let one = |column: &RowColumn| {
+            let values = match (column.name, column.kind) {
+                ("identity", _) => Values::Text(vec!["0f".repeat(16)]),
+                (_, Real) => Values::Real(vec![0.5]),
+                (_, Integer) => Values::Integer(vec![7]),
+                (_, Text) => Values::Text(vec!["x".to_owned()]),
+                (_, Boolean) => Values::Boolean(vec![true]),
+            };
+            of_kind(column, values)
+        };
+        let before = COLUMNS.iter().filter(|column| !column.came_later).map(one);
+        let row = Row::from_csv(&csv::encode(&joined(before))).unwrap();
+        assert_eq!(row.table().columns().len(), COLUMNS.len());
+        assert!(row.table().reals("pumping_efficiency").unwrap()[0].is_nan());
+        assert_eq!(row.table().reals("wall_power").unwrap(), [0.5]);
+        // Read again it is the same.
+        assert_eq!(Row::from_csv(&row.to_csv()).unwrap(), row);
+        // A column of the first rows must be there.
+        let without = COLUMNS.iter().filter(|column| column.name != "wall_power");
+        let error = Row::from_csv(&csv::encode(&joined(without.map(one)))).unwrap_err();
+        assert!(error.contains("wall_power"), "{error}");
     }
 }

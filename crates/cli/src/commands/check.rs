@@ -53,6 +53,30 @@ fn in_words(estimate: &Estimate) -> String {
             "Newtonian fluid   J/Jmax = {ratio:.4} in this tube"
         ));
     }
+    if let Some(si) = &estimate.si {
+        lines.push(format!(
+            "in SI             d = {:.3e} m, m = {:.3e} kg, t = {:.3e} s; a wave of {:.4} Hz, {:.3e} m/s",
+            si.unit_length_m,
+            si.unit_mass_kg,
+            si.unit_time_s,
+            si.wave_frequency_hz,
+            si.wave_speed_m_per_s
+        ));
+        lines.push(format!(
+            "                  {:.3} s in steps of {:.2e} s; at most {:.3e} kg/s; unit of pressure {:.3e} Pa, of power {:.3e} W",
+            si.duration_s,
+            si.time_step_s,
+            si.largest_mass_flow_rate_kg_per_s,
+            si.unit_pressure_pa,
+            si.unit_power_w
+        ));
+        if si.body_force_m_per_s2 != 0.0 {
+            lines.push(format!(
+                "                  body force {:.3e} m/s^2, a pressure rise of {:.3e} Pa a wavelength",
+                si.body_force_m_per_s2, si.pressure_rise_pa
+            ));
+        }
+    }
     lines.push(format!(
         "expected time     {}",
         seconds(estimate.expected_seconds)

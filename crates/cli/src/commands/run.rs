@@ -207,6 +207,18 @@ fn in_words(run: &Run, summary: &Summary) -> String {
     if let Some(newtonian) = summary.newtonian_flow_rate_ratio {
         flow.push_str(&format!(" (a Newtonian fluid: {newtonian:.4})"));
     }
+    if let Some(pumping) = &summary.pumping {
+        flow.push_str(&format!(
+            "\nagainst a pressure rise of {:.3e} m/(d t^2) a wavelength: useful power {:.3e}, efficiency {:.4} ± {:.4}",
+            pumping.pressure_rise, pumping.useful_power, pumping.efficiency, pumping.efficiency_error
+        ));
+    }
+    if let Some(si) = &summary.si {
+        flow.push_str(&format!(
+            "\nin SI: {:.3e} kg/s, wall power {:.3e} W, pressure on the wall {:.3e} Pa (at most {:.3e})",
+            si.mass_flow_rate_kg_per_s, si.wall_power_w, si.wall_pressure_pa, si.wall_pressure_largest_pa
+        ));
+    }
     let mut text = format!(
         "{transition}\n{flow}\n{} grains, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} steps in {}: \
          {:.2} million grain-steps/s\n",

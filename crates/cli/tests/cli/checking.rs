@@ -178,3 +178,84 @@ fn a_static_wave_has_no_period() {
     close(&estimate["duration"], 50.0);
     assert_eq!(estimate["steps"], 1000);
 }
+
+/// Glass beads of 1 mm on springs of 1 N/m: m = 1.309e-6 kg, t = 1.1441 ms.
+const BEADS: [&str; 6] = [
+    "--set",
+    "units.grain_diameter=1e-3",
+    "--set",
+    "units.density=2500",
+    "--set",
+    "units.stiffness=1",
+];
+
+#[test]
+fn units_in_si_are_told_and_the_words_say_them_too() {
+    let mass = PI / 6.0 * 2500.0 * 1e-9;
+    let time = mass.sqrt();
+    let arguments = [
+        "--preset",
+        "frictionless",
+        "--set",
+        "drive.body_force=-0.002",
+    ];
+    let arguments = [&arguments[..], &BEADS].concat();
+    let si = &check(&arguments)["si"];
+    close(&si["unit_mass_kg"], mass);
+    close(&si["unit_time_s"], time);
+    close(&si["unit_pressure_pa"], 1000.0);
+    close(&si["wave_frequency_hz"], 0.05 / time);
+    close(&si["wave_speed_m_per_s"], 0.5e-3 / time);
+    close(&si["duration_s"], 800.0 * time);
+    // Jmax = N c/L
+    close(
+        &si["largest_mass_flow_rate_kg_per_s"],
+        2.03 * 0.5 * mass / time,
+    );
+    close(&si["body_force_m_per_s2"], -0.002 * 1e-3 / (time * time));
+    close(
+        &si["pressure_rise_pa"],
+        203.0 * 0.002 * 10.0 / (100.0 * PI * 2.25) * 1000.0,
+    );
+    let place = Place::new();
+    let said = place
+        .call(["check"].iter().chain(&arguments))
+        .expect_code(0)
+        .stdout;
+    assert!(said.contains("in SI") && said.contains("Pa"), "{said}");
+    assert_eq!(check(&["--preset", "frictionless"])["si"], Value::Null);
+}
+
+#[test]
+fn unphysical_softness_is_warned_of_with_what_to_do() {
+    let message = |arguments: &[&str]| {
+        let estimate = check(&[&["--preset", "frictionless"], arguments, &BEADS].concat());
+        let warnings = estimate["warnings"].as_array().unwrap().clone();
+        warnings
+            .iter()
+            .find(|warning| warning["key"] == "units.stiffness")
+            .map(|warning| warning["message"].as_str().unwrap().to_owned())
+    };
+    // c = 0.5: xi = 0.5/sqrt(2), far above a tenth; k (0.3536/0.1)^2 = 12.5 N/m would do.
+    let soft = message(&[]).unwrap();
+    assert!(
+        soft.contains("35 %") && soft.contains("1.25e1 N/m"),
+        "{soft}"
+    );
+    // c = 0.1: xi = 0.0707.
+    assert_eq!(message(&["--set", "drive.strain_rate=0.01"]), None);
+    // A thousandth of a Hertz: 1e3/(1.144e-3 0.05) steps, and xi = 1.144e-6 10/sqrt(2) d: (8.09e-6/0.01)^2 = 6.5e-7 N/m.
+    let hard = message(&[
+        "--set",
+        "units.wave_frequency=1e-3",
+        "--set",
+        "observe.samples_per_period=100000",
+        "--set",
+        "grains.number=5",
+    ])
+    .unwrap();
+    assert!(
+        hard.contains("1.7e7 steps") && hard.contains("6.54e-7 N/m"),
+        "{hard}"
+    );
+}

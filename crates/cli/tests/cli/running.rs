@@ -198,3 +198,54 @@ fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
         }
     }
 }
+
+#[test]
+fn pumping_and_si_are_in_the_summary() {
+    let place = Place::new();
+    let settings = [
+        "drive.body_force=-0.01",
+        "units.grain_diameter=1e-3",
+        "units.density=2500",
+        "units.stiffness=1",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments: Vec<&str> = ["--out", "results", "--json"]
+        .into_iter()
+        .chain(settings)
+        .collect();
+    let summary = place.run_small(&arguments).expect_code(0).json();
+    let number = |pointer: &str| {
+        summary
+            .pointer(pointer)
+            .and_then(Value::as_f64)
+            .unwrap_or_else(|| panic!("{pointer} in {summary:#}"))
+    };
+    // Useful power is that of the flow against the force: -g J L, grains of mass 1 in a tube of 20 d.
+    let useful = 0.01 * number("/flow_rate") * 20.0;
+    assert!(
+        (number("/pumping/useful_power") / useful - 1.0).abs() < 1e-6,
+        "{useful}"
+    );
+    let efficiency = number("/pumping/useful_power") / number("/wall_power");
+    assert!((number("/pumping/efficiency") - efficiency).abs() < 1e-12);
+    assert!(number("/pumping/efficiency_error") >= 0.0);
+    let mass = std::f64::consts::PI / 6.0 * 2500.0 * 1e-9;
+    let close = |one: f64, other: f64| assert!((one / other - 1.0).abs() < 1e-9, "{one} {other}");
+    close(
+        number("/si/mass_flow_rate_kg_per_s"),
+        number("/flow_rate") * mass.sqrt(),
+    );
+    close(number("/si/time_s"), 80.0 * mass.sqrt());
+    close(
+        number("/si/wall_pressure_pa"),
+        1000.0 * number("/wall_pressure"),
+    );
+    close(
+        number("/si/pressure_rise_pa"),
+        20.0 * 0.01 * 10.0 / (20.0 * std::f64::consts::PI * 2.25) * 1000.0,
+    );
+    assert!(
+        number("/wall_pressure") > 0.0
+            && number("/wall_pressure_largest") >= number("/wall_pressure")
+    );
+}

@@ -1,14 +1,20 @@
 //! The drive: alternatives resolved to width and strain rate, and the elastic wall of a stress-controlled tube.
 
-use super::{Context, schedules};
+use super::{Context, schedules, units};
 use crate::configuration::{Control, Drive, ElasticWall, Tube, WallKeep};
 use crate::defaults;
 use crate::error::ProblemKind;
 use crate::keys::{DriveKeys, Keys, WallKeys};
 use crate::options::{ControlName, DriveAngle, NetForce, WaveDirection, Waveform};
+use crate::units::Units;
 
 /// The drive of a given tube.
-pub(super) fn drive(keys: &Keys, tube: &Tube, context: &mut Context<'_>) -> Option<Drive> {
+pub(super) fn drive(
+    keys: &Keys,
+    tube: &Tube,
+    units: Option<&Units>,
+    context: &mut Context<'_>,
+) -> Option<Drive> {
     let control = match keys.drive.control? {
         ControlName::Strain => Control::Strain {
             width: width(&keys.drive, tube, context)?,
@@ -19,10 +25,12 @@ pub(super) fn drive(keys: &Keys, tube: &Tube, context: &mut Context<'_>) -> Opti
             wall: elastic_wall(&keys.wall, tube),
         },
     };
-    let strain_rate = match (keys.drive.strain_rate, keys.drive.wave_speed) {
-        (Some(strain_rate), _) => strain_rate,
-        (_, Some(wave_speed)) => wave_speed / tube.wavelength,
-        (None, None) => return None,
+    let rates = (keys.drive.strain_rate, keys.drive.wave_speed);
+    let strain_rate = match (rates, keys.units.wave_frequency, units) {
+        ((Some(strain_rate), _), ..) => strain_rate,
+        ((_, Some(wave_speed)), ..) => wave_speed / tube.wavelength,
+        (_, Some(frequency), Some(units)) => units::strain_rate(frequency, units),
+        _ => return None,
     };
     // A TOML -0.0 is a static wave like 0.0, and must be the same bits.
     let strain_rate = strain_rate + 0.0;
@@ -30,6 +38,8 @@ pub(super) fn drive(keys: &Keys, tube: &Tube, context: &mut Context<'_>) -> Opti
         control,
         strain_rate,
         waveform: keys.drive.waveform.unwrap_or(Waveform::Sine),
+        // One zero, not two.
+        body_force: keys.drive.body_force.unwrap_or(0.0) + 0.0,
         direction: keys.drive.direction.unwrap_or(WaveDirection::Forward),
         schedules: Vec::new(),
     };

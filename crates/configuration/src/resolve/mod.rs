@@ -5,6 +5,7 @@ mod grains;
 mod run;
 mod schedules;
 mod tube;
+mod units;
 
 use serde::de::DeserializeOwned;
 
@@ -317,7 +318,8 @@ fn configuration(keys: &Keys, context: &mut Context<'_>) -> Option<Configuration
     if let (Some(tube), Some(grains)) = (&tube, &grains) {
         tube::check_length(tube, grains.diameter_max.max(sphere_diameter), context);
     }
-    let drive = tube.and_then(|tube| drive::drive(keys, &tube, context));
+    let units = contact.and_then(|contact| units::units(&keys.units, &contact, context));
+    let drive = tube.and_then(|tube| drive::drive(keys, &tube, units.flatten().as_ref(), context));
     let observe = observe(&keys.observe);
     let run = match (&drive, &grains) {
         (Some(drive), Some(grains)) => run::run(&keys.run, drive, grains, &observe, context),
@@ -335,6 +337,7 @@ fn configuration(keys: &Keys, context: &mut Context<'_>) -> Option<Configuration
         },
         run: run?,
         observe,
+        units: units?,
     };
     configuration.initial.axial_velocity = match keys.initial.axial_velocity {
         // One zero, not two.

@@ -85,7 +85,11 @@ fn timing(
 ) -> Option<Timing> {
     let Some(period) = drive.period() else {
         let Some(duration) = keys.duration else {
-            let rate = context.written(&["drive.strain_rate", "drive.wave_speed"]);
+            let rate = context.written(&[
+                "drive.strain_rate",
+                "drive.wave_speed",
+                "units.wave_frequency",
+            ]);
             context.refuse(
                 ProblemKind::Inconsistent,
                 &["run.periods", rate],

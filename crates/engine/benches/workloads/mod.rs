@@ -120,6 +120,7 @@ impl Workload {
             time_step: TIME_STEP,
             skin: 0.3,
             kernel,
+            body_force: 0.0,
         };
         let mut flow = Simulation::new(bodies, wall.clone(), parameters(Kernel::Fast));
         flow.advance(self.warm_up())?;

@@ -90,6 +90,11 @@ impl<'a> Region<'a> {
 /// Axial position of the middle of the belly, to a thousandth of a wavelength.
 fn widest(wall: &PrescribedWall) -> f64 {
     let wavelength = wall.lattice().wavelength;
+    if wall.wave().waveform.largest() == 0.0 {
+        // Straight but for the squeeze: half way from throat to throat, at phase 1/4.
+        let place = wall.wave().heading * (wall.cycles() - 0.25);
+        return (place - place.floor()) * wavelength;
+    }
     let radius = |step: u32| {
         wall.wave()
             .radius(f64::from(step) * wavelength / 1000.0, wall.cycles())

@@ -29,6 +29,14 @@ impl<H: Copy + Default> WallMemory<H> {
             .map_or_else(H::default, |entry| core::mem::take(&mut entry.1))
     }
 
+    /// The history of a contact as it is, and left in; a fresh one where there is none.
+    pub(crate) fn history(&self, grain: usize, sphere: u32) -> H {
+        self.entries[self.range(grain)]
+            .iter()
+            .find(|entry| entry.0 == sphere)
+            .map_or_else(H::default, |entry| entry.1)
+    }
+
     /// Writes down the history of a contact of the grain at hand.
     pub(crate) fn put(&mut self, sphere: u32, history: H) {
         self.next_entries.push((sphere, history));

@@ -1,9 +1,11 @@
 //! The wall in motion: prescribed, or elastic.
 
+pub mod contacts;
 pub mod elastic;
 pub mod memory;
 pub mod prescribed;
 
+pub use contacts::WallContact;
 pub use elastic::{DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce};
 pub use prescribed::PrescribedWall;
 

@@ -125,6 +125,12 @@ impl PrescribedWall {
                     *entry = self.wave.ring_of((value, slope), frequency, amplitude_rate);
                 }
             }
+            Waveform::Bolus | Waveform::Roller => {
+                for (ring, entry) in self.rings.iter_mut().enumerate() {
+                    let z = ring as f64 * self.spacing;
+                    *entry = self.wave.ring(z, self.cycles, frequency, amplitude_rate);
+                }
+            }
         }
     }
 

@@ -56,6 +56,7 @@ pub(crate) fn parameters(
         time_step,
         skin: 0.3,
         kernel: peristalsis_engine::Kernel::default(),
+        body_force: 0.0,
     }
 }
 

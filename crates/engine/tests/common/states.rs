@@ -212,6 +212,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
             time_step,
             skin: numbers.one_of(&[0.02, 0.3, 0.7]),
             kernel: Kernel::Reference,
+            body_force: numbers.one_of(&[0.0, 0.01, -0.03]),
         },
     }
 }
@@ -262,7 +263,7 @@ fn waving(
     Wall::Prescribed(PrescribedWall::new(
         lattice,
         radius,
-        Waveform::Sine,
+        numbers.one_of(&Waveform::ALL),
         numbers.one_of(&[1.0, -1.0]),
         numbers.schedule(amplitude, time_step),
         numbers.schedule(frequency, time_step),
@@ -314,7 +315,7 @@ fn springy(numbers: &mut Numbers, time_step: f64) -> (Wall, f64) {
         force_amplitude: numbers.schedule(force, time_step),
         frequency: numbers.schedule(frequency, time_step),
         heading: numbers.one_of(&[1.0, -1.0]),
-        waveform: Waveform::Sine,
+        waveform: numbers.one_of(&Waveform::ALL),
         angle: numbers.one_of(&[DriveAngle::Reference, DriveAngle::Current]),
     };
     (Wall::Elastic(ElasticWall::new(parameters)), radius)

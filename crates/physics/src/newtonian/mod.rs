@@ -46,6 +46,19 @@ pub struct NewtonianPeristalsis {
     pressure: f64,
 }
 
+/// The tube and the fluid that a pressure in units is made dimensionless with; any consistent units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PumpedTube {
+    /// a
+    pub radius: f64,
+    /// lambda
+    pub wavelength: f64,
+    /// c
+    pub wave_speed: f64,
+    /// mu
+    pub viscosity: f64,
+}
+
 impl NewtonianPeristalsis {
     /// Flow at amplitude ratio phi = b/a and pressure rise P; `None` unless 0 <= phi <= 1 and P is finite.
     pub fn new(amplitude_ratio: f64, pressure: f64) -> Option<Self> {
@@ -80,6 +93,27 @@ impl NewtonianPeristalsis {
         let pressure =
             -wave_flow_rate * geometry.mean_inverse_fourth() - geometry.mean_inverse_square();
         Self::new(amplitude_ratio, pressure)
+    }
+
+    /// Flow against a pressure rise Dp over a wavelength in units: P = a^2 Dp/(8 mu c lambda).
+    ///
+    /// A body force F on each of N grains, positive along the wave, stands for Dp = -N F lambda/(L pi a^2). Q is linear in
+    /// P, so that Q/Q0 = 1 - P/P0 whatever the viscosity, Q0 the flow without pressure and P0 the pressure that stops it:
+    /// so a pump's characteristic is set beside that of grains, which have no viscosity. `None` as in
+    /// [`NewtonianPeristalsis::new`], and where P is not finite.
+    pub fn from_pressure_rise(
+        amplitude_ratio: f64,
+        pressure_rise: f64,
+        tube: PumpedTube,
+    ) -> Option<Self> {
+        let PumpedTube {
+            radius,
+            wavelength,
+            wave_speed,
+            viscosity,
+        } = tube;
+        let viscous = 8.0 * viscosity * wave_speed * wavelength;
+        Self::new(amplitude_ratio, radius * radius * pressure_rise / viscous)
     }
 
     /// Amplitude ratio phi = b/a.
@@ -214,7 +248,7 @@ impl NewtonianPeristalsis {
 
 #[cfg(test)]
 mod tests {
-    use super::NewtonianPeristalsis;
+    use super::{NewtonianPeristalsis, PumpedTube};
     use proptest::prelude::*;
 
     const CASES: [(f64, f64); 8] = [
@@ -244,6 +278,33 @@ mod tests {
     /// int_0^1 f(s) ds by Simpson's rule, exact here because f is a polynomial of degree one in s = (r/h)^2.
     fn section_mean(function: impl Fn(f64) -> f64) -> f64 {
         (function(0.0) + 4.0 * function(0.5) + function(1.0)) / 6.0
+    }
+
+    #[test]
+    fn a_pressure_rise_in_units_stops_the_flow_where_it_should() {
+        let tube = PumpedTube {
+            radius: 1.5,
+            wavelength: 10.0,
+            wave_speed: 0.5,
+            viscosity: 0.02,
+        };
+        let free = NewtonianPeristalsis::free_pumping(0.4).unwrap();
+        // 8 mu c lambda/a^2 = 0.8/2.25
+        let stopping = free.zero_flow_pressure() * 0.8 / 2.25;
+        for fraction in [0.0, 0.25, 1.0, 1.5] {
+            let pressure_rise = fraction * stopping;
+            let flow = NewtonianPeristalsis::from_pressure_rise(0.4, pressure_rise, tube).unwrap();
+            let expected = free.flow_rate() * (1.0 - fraction);
+            assert!((flow.flow_rate() - expected).abs() < 1e-12, "{fraction}");
+        }
+        let inviscid = PumpedTube {
+            viscosity: 0.0,
+            ..tube
+        };
+        assert_eq!(
+            NewtonianPeristalsis::from_pressure_rise(0.4, 1.0, inviscid),
+            None
+        );
     }
 
     #[test]

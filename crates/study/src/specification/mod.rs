@@ -24,6 +24,14 @@ const MOST_RUNS: u64 = 1_000_000;
 /// Problems that are reported at once: one wrong axis is wrong at each of its points.
 const MOST_PROBLEMS: usize = 20;
 
+/// Columns that came later than the first stores: a list of all the others is still a list of all.
+const LATER_COLUMNS: [&str; 4] = [
+    "axial_displacement",
+    "axial_displacement_variance",
+    "body_power",
+    "body_work",
+];
+
 /// A study file that has been read and checked; its points are those of [`Plan`](crate::Plan).
 #[derive(Clone, Debug)]
 pub struct Specification {
@@ -382,7 +390,11 @@ fn columns(table: &Table) -> Option<Vec<String>> {
         .map(|column| column.name.to_owned())
         .filter(|name| wanted.contains(name))
         .collect();
-    (kept.len() < COLUMNS.len()).then_some(kept)
+    let is_all = COLUMNS
+        .iter()
+        .filter(|column| !LATER_COLUMNS.contains(&column.name))
+        .all(|column| kept.iter().any(|name| name == column.name));
+    (!is_all).then_some(kept)
 }
 
 fn text_of(table: &Table, path: &str) -> Option<String> {

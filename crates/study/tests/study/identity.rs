@@ -99,6 +99,36 @@ fn whatever_determines_the_products_makes_another_run() {
 }
 
 #[test]
+fn what_could_not_be_said_before_leaves_who_a_run_is() {
+    let base = runs(&plan(SMALL));
+    let said = SMALL.replace(
+        "[base]",
+        "[base]\ndrive.body_force = 0.0\ndrive.waveform = \"sine\"",
+    );
+    assert_eq!(runs(&plan(&said)), base);
+    for said in [
+        "drive.body_force = -0.001",
+        "drive.waveform = \"roller\"",
+        "units = { grain_diameter = 1e-3, density = 2500.0, stiffness = 1.0 }",
+    ] {
+        let other = runs(&plan(&SMALL.replace("[base]", &format!("[base]\n{said}"))));
+        for (run, (identity, _)) in &base {
+            assert_ne!(other[run].0, *identity, "{said}");
+        }
+    }
+    // All columns but those that came later are all.
+    let columns: Vec<String> = peristalsis_observe::COLUMNS
+        .iter()
+        .map(|column| column.name)
+        .filter(|name| !name.starts_with("axial_displacement") && !name.starts_with("body_"))
+        .map(|name| format!("{name:?}"))
+        .collect();
+    assert!(columns.len() < peristalsis_observe::COLUMNS.len());
+    let all = format!("[record]\ncolumns = [{}]\n[[axes]]", columns.join(", "));
+    assert_eq!(runs(&plan(&SMALL.replace("[[axes]]", &all))), base);
+}
+
+#[test]
 fn identities_are_what_they_were_when_stores_were_first_made() {
     let runs = runs(&plan(SMALL));
     let (identity, seed) = runs[&("drive.width 2.5, from rest".to_owned(), 0)];

@@ -9,8 +9,8 @@ mod network;
 mod pairs;
 mod prescribed;
 mod record;
-mod sine;
 mod spheres;
+mod waveform;
 
 use peristalsis_physics::contact::{ContactLaw, NormalLaw};
 
@@ -100,6 +100,7 @@ fn move_through<N: NormalLaw, T: Remember>(
         integrator,
         time_step,
         skin,
+        body_force,
         ..
     } = course.parameters;
     let (limit, length) = (course.limit, course.wall.lattice().length());
@@ -110,6 +111,7 @@ fn move_through<N: NormalLaw, T: Remember>(
             stage,
             mean_wall_force,
             rotates: T::ROTATES,
+            body_force,
             time_step,
             limit,
             length,

@@ -46,6 +46,8 @@ pub(super) struct Motion<'a> {
     /// Taken off the force on each sphere of the wall.
     pub(super) mean_wall_force: Record,
     pub(super) rotates: bool,
+    /// Force over mass along +z, on the grains.
+    pub(super) body_force: f64,
     pub(super) time_step: f64,
     pub(super) limit: f64,
     pub(super) length: f64,
@@ -105,9 +107,11 @@ impl Motion<'_> {
         let number = self.spheres.number();
         let mut extremes = Extremes::<M>::none();
         let mean = self.mean_wall_force;
-        let none = Record::ZERO;
-        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(0..grains, &none, &mut extremes)?;
-        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(grains..number, &mean, &mut extremes)?;
+        // Nothing added leaves even the sign of a zero as it is.
+        let pushed = (self.body_force != 0.0).then_some(self.body_force);
+        let (on_grains, on_wall) = ((Record::ZERO, pushed), (mean, None));
+        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(0..grains, on_grains, &mut extremes)?;
+        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(grains..number, on_wall, &mut extremes)?;
         if self.rotates {
             self.rotate::<M, ADAMS, FIRST, MOVES, FRESH>(grains);
         }
@@ -128,13 +132,15 @@ impl Motion<'_> {
     >(
         &mut self,
         range: core::ops::Range<usize>,
-        mean: &Record,
+        (mean, body_force): (Record, Option<f64>),
         extremes: &mut Extremes<M>,
     ) -> Result<(), Runaway> {
         let h = self.time_step;
         let (half, limit_squared, length) = (0.5 * h, self.limit * self.limit, self.length);
         let (count, body) = (range.len(), range.start);
         let mean = mean.quad::<M>();
+        let push = body_force.map(|push| Record([0.0, 0.0, push, 0.0]));
+        let push = push.as_ref().map(Record::quad);
         let spheres = &mut *self.spheres;
         let position = &mut spheres.position[range.clone()][..count];
         let velocity = &mut spheres.velocity[range.clone()][..count];
@@ -149,6 +155,9 @@ impl Motion<'_> {
             let mut acceleration = force[k].quad::<M>();
             if !FIRST {
                 acceleration = (acceleration - mean) * inverse_mass[k];
+                if let Some(push) = push {
+                    acceleration = acceleration + push;
+                }
             }
             let mut v = velocity[k].quad::<M>();
             if !ADAMS && !FIRST {

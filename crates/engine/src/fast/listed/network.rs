@@ -6,8 +6,8 @@
 use peristalsis_physics::real::{Real, Vector};
 
 use super::record::{self, Quad, Record};
-use super::sine;
 use super::spheres::Spheres;
+use super::waveform;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 use crate::ledger::Tally;
@@ -374,7 +374,7 @@ fn keep_and_drive<M: Machine>(
         sums.keep_energy += Lanes::select(valid, keep_energy, zero);
         let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
             - Lanes::splat(wall.cycles());
-        let push = Lanes::splat(wall.amplitude()) * sine::waveform(parameters.waveform, phase);
+        let push = Lanes::splat(wall.amplitude()) * waveform::value(parameters.waveform, phase);
         let (drive_cos, drive_sin) = match parameters.angle {
             DriveAngle::Reference => (cos, sin),
             DriveAngle::Current => {

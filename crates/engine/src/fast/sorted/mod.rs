@@ -25,7 +25,7 @@ use rayon::prelude::*;
 
 use self::columns::{Columns, ColumnsMut};
 use self::listing::{Partners, Tile};
-use self::motion::{Moved, Phase};
+use self::motion::{Motion, Moved, Phase};
 use self::order::Row;
 use self::pairs::{Block, PairConstants};
 use self::strips::{SKINS, Strips};
@@ -101,6 +101,7 @@ pub(crate) struct Course<'a> {
     pub(crate) ledger: &'a mut Ledger,
     pub(crate) step: &'a mut u64,
     pub(crate) time_step: f64,
+    pub(crate) body_force: f64,
     pub(crate) limit: f64,
 }
 
@@ -237,8 +238,14 @@ impl Sorted {
             ledger,
             step,
             time_step,
+            body_force,
             limit,
         } = course;
+        let motion = Motion {
+            time_step,
+            body_force,
+            limit,
+        };
         let mut outcome = Ok(());
         for remaining in (0..steps).rev() {
             let begins = remaining + 1 == steps;
@@ -249,7 +256,7 @@ impl Sorted {
             } else {
                 Phase::KickAndDrift
             };
-            outcome = self.go(phase, time_step, limit);
+            outcome = self.go(phase, motion);
             if outcome.is_err() {
                 break;
             }
@@ -276,7 +283,7 @@ impl Sorted {
             *tally = after;
         }
         if outcome.is_ok() && steps > 0 {
-            self.go(Phase::Kick, time_step, limit)?;
+            self.go(Phase::Kick, motion)?;
         }
         self.store(bodies);
         outcome

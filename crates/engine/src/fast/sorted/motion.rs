@@ -21,6 +21,16 @@ pub(super) enum Phase {
     KickAndDrift,
 }
 
+/// How far and by what the grains are moved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Motion {
+    pub(super) time_step: f64,
+    /// Force over mass along +z.
+    pub(super) body_force: f64,
+    /// Longest displacement of a step.
+    pub(super) limit: f64,
+}
+
 /// What a drift has moved.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Moved {
@@ -35,7 +45,7 @@ pub(super) struct Moved {
 
 impl Sorted {
     /// Moves all grains; makes the order anew where it no longer holds.
-    pub(super) fn go(&mut self, phase: Phase, time_step: f64, limit: f64) -> Result<(), Runaway> {
+    pub(super) fn go(&mut self, phase: Phase, motion: Motion) -> Result<(), Runaway> {
         let Self {
             mass,
             position,
@@ -59,9 +69,8 @@ impl Sorted {
             force,
             origin,
             phase,
-            time_step,
+            motion,
             per_mass,
-            limit,
         };
         if pool.is_some() {
             moved
@@ -135,9 +144,8 @@ struct Move<'a> {
     force: ColumnsMut<'a>,
     origin: &'a [f64],
     phase: Phase,
-    time_step: f64,
+    motion: Motion,
     per_mass: f64,
-    limit: f64,
 }
 
 impl Work for Move<'_> {
@@ -156,10 +164,16 @@ impl Work for Move<'_> {
 impl Move<'_> {
     #[inline(always)]
     fn go<M: Machine, const KICK: bool, const DRIFT: bool>(mut self) {
-        let step = Lanes::<M>::splat(self.time_step);
-        let half_step = Lanes::splat(0.5 * self.time_step);
+        let Motion {
+            time_step,
+            body_force,
+            limit,
+        } = self.motion;
+        let step = Lanes::<M>::splat(time_step);
+        let half_step = Lanes::splat(0.5 * time_step);
         let per_mass = Lanes::splat(self.per_mass);
-        let limit_squared = Lanes::splat(self.limit * self.limit);
+        let limit_squared = Lanes::splat(limit * limit);
+        let somewhere = Lanes::splat(0.5 * NOWHERE);
         let mut least = Lanes::splat(f64::INFINITY);
         let mut largest = Lanes::splat(f64::NEG_INFINITY);
         let mut most_lateral = Lanes::splat(0.0);
@@ -168,7 +182,12 @@ impl Move<'_> {
             let mut velocity = self.velocity.load(at);
             let mut acceleration = self.acceleration.load(at);
             if KICK {
-                let now = self.force.load(at) * per_mass;
+                let mut now = self.force.load(at) * per_mass;
+                if body_force != 0.0 {
+                    // What stands nowhere stays there.
+                    let holds = Lanes::load(self.origin, at).less(somewhere);
+                    now.z += Lanes::select(holds, Lanes::splat(body_force), Lanes::splat(0.0));
+                }
                 self.force.store(at, LaneVector::<M>::default());
                 velocity += (now - acceleration) * half_step;
                 acceleration = now;
@@ -189,7 +208,7 @@ impl Move<'_> {
                     runaway = runaway.or(Some((at + lane, by)));
                 }
                 let origin = Lanes::load(self.origin, at);
-                let holds = origin.less(Lanes::splat(0.5 * NOWHERE));
+                let holds = origin.less(somewhere);
                 let displacement = position.z - origin;
                 least = least.lesser(Lanes::select(holds, displacement, least));
                 largest = largest.larger(Lanes::select(holds, displacement, largest));

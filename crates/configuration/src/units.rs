@@ -1,0 +1,128 @@
+//! What the units of mass, length and time are in SI.
+
+use std::f64::consts::PI;
+
+/// The unit of length d, the density of the grains and the elasticity of their contacts in SI.
+///
+/// m = pi rho d^3/6;  t = sqrt(k m/k_SI) under the linear law, t = sqrt(Y m/(Y_SI d)) under the Hertz law, k and Y their
+/// values in our units
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    /// d: diameter of a grain whose diameter is 1 \[m\].
+    pub grain_diameter: f64,
+    /// rho \[kg m^-3\].
+    pub density: f64,
+    /// What the contact is made of.
+    pub elasticity: Elasticity,
+}
+
+/// Elasticity of a contact in SI beside its value in our units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Elasticity {
+    /// Linear law.
+    Stiffness {
+        /// k_SI \[N m^-1\].
+        stiffness: f64,
+        /// k \[m t^-2\].
+        normal_stiffness: f64,
+    },
+    /// Hertz law.
+    YoungModulus {
+        /// Y_SI \[Pa\].
+        young_modulus: f64,
+        /// Y \[m d^-1 t^-2\].
+        modulus: f64,
+    },
+}
+
+impl Units {
+    /// d \[m\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.grain_diameter
+    }
+
+    /// m \[kg\].
+    #[must_use]
+    pub fn mass(&self) -> f64 {
+        let diameter = self.grain_diameter;
+        PI / 6.0 * self.density * diameter * diameter * diameter
+    }
+
+    /// t \[s\].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        match self.elasticity {
+            Elasticity::Stiffness {
+                stiffness,
+                normal_stiffness,
+            } => (normal_stiffness * self.mass() / stiffness).sqrt(),
+            Elasticity::YoungModulus {
+                young_modulus,
+                modulus,
+            } => (modulus * self.mass() / (young_modulus * self.grain_diameter)).sqrt(),
+        }
+    }
+
+    /// d/t \[m s^-1\].
+    #[must_use]
+    pub fn velocity(&self) -> f64 {
+        self.length() / self.time()
+    }
+
+    /// m/(d t^2) \[Pa\].
+    #[must_use]
+    pub fn pressure(&self) -> f64 {
+        self.mass() / (self.length() * self.time() * self.time())
+    }
+
+    /// m d^2/t^3 \[W\].
+    #[must_use]
+    pub fn power(&self) -> f64 {
+        self.mass() * self.velocity() * self.velocity() / self.time()
+    }
+
+    /// m/t \[kg s^-1\].
+    #[must_use]
+    pub fn mass_flow(&self) -> f64 {
+        self.mass() / self.time()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Glass beads of 1 mm: m = pi/6 2500 1e-9 = 1.309e-6 kg; with k = 1 N/m a unit of time of 1.144 ms.
+    #[test]
+    fn units_of_glass_beads_by_hand() {
+        let units = Units {
+            grain_diameter: 1e-3,
+            density: 2500.0,
+            elasticity: Elasticity::Stiffness {
+                stiffness: 1.0,
+                normal_stiffness: 1.0,
+            },
+        };
+        let near = |found: f64, expected: f64| {
+            assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
+        };
+        near(units.mass(), 1.309e-6);
+        near(units.time(), 1.1441e-3);
+        near(units.velocity(), 0.8741);
+        // k/d
+        near(units.pressure(), 1000.0);
+        // k d^2/t
+        near(units.power(), 1e-6 / 1.1441e-3);
+        near(units.mass_flow(), 1.1441e-3);
+        let hertz = Units {
+            elasticity: Elasticity::YoungModulus {
+                young_modulus: 1e6,
+                modulus: 2.0,
+            },
+            ..units
+        };
+        // Pressures are in units of Y_SI over Y.
+        near(hertz.pressure(), 5e5);
+    }
+}

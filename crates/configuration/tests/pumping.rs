@@ -1,0 +1,144 @@
+//! Body force, waveforms and units in SI: what they resolve to, and what is refused.
+
+use std::f64::consts::PI;
+
+use peristalsis_configuration::{
+    Configuration, ConfigurationError, ProblemKind, Sources, Waveform,
+};
+
+fn read(preset: &str, overrides: &[&str]) -> Result<Configuration, ConfigurationError> {
+    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
+    Configuration::from_sources(&Sources {
+        file: None,
+        preset: Some(preset),
+        overrides: &overrides,
+    })
+}
+
+fn configuration(preset: &str, overrides: &[&str]) -> Configuration {
+    read(preset, overrides).unwrap_or_else(|error| panic!("{overrides:?}: {error}"))
+}
+
+/// Hashes of the presets before body force, waveforms and units could be given.
+#[test]
+fn what_was_not_said_before_changes_no_identity() {
+    let digits = |bytes: [u8; 32]| -> String {
+        bytes[..8]
+            .iter()
+            .map(|byte| format!("{byte:02x}"))
+            .collect()
+    };
+    for (preset, physics) in [
+        ("frictionless", "f53687c8dbba62c4"),
+        ("frictional", "29ad96917d883ce0"),
+    ] {
+        let plain = configuration(preset, &[]);
+        assert_eq!(digits(plain.physics_hash()), physics, "{preset}");
+    }
+}
+
+#[test]
+fn the_body_force_is_a_pressure_rise_over_a_wavelength() {
+    let pushed = configuration("frictionless", &["drive.body_force=-0.001"]);
+    assert_eq!(pushed.drive.body_force, -0.001);
+    // 203 grains of mass 1 along 100 d: 2.03 0.001 10/(pi 1.5^2).
+    let expected = 0.0203 / (PI * 2.25);
+    assert!((pushed.pressure_rise() - expected).abs() < 1e-15);
+    let record: toml::Table = pushed.to_toml().parse().unwrap();
+    assert_eq!(record["drive"]["body_force"].as_float(), Some(-0.001));
+    assert_eq!(
+        record["resolved"]["pressure_rise"].as_float(),
+        Some(pushed.pressure_rise())
+    );
+    // Grains of several sizes count by their mean mass.
+    let mixed = configuration("frictional", &["drive.body_force=0.002"]);
+    let mass = (0.8 + 1.0) * (0.64 + 1.0) / 4.0;
+    let weight = mixed.grains.number as f64 * mass * 0.002;
+    let rise = -weight * mixed.tube.wavelength / (mixed.tube.length() * PI * 3.5 * 3.5);
+    assert!((mixed.pressure_rise() / rise - 1.0).abs() < 1e-12);
+    assert!(mixed.pressure_rise() < 0.0);
+    assert_eq!(configuration("frictional", &[]).pressure_rise(), 0.0);
+}
+
+#[test]
+fn waveforms_by_name() {
+    for (name, waveform) in [
+        ("sine", Waveform::Sine),
+        ("bolus", Waveform::Bolus),
+        ("roller", Waveform::Roller),
+    ] {
+        let setting = format!("drive.waveform={name}");
+        assert_eq!(
+            configuration("frictional", &[&setting]).drive.waveform,
+            waveform
+        );
+    }
+}
+
+const BEADS: [&str; 3] = [
+    "units.grain_diameter=1e-3",
+    "units.density=2500",
+    "units.stiffness=1",
+];
+
+#[test]
+fn a_frequency_in_hertz_is_a_strain_rate() {
+    // t = sqrt(m/k) = 1.1441e-3 s by hand, and the frequency replaces the strain rate of the preset.
+    let settings = [&BEADS[..], &["units.wave_frequency=10"]].concat();
+    let beads = configuration("frictionless", &settings);
+    assert!((beads.drive.strain_rate - 1.1441e-2).abs() < 1e-6);
+    let units = beads.units.unwrap();
+    assert!((beads.drive.strain_rate / units.time() - 10.0).abs() < 1e-12);
+    // The record states the strain rate, and reads back.
+    let record = beads.to_toml();
+    assert!(!record.contains("wave_frequency ="), "{record}");
+    assert_eq!(
+        Configuration::from_toml("config.toml", &record).unwrap(),
+        beads
+    );
+    let resolved: toml::Table = record.parse().unwrap();
+    let frequency = resolved["resolved"]["wave_frequency_hz"]
+        .as_float()
+        .unwrap();
+    assert!((frequency - 10.0).abs() < 1e-12);
+    // A Hertz contact takes a modulus: t = sqrt(m/(Y d)).
+    let hertz = configuration(
+        "frictional",
+        &[
+            "units.grain_diameter=2e-3",
+            "units.density=1000",
+            "units.young_modulus=1e5",
+            "units.wave_frequency=1",
+        ],
+    );
+    let time = (PI / 6.0 * 1000.0 * 8e-9 / (1e5 * 2e-3)).sqrt();
+    assert!((hertz.drive.strain_rate / time - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn half_of_the_units_and_two_rates_are_refused() {
+    let problem = |preset: &str, overrides: &[&str]| {
+        let error = read(preset, overrides).expect_err("refused");
+        assert_eq!(error.problems().len(), 1, "{error}");
+        error.problems()[0].clone()
+    };
+    let partial = problem("frictionless", &BEADS[..2]);
+    assert_eq!(partial.kind, ProblemKind::Missing);
+    assert!(partial.message.contains("units.stiffness"), "{partial:?}");
+    let alone = problem("frictionless", &["units.wave_frequency=1"]);
+    assert_eq!(alone.key.as_deref(), Some("units.wave_frequency"));
+    assert!(alone.message.contains("units.grain_diameter"), "{alone:?}");
+    let other_law = problem("frictional", &BEADS);
+    assert_eq!(other_law.kind, ProblemKind::Conflict);
+    assert!(other_law.message.contains("contact.law"), "{other_law:?}");
+    let text = "preset = \"frictionless\"\ndrive.strain_rate = 0.1\nunits.wave_frequency = 1\n\
+                units.grain_diameter = 1e-3\nunits.density = 1e3\nunits.stiffness = 1.0\n";
+    let error = Configuration::from_toml("two.toml", text).expect_err("two rates");
+    assert_eq!(error.problems()[0].kind, ProblemKind::Conflict);
+    let instance = serde_json::to_value(text.parse::<toml::Table>().unwrap()).unwrap();
+    let validator = jsonschema::validator_for(&peristalsis_configuration::schema()).unwrap();
+    assert!(!validator.is_valid(&instance));
+    let one_rate = text.replace("drive.strain_rate = 0.1\n", "");
+    let instance = serde_json::to_value(one_rate.parse::<toml::Table>().unwrap()).unwrap();
+    assert!(validator.is_valid(&instance));
+}

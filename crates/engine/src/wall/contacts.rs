@@ -1,0 +1,113 @@
+//! The contacts of grains with the wall, one by one: what momentum passes between them, and where.
+
+use glam::DVec3;
+use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
+
+use super::Wall;
+use crate::bodies::Bodies;
+use crate::forces::Contacts;
+use crate::neighbours::periodic;
+
+/// A contact of a grain with a sphere of the wall; forces are those on the grain \[m d/t^2\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallContact {
+    /// Number of the grain.
+    pub grain: usize,
+    /// Where they touch, on the line of centres; z may lie a little outside \[0, L) \[d\].
+    pub point: DVec3,
+    /// f_n n, elastic and damping, n from the wall sphere to the grain.
+    pub normal_force: DVec3,
+    /// f_t, friction.
+    pub tangential_force: DVec3,
+}
+
+/// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
+pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
+    law: &ContactLaw<N, T>,
+    bodies: &Bodies,
+    wall: &Wall,
+    contacts: &Contacts<T::History<f64>>,
+    mut visit: impl FnMut(WallContact),
+) {
+    let mut touch = |grain: usize, wall: WallSide, mut history: T::History<f64>| {
+        if let Some(contact) = contact_of(law, bodies, grain, &wall, &mut history) {
+            visit(contact);
+        }
+    };
+    match wall {
+        Wall::Prescribed(wall) => {
+            let diameter = wall.lattice().sphere_diameter;
+            for grain in 0..bodies.grains {
+                let (centre, of_grain) = (bodies.position[grain], bodies.diameter[grain]);
+                wall.for_each_touching(centre, of_grain, |sphere, separation, velocity| {
+                    let side = WallSide {
+                        separation,
+                        velocity,
+                        diameter,
+                    };
+                    touch(grain, side, contacts.wall.history(grain, sphere));
+                });
+            }
+        }
+        Wall::Elastic(wall) => {
+            let length = wall.lattice().length();
+            for (i, j, history) in contacts.pairs.iter() {
+                let (i, j) = (i as usize, j as usize);
+                if i < bodies.grains && j >= bodies.grains {
+                    let side = WallSide {
+                        separation: periodic(bodies.position[i] - bodies.position[j], length),
+                        velocity: bodies.velocity[j],
+                        diameter: bodies.diameter[j],
+                    };
+                    touch(i, side, *history);
+                }
+            }
+        }
+    }
+}
+
+/// A sphere of the wall as a grain sees it.
+struct WallSide {
+    /// From it to the grain.
+    separation: DVec3,
+    velocity: DVec3,
+    diameter: f64,
+}
+
+/// The contact of a grain with a sphere of the wall; `None` where they do not touch.
+fn contact_of<N: NormalLaw, T: TangentialLaw>(
+    law: &ContactLaw<N, T>,
+    bodies: &Bodies,
+    grain: usize,
+    wall: &WallSide,
+    history: &mut T::History<f64>,
+) -> Option<WallContact> {
+    let diameter = bodies.diameter[grain];
+    let distance = wall.separation.length();
+    let overlap = 0.5 * (diameter + wall.diameter) - distance;
+    if overlap <= 0.0 || distance == 0.0 {
+        return None;
+    }
+    let arm = 0.5 * (diameter - overlap);
+    let contact = Contact {
+        overlap,
+        distance,
+        normal: wall.separation * (1.0 / distance),
+        relative_velocity: bodies.velocity[grain] - wall.velocity,
+        reduced_radius: diameter * wall.diameter / (2.0 * (diameter + wall.diameter)),
+        spin: if T::ROTATES {
+            arm * bodies.angular_velocity[grain]
+        } else {
+            DVec3::ZERO
+        },
+    };
+    // A step of no length: the history stays where it is.
+    let answer = law.force(&contact, history, 0.0);
+    let tangential_force = answer.tangential.force;
+    Some(WallContact {
+        grain,
+        point: bodies.position[grain] - arm * contact.normal,
+        normal_force: answer.force - tangential_force,
+        tangential_force,
+    })
+}

@@ -1,0 +1,135 @@
+//! The contacts with the wall, one by one, are all that the wall does to the grains.
+
+mod common;
+
+use common::{
+    FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, momentum, packed,
+    parameters, strained,
+};
+use glam::DVec3;
+use peristalsis_engine::{Bodies, Kernel, Parameters, Simulation, Wall};
+
+const BODY_FORCE: f64 = -0.003;
+
+fn walls() -> [Wall; 2] {
+    let mut driven = elastic_parameters();
+    driven.force_amplitude = peristalsis_physics::wall::Schedule::constant(0.02);
+    [strained(coarse(2), -1.0, 2.4, 0.1), elastic(driven)]
+}
+
+/// Normal and tangential force on all grains, and the number of contacts.
+fn forces(simulation: &Simulation) -> (DVec3, DVec3, u64) {
+    let (mut normal, mut tangential, mut contacts) = (DVec3::ZERO, DVec3::ZERO, 0);
+    simulation.for_each_wall_contact(|contact| {
+        normal += contact.normal_force;
+        tangential += contact.tangential_force;
+        contacts += 1;
+    });
+    (normal, tangential, contacts)
+}
+
+fn of_grains(bodies: &Bodies) -> Bodies {
+    let mut grains = bodies.clone();
+    grains.mass[bodies.grains..].fill(0.0);
+    grains
+}
+
+/// Force of the wall plus weight is the rate of change of the grains' momentum, for every law, wall, kernel and
+/// integrator.
+#[test]
+fn the_momentum_balance_closes() {
+    for wall in &walls() {
+        for (normal, friction) in [
+            (LINEAR, None),
+            (LINEAR, Some(FRICTION)),
+            (HERTZ, Some(FRICTION)),
+        ] {
+            let bodies = packed(80, 0.8, wall, normal, 3);
+            for integrator in INTEGRATORS {
+                for kernel in [Kernel::Fast, Kernel::Reference] {
+                    let parameters = Parameters {
+                        kernel,
+                        body_force: BODY_FORCE,
+                        ..parameters(normal, friction, integrator, 0.02)
+                    };
+                    balance(Simulation::new(bodies.clone(), wall.clone(), parameters));
+                }
+            }
+        }
+    }
+}
+
+fn balance(mut simulation: Simulation) {
+    let time_step = simulation.parameters().time_step;
+    let frictional = simulation.parameters().contact.friction.is_some();
+    let mass: f64 = of_grains(simulation.bodies()).mass.iter().sum();
+    let weight = DVec3::new(0.0, 0.0, mass * BODY_FORCE);
+    let start = momentum(&of_grains(simulation.bodies()));
+    let (mut impulse, mut gross, mut by_friction) = (DVec3::ZERO, 0.0, 0.0);
+    let (mut apart, mut axial) = (0.0, 0.0);
+    let mut before = forces(&simulation);
+    for _ in 0..1000 {
+        simulation.advance(1).expect("does not diverge");
+        let after = forces(&simulation);
+        let tally = simulation.tally();
+        assert_eq!(after.2, tally.wall_contacts);
+        let half = 0.5 * time_step;
+        let mean = before.0 + before.1 + after.0 + after.1;
+        impulse += half * mean + time_step * weight;
+        gross += half * mean.length();
+        by_friction += half * (before.1 + after.1).length();
+        apart += (after.0.z + after.1.z - tally.wall_axial_force).abs();
+        axial += tally.wall_axial_force.abs();
+        before = after;
+    }
+    let gained = momentum(&of_grains(simulation.bodies())) - start;
+    assert!(gross > 0.1 && gained.length() > 1e-3);
+    assert_eq!(by_friction > 1e-4, frictional);
+    let missing = (gained - impulse).length();
+    assert!(
+        missing < 2e-3 * gross,
+        "{:?}: {gained} and {impulse}, of {gross}",
+        simulation.parameters()
+    );
+    // Forces of the step saw velocities that the integrator has corrected since: a contact about to slide may slide.
+    assert!(apart < 2e-2 * axial, "{apart} of {axial}");
+}
+
+/// As well after a restart, before any step.
+#[test]
+fn a_restart_finds_the_same_contacts() {
+    for wall in &walls() {
+        for friction in [None, Some(FRICTION)] {
+            let bodies = packed(80, 1.0, wall, LINEAR, 3);
+            let parameters = parameters(LINEAR, friction, INTEGRATORS[0], 0.05);
+            let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
+            simulation.advance(200).unwrap();
+            let again =
+                Simulation::restore(simulation.snapshot(), wall.clone(), parameters).unwrap();
+            let found = forces(&simulation);
+            assert!(found.2 > 10);
+            assert_eq!(found, forces(&again));
+        }
+    }
+}
+
+/// Where they touch is on both spheres' side of the line of centres, half the overlap inside the grain's surface.
+#[test]
+fn contacts_lie_on_the_wall() {
+    let wall = strained(coarse(2), -1.0, 3.0, 0.0);
+    let bodies = packed(80, 1.0, &wall, LINEAR, 3);
+    let parameters = parameters(LINEAR, Some(FRICTION), INTEGRATORS[0], 0.05);
+    let simulation = Simulation::new(bodies, wall, parameters);
+    let mut contacts = 0;
+    simulation.for_each_wall_contact(|contact| {
+        contacts += 1;
+        let centre = simulation.bodies().position[contact.grain];
+        let arm = centre - contact.point;
+        let along = arm.dot(contact.normal_force) / contact.normal_force.length();
+        assert!((along - arm.length()).abs() < 1e-12 && arm.length() < 0.5);
+        // A straight tube of radius 1.5, its spheres' radius 1/2 and half the overlap more at most.
+        let from_axis = contact.point.truncate().length();
+        assert!((0.9..1.6).contains(&from_axis), "{contact:?}");
+    });
+    assert!(contacts > 0);
+}

@@ -1,0 +1,113 @@
+//! Axial dispersion: how fast grains that began together drift apart along the tube.
+
+use peristalsis_engine::Simulation;
+
+use crate::sample::{Observer, has_escaped};
+use crate::shape::TubeShape;
+
+/// Origins kept at most, an even number; when there are more, every other one goes.
+const MOST_ORIGINS: usize = 16;
+
+/// Variances of axial displacements since origins spread over the whole run, taken at the end of each period.
+///
+/// Of a run that changes its kind of flow, displacements since its start say little about how grains disperse late: those
+/// left behind first may catch up. So origins are taken at equal distances all along, ever wider apart, of which the late
+/// part of a run has some of its own.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct AxialDispersion {
+    /// End of each period, the start of the run before them \[t\].
+    times: Vec<f64>,
+    /// Periods from one origin to the next.
+    stride: usize,
+    origins: Vec<Origin>,
+}
+
+/// Where the grains were, and how far apart they have moved since.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Origin {
+    /// Number of periods before it.
+    period: usize,
+    /// z of the grains, turns round the tube counted \[d\].
+    place: Vec<f64>,
+    /// Variance of their displacements at the end of each period since, of the grains inside then \[d^2\].
+    variances: Vec<f64>,
+}
+
+impl AxialDispersion {
+    /// Begins at the present places.
+    #[must_use]
+    pub fn new(observer: &Observer) -> Self {
+        let mut dispersion = Self {
+            stride: 1,
+            ..Self::default()
+        };
+        dispersion.begin(observer);
+        dispersion
+    }
+
+    /// Ends a period now, with an observer that has just taken its sample.
+    pub fn end_period(&mut self, observer: &Observer, simulation: &Simulation) {
+        let shape = TubeShape::of(simulation);
+        let inside: Vec<usize> = (0..observer.unfolded.len())
+            .filter(|&grain| !has_escaped(simulation.bodies(), grain, &shape))
+            .collect();
+        for origin in &mut self.origins {
+            let moved = |&grain: &usize| observer.unfolded[grain] - origin.place[grain];
+            let number = inside.len() as f64;
+            let mean = inside.iter().map(moved).sum::<f64>() / number;
+            let squares = inside.iter().map(moved).map(|z| (z - mean) * (z - mean));
+            let variance = squares.sum::<f64>() / number;
+            origin.variances.push(variance);
+        }
+        self.begin(observer);
+    }
+
+    /// Notes the time, and an origin where one is due.
+    fn begin(&mut self, observer: &Observer) {
+        let period = self.times.len();
+        self.times.push(observer.time);
+        if !period.is_multiple_of(self.stride) {
+            return;
+        }
+        self.origins.push(Origin {
+            period,
+            place: observer.unfolded.clone(),
+            variances: Vec::new(),
+        });
+        if self.origins.len() > MOST_ORIGINS {
+            self.stride *= 2;
+            let stride = self.stride;
+            self.origins
+                .retain(|origin| origin.period.is_multiple_of(stride));
+        }
+    }
+
+    /// Half the rates at which the variance grows from period to period, d var(z)/(2 dt), from the time `start` \[t\] on
+    /// \[d^2/t\]: their mean is the coefficient of dispersion D.
+    ///
+    /// Since the first origin from then on, but for its first period, in which grains do not yet forget how they moved; or
+    /// since the last origin before, where none has two periods more behind it.
+    #[must_use]
+    pub fn rates_from(&self, start: f64) -> Vec<f64> {
+        // Rounding must not make an origin at the start itself one before it.
+        let earliest = start - 1e-9 * start.abs();
+        let is_late = |origin: &&Origin| self.times[origin.period] >= earliest;
+        let of_late_part = self.origins.iter().find(is_late);
+        let origin = of_late_part
+            .filter(|origin| origin.variances.len() > 2)
+            .or_else(|| self.origins.iter().rfind(|origin| !is_late(origin)))
+            .or(self.origins.first());
+        let Some(Origin {
+            period, variances, ..
+        }) = origin
+        else {
+            return Vec::new();
+        };
+        variances
+            .windows(2)
+            .zip(self.times[period + 1..].windows(2))
+            .filter(|(_, times)| times[0] >= earliest)
+            .map(|(variances, times)| 0.5 * (variances[1] - variances[0]) / (times[1] - times[0]))
+            .collect()
+    }
+}
