@@ -135,6 +135,17 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
+    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+        // To a register and from there: straight to memory this is slow on some processors.
+        Self::store(unsafe { _mm512_maskz_compress_pd(bits, values) }, to);
+    }
+
+    #[inline(always)]
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+        unsafe { _mm512_maskz_expand_pd(bits, Self::load(from)) }
+    }
+
+    #[inline(always)]
     fn load_quad(values: &[f64; 4]) -> Self::Quad {
         unsafe { _mm256_loadu_pd(values.as_ptr()) }
     }

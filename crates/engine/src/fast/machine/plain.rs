@@ -143,6 +143,26 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
+    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+        let mut at = 0;
+        for (lane, value) in values.into_iter().enumerate() {
+            to[at & (LANES - 1)] = value;
+            at += usize::from((bits >> lane) & 1);
+        }
+    }
+
+    #[inline(always)]
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+        let mut at = 0;
+        core::array::from_fn(|lane| {
+            let set = (bits >> lane) & 1;
+            let value = from[at & (LANES - 1)];
+            at += usize::from(set);
+            if set == 1 { value } else { 0.0 }
+        })
+    }
+
+    #[inline(always)]
     fn load_quad(values: &[f64; 4]) -> Self::Quad {
         *values
     }

@@ -32,6 +32,7 @@ impl Work for Everything {
             M::select(mask, a, b),
             M::splat(self.a[0]),
             M::load(&stored),
+            M::unpack(self.mask, &self.a),
         ];
         let truths = [
             M::less(a, b),
