@@ -79,7 +79,8 @@ impl<M: Machine> Lanes<M> {
     #[inline(always)]
     pub(crate) fn windows(slice: &[f64], starts: [i32; LANES]) -> [Self; 4] {
         let [a, b, c, d, e, f, g, h] = starts.map(|start| {
-            let window = slice[start as usize..].first_chunk::<4>();
+            let start = start as u32 as usize;
+            let window = slice[start..start + 4].first_chunk::<4>();
             window.expect("a window of four numbers")
         });
         Self::of_quads([

@@ -219,60 +219,61 @@ impl WallTable {
             let u = Lanes::<M>::load(&meetings.x, at);
             let v = Lanes::load(&meetings.y, at);
             let dz = Lanes::load(&meetings.z, at);
-            let velocity = LaneVector::new(
-                Lanes::load(&meetings.velocity_x, at),
-                Lanes::load(&meetings.velocity_y, at),
-                Lanes::load(&meetings.velocity_z, at),
-            );
-            let radius = Lanes::<M>::load(&meetings.ring, at);
-            let ring_velocity = Lanes::<M>::load(&meetings.ring_velocity, at);
+            let velocity_u = Lanes::load(&meetings.velocity_x, at);
+            let velocity_v = Lanes::load(&meetings.velocity_y, at);
+            let velocity_z = Lanes::load(&meetings.velocity_z, at);
+            let radius = Lanes::load(&meetings.ring, at);
+            let ring_velocity = Lanes::load(&meetings.ring_velocity, at);
             // The angle is approximate: a lane that turned to the second nearest sphere touches in a slightly different
             // order, so that one sphere out of touch does not yet mean that there is none behind it.
-            let patience = 1 + usize::from((u * Lanes::splat(self.half_step)).less(v).any());
+            let patience = usize::from((u * Lanes::splat(self.half_step)).less(v).any());
 
-            // With p = u cos + v sin of a sphere, R of its ring and dz to it, the separation s from the grain has
-            // s^2 = rho^2 + R^2 + dz^2 - 2 R p, and the rest of what a contact needs is as linear in cos and sin.
-            let twice_radius = radius + radius;
+            // With p = u cos + v sin of a sphere, R of its ring, dz to it and V = dR/dt, the separation s from the grain
+            // has s^2 = rho^2 + R^2 + dz^2 - 2 R p, and (v - V) . s is as linear in cos and sin.
             let squares = u * u + v * v + radius * radius + dz * dz;
             // Lanes that hold no meeting are out of reach wherever they stand.
             let squares = Lanes::select(holds, squares, Lanes::splat(f64::INFINITY));
-            let along = u * velocity.x + v * velocity.y + dz * velocity.z;
-            let mut pushes = RingSums::default();
-            let mut misses = 0;
+            let double = radius + radius;
+            let (double_u, double_v) = (double * u, double * v);
+            let along = u * velocity_u + v * velocity_v + dz * velocity_z + ring_velocity * radius;
+            let along_u = radius * velocity_u + ring_velocity * u;
+            let along_v = radius * velocity_v + ring_velocity * v;
+            // First how far lanes touch, so that the branches of what follows can be foreseen.
+            let mut visits = 0;
             for (visited, &(cos, sin)) in self.outward.iter().enumerate() {
+                let distance_squared =
+                    squares - (double_u * Lanes::splat(cos) + double_v * Lanes::splat(sin));
+                if distance_squared.less(reach_squared).any() {
+                    visits = visited + 1;
+                } else if visited > 0 && visited >= visits + patience {
+                    // The first two are always looked at: a lane may stand half way between them.
+                    break;
+                }
+            }
+            let mut pushes = RingSums::default();
+            for &(cos, sin) in &self.outward[..visits] {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
-                let projection = u * cos + v * sin;
-                let distance_squared = squares - twice_radius * projection;
+                let distance_squared = squares - (double_u * cos + double_v * sin);
                 let touches = distance_squared.less(reach_squared)
                     & Lanes::splat(COINCIDENT).less(distance_squared);
-                if !touches.any() {
-                    misses += 1;
-                    // The first two are always looked at: a lane may stand half way between them.
-                    if visited > 0 && misses >= patience {
-                        break;
-                    }
-                    continue;
-                }
-                misses = 0;
                 let inverse = distance_squared.reciprocal_sqrt();
                 let overlap = Lanes::select(touches, reach - distance_squared * inverse, zero);
-                // V . s and v . s
-                let wall_along = ring_velocity * (projection - radius);
-                let grain_along = along - radius * (velocity.x * cos + velocity.y * sin);
-                let normal_velocity =
-                    Lanes::select(touches, (grain_along - wall_along) * inverse, zero);
+                let parting = along - (along_u * cos + along_v * sin);
+                let normal_velocity = Lanes::select(touches, parting * inverse, zero);
                 let answer = law.force(overlap, normal_velocity, Lanes::splat(self.reduced_radius));
                 let push = Lanes::select(touches, answer.force * inverse, zero);
                 pushes.all += push;
                 pushes.cos += push * cos;
                 pushes.sin += push * sin;
-                sums.wall_power += push * wall_along;
                 let lost = (answer.elastic_force - answer.force) * normal_velocity;
                 sums.add_contact::<FULL>(overlap, answer.energy, lost);
                 if FULL {
                     sums.wall_contacts += touches.count();
                 }
             }
+            // V . s = V (p - R) of each sphere.
+            let outward = u * pushes.cos + v * pushes.sin - radius * pushes.all;
+            sums.wall_power += ring_velocity * outward;
             let on_u = u * pushes.all - radius * pushes.cos;
             let on_v = v * pushes.all - radius * pushes.sin;
             let on_z = dz * pushes.all;
