@@ -27,12 +27,6 @@ pub(crate) struct LaneVector<M: Machine> {
 }
 
 impl<M: Machine> Lanes<M> {
-    /// A number for each lane.
-    #[inline(always)]
-    pub(crate) fn from_lanes(of: impl FnMut(usize) -> f64) -> Self {
-        Self(M::from_array(core::array::from_fn(of)))
-    }
-
     /// The number of each lane.
     #[inline(always)]
     pub(crate) fn to_array(self) -> [f64; LANES] {
@@ -53,8 +47,8 @@ impl<M: Machine> Lanes<M> {
         M::store(self.0, window.expect("a window of LANES numbers"));
     }
 
-    /// Writes the numbers of the lanes where `mask` holds into `slice` from `start` on, in order; of LANES places those
-    /// behind them are anything.
+    /// Writes the numbers of the lanes where `mask` holds into `slice` from `start` on, in order; of eight places those
+    /// behind them hold 0 or any of the numbers.
     #[inline(always)]
     pub(crate) fn pack(self, mask: Mask<M>, slice: &mut [f64], start: usize) {
         let window = slice[start..].first_chunk_mut::<LANES>();

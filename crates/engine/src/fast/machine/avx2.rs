@@ -28,11 +28,6 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn from_array([a, b, c, d, e, f, g, h]: [f64; LANES]) -> Self::Numbers {
-        unsafe { [_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)] }
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         let mut array = [0.0; LANES];
         Self::store(values, &mut array);
@@ -290,12 +285,13 @@ fn permuted(numbers: __m256d, places: &[u32; 8]) -> __m256d {
 }
 
 /// For four bits, where those of four numbers stand that are set.
-const PACK: [[u32; 8]; 16] = places(false);
+static PACK: [[u32; 8]; 16] = places(false);
 /// For four bits, where each that is set finds its number.
-const UNPACK: [[u32; 8]; 16] = places(true);
+static UNPACK: [[u32; 8]; 16] = places(true);
 
 const fn places(unpack: bool) -> [[u32; 8]; 16] {
-    let mut all = [[0; 8]; 16];
+    // Where nothing is said, a number that is there.
+    let mut all = [[0, 1, 0, 1, 0, 1, 0, 1]; 16];
     let mut bits = 0;
     while bits < 16 {
         let (mut lane, mut packed) = (0, 0);

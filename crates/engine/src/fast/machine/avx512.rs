@@ -20,11 +20,6 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn from_array([a, b, c, d, e, f, g, h]: [f64; LANES]) -> Self::Numbers {
-        unsafe { _mm512_setr_pd(a, b, c, d, e, f, g, h) }
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         let mut array = [0.0; LANES];
         Self::store(values, &mut array);

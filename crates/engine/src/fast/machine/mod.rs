@@ -36,7 +36,6 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     type Quad: Copy;
 
     fn splat(value: f64) -> Self::Numbers;
-    fn from_array(values: [f64; LANES]) -> Self::Numbers;
     fn to_array(values: Self::Numbers) -> [f64; LANES];
     fn load(values: &[f64; LANES]) -> Self::Numbers;
     fn store(values: Self::Numbers, to: &mut [f64; LANES]);
@@ -67,7 +66,8 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     fn from_bits(bits: u8) -> Self::Truths;
     fn to_bits(a: Self::Truths) -> u8;
 
-    /// Writes down the numbers whose bits are set, in order; what stands behind them is anything.
+    /// Writes down the numbers whose bits are set, in order; what stands behind them is 0 or one
+    /// of the numbers.
     fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]);
     /// The opposite: the numbers in order, one in each lane whose bit is set, and 0 in the others.
     fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers;

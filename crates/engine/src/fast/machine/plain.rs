@@ -27,11 +27,6 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn from_array(values: [f64; LANES]) -> Self::Numbers {
-        values
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         values
     }

@@ -5,7 +5,10 @@ use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 
 /// How many meetings are worked out at a time.
-pub(super) const MOST: usize = 512;
+const MOST: usize = 512;
+
+/// Rings that a grain can meet, at most.
+pub(super) const MOST_RINGS: usize = MOST / LANES;
 
 /// A number for each meeting; what stands behind them is anything.
 type Column = [f64; MOST + LANES];

@@ -129,6 +129,8 @@ impl Sorted {
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
+            // A block's meetings with a very fine wall are worked out at once.
+            && wall::rings_in_reach(lattice, diameter) <= meetings::MOST_RINGS
     }
 
     /// How many strips the grains stand in.

@@ -1,12 +1,14 @@
 //! Contacts with the spheres of a prescribed wall, eight grains at a time.
 //!
-//! Each lane finds by arithmetic the first ring that it can touch and turns to the sphere of that ring which is nearest
-//! to it, mirrored so that the next sphere lies on the side of positive angles. From there on all lanes walk together:
-//! ring by ring, and on each ring outward from sphere to sphere, at angles that are the same for all lanes, until no
-//! lane touches. The distance to the spheres of a ring grows in that order.
+//! First all grains look at the rings within reach along the tube, and those whose circle is within reach of the grain
+//! are packed as its meetings, so that from then on no lane is idle. Then each meeting turns to the sphere of its ring
+//! that is nearest to the grain, mirrored so that the next sphere lies on the side of positive angles. From there all
+//! lanes walk together outward from sphere to sphere, at angles that are the same for all, until no lane touches: the
+//! distance to the spheres of a ring grows in that order. In the end the forces go back to the grains, ring by ring.
 
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::Real;
+use peristalsis_physics::wall::Lattice;
 use peristalsis_physics::wall::lattice::approximate_angle;
 
 use super::Sums;
@@ -65,6 +67,12 @@ impl<M: Machine> Default for RingSums<M> {
 /// Keeps what is at the edge of reach within, whatever the rounding.
 const MARGIN: f64 = 1e-9;
 
+/// How many rings can be within reach of a grain.
+pub(super) fn rings_in_reach(lattice: &Lattice, diameter: f64) -> usize {
+    let reach = 0.5 * (diameter + lattice.sphere_diameter);
+    (2.0 * (reach / lattice.spacing() + MARGIN)) as usize + 1
+}
+
 impl WallTable {
     /// The tables that do not move, for grains of diameter `diameter`.
     pub(super) fn new(wall: &PrescribedWall, diameter: f64) -> Self {
@@ -75,7 +83,7 @@ impl WallTable {
         let direction =
             |half_steps: f64| (libm::cos(angle(half_steps)), libm::sin(angle(half_steps)));
         let rings_per_wave = lattice.rings_per_wave as usize;
-        let most_rings = (2.0 * (reach / lattice.spacing() + MARGIN)) as usize + 1;
+        let most_rings = rings_in_reach(lattice, diameter);
         let directions = (0..2 * per_ring + 4)
             .map(|step| direction(f64::from(step % (2 * per_ring))))
             .flat_map(|(cos, sin)| [cos, sin])
@@ -131,7 +139,6 @@ impl WallTable {
         first_place: usize,
         meetings: &mut Meetings,
     ) {
-        let zero = Lanes::<M>::splat(0.0);
         let LaneVector { x, y, z } = block.position;
         let from_axis_squared = x * x + y * y;
         let may_touch = Lanes::splat(self.clear * self.clear).less(from_axis_squared) & block.holds;
