@@ -9,7 +9,7 @@ use sha2::{Digest, Sha256};
 
 /// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
 /// results, so that no old run is taken for a new one.
-pub const PHYSICS_VERSION: u32 = 1;
+pub const PHYSICS_VERSION: u32 = 2;
 
 /// What is kept of a run besides its row of numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -27,12 +27,6 @@ pub(crate) struct LaneVector<M: Machine> {
 }
 
 impl<M: Machine> Lanes<M> {
-    /// A number for each lane.
-    #[inline(always)]
-    pub(crate) fn from_lanes(of: impl FnMut(usize) -> f64) -> Self {
-        Self(M::from_array(core::array::from_fn(of)))
-    }
-
     /// The number of each lane.
     #[inline(always)]
     pub(crate) fn to_array(self) -> [f64; LANES] {
@@ -51,6 +45,48 @@ impl<M: Machine> Lanes<M> {
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
         let window = slice[start..].first_chunk_mut::<LANES>();
         M::store(self.0, window.expect("a window of LANES numbers"));
+    }
+
+    /// Writes the numbers of the lanes where `mask` holds into `slice` from `start` on, in order; of eight places those
+    /// behind them hold 0 or any of the numbers.
+    #[inline(always)]
+    pub(crate) fn pack(self, mask: Mask<M>, slice: &mut [f64], start: usize) {
+        let window = slice[start..].first_chunk_mut::<LANES>();
+        M::pack(
+            mask.to_bits(),
+            self.0,
+            window.expect("a window of LANES numbers"),
+        );
+    }
+
+    /// The numbers of `slice` from `start` on, in order, one in each lane where `mask` holds, and 0 in the others.
+    #[inline(always)]
+    pub(crate) fn unpack(mask: Mask<M>, slice: &[f64], start: usize) -> Self {
+        let window = slice[start..].first_chunk::<LANES>();
+        Self(M::unpack(
+            mask.to_bits(),
+            window.expect("a window of LANES numbers"),
+        ))
+    }
+
+    /// The four numbers of `slice` that begin where each lane says; the k-th becomes numbers k.
+    #[inline(always)]
+    pub(crate) fn windows(slice: &[f64], starts: [i32; LANES]) -> [Self; 4] {
+        let [a, b, c, d, e, f, g, h] = starts.map(|start| {
+            let start = start as u32 as usize;
+            let window = slice[start..start + 4].first_chunk::<4>();
+            window.expect("a window of four numbers")
+        });
+        Self::of_quads([
+            M::load_quad(a),
+            M::load_quad(b),
+            M::load_quad(c),
+            M::load_quad(d),
+            M::load_quad(e),
+            M::load_quad(f),
+            M::load_quad(g),
+            M::load_quad(h),
+        ])
     }
 
     /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.

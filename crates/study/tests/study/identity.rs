@@ -150,7 +150,7 @@ fn results_are_what_the_version_of_the_physics_says() {
             .map(|value| value.to_bits())
             .collect::<Vec<_>>()
     };
-    assert_eq!(peristalsis_study::PHYSICS_VERSION, 1);
+    assert_eq!(peristalsis_study::PHYSICS_VERSION, 2);
     assert_eq!(
         bits("flow_rate_ratio_raw"),
         [4_597_427_985_842_492_641, 4_581_706_670_037_036_094]

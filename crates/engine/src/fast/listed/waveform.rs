@@ -94,7 +94,7 @@ mod tests {
             assert!(largest < limit, "{form:?}: {largest:e}");
         }
         let exact = [0.0, 0.25, 0.5, 0.75, 1.0, -0.25, -0.5, 0.125];
-        let lanes = Lanes::<Plain>::from_lanes(|lane| exact[lane]);
+        let lanes = Lanes::<Plain>::load(&exact, 0);
         let found = value(Waveform::Sine, lanes).to_array();
         let root = core::f64::consts::FRAC_1_SQRT_2;
         for (found, expected) in found

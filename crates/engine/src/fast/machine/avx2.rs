@@ -28,11 +28,6 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn from_array([a, b, c, d, e, f, g, h]: [f64; LANES]) -> Self::Numbers {
-        unsafe { [_mm256_setr_pd(a, b, c, d), _mm256_setr_pd(e, f, g, h)] }
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         let mut array = [0.0; LANES];
         Self::store(values, &mut array);
@@ -173,6 +168,32 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
+    fn pack(bits: u8, [low, high]: Self::Numbers, to: &mut [f64; LANES]) {
+        let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
+        unsafe {
+            _mm256_storeu_pd(to.as_mut_ptr(), permuted(low, &PACK[bits_low]));
+            // At most four numbers stand before the last four.
+            let behind = to.as_mut_ptr().add(bits_low.count_ones() as usize);
+            _mm256_storeu_pd(behind, permuted(high, &PACK[bits_high]));
+        }
+    }
+
+    #[inline(always)]
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+        let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
+        let numbers = unsafe {
+            let low = _mm256_loadu_pd(from.as_ptr());
+            // At most four numbers stand before the last four.
+            let high = _mm256_loadu_pd(from.as_ptr().add(bits_low.count_ones() as usize));
+            [
+                permuted(low, &UNPACK[bits_low]),
+                permuted(high, &UNPACK[bits_high]),
+            ]
+        };
+        Self::select(Self::from_bits(bits), numbers, Self::splat(0.0))
+    }
+
+    #[inline(always)]
     fn load_quad(values: &[f64; 4]) -> Self::Quad {
         unsafe { _mm256_loadu_pd(values.as_ptr()) }
     }
@@ -250,4 +271,44 @@ fn transpose([a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
             _mm256_permute2f128_pd::<0x31>(ab_odd, cd_odd),
         ]
     }
+}
+
+/// The numbers at the given places, by halves of numbers.
+#[inline(always)]
+fn permuted(numbers: __m256d, places: &[u32; 8]) -> __m256d {
+    // SAFETY: see the module above; the instructions have been found before any of this runs.
+    unsafe {
+        let places = _mm256_loadu_si256(places.as_ptr().cast());
+        let moved = _mm256_permutevar8x32_ps(_mm256_castpd_ps(numbers), places);
+        _mm256_castps_pd(moved)
+    }
+}
+
+/// For four bits, where those of four numbers stand that are set.
+static PACK: [[u32; 8]; 16] = places(false);
+/// For four bits, where each that is set finds its number.
+static UNPACK: [[u32; 8]; 16] = places(true);
+
+const fn places(unpack: bool) -> [[u32; 8]; 16] {
+    // Where nothing is said, a number that is there.
+    let mut all = [[0, 1, 0, 1, 0, 1, 0, 1]; 16];
+    let mut bits = 0;
+    while bits < 16 {
+        let (mut lane, mut packed) = (0, 0);
+        while lane < 4 {
+            if bits >> lane & 1 == 1 {
+                let (to, from) = if unpack {
+                    (lane, packed)
+                } else {
+                    (packed, lane)
+                };
+                all[bits][2 * to] = 2 * from as u32;
+                all[bits][2 * to + 1] = 2 * from as u32 + 1;
+                packed += 1;
+            }
+            lane += 1;
+        }
+        bits += 1;
+    }
+    all
 }

@@ -20,11 +20,6 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn from_array([a, b, c, d, e, f, g, h]: [f64; LANES]) -> Self::Numbers {
-        unsafe { _mm512_setr_pd(a, b, c, d, e, f, g, h) }
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         let mut array = [0.0; LANES];
         Self::store(values, &mut array);
@@ -132,6 +127,17 @@ impl Machine for Avx512 {
     #[inline(always)]
     fn to_bits(a: Self::Truths) -> u8 {
         a
+    }
+
+    #[inline(always)]
+    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+        // To a register and from there: straight to memory this is slow on some processors.
+        Self::store(unsafe { _mm512_maskz_compress_pd(bits, values) }, to);
+    }
+
+    #[inline(always)]
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+        unsafe { _mm512_maskz_expand_pd(bits, Self::load(from)) }
     }
 
     #[inline(always)]

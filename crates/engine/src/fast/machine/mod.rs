@@ -36,7 +36,6 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     type Quad: Copy;
 
     fn splat(value: f64) -> Self::Numbers;
-    fn from_array(values: [f64; LANES]) -> Self::Numbers;
     fn to_array(values: Self::Numbers) -> [f64; LANES];
     fn load(values: &[f64; LANES]) -> Self::Numbers;
     fn store(values: Self::Numbers, to: &mut [f64; LANES]);
@@ -66,6 +65,12 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     /// Bit l is the truth value of lane l.
     fn from_bits(bits: u8) -> Self::Truths;
     fn to_bits(a: Self::Truths) -> u8;
+
+    /// Writes down the numbers whose bits are set, in order; what stands behind them is 0 or one
+    /// of the numbers.
+    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]);
+    /// The opposite: the numbers in order, one in each lane whose bit is set, and 0 in the others.
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers;
 
     fn load_quad(values: &[f64; 4]) -> Self::Quad;
     fn store_quad(values: Self::Quad, to: &mut [f64; 4]);
@@ -111,14 +116,16 @@ impl Instructions {
     pub fn widest() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            let has_avx512 = is_x86_feature_detected!("avx512f")
+            let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt");
+            let has_avx512 = has_avx2
+                && is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512vl")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512bw");
             if has_avx512 {
                 return Self::Avx512;
             }
-            if is_x86_feature_detected!("avx2") {
+            if has_avx2 {
                 return Self::Avx2;
             }
         }
@@ -154,13 +161,13 @@ impl Instructions {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2")]
+#[target_feature(enable = "avx512f,avx512vl,avx512dq,avx512bw,avx2,popcnt")]
 fn with_avx512<W: Work>(work: W) -> W::Answer {
     work.run::<Avx512>()
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
+#[target_feature(enable = "avx2,popcnt")]
 fn with_avx2<W: Work>(work: W) -> W::Answer {
     work.run::<Avx2>()
 }

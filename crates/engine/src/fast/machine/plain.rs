@@ -27,11 +27,6 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn from_array(values: [f64; LANES]) -> Self::Numbers {
-        values
-    }
-
-    #[inline(always)]
     fn to_array(values: Self::Numbers) -> [f64; LANES] {
         values
     }
@@ -140,6 +135,26 @@ impl Machine for Plain {
     #[inline(always)]
     fn to_bits(a: Self::Truths) -> u8 {
         a
+    }
+
+    #[inline(always)]
+    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+        let mut at = 0;
+        for (lane, value) in values.into_iter().enumerate() {
+            to[at & (LANES - 1)] = value;
+            at += usize::from((bits >> lane) & 1);
+        }
+    }
+
+    #[inline(always)]
+    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+        let mut at = 0;
+        core::array::from_fn(|lane| {
+            let set = (bits >> lane) & 1;
+            let value = from[at & (LANES - 1)];
+            at += usize::from(set);
+            if set == 1 { value } else { 0.0 }
+        })
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ impl Work for Everything {
 
     #[inline(always)]
     fn run<M: Machine>(self) -> Self::Answer {
-        let (a, b) = (M::from_array(self.a), M::load(&self.b));
+        let (a, b) = (M::load(&self.a), M::load(&self.b));
         let mask = M::from_bits(self.mask);
         let mut stored = [0.0; LANES];
         M::store(b, &mut stored);
@@ -61,12 +61,23 @@ impl Work for Everything {
         let mut chosen = [0; LANES];
         M::write_chosen(self.mask, &[9, 8, 7, 6, 5, 4, 3, 2], &mut chosen);
         let number = self.mask.count_ones() as usize;
+        let mut packed = [0.0; LANES];
+        M::pack(self.mask, a, &mut packed);
+        let unpacked = M::unpack(self.mask, &packed);
+        let behind = &packed[number..];
+        assert!(
+            behind
+                .iter()
+                .all(|number| *number == 0.0 || self.a.contains(number))
+        );
+        packed[number..].fill(0.0);
         (
             numbers
                 .into_iter()
                 .chain(lanes)
                 .map(M::to_array)
                 .chain(back)
+                .chain([packed, M::to_array(unpacked)])
                 .map(|numbers: [f64; LANES]| numbers.map(f64::to_bits))
                 .collect(),
             truths
@@ -108,6 +119,14 @@ proptest! {
             for (lane, &number) in lanes[k].iter().enumerate() {
                 prop_assert_eq!(plain.0[17 + lane][k], number);
             }
+        }
+        let chosen = (0..8).filter(|lane| mask >> lane & 1 == 1);
+        for (packed, lane) in plain.0[25].iter().zip(chosen) {
+            prop_assert_eq!(*packed, a[lane].to_bits());
+        }
+        for (lane, (&unpacked, number)) in plain.0[26].iter().zip(a).enumerate() {
+            let kept = if mask >> lane & 1 == 1 { number } else { 0.0 };
+            prop_assert_eq!(unpacked, kept.to_bits());
         }
         let set: Vec<u8> = (0..8).filter(|lane| mask >> lane & 1 == 1).map(|lane| lane + 5).collect();
         let chosen: Vec<u8> = set.iter().map(|number| 14 - number).collect();

@@ -10,6 +10,7 @@
 
 mod columns;
 mod listing;
+mod meetings;
 mod motion;
 mod order;
 mod pairs;
@@ -17,6 +18,7 @@ mod strips;
 mod sums;
 mod wall;
 
+use std::cell::RefCell;
 use std::sync::Arc;
 
 use peristalsis_physics::contact::NormalLaw;
@@ -25,6 +27,7 @@ use rayon::prelude::*;
 
 use self::columns::{Columns, ColumnsMut};
 use self::listing::{Partners, Tile};
+use self::meetings::Meetings;
 use self::motion::{Motion, Moved, Phase};
 use self::order::Row;
 use self::pairs::{Block, PairConstants};
@@ -127,6 +130,8 @@ impl Sorted {
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
+            // A block's meetings with a very fine wall are worked out at once.
+            && wall::rings_in_reach(lattice, diameter) <= meetings::MOST_RINGS
     }
 
     /// How many strips the grains stand in.
@@ -305,14 +310,17 @@ impl Sorted {
             ..
         } = self;
         let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
-            instructions.run(ForcesOfTile::<N, FULL> {
-                law,
-                pairs,
-                wall,
-                position,
-                velocity,
-                tile,
-                of_tile,
+            MEETINGS.with_borrow_mut(|meetings| {
+                instructions.run(ForcesOfTile::<N, FULL> {
+                    law,
+                    pairs,
+                    wall,
+                    position,
+                    velocity,
+                    tile,
+                    of_tile,
+                    meetings,
+                });
             });
         };
         let mut tally = Tally::default();
@@ -382,6 +390,11 @@ impl Sorted {
     }
 }
 
+thread_local! {
+    /// Room that each thread uses again for every tile.
+    static MEETINGS: RefCell<Meetings> = RefCell::default();
+}
+
 struct ForcesOfTile<'a, N, const FULL: bool> {
     law: &'a N,
     pairs: &'a PairConstants,
@@ -390,6 +403,7 @@ struct ForcesOfTile<'a, N, const FULL: bool> {
     velocity: &'a Columns,
     tile: &'a Tile,
     of_tile: &'a mut OfTile,
+    meetings: &'a mut Meetings,
 }
 
 impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
@@ -410,6 +424,7 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
                     tally,
                     touching,
                 },
+            meetings,
         } = self;
         for column in force.each() {
             column.clear();
@@ -425,11 +440,17 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
                 law, pairs, position, velocity, tile, touching, force, &mut sums,
             );
         }
-        for place in (tile.first..tile.end).step_by(LANES) {
-            let block = Block::load(position, velocity, place, tile.end);
-            if let Some(pushed) = wall.force::<M, N, FULL>(law, &block, &mut sums) {
-                force.add(place - tile.first, pushed);
+        let mut place = tile.first;
+        while place < tile.end {
+            meetings.clear();
+            while place < tile.end && meetings.have_room(wall.most_rings()) {
+                let block = Block::<M>::load(position, velocity, place, tile.end);
+                wall.meet(&block, place - tile.first, meetings);
+                place += LANES;
             }
+            wall.turn::<M>(meetings);
+            wall.push::<M, N, FULL>(law, meetings, &mut sums);
+            meetings.add_forces::<M>(force);
         }
         *tally = sums.tally();
     }
