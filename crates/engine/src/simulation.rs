@@ -15,6 +15,7 @@ use crate::forces::{Contacts, evaluate};
 use crate::integrate::{Integrator, Past, Runaway};
 use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
+use crate::touching::{Touching, touching};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
 
@@ -230,6 +231,15 @@ impl Simulation {
         self.system.ledger.relative_residual(self.system.energy())
     }
 
+    /// All contacts as they are now, with their forces; grain by grain.
+    #[must_use]
+    pub fn touching(&self) -> Vec<Touching> {
+        let system = &self.system;
+        // What contacts remember is taken out on the way.
+        let mut memory = self.memory.clone();
+        memory.with_law(system.parameters.contact.normal, Touch { system })
+    }
+
     /// Everything that a restart needs to go on with the same bits.
     #[must_use]
     pub fn snapshot(&self) -> Snapshot {
@@ -424,6 +434,23 @@ impl WithLaw for StartForces<'_> {
         } = self.system;
         contacts.refresh(bodies, wall, parameters.skin);
         *tally = evaluate(law, bodies, wall, contacts, 0.0);
+    }
+}
+
+/// A look at the contacts.
+struct Touch<'a> {
+    system: &'a System,
+}
+
+impl WithLaw for Touch<'_> {
+    type Answer = Vec<Touching>;
+
+    fn run<N: NormalLaw, T: fast::listed::Remember>(
+        self,
+        law: &ContactLaw<N, T>,
+        contacts: &mut Contacts<T::History<f64>>,
+    ) -> Self::Answer {
+        touching(law, &self.system.bodies, &self.system.wall, contacts)
     }
 }
 
