@@ -43,7 +43,10 @@ fn assert_forces(simulation: &Simulation, case: &str) {
     };
     assert_eq!(of_grains(false), tally.grain_contacts, "{case}");
     assert_eq!(of_grains(true), tally.wall_contacts, "{case}");
-    assert!(tally.grain_contacts > 10 && tally.wall_contacts > 10, "{case}");
+    assert!(
+        tally.grain_contacts > 10 && tally.wall_contacts > 10,
+        "{case}"
+    );
     let sliding = touching.iter().filter(|touch| touch.sliding).count() as u64;
     assert!(
         sliding.abs_diff(tally.sliding_contacts) <= 2 + tally.sliding_contacts / 10,
@@ -55,7 +58,10 @@ fn assert_forces(simulation: &Simulation, case: &str) {
     let mut largest_overlap = 0.0_f64;
     for touch in &touching {
         let in_plane = touch.force - touch.normal_force * touch.separation.normalize();
-        assert!((in_plane.length() - touch.tangential_force).abs() < 1e-12, "{case}");
+        assert!(
+            (in_plane.length() - touch.tangential_force).abs() < 1e-12,
+            "{case}"
+        );
         assert!(touch.first < touch.second);
         if touch.first >= bodies.grains {
             continue;
@@ -76,9 +82,14 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         away.z -= (away.z / length).round() * length;
         assert!(away.length() < 1e-12, "{case}");
     }
-    assert!((largest_overlap - tally.largest_overlap).abs() < 1e-12, "{case}");
+    assert!(
+        (largest_overlap - tally.largest_overlap).abs() < 1e-12,
+        "{case}"
+    );
     // Forces of the step itself were those of velocities predicted for its end: the same to the order of the step.
-    let scale = forces.iter().fold(0.0_f64, |most, force| most.max(force.length()));
+    let scale = forces
+        .iter()
+        .fold(0.0_f64, |most, force| most.max(force.length()));
     for (grain, force) in forces.iter().enumerate() {
         let expected = bodies.mass[grain] * bodies.acceleration[grain];
         assert!(
@@ -104,6 +115,9 @@ fn a_wall_sphere_moves_as_its_velocity_says() {
     wall.move_to(3.0);
     for sphere in 0..wall.lattice().spheres() {
         let slope = (after[sphere] - before[sphere]) / 2e-4;
-        assert!((wall.sphere_velocity(sphere) - slope).length() < 1e-7, "{sphere}");
+        assert!(
+            (wall.sphere_velocity(sphere) - slope).length() < 1e-7,
+            "{sphere}"
+        );
     }
 }

@@ -2,16 +2,18 @@
 //!
 //! [`Observer`] turns a simulation into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
-//! the frame of the wave; [`TubeShape`] is the wall's radius as it is.
+//! the frame of the wave; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow how grains turn.
 
 pub mod columns;
 pub mod diagnosis;
+pub mod orientation;
 pub mod profile;
 pub mod sample;
 pub mod shape;
 
 pub use columns::{COLUMNS, Column};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
+pub use orientation::Orientations;
 pub use profile::{ProfileBin, WaveFrameProfile};
-pub use sample::{Observer, Sample};
+pub use sample::{Observer, Sample, instantaneous_flow_rate};
 pub use shape::TubeShape;

@@ -5,6 +5,7 @@ use peristalsis_observe::{Sample, WallFault};
 
 use crate::assemble::newtonian_reference;
 use crate::run::Run;
+use crate::trajectory::TrajectoryReport;
 use crate::{REVISION, VERSION};
 
 /// How a run ended.
@@ -88,6 +89,9 @@ pub struct Summary {
     pub seconds: f64,
     /// What went wrong with an elastic wall: when, where, and the likely cause.
     pub wall_diagnosis: Vec<String>,
+    /// What was written of its trajectory, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<TrajectoryReport>,
     /// Version of the program.
     pub version: &'static str,
     /// Revision of its source.
@@ -159,6 +163,7 @@ impl Summary {
                 .iter()
                 .map(WallFault::in_words)
                 .collect(),
+            trajectory: None,
             version: VERSION,
             revision: REVISION,
         }

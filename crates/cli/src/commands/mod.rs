@@ -7,6 +7,7 @@ pub(crate) mod presets;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
+pub(crate) mod trajectory;
 
 use std::io::Write;
 

@@ -13,6 +13,7 @@ mod limits;
 mod running;
 mod streams;
 mod study;
+mod trajectories;
 
 #[cfg(unix)]
 mod signals;
