@@ -22,6 +22,7 @@ fn main() -> ExitCode {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Check(arguments) => commands::check::check(&arguments),
         Command::Trajectory(arguments) => commands::trajectory::trajectory(&arguments),
+        Command::Render(arguments) => commands::render::render(&arguments),
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),

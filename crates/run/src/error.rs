@@ -62,6 +62,9 @@ pub enum RunError {
     /// A file cannot be written or read.
     #[error(transparent)]
     Format(#[from] peristalsis_formats::FormatError),
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Render(#[from] peristalsis_render::RenderError),
     /// A figure cannot be drawn.
     #[error("cannot draw {figure}: {source}")]
     Figure {

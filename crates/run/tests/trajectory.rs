@@ -1,6 +1,11 @@
 //! Trajectories of runs: they show the simulation as it is, change nothing of it, and go on after a kill as if there had
 //! been none.
 
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails where what it needs is missing"
+)]
+
 mod common;
 
 use std::collections::BTreeMap;
