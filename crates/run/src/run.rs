@@ -17,7 +17,7 @@ use crate::stopping::Stopping;
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
 const STATE_LAYOUT: u32 = 4;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
-const STEPS_PER_TURN: u64 = 4;
+const STEPS_PER_TURN: u64 = 10;
 
 /// A simulation together with what has been measured of it.
 #[derive(Clone, Debug)]
