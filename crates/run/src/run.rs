@@ -198,11 +198,11 @@ impl Run {
     /// As [`Run::advance`].
     pub fn advance_at_most(&mut self, most: u64) -> Result<(), RunError> {
         let start = Instant::now();
-        let next_sample =
-            (self.recorder.samples().len() as u64 + 1) * self.configuration.run.steps_per_sample;
-        let to_sample = next_sample - self.simulation.step();
+        // A run that was stopped between two samples, where a trajectory has a frame, goes on to the next.
+        let each = self.configuration.run.steps_per_sample;
+        let to_sample = each - self.simulation.step() % each;
         let outcome = self.advance_engine(most.clamp(1, to_sample));
-        if outcome.is_ok() && self.simulation.step() == next_sample {
+        if outcome.is_ok() && self.simulation.step().is_multiple_of(each) {
             self.recorder.record(&self.simulation);
         }
         self.elapsed += start.elapsed();
