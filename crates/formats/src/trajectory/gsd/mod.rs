@@ -6,7 +6,7 @@
 //!   `log/particles/angular_velocity`.
 //! - `log/time` and the frame's other values are in 64 bits; all else in 32.
 //!
-//! The container is our own ([`container`]): the published Rust library (`hoomd-gsd`) cannot cut a trajectory back to a
+//! The container is our own: the published Rust library (`hoomd-gsd`) cannot cut a trajectory back to a
 //! checkpoint, goes on writing after a full disk, and panics on a damaged index.
 
 mod container;
