@@ -6,14 +6,19 @@ check:
 test:
     cargo test --workspace
 
-# The checks, the long validation runs and the audit of unsafe code (about three quarters of an hour on two cores).
-full-check: check audit
+# The checks, the long validation runs, the audit of unsafe code and the clients of trajectories (about three quarters of
+# an hour on two cores).
+full-check: check audit clients
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
 # Miri, AddressSanitizer and memcheck over the module with unsafe code, as far as this machine has them.
 audit:
     bash scripts/audit_unsafe.sh
+
+# Trajectories as gsd, PyVista and OVITO from PyPI read them.
+clients:
+    bash scripts/check_clients.sh
 
 # The fast kernels' instructions against those on record (see benchmarks/instructions/README.md); --record
 count-instructions *options:

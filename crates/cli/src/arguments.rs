@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
+use peristalsis_run::{Span, Window};
 
 use crate::commands::study::StudyCommand;
 
@@ -26,6 +27,10 @@ pub(crate) enum Command {
     Run(RunArguments),
     /// Say what would run, and warn of what looks doubtful; runs nothing.
     Check(CheckArguments),
+    /// Write the spheres of a run, from its saved state on, for other programs to open.
+    Trajectory(TrajectoryArguments),
+    /// Draw the tube of a run as it looks in its saved state, as PNG.
+    Render(RenderArguments),
     /// List the presets, or print one.
     Presets(PresetsArguments),
     /// Print the JSON schema of the configuration.
@@ -80,6 +85,8 @@ pub(crate) struct RunArguments {
     /// Go on with a run that was stopped, to the same bits as if it had not been.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "preset", "overrides", "out"])]
     pub(crate) resume: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
     /// Write the time series as CSV too.
     #[arg(long)]
     pub(crate) csv: bool,
@@ -91,10 +98,97 @@ pub(crate) struct RunArguments {
     pub(crate) quiet: bool,
 }
 
+/// Formats of trajectories.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum FrameFormat {
+    /// General Simulation Data: OVITO, freud, Python's gsd
+    Gsd,
+    /// VTK polydata with contacts: ParaView, PyVista
+    Vtp,
+    /// LAMMPS dump text: OVITO, VMD
+    Lammps,
+}
+
+/// Which frames a run leaves beside its record.
+#[derive(Debug, Args)]
+pub(crate) struct FrameArguments {
+    /// Write the spheres frame by frame, in these formats: gsd, vtp, lammps. A resumed run goes on with what it wrote.
+    #[arg(
+        long,
+        value_name = "FORMAT,...",
+        value_enum,
+        value_delimiter = ',',
+        hide_possible_values = true
+    )]
+    pub(crate) trajectory: Vec<FrameFormat>,
+    /// Time between two frames, in periods or, as in 2.5t, in time; a tenth of a period unless given.
+    #[arg(long, value_name = "SPAN", requires = "trajectory")]
+    pub(crate) trajectory_every: Option<Span>,
+    /// Frames in this part of the run only, in periods or time: 20:25, 100:, :5t.
+    #[arg(long, value_name = "FROM:TO", requires = "trajectory")]
+    pub(crate) trajectory_window: Option<Window>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TrajectoryArguments {
+    /// Folder of a run, finished or stopped; nothing in it is changed.
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// Formats: gsd, vtp, lammps.
+    #[arg(
+        long = "format",
+        value_name = "FORMAT,...",
+        value_enum,
+        value_delimiter = ',',
+        default_value = "gsd",
+        hide_possible_values = true
+    )]
+    pub(crate) formats: Vec<FrameFormat>,
+    /// How long to go on from the saved state, in periods or, as in 40t, in time; 0 is the state alone.
+    #[arg(long, value_name = "SPAN", default_value = "0")]
+    pub(crate) duration: Span,
+    /// Time between two frames; a tenth of a period unless given.
+    #[arg(long, value_name = "SPAN")]
+    pub(crate) every: Option<Span>,
+    /// Folder for the frames; the default is DIR/from-state.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print what was written as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// From where a tube is looked at.
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+pub(crate) enum AspectName {
+    /// from the side, cut open
+    Side,
+    /// along the axis, a slice of the middle
+    Section,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArguments {
+    /// Folder of a run, finished or stopped.
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// From where the tube is looked at.
+    #[arg(long, value_name = "VIEW", value_enum, default_value = "side")]
+    pub(crate) view: AspectName,
+    /// Pixels across.
+    #[arg(long, value_name = "PIXELS", default_value_t = 2400, value_parser = clap::value_parser!(u32).range(16..=16384))]
+    pub(crate) width: u32,
+    /// File for the picture; the default is DIR/tube-VIEW.png.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct CheckArguments {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArguments,
+    #[command(flatten)]
+    pub(crate) frames: FrameArguments,
     /// Print as JSON.
     #[arg(long)]
     pub(crate) json: bool,

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
+use peristalsis_formats::FormatError;
 use peristalsis_run::RunError;
 use peristalsis_study::StudyError;
 
@@ -40,6 +41,9 @@ pub(crate) enum Failure {
     /// The run or its record.
     #[error(transparent)]
     Run(#[from] RunError),
+    /// A frame of a run's trajectory cannot be written.
+    #[error("the run was stopped, since its trajectory cannot be written: {source}")]
+    Trajectory { folder: PathBuf, source: RunError },
     /// A study or its store.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -67,6 +71,7 @@ impl Failure {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }
                 | RunError::NothingToResume { .. }
+                | RunError::Trajectory { .. }
                 | RunError::TooManyGrains { .. }
                 | RunError::Configuration(_)
                 | RunError::Engine(
@@ -84,7 +89,7 @@ impl Failure {
                 | StudyError::Trial(_) => BAD_INPUT,
                 _ => FAILED,
             },
-            Self::Signals(_) | Self::Output(_) => FAILED,
+            Self::Trajectory { .. } | Self::Signals(_) | Self::Output(_) => FAILED,
         }
     }
 
@@ -94,6 +99,19 @@ impl Failure {
             Self::Run(RunError::HoldsAnotherRun { .. }) => {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }
+            Self::Run(RunError::Trajectory { help, .. }) => Some((*help).to_owned()),
+            Self::Trajectory {
+                source: RunError::Format(FormatError::NotATrajectory { .. }),
+                ..
+            }
+            | Self::Run(RunError::Format(FormatError::NotATrajectory { .. })) => Some(
+                "put its files back, or go on without: move the folder's trajectory.toml and trajectory files away"
+                    .to_owned(),
+            ),
+            Self::Trajectory { folder, .. } => Some(format!(
+                "nothing that was measured is lost: make room, then go on with: peristalsis run --resume {}",
+                folder.display()
+            )),
             Self::Read { .. } => Some(
                 "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one"
                     .to_owned(),

@@ -21,6 +21,8 @@ fn main() -> ExitCode {
     let outcome = match arguments.command {
         Command::Run(arguments) => commands::run::run(&arguments),
         Command::Check(arguments) => commands::check::check(&arguments),
+        Command::Trajectory(arguments) => commands::trajectory::trajectory(&arguments),
+        Command::Render(arguments) => commands::render::render(&arguments),
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),

@@ -13,6 +13,7 @@ pub mod ledger;
 pub mod neighbours;
 pub mod simulation;
 pub mod snapshot;
+pub mod touching;
 pub mod wall;
 
 pub use bodies::Bodies;
@@ -22,4 +23,5 @@ pub use integrate::Integrator;
 pub use ledger::{Ledger, Tally};
 pub use simulation::{Kernel, Parameters, Simulation};
 pub use snapshot::{Snapshot, SnapshotView};
+pub use touching::Touching;
 pub use wall::Wall;

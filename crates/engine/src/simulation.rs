@@ -15,6 +15,7 @@ use crate::forces::{Contacts, add_body_force, evaluate};
 use crate::integrate::{Integrator, Past, Runaway};
 use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
+use crate::touching::{Touching, touching};
 use crate::wall::Wall;
 use crate::wall::contacts::{WallContact, for_each_contact};
 use crate::wall::memory::WallMemory;
@@ -245,6 +246,15 @@ impl Simulation {
             Normal::Linear(normal) => self.memory.visit(normal, bodies, wall, visit),
             Normal::Hertz(normal) => self.memory.visit(normal, bodies, wall, visit),
         }
+    }
+
+    /// All contacts as they are now, with their forces; grain by grain.
+    #[must_use]
+    pub fn touching(&self) -> Vec<Touching> {
+        let system = &self.system;
+        // What contacts remember is taken out on the way.
+        let mut memory = self.memory.clone();
+        memory.with_law(system.parameters.contact.normal, Touch { system })
     }
 
     /// Everything that a restart needs to go on with the same bits.
@@ -486,6 +496,23 @@ impl WithLaw for StartForces<'_> {
         contacts.refresh(bodies, wall, parameters.skin);
         *tally = evaluate(law, bodies, wall, contacts, 0.0);
         add_body_force(bodies, parameters.body_force);
+    }
+}
+
+/// A look at the contacts.
+struct Touch<'a> {
+    system: &'a System,
+}
+
+impl WithLaw for Touch<'_> {
+    type Answer = Vec<Touching>;
+
+    fn run<N: NormalLaw, T: fast::listed::Remember>(
+        self,
+        law: &ContactLaw<N, T>,
+        contacts: &mut Contacts<T::History<f64>>,
+    ) -> Self::Answer {
+        touching(law, &self.system.bodies, &self.system.wall, contacts)
     }
 }
 

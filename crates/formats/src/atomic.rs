@@ -33,10 +33,7 @@ pub fn write_with(
     produce: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), FormatError> {
     let folder = folder_of(path).map_err(FormatError::io("write", path))?;
-    // A temporary file is deleted when it is dropped, so every early return below leaves nothing behind.
-    let mut partial =
-        create_partial(folder).map_err(FormatError::io("create a file beside", path))?;
-    produce(partial.as_file_mut()).map_err(FormatError::io("write", path))?;
+    let partial = partial_with(folder, path, produce)?;
     partial
         .as_file()
         .sync_all()
@@ -45,6 +42,32 @@ pub fn write_with(
         .persist(path)
         .map_err(|refused| FormatError::io("replace", path)(refused.error))?;
     synchronize_folder(folder).map_err(FormatError::io("synchronize the folder of", path))
+}
+
+/// Like [`write`](fn@write), but without waiting for the disk: whole or not at all after a kill or a full disk, though
+/// perhaps not after a power cut. For files that come many a second.
+///
+/// # Errors
+/// As [`write`](fn@write).
+pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
+    let folder = folder_of(path).map_err(FormatError::io("write", path))?;
+    partial_with(folder, path, |file| file.write_all(bytes))?
+        .persist(path)
+        .map(drop)
+        .map_err(|refused| FormatError::io("replace", path)(refused.error))
+}
+
+/// A temporary file beside `path` with its content. It is deleted when it is dropped, so that a failure leaves nothing
+/// behind.
+fn partial_with(
+    folder: &Path,
+    path: &Path,
+    produce: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<NamedTempFile, FormatError> {
+    let mut partial =
+        create_partial(folder).map_err(FormatError::io("create a file beside", path))?;
+    produce(partial.as_file_mut()).map_err(FormatError::io("write", path))?;
+    Ok(partial)
 }
 
 /// Makes the names in a folder last: that of a folder just made in it, or of a file just moved there.

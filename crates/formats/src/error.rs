@@ -104,6 +104,15 @@ pub enum FormatError {
         reason: String,
     },
 
+    /// A file is no trajectory that can be gone on with.
+    #[error("{} is no trajectory that can be gone on with: {reason}", path.display())]
+    NotATrajectory {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+
     /// The bytes do not begin like a checkpoint.
     #[error("not a checkpoint of this project: the first bytes differ from its signature")]
     NotACheckpoint,

@@ -6,6 +6,7 @@
 //! | [`parquet`] | a [`Table`] as Parquet: exact, with units, descriptions and metadata |
 //! | [`csv`] | a [`Table`] as CSV: values only, for eyes and spreadsheets |
 //! | [`checkpoint`] | any serializable state behind a header that detects every corrupted byte |
+//! | [`trajectory`] | spheres frame by frame, as GSD, VTP and LAMMPS text |
 //! | [`atomic`] | a file is written whole or not at all |
 //!
 //! The file modules share four verbs: `encode` and `decode` work on bytes, `write` and `read` on a path.
@@ -16,7 +17,9 @@ pub mod csv;
 mod error;
 pub mod parquet;
 pub mod table;
+pub mod trajectory;
 
 pub use checkpoint::CheckpointIdentity;
 pub use error::FormatError;
 pub use table::{Column, Table, TableBuilder, ValueKind, Values};
+pub use trajectory::{Frame, TrajectoryFile, TrajectoryFormat};

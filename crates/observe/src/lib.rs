@@ -3,11 +3,13 @@
 //! [`Observer`] turns a simulation into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
 //! the frame of the wave, [`WaveByWave`] the flow of each wave over each period,
-//! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is.
+//! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
+//! how grains turn.
 
 pub mod columns;
 pub mod diagnosis;
 pub mod dispersion;
+pub mod orientation;
 pub mod profile;
 pub mod sample;
 pub mod shape;
@@ -16,7 +18,8 @@ pub mod waves;
 pub use columns::{COLUMNS, Column};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
+pub use orientation::Orientations;
 pub use profile::{ProfileBin, WallForce, WaveFrameProfile};
-pub use sample::{Observer, Sample};
+pub use sample::{Observer, Sample, instantaneous_flow_rate};
 pub use shape::TubeShape;
 pub use waves::{WaveByWave, WaveFlow};

@@ -199,6 +199,17 @@ impl Observer {
     }
 }
 
+/// J from the velocities of the grains inside the tube as they are, along the wave \[1/t\].
+#[must_use]
+pub fn instantaneous_flow_rate(simulation: &Simulation, shape: &TubeShape) -> f64 {
+    let (bodies, wall) = (simulation.bodies(), simulation.wall());
+    let flux: f64 = (0..bodies.grains)
+        .filter(|&grain| !has_escaped(bodies, grain, shape))
+        .map(|grain| bodies.velocity[grain].z)
+        .sum();
+    wall.heading() * flux / wall.lattice().length()
+}
+
 /// Whether a grain's centre lies outside R + d/2, R the wall's radius at its z and d its diameter.
 #[must_use]
 pub fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {

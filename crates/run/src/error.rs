@@ -43,6 +43,14 @@ pub enum RunError {
         /// Why.
         source: std::io::Error,
     },
+    /// A trajectory that cannot be.
+    #[error("no such trajectory: {reason}")]
+    Trajectory {
+        /// Why.
+        reason: String,
+        /// What to ask for instead.
+        help: &'static str,
+    },
     /// There is no run to go on with.
     #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {
@@ -54,6 +62,9 @@ pub enum RunError {
     /// A file cannot be written or read.
     #[error(transparent)]
     Format(#[from] peristalsis_formats::FormatError),
+    /// A picture cannot be made.
+    #[error(transparent)]
+    Render(#[from] peristalsis_render::RenderError),
     /// A figure cannot be drawn.
     #[error("cannot draw {figure}: {source}")]
     Figure {

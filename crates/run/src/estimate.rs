@@ -11,6 +11,7 @@ use crate::assemble::{contact_model, walls};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::softness;
+use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
 
 /// Steps that a contact should last.
 const STEPS_PER_CONTACT: f64 = 15.0;
@@ -63,6 +64,9 @@ pub struct Estimate {
     pub si: Option<SiEstimate>,
     /// Expected seconds, from a short trial on this machine.
     pub expected_seconds: f64,
+    /// What a trajectory would take, if one is wanted.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<TrajectoryEstimate>,
     /// What looks doubtful.
     pub warnings: Vec<Warning>,
 }
@@ -70,9 +74,16 @@ pub struct Estimate {
 /// What would run, with the time it would take, measured by a short trial of it.
 ///
 /// # Errors
-/// [`RunError::Engine`] where the grains do not fit.
-pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
-    let trial = trial(configuration)?;
+/// [`RunError::Engine`] where the grains do not fit; [`RunError::Trajectory`] where there cannot be such a trajectory.
+pub fn estimate(
+    configuration: &Configuration,
+    trajectory: Option<&TrajectoryRequest>,
+) -> Result<Estimate, RunError> {
+    let mut trial = trial(configuration)?;
+    trial.run.follow_orientations();
+    let trajectory = trajectory
+        .map(|request| trajectory::estimate(request, configuration, &trial.run, trial.scale))
+        .transpose()?;
     let mut warnings = warnings(configuration);
     warnings.extend(trial.divergence);
     Ok(Estimate {
@@ -94,6 +105,7 @@ pub fn estimate(configuration: &Configuration) -> Result<Estimate, RunError> {
             .as_ref()
             .map(|units| SiEstimate::of(configuration, units)),
         expected_seconds: trial.expected_seconds,
+        trajectory,
         warnings,
     })
 }
@@ -103,6 +115,10 @@ struct Trial {
     expected_seconds: f64,
     /// That it diverged, which the whole run would do as well.
     divergence: Option<Warning>,
+    /// The trial where it ended.
+    run: Run,
+    /// How many times more grains the configuration has.
+    scale: f64,
 }
 
 /// Tries a run for at most [`TRIAL`]; a large tube is tried in a shorter one like it.
@@ -146,6 +162,8 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
     Ok(Trial {
         expected_seconds: scale * seconds_per_sample * configuration.run.samples as f64,
         divergence,
+        run,
+        scale,
     })
 }
 

@@ -10,6 +10,7 @@ use crate::pictures;
 use crate::run::Run;
 use crate::summary::Summary;
 use crate::tables::{profile_table, timeseries_table, waves_table};
+use crate::trajectory::Trajectory;
 
 const CONFIGURATION: &str = "config.toml";
 const SUMMARY: &str = "summary.json";
@@ -93,7 +94,7 @@ impl RunFolder {
                 });
             }
         }
-        Ok(())
+        Trajectory::check(path)
     }
 
     /// Opens the folder of a run that was stopped, to go on with it.
@@ -101,6 +102,21 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::NothingToResume`] where configuration or state is missing; errors of reading either.
     pub fn resume(path: &Path) -> Result<(Self, Run), RunError> {
+        let (folder, run) = Self::open(path)?;
+        if run.is_complete() {
+            return Err(RunError::NothingToResume {
+                folder: path.to_owned(),
+                reason: "it is complete".to_owned(),
+            });
+        }
+        Ok((folder, run))
+    }
+
+    /// Opens the folder of a run, finished or not, with its state.
+    ///
+    /// # Errors
+    /// As [`RunFolder::resume`], but for a run that is complete.
+    pub fn open(path: &Path) -> Result<(Self, Run), RunError> {
         let folder = Self {
             path: path.to_owned(),
         };
@@ -122,9 +138,6 @@ impl RunFolder {
         let state = std::fs::read(folder.file(STATE))
             .map_err(|error| missing(format!("{STATE}: {error}")))?;
         let run = Run::from_checkpoint(configuration, &state)?;
-        if run.is_complete() {
-            return Err(missing("it is complete".to_owned()));
-        }
         Ok((folder, run))
     }
 

@@ -2,7 +2,7 @@
 //!
 //! [`assemble`] turns a [`Configuration`] into a simulation; [`Run`] advances it sample by sample and keeps what was
 //! measured; [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or
-//! not at all. Nothing here prints or exits.
+//! not at all; [`Trajectory`] writes the spheres frame by frame. Nothing here prints or exits.
 
 mod assemble;
 mod error;
@@ -11,12 +11,14 @@ mod folder;
 mod late;
 mod pictures;
 mod recorder;
+mod render;
 mod run;
 mod si;
 mod softness;
 mod stopping;
 mod summary;
 mod tables;
+mod trajectory;
 
 pub use assemble::{assemble, contact_model, newtonian_reference, walls};
 pub use error::RunError;
@@ -24,13 +26,20 @@ pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use late::Pumping;
 pub use peristalsis_configuration::Configuration;
+pub use peristalsis_formats::TrajectoryFormat;
+pub use peristalsis_render::Picture;
 pub use pictures::snapshot_stack;
 pub use recorder::{Recorder, THRESHOLDS};
+pub use render::{Aspect, picture};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use si::{SiEstimate, SiSummary};
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
 pub use tables::{profile_table, timeseries_table, waves_table};
+pub use trajectory::{
+    Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport, TrajectoryRequest,
+    Window,
+};
 
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

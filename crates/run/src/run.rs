@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
-use peristalsis_engine::{Instructions, Simulation, Snapshot, SnapshotView};
+use peristalsis_engine::{EngineError, Instructions, Simulation, Snapshot, SnapshotView};
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
+use peristalsis_observe::Orientations;
 
 use crate::RunError;
 use crate::assemble::{assemble, parameters, walls};
@@ -14,7 +15,9 @@ use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 6;
+const STATE_LAYOUT: u32 = 7;
+/// Steps between two looks at how grains turn, of which a contact takes tens.
+const STEPS_PER_TURN: u64 = 10;
 
 /// A simulation together with what has been measured of it.
 #[derive(Clone, Debug)]
@@ -23,6 +26,8 @@ pub struct Run {
     simulation: Simulation,
     packing: PackingReport,
     recorder: Recorder,
+    /// How the grains have turned, where a trajectory asks for it.
+    orientations: Option<Orientations>,
     stopping: Option<Stopping>,
     /// Time spent in the engine and its observables, earlier parts of the run included.
     elapsed: Duration,
@@ -34,6 +39,7 @@ pub struct RunState {
     snapshot: Snapshot,
     packing: PackingReport,
     recorder: Recorder,
+    orientations: Option<Orientations>,
     elapsed: Duration,
 }
 
@@ -43,6 +49,7 @@ pub struct RunStateView<'a> {
     snapshot: SnapshotView<'a>,
     packing: PackingReport,
     recorder: &'a Recorder,
+    orientations: &'a Option<Orientations>,
     elapsed: Duration,
 }
 
@@ -78,6 +85,7 @@ impl Run {
             simulation,
             packing,
             recorder,
+            orientations: None,
             stopping: None,
             elapsed: Duration::ZERO,
         })
@@ -98,6 +106,7 @@ impl Run {
             simulation,
             packing: state.packing,
             recorder: state.recorder,
+            orientations: state.orientations,
             stopping: None,
             elapsed: state.elapsed,
         })
@@ -133,6 +142,7 @@ impl Run {
             snapshot: self.simulation.snapshot(),
             packing: self.packing,
             recorder: self.recorder.clone(),
+            orientations: self.orientations.clone(),
             elapsed: self.elapsed,
         }
     }
@@ -144,6 +154,7 @@ impl Run {
             snapshot: self.simulation.snapshot_view(),
             packing: self.packing,
             recorder: &self.recorder,
+            orientations: &self.orientations,
             elapsed: self.elapsed,
         }
     }
@@ -160,20 +171,56 @@ impl Run {
         Ok(self.simulation.compute_with(instructions, threads)?)
     }
 
+    /// Follows how the grains turn from now on, where there is friction to turn them.
+    pub fn follow_orientations(&mut self) {
+        if self.orientations.is_none() && self.configuration.contact.friction.is_some() {
+            self.orientations = Some(Orientations::new(&self.simulation));
+        }
+    }
+
+    /// How the grains have turned since [`Run::follow_orientations`].
+    #[must_use]
+    pub fn orientations(&self) -> Option<&Orientations> {
+        self.orientations.as_ref()
+    }
+
     /// Advances to the next sample and takes it.
     ///
     /// # Errors
     /// [`RunError::Engine`] where the simulation diverged; what was measured before stays.
     pub fn advance(&mut self) -> Result<(), RunError> {
+        self.advance_at_most(u64::MAX)
+    }
+
+    /// Advances to the next sample and takes it, or only by `most` steps, at least one, where it is further away.
+    ///
+    /// # Errors
+    /// As [`Run::advance`].
+    pub fn advance_at_most(&mut self, most: u64) -> Result<(), RunError> {
         let start = Instant::now();
-        let outcome = self
-            .simulation
-            .advance(self.configuration.run.steps_per_sample);
-        if outcome.is_ok() {
+        // A run that was stopped between two samples, where a trajectory has a frame, goes on to the next.
+        let each = self.configuration.run.steps_per_sample;
+        let to_sample = each - self.simulation.step() % each;
+        let outcome = self.advance_engine(most.clamp(1, to_sample));
+        if outcome.is_ok() && self.simulation.step().is_multiple_of(each) {
             self.recorder.record(&self.simulation);
         }
         self.elapsed += start.elapsed();
         Ok(outcome?)
+    }
+
+    fn advance_engine(&mut self, steps: u64) -> Result<(), EngineError> {
+        let Some(orientations) = &mut self.orientations else {
+            return self.simulation.advance(steps);
+        };
+        let mut left = steps;
+        while left > 0 {
+            let now = left.min(STEPS_PER_TURN);
+            self.simulation.advance(now)?;
+            orientations.follow(&self.simulation);
+            left -= now;
+        }
+        Ok(())
     }
 
     /// Whether all samples have been taken, or the run may end before.

@@ -8,6 +8,7 @@ use crate::late::{Pumping, Residence, axial_dispersion, error_of};
 use crate::recorder::THRESHOLDS;
 use crate::run::Run;
 use crate::si::SiSummary;
+use crate::trajectory::TrajectoryReport;
 use crate::{REVISION, VERSION};
 
 /// How a run ended.
@@ -130,6 +131,9 @@ pub struct Summary {
     pub si: Option<SiSummary>,
     /// What went wrong with an elastic wall: when, where, and the likely cause.
     pub wall_diagnosis: Vec<String>,
+    /// What was written of its trajectory, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trajectory: Option<TrajectoryReport>,
     /// Version of the program.
     pub version: &'static str,
     /// Revision of its source.
@@ -228,6 +232,7 @@ impl Summary {
                 .map(WallFault::in_words)
                 .collect(),
             si: None,
+            trajectory: None,
             version: VERSION,
             revision: REVISION,
         };

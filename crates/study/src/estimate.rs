@@ -70,7 +70,7 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
     let (mut seconds, mut tried) = (0.0, 0.0);
     for trial in trials {
         let configuration = &points[trial].configuration;
-        seconds += estimate(configuration)
+        seconds += estimate(configuration, None)
             .map_err(StudyError::Trial)?
             .expected_seconds;
         tried += work(configuration);

@@ -6,6 +6,7 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::print;
+use crate::commands::trajectory::{request, size};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -13,8 +14,8 @@ use crate::sources::{configuration, locate};
 /// Says what would run.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let configuration = configuration(&arguments.configuration)?;
-    let estimate =
-        estimate(&configuration).map_err(|error| locate(error, &arguments.configuration))?;
+    let estimate = estimate(&configuration, request(&arguments.frames).as_ref())
+        .map_err(|error| locate(error, &arguments.configuration))?;
     if arguments.json {
         print(&format!("{:#}\n", serde_json::json!(estimate)))?;
     } else {
@@ -81,6 +82,17 @@ fn in_words(estimate: &Estimate) -> String {
         "expected time     {}",
         seconds(estimate.expected_seconds)
     ));
+    if let Some(trajectory) = &estimate.trajectory {
+        for (format, bytes) in &trajectory.bytes {
+            lines.push(format!(
+                "trajectory        {} of {} frames, one every {} steps: about {}",
+                format.file_name(),
+                trajectory.frames,
+                trajectory.interval_steps,
+                size(*bytes)
+            ));
+        }
+    }
     for warning in &estimate.warnings {
         lines.push(format!("warning: {}: {}", warning.key, warning.message));
     }

@@ -4,9 +4,11 @@ pub(crate) mod check;
 pub(crate) mod completions;
 pub(crate) mod newtonian;
 pub(crate) mod presets;
+pub(crate) mod render;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
+pub(crate) mod trajectory;
 
 use std::io::Write;
 

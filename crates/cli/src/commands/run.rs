@@ -5,9 +5,12 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use peristalsis_engine::Instructions;
-use peristalsis_run::{Run, RunError, RunFolder, Status, Summary, Written, warnings};
+use peristalsis_run::{
+    Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written, warnings,
+};
 
 use crate::arguments::{InstructionSet, RunArguments};
+use crate::commands::trajectory::{in_words as in_one_line, request};
 use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
@@ -27,16 +30,27 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         None => begin(arguments)?,
     };
     run.compute_with(instructions(arguments)?, usize::from(arguments.threads))?;
+    let trajectory = open_trajectory(arguments, &folder, &mut run)?;
+    let mut record = Record { folder, trajectory };
     stop.keep_results();
     let mut display = Display::new(arguments.quiet, run.configuration().run.samples);
-    let ending = advance(&mut run, &folder, &stop, &mut display);
+    let ending = advance(&mut run, &mut record, &stop, &mut display);
     display.finish();
+    let (ending, trajectory) = match (ending, record.synchronize()) {
+        (Ending::Complete | Ending::Stopped(_), Err(error)) => (Ending::Unwritten(error), None),
+        (ending, _) => (ending, record.trajectory.as_ref().map(Trajectory::report)),
+    };
+    let folder = record.folder;
     let (status, message) = match &ending {
         Ending::Complete => (Status::Complete, None),
         Ending::Stopped(_) => (Status::Interrupted, None),
+        Ending::Unwritten(error) => (Status::Interrupted, Some(error.to_string())),
         Ending::Failed(error) => (Status::Diverged, Some(error.to_string())),
     };
-    let summary = Summary::of(&run, status, message);
+    let summary = Summary {
+        trajectory,
+        ..Summary::of(&run, status, message)
+    };
     let written = if arguments.csv {
         Written::WithCsv
     } else {
@@ -48,8 +62,18 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     } else {
         print(&in_words(&run, &summary))?;
     }
-    finished?;
+    if let Some(report) = &summary.trajectory {
+        tell(arguments, &format!("trajectory: {}", in_one_line(report)));
+    }
+    // Where the disk is full, what could not be written first is what to speak of.
+    if !matches!(ending, Ending::Unwritten(_)) {
+        finished?;
+    }
     match ending {
+        Ending::Unwritten(source) => Err(Failure::Trajectory {
+            folder: folder.path().to_owned(),
+            source,
+        }),
         Ending::Complete => {
             tell(
                 arguments,
@@ -107,6 +131,10 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
         .out
         .clone()
         .unwrap_or_else(|| new_folder(&name(&arguments.configuration)));
+    // What is refused is refused before anything is made.
+    if let Some(request) = request(&arguments.frames) {
+        TrajectoryPlan::new(&request, &configuration, 0, configuration.run.steps())?;
+    }
     // Before the work of packing, and again when the folder is made.
     RunFolder::check(&path)?;
     for warning in warnings(&configuration) {
@@ -140,22 +168,88 @@ enum Ending {
     Complete,
     /// By a signal, with its exit code.
     Stopped(u8),
+    /// Since its trajectory could not be written.
+    Unwritten(RunError),
     Failed(RunError),
 }
 
-fn advance(run: &mut Run, folder: &RunFolder, stop: &Stop, display: &mut Display) -> Ending {
+/// Where a run leaves what it finds.
+struct Record {
+    folder: RunFolder,
+    trajectory: Option<Trajectory>,
+}
+
+impl Record {
+    /// Saves the state, after the frames that led to it.
+    fn save_state(&mut self, run: &Run) -> Result<(), RunError> {
+        self.synchronize()?;
+        self.folder.save_state(run)
+    }
+
+    fn synchronize(&mut self) -> Result<(), RunError> {
+        match &mut self.trajectory {
+            Some(trajectory) => trajectory.synchronize(),
+            None => Ok(()),
+        }
+    }
+
+    fn observe(&mut self, run: &Run) -> Result<(), RunError> {
+        match &mut self.trajectory {
+            Some(trajectory) => trajectory.observe(run),
+            None => Ok(()),
+        }
+    }
+
+    /// Steps after which a frame is due.
+    fn steps_to_next(&self, run: &Run) -> u64 {
+        let trajectory = self.trajectory.as_ref();
+        trajectory
+            .and_then(|trajectory| trajectory.steps_to_next(run))
+            .unwrap_or(u64::MAX)
+    }
+}
+
+/// The trajectory that a run goes on with or begins, if it is to have one.
+fn open_trajectory(
+    arguments: &RunArguments,
+    folder: &RunFolder,
+    run: &mut Run,
+) -> Result<Option<Trajectory>, Failure> {
+    let request = request(&arguments.frames);
+    let there = Trajectory::resume(folder.path(), run)?;
+    match (there, request) {
+        (Some(_), Some(_)) => Err(Failure::Usage {
+            message: format!(
+                "{} has a trajectory, which goes on as it was begun",
+                folder.path().display()
+            ),
+            help: Some("leave out --trajectory".to_owned()),
+        }),
+        (None, Some(request)) => {
+            let (now, end) = (run.simulation().step(), run.configuration().run.steps());
+            let plan = TrajectoryPlan::new(&request, run.configuration(), now, end)?;
+            Ok(Some(Trajectory::begin(folder.path(), plan, run)?))
+        }
+        (there, None) => Ok(there),
+    }
+}
+
+fn advance(run: &mut Run, record: &mut Record, stop: &Stop, display: &mut Display) -> Ending {
     let mut saved = Instant::now();
     while !run.is_complete() {
         if let Some(code) = stop.requested() {
             return Ending::Stopped(code);
         }
-        if let Err(error) = run.advance() {
+        if let Err(error) = run.advance_at_most(record.steps_to_next(run)) {
             return Ending::Failed(error);
+        }
+        if let Err(error) = record.observe(run) {
+            return Ending::Unwritten(error);
         }
         display.update(&run.progress());
         if saved.elapsed() > SAVE_INTERVAL {
             // The run can go on without this state; the final save reports what is wrong with the disk.
-            if let Err(error) = folder.save_state(run) {
+            if let Err(error) = record.save_state(run) {
                 say(&error.to_string());
             }
             saved = Instant::now();

@@ -225,3 +225,41 @@ fn a_disk_that_fills_while_results_are_written() {
     );
     assert!(place.path("results/config.toml").is_file());
 }
+
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_with_a_trajectory_loses_nothing_else() {
+    for format in ["gsd", "lammps"] {
+        let place = Place::new();
+        let frames = ["--trajectory", format, "--trajectory-every", "0.03"];
+        // Room for each of the results, but not for the frames.
+        let stopped = [&frames[..], &["--out", "stopped"]].concat();
+        run_with_small_files(&place, 1024, &stopped)
+            .expect_code(1)
+            .says(&[
+                "the run was stopped",
+                "trajectory.",
+                "File too large",
+                "peristalsis run --resume stopped",
+            ]);
+        let summary = read_json(&place.path("stopped/summary.json"));
+        assert_eq!(summary["status"], "interrupted");
+        assert!(summary["trajectory"]["frames"].as_u64().unwrap() > 3);
+        place
+            .call(["run", "--resume", "stopped", "--trajectory", "gsd"])
+            .expect_code(2)
+            .says(&["leave out --trajectory"]);
+        place.call(["run", "--resume", "stopped"]).expect_code(0);
+        let through = [&frames[..], &["--out", "through"]].concat();
+        place.run_small(&through).expect_code(0);
+        let file = match format {
+            "gsd" => "trajectory.gsd",
+            _ => "trajectory.lammpstrj",
+        };
+        for name in [file, "timeseries.parquet", "profile.parquet"] {
+            let [one, other] = ["stopped", "through"]
+                .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
+            assert!(one == other, "{name} differs");
+        }
+    }
+}

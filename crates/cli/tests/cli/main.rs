@@ -10,9 +10,11 @@ mod checking;
 mod describing;
 mod folders;
 mod limits;
+mod pictures;
 mod running;
 mod streams;
 mod study;
+mod trajectories;
 
 #[cfg(unix)]
 mod signals;

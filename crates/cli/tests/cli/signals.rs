@@ -41,7 +41,8 @@ fn interrupted(place: &Place, arguments: &[&str], signal: &str) -> (Option<i32>,
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bits() {
     let place = Place::new();
-    let arguments = [LONG, &["--csv", "--out", "stopped"]].concat();
+    let frames = ["--trajectory", "gsd,vtp", "--trajectory-every", "3.3"];
+    let arguments = [LONG, &frames, &["--csv", "--out", "stopped"]].concat();
     let (code, said) = interrupted(&place, &arguments, "INT");
     assert_eq!(code, Some(130), "{said}");
     assert!(said.contains("stopped after"), "{said}");
@@ -79,6 +80,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
             ["run"]
                 .iter()
                 .chain(LONG)
+                .chain(&frames)
                 .chain(&["--csv", "--out", "through"]),
         )
         .expect_code(0);
@@ -90,6 +92,9 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
         "waves.parquet",
         "config.toml",
         "flow.svg",
+        "trajectory.gsd",
+        "trajectory.pvd",
+        "contacts.pvd",
     ] {
         let [one, other] = ["stopped", "through"]
             .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
@@ -98,7 +103,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
     let [one, other] =
         ["stopped", "through"].map(|folder| read_json(&place.path(folder).join("summary.json")));
     for (key, value) in one.as_object().unwrap() {
-        if !["seconds", "grain_steps_per_second"].contains(&key.as_str()) {
+        if !["seconds", "grain_steps_per_second", "trajectory"].contains(&key.as_str()) {
             assert_eq!(value, &other[key], "{key}");
         }
     }

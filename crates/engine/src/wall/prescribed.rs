@@ -181,6 +181,16 @@ impl PrescribedWall {
         )
     }
 
+    /// Velocity of a wall sphere now, radial \[d/t\].
+    #[must_use]
+    pub fn sphere_velocity(&self, index: usize) -> DVec3 {
+        let sphere = self.lattice.sphere(index);
+        let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
+        let Ring { velocity, .. } =
+            self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
+        DVec3::new(velocity * cos, velocity * sin, 0.0)
+    }
+
     /// Calls `touch` for each wall sphere that overlaps a sphere of diameter `diameter` at `centre`, with the number of
     /// the wall sphere, the separation (centre minus wall sphere, length below the reach) and the wall's velocity.
     #[inline(always)]

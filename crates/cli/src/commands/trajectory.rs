@@ -1,0 +1,111 @@
+//! `peristalsis trajectory`, and what `run` and `check` say of trajectories.
+
+use std::process::ExitCode;
+
+use peristalsis_run::{
+    Run, RunError, RunFolder, Trajectory, TrajectoryFormat, TrajectoryPlan, TrajectoryReport,
+    TrajectoryRequest, Window,
+};
+
+use crate::arguments::{FrameArguments, FrameFormat, TrajectoryArguments};
+use crate::commands::print;
+use crate::failure::Failure;
+use crate::stop::Stop;
+
+/// Folder for frames from a saved state, in the folder of their run.
+const FROM_STATE: &str = "from-state";
+
+/// Writes frames from the saved state of a run on.
+pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    let (folder, mut run) = RunFolder::open(&arguments.folder)?;
+    let request = TrajectoryRequest {
+        formats: formats(&arguments.formats),
+        every: arguments.every,
+        window: Window {
+            from: None,
+            to: None,
+        },
+    };
+    let now = run.simulation().step();
+    let plan = TrajectoryPlan::onward(&request, run.configuration(), now, arguments.duration)?;
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| folder.path().join(FROM_STATE));
+    std::fs::create_dir_all(&out).map_err(|source| RunError::Folder {
+        folder: out.clone(),
+        source,
+    })?;
+    let mut frames = Trajectory::begin(&out, plan, &mut run)?;
+    stop.keep_results();
+    let ending = go_on(&mut run, &mut frames, &stop);
+    frames.synchronize()?;
+    let report = frames.report();
+    if arguments.json {
+        print(&format!("{:#}\n", serde_json::json!(report)))?;
+    } else {
+        print(&format!("{}\n", in_words(&report)))?;
+    }
+    ending
+}
+
+/// Advances from frame to frame.
+fn go_on(run: &mut Run, frames: &mut Trajectory, stop: &Stop) -> Result<ExitCode, Failure> {
+    while let Some(steps) = frames.steps_to_next(run) {
+        if let Some(code) = stop.requested() {
+            return Ok(ExitCode::from(code));
+        }
+        run.advance_at_most(steps)?;
+        frames.observe(run)?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What the options ask for, if they ask for a trajectory.
+pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
+    (!arguments.trajectory.is_empty()).then(|| TrajectoryRequest {
+        formats: formats(&arguments.trajectory),
+        every: arguments.trajectory_every,
+        window: arguments.trajectory_window.unwrap_or(Window {
+            from: None,
+            to: None,
+        }),
+    })
+}
+
+fn formats(arguments: &[FrameFormat]) -> Vec<TrajectoryFormat> {
+    let formats = arguments.iter().map(|format| match format {
+        FrameFormat::Gsd => TrajectoryFormat::Gsd,
+        FrameFormat::Vtp => TrajectoryFormat::Vtp,
+        FrameFormat::Lammps => TrajectoryFormat::Lammps,
+    });
+    formats.collect()
+}
+
+/// What was written, in a line.
+pub(crate) fn in_words(report: &TrajectoryReport) -> String {
+    let files = report.files.iter().map(|file| file.display().to_string());
+    format!(
+        "{} {}, one every {} steps, {}: {}",
+        report.frames,
+        if report.frames == 1 {
+            "frame"
+        } else {
+            "frames"
+        },
+        report.interval_steps,
+        size(report.bytes),
+        files.collect::<Vec<_>>().join(", ")
+    )
+}
+
+/// Bytes in a unit that suits them.
+pub(crate) fn size(bytes: u64) -> String {
+    match bytes as f64 {
+        bytes if bytes < 1e3 => format!("{bytes:.0} B"),
+        bytes if bytes < 1e6 => format!("{:.1} kB", bytes / 1e3),
+        bytes if bytes < 1e9 => format!("{:.1} MB", bytes / 1e6),
+        bytes => format!("{:.1} GB", bytes / 1e9),
+    }
+}

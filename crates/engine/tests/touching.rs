@@ -1,0 +1,123 @@
+//! What is said of contacts, against the accelerations and the tally of the same instant.
+
+mod common;
+
+use common::{
+    FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, packed, parameters,
+    strained,
+};
+use glam::DVec3;
+use peristalsis_engine::{Kernel, Parameters, Simulation, Wall};
+
+#[test]
+fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
+    let strain = strained(coarse(2), -1.0, 2.6, 0.1);
+    let stress = elastic(elastic_parameters());
+    for (wall, number) in [(&strain, 60), (&stress, 120)] {
+        for normal in [LINEAR, HERTZ] {
+            for friction in [None, Some(FRICTION)] {
+                for kernel in [Kernel::Fast, Kernel::Reference] {
+                    let case = format!("{normal:?} {friction:?} {kernel:?} {number} grains");
+                    let bodies = packed(number, 1.0, wall, normal, 5);
+                    let parameters = Parameters {
+                        kernel,
+                        ..parameters(normal, friction, INTEGRATORS[0], 0.01)
+                    };
+                    let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
+                    simulation.advance(2_000).unwrap();
+                    assert_forces(&simulation, &case);
+                }
+            }
+        }
+    }
+}
+
+fn assert_forces(simulation: &Simulation, case: &str) {
+    let (bodies, tally) = (simulation.bodies(), simulation.tally());
+    let touching = simulation.touching();
+    let of_grains = |wall: bool| {
+        let grains = touching.iter().filter(|touch| touch.first < bodies.grains);
+        grains
+            .filter(|touch| (touch.second >= bodies.grains) == wall)
+            .count() as u64
+    };
+    assert_eq!(of_grains(false), tally.grain_contacts, "{case}");
+    assert_eq!(of_grains(true), tally.wall_contacts, "{case}");
+    assert!(
+        tally.grain_contacts > 10 && tally.wall_contacts > 10,
+        "{case}"
+    );
+    let sliding = touching.iter().filter(|touch| touch.sliding).count() as u64;
+    assert!(
+        sliding.abs_diff(tally.sliding_contacts) <= 2 + tally.sliding_contacts / 10,
+        "{case}: {sliding} slide, not {}",
+        tally.sliding_contacts
+    );
+
+    let mut forces = vec![DVec3::ZERO; bodies.grains];
+    let mut largest_overlap = 0.0_f64;
+    for touch in &touching {
+        let in_plane = touch.force - touch.normal_force * touch.separation.normalize();
+        assert!(
+            (in_plane.length() - touch.tangential_force).abs() < 1e-12,
+            "{case}"
+        );
+        assert!(touch.first < touch.second);
+        if touch.first >= bodies.grains {
+            continue;
+        }
+        largest_overlap = largest_overlap.max(touch.overlap);
+        forces[touch.first] += touch.force;
+        if touch.second < bodies.grains {
+            forces[touch.second] -= touch.force;
+        }
+        let position = match simulation.wall() {
+            Wall::Prescribed(wall) if touch.second >= bodies.grains => {
+                wall.sphere_position(touch.second - bodies.grains)
+            }
+            _ => bodies.position[touch.second],
+        };
+        let length = simulation.wall().lattice().length();
+        let mut away = bodies.position[touch.first] - position - touch.separation;
+        away.z -= (away.z / length).round() * length;
+        assert!(away.length() < 1e-12, "{case}");
+    }
+    assert!(
+        (largest_overlap - tally.largest_overlap).abs() < 1e-12,
+        "{case}"
+    );
+    // Forces of the step itself were those of velocities predicted for its end: the same to the order of the step.
+    let scale = forces
+        .iter()
+        .fold(0.0_f64, |most, force| most.max(force.length()));
+    for (grain, force) in forces.iter().enumerate() {
+        let expected = bodies.mass[grain] * bodies.acceleration[grain];
+        assert!(
+            (*force - expected).length() < 2e-3 * scale,
+            "{case}: grain {grain}: {force} instead of {expected}"
+        );
+    }
+}
+
+#[test]
+fn a_wall_sphere_moves_as_its_velocity_says() {
+    let mut wall = match strained(coarse(2), 1.0, 2.2, 0.1) {
+        Wall::Prescribed(wall) => wall,
+        Wall::Elastic(_) => unreachable!("a strained wall is prescribed"),
+    };
+    let places = |time: f64, wall: &mut peristalsis_engine::wall::PrescribedWall| {
+        wall.move_to(time);
+        (0..wall.lattice().spheres())
+            .map(|sphere| wall.sphere_position(sphere))
+            .collect::<Vec<_>>()
+    };
+    let (before, after) = (places(3.0 - 1e-4, &mut wall), places(3.0 + 1e-4, &mut wall));
+    wall.move_to(3.0);
+    for sphere in 0..wall.lattice().spheres() {
+        let slope = (after[sphere] - before[sphere]) / 2e-4;
+        assert!(
+            (wall.sphere_velocity(sphere) - slope).length() < 1e-7,
+            "{sphere}"
+        );
+    }
+}

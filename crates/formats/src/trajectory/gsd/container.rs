@@ -1,0 +1,343 @@
+//! The container of GSD: named arrays, frame by frame.
+//!
+//! Layout of version 2.1 (<https://gsd.readthedocs.io/en/stable/file-layer.html>), all numbers little-endian:
+//!
+//! | part | bytes | content |
+//! |---|---|---|
+//! | header | 256 | where index and names are, schema, application |
+//! | index | 32 an entry | frame, rows, place, columns, name, type of each array, in order of frame and name |
+//! | names | 1024 | names of the arrays, each ended by a zero byte |
+//! | arrays | | |
+//!
+//! The index has room for the whole trajectory from the start, so that nothing is ever moved, and a trajectory that was
+//! cut back and goes on has the same bytes as one in one go.
+
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+use super::super::append::Growing;
+use crate::error::FormatError;
+
+const MAGIC: u64 = 0x65df_65df_65df_65df;
+const FORMAT_VERSION: u32 = (2 << 16) | 1;
+const APPLICATION: &str = concat!("peristalsis ", env!("CARGO_PKG_VERSION"));
+const SCHEMA: &str = "hoomd";
+const SCHEMA_VERSION: u32 = (1 << 16) | 4;
+const HEADER_BYTES: u64 = 256;
+/// Bytes of an index entry.
+pub(super) const ENTRY_BYTES: u64 = 32;
+/// Names are allocated in units of so many bytes.
+const NAME_UNIT: u64 = 64;
+/// Index entries that are read at once.
+const ENTRIES_A_READ: u64 = 4096;
+const NAMES_BYTES: u64 = 16 * NAME_UNIT;
+
+/// Types of numbers by their number in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    U32 = 3,
+    U64 = 4,
+    I8 = 5,
+    I32 = 7,
+    F32 = 9,
+    F64 = 10,
+}
+
+impl Kind {
+    fn bytes(self) -> usize {
+        match self {
+            Self::I8 => 1,
+            Self::U32 | Self::I32 | Self::F32 => 4,
+            Self::U64 | Self::F64 => 8,
+        }
+    }
+}
+
+/// A named array of a frame, row by row.
+#[derive(Clone, Debug)]
+pub(super) struct Chunk {
+    pub(super) name: String,
+    pub(super) kind: Kind,
+    pub(super) columns: u32,
+    pub(super) bytes: Vec<u8>,
+}
+
+/// Where an array is.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    frame: u64,
+    rows: u64,
+    location: u64,
+    columns: u32,
+    name: u16,
+    kind: u8,
+}
+
+impl Entry {
+    fn encode(&self) -> [u8; ENTRY_BYTES as usize] {
+        let mut bytes = [0; ENTRY_BYTES as usize];
+        bytes[0..8].copy_from_slice(&self.frame.to_le_bytes());
+        bytes[8..16].copy_from_slice(&self.rows.to_le_bytes());
+        bytes[16..24].copy_from_slice(&self.location.to_le_bytes());
+        bytes[24..28].copy_from_slice(&self.columns.to_le_bytes());
+        bytes[28..30].copy_from_slice(&self.name.to_le_bytes());
+        bytes[30] = self.kind;
+        bytes
+    }
+
+    fn decode(bytes: &[u8]) -> Self {
+        let long = |at: usize| u64_at(bytes, at);
+        Self {
+            frame: long(0),
+            rows: long(8),
+            location: long(16),
+            columns: u32::from_le_bytes([bytes[24], bytes[25], bytes[26], bytes[27]]),
+            name: u16::from_le_bytes([bytes[28], bytes[29]]),
+            kind: bytes[30],
+        }
+    }
+}
+
+fn u64_at(bytes: &[u8], at: usize) -> u64 {
+    let mut eight = [0; 8];
+    eight.copy_from_slice(&bytes[at..at + 8]);
+    u64::from_le_bytes(eight)
+}
+
+/// A GSD file that is being written.
+#[derive(Debug)]
+pub(super) struct Container {
+    file: Growing,
+    /// Entries that the index has room for.
+    capacity: u64,
+    /// Entries in it.
+    entries: u64,
+    names: Vec<String>,
+    frames: u64,
+}
+
+impl Container {
+    /// An empty file with room for so many arrays.
+    pub(super) fn create(path: &Path, capacity: u64) -> Result<Self, FormatError> {
+        let mut file = Growing::create(path)?;
+        let capacity = capacity.max(1);
+        let names_at = HEADER_BYTES + capacity * ENTRY_BYTES;
+        let mut header = [0; HEADER_BYTES as usize];
+        header[0..8].copy_from_slice(&MAGIC.to_le_bytes());
+        header[8..16].copy_from_slice(&HEADER_BYTES.to_le_bytes());
+        header[16..24].copy_from_slice(&capacity.to_le_bytes());
+        header[24..32].copy_from_slice(&names_at.to_le_bytes());
+        header[32..40].copy_from_slice(&(NAMES_BYTES / NAME_UNIT).to_le_bytes());
+        header[40..44].copy_from_slice(&SCHEMA_VERSION.to_le_bytes());
+        header[44..48].copy_from_slice(&FORMAT_VERSION.to_le_bytes());
+        header[48..48 + APPLICATION.len()].copy_from_slice(APPLICATION.as_bytes());
+        header[112..112 + SCHEMA.len()].copy_from_slice(SCHEMA.as_bytes());
+        file.append(&header)?;
+        file.set_end(names_at + NAMES_BYTES)?;
+        Ok(Self {
+            file,
+            capacity,
+            entries: 0,
+            names: Vec::new(),
+            frames: 0,
+        })
+    }
+
+    /// A file that [`Container::create`] made, cut back to the frames that `keep` wants, by the first number of the array
+    /// `name` in each; frames after the first unwanted one go.
+    pub(super) fn resume(
+        path: &Path,
+        name: &str,
+        keep: impl Fn(u64) -> bool,
+    ) -> Result<Self, FormatError> {
+        let mut file = Growing::open(path)?;
+        let damaged = |reason: &str| FormatError::NotATrajectory {
+            path: path.to_owned(),
+            reason: reason.to_owned(),
+        };
+        let length = file.end();
+        let header = read(&mut file, 0, HEADER_BYTES.min(length))?;
+        if header.len() < HEADER_BYTES as usize || u64_at(&header, 0) != MAGIC {
+            return Err(damaged("it does not begin like a GSD file"));
+        }
+        let (index_at, capacity) = (u64_at(&header, 8), u64_at(&header, 16));
+        let names_at = u64_at(&header, 24);
+        let first_array = capacity
+            .checked_mul(ENTRY_BYTES)
+            .and_then(|bytes| bytes.checked_add(HEADER_BYTES + NAMES_BYTES));
+        let of_ours = index_at == HEADER_BYTES
+            && header[48..].starts_with(b"peristalsis ")
+            && first_array.is_some_and(|end| end <= length && names_at == end - NAMES_BYTES);
+        let (true, Some(first_array)) = (of_ours, first_array) else {
+            return Err(damaged("it is another program's GSD file, or cut short"));
+        };
+        let names = read(&mut file, names_at, NAMES_BYTES)?
+            .split(|&byte| byte == 0)
+            .take_while(|name| !name.is_empty())
+            .map(|name| String::from_utf8_lossy(name).into_owned())
+            .collect::<Vec<_>>();
+        let wanted = names.iter().position(|known| known == name);
+
+        let written = read_entries(&mut file, capacity)?;
+        let (mut entries, mut frames, mut end) = (0, 0, first_array);
+        for frame in written.chunk_by(|one, other| one.frame == other.frame) {
+            let marker = frame
+                .iter()
+                .find(|entry| Some(usize::from(entry.name)) == wanted)
+                .filter(|entry| entry.location + 8 <= length);
+            let Some(marker) = marker else { break };
+            let value = u64_at(&read(&mut file, marker.location, 8)?, 0);
+            let frame_end = frame
+                .iter()
+                .map(|entry| {
+                    entry.location + entry.rows * u64::from(entry.columns) * kind_bytes(entry.kind)
+                })
+                .max()
+                .unwrap_or(0);
+            if !keep(value) || frame_end > length {
+                break;
+            }
+            (entries, frames, end) = (entries + frame.len() as u64, frames + 1, frame_end);
+        }
+        // First what finds the frames, then what they hold.
+        let forgotten = vec![0; (written.len() as u64 - entries) as usize * ENTRY_BYTES as usize];
+        file.write_at(HEADER_BYTES + entries * ENTRY_BYTES, &forgotten)?;
+        file.set_end(end)?;
+        Ok(Self {
+            file,
+            capacity,
+            entries,
+            names,
+            frames,
+        })
+    }
+
+    /// Writes the arrays of one frame more: arrays, names, and last the entries by which they are found.
+    pub(super) fn append(&mut self, chunks: &[Chunk]) -> Result<(), FormatError> {
+        if self.entries + chunks.len() as u64 > self.capacity {
+            return Err(FormatError::NotATrajectory {
+                path: self.file.path().to_owned(),
+                reason: format!("it has room for {} arrays only", self.capacity),
+            });
+        }
+        let mut names = self.names.clone();
+        let mut data = Vec::with_capacity(chunks.iter().map(|chunk| chunk.bytes.len()).sum());
+        let mut entries = Vec::with_capacity(chunks.len());
+        for chunk in chunks {
+            let known = names.iter().position(|name| *name == chunk.name);
+            let name = known.unwrap_or_else(|| {
+                names.push(chunk.name.clone());
+                names.len() - 1
+            });
+            entries.push(Entry {
+                frame: self.frames,
+                rows: (chunk.bytes.len() / chunk.kind.bytes()) as u64 / u64::from(chunk.columns),
+                location: self.file.end() + data.len() as u64,
+                columns: chunk.columns,
+                name: name as u16,
+                kind: chunk.kind as u8,
+            });
+            data.extend_from_slice(&chunk.bytes);
+        }
+        entries.sort_unstable_by_key(|entry| entry.name);
+        let before = self.file.end();
+        self.file.append(&data)?;
+        let found = self
+            .write_names(&names)
+            .and_then(|()| self.write_entries(&entries));
+        if let Err(error) = found {
+            // Back to the frames before; where that fails too, the failure that came first is what counts.
+            let blank = vec![0; entries.len() * ENTRY_BYTES as usize];
+            drop(self.file.write_at(self.next_entry(), &blank));
+            drop(self.file.set_end(before));
+            return Err(error);
+        }
+        self.names = names;
+        self.entries += entries.len() as u64;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn write_names(&mut self, names: &[String]) -> Result<(), FormatError> {
+        if names.len() == self.names.len() {
+            return Ok(());
+        }
+        let text = names.iter().flat_map(|name| name.bytes().chain([0]));
+        let text = text.collect::<Vec<_>>();
+        assert!(
+            (text.len() as u64) < NAMES_BYTES,
+            "the names of a frame's arrays are ours, and fit"
+        );
+        let at = HEADER_BYTES + self.capacity * ENTRY_BYTES;
+        self.file.write_at(at, &text)
+    }
+
+    fn write_entries(&mut self, entries: &[Entry]) -> Result<(), FormatError> {
+        let bytes = entries.iter().flat_map(Entry::encode).collect::<Vec<_>>();
+        self.file.write_at(self.next_entry(), &bytes)
+    }
+
+    fn next_entry(&self) -> u64 {
+        HEADER_BYTES + self.entries * ENTRY_BYTES
+    }
+
+    pub(super) fn synchronize(&mut self) -> Result<(), FormatError> {
+        self.file.synchronize()
+    }
+
+    pub(super) fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.file.end()
+    }
+}
+
+/// Bytes of a number of a type; 0 for a type that is never written.
+fn kind_bytes(kind: u8) -> u64 {
+    [
+        Kind::U32,
+        Kind::U64,
+        Kind::I8,
+        Kind::I32,
+        Kind::F32,
+        Kind::F64,
+    ]
+    .into_iter()
+    .find(|known| *known as u8 == kind)
+    .map_or(0, |known| known.bytes() as u64)
+}
+
+/// The entries that have been written; the rest of the index, which may be long, is not looked at.
+fn read_entries(file: &mut Growing, capacity: u64) -> Result<Vec<Entry>, FormatError> {
+    let mut entries = Vec::new();
+    while (entries.len() as u64) < capacity {
+        let done = entries.len() as u64;
+        let block = read(
+            file,
+            HEADER_BYTES + done * ENTRY_BYTES,
+            ENTRIES_A_READ.min(capacity - done) * ENTRY_BYTES,
+        )?;
+        let written = block
+            .chunks_exact(ENTRY_BYTES as usize)
+            .map(Entry::decode)
+            .take_while(|entry| entry.location != 0);
+        entries.extend(written);
+        if (entries.len() as u64) < done + ENTRIES_A_READ {
+            break;
+        }
+    }
+    Ok(entries)
+}
+
+fn read(file: &mut Growing, offset: u64, bytes: u64) -> Result<Vec<u8>, FormatError> {
+    let mut buffer = vec![0; bytes as usize];
+    let path = file.path().to_owned();
+    let inner = file.file();
+    inner
+        .seek(SeekFrom::Start(offset))
+        .and_then(|_| inner.read_exact(&mut buffer))
+        .map_err(FormatError::io("read", &path))?;
+    Ok(buffer)
+}

@@ -1,0 +1,203 @@
+//! Frames as the text that LAMMPS dumps, in `lj` units: lengths in d, times in t.
+//!
+//! Types are 1 for grains and 2 for the wall. Numbers are the shortest that read back to the same 64 bits. See
+//! <https://docs.lammps.org/dump.html>.
+
+use std::fmt::Write as _;
+use std::io::{BufRead, BufReader, Seek, SeekFrom};
+use std::path::Path;
+
+use super::append::Growing;
+use super::{Frame, TrajectoryFile};
+use crate::error::FormatError;
+
+/// Name of the file in a run's folder.
+pub const FILE: &str = "trajectory.lammpstrj";
+
+const UNITS: &str = "ITEM: UNITS\nlj\n";
+
+/// A trajectory as LAMMPS text that is being written.
+#[derive(Debug)]
+pub struct LammpsTrajectory {
+    file: Growing,
+    frames: u64,
+}
+
+impl LammpsTrajectory {
+    /// An empty trajectory.
+    ///
+    /// # Errors
+    /// [`FormatError::Io`].
+    pub fn create(path: &Path) -> Result<Self, FormatError> {
+        Ok(Self {
+            file: Growing::create(path)?,
+            frames: 0,
+        })
+    }
+
+    /// A trajectory to go on with, without its frames after `step`.
+    ///
+    /// # Errors
+    /// [`FormatError::Io`]; [`FormatError::NotATrajectory`].
+    pub fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
+        let mut file = Growing::open(path)?;
+        let failed = |source| FormatError::io("read", path)(source);
+        let inner = file.file();
+        inner.seek(SeekFrom::Start(0)).map_err(failed)?;
+        let mut reader = BufReader::new(inner);
+        let (mut frames, mut end) = (0, 0);
+        while let Some((found, bytes)) = next_frame(&mut reader, frames == 0).map_err(failed)? {
+            if found > step {
+                break;
+            }
+            (frames, end) = (frames + 1, end + bytes);
+        }
+        drop(reader);
+        if frames == 0 && file.end() > 0 && !begins_as_ours(&mut file).map_err(failed)? {
+            return Err(FormatError::NotATrajectory {
+                path: path.to_owned(),
+                reason: "it does not begin like a LAMMPS dump with units".to_owned(),
+            });
+        }
+        file.set_end(end)?;
+        Ok(Self { file, frames })
+    }
+}
+
+impl TrajectoryFile for LammpsTrajectory {
+    fn append(&mut self, frame: &Frame) -> Result<(), FormatError> {
+        let text = encode(frame, self.frames == 0);
+        self.file.append(text.as_bytes())?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn synchronize(&mut self) -> Result<(), FormatError> {
+        self.file.synchronize()
+    }
+
+    fn frames(&self) -> u64 {
+        self.frames
+    }
+
+    fn bytes(&self) -> u64 {
+        self.file.end()
+    }
+}
+
+/// One frame; the first one names the units.
+pub(super) fn encode(frame: &Frame, first: bool) -> String {
+    let mut text = String::with_capacity(160 * frame.spheres() + 300);
+    let mut line = |values: std::fmt::Arguments<'_>| {
+        text.write_fmt(values)
+            .expect("writing to a String cannot fail");
+    };
+    let half = 0.5 * frame.width;
+    if first {
+        line(format_args!("{UNITS}"));
+    }
+    line(format_args!(
+        "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS ff ff pp\n",
+        frame.time,
+        frame.step,
+        frame.spheres()
+    ));
+    line(format_args!(
+        "{:?} {half:?}\n{:?} {half:?}\n0.0 {:?}\nITEM: ATOMS id type diameter x y z vx vy vz",
+        -half, -half, frame.length
+    ));
+    if frame.rotation.is_some() {
+        line(format_args!(" omegax omegay omegaz"));
+    }
+    line(format_args!("\n"));
+    for sphere in 0..frame.spheres() {
+        let [x, y, z] = frame.position[sphere];
+        let [vx, vy, vz] = frame.velocity[sphere];
+        line(format_args!(
+            "{} {} {:?} {x:?} {y:?} {z:?} {vx:?} {vy:?} {vz:?}",
+            sphere + 1,
+            1 + u8::from(sphere >= frame.grains),
+            frame.diameter[sphere],
+        ));
+        if let Some(rotation) = &frame.rotation {
+            let still = [0.0; 3];
+            let [x, y, z] = rotation.angular_velocity.get(sphere).unwrap_or(&still);
+            line(format_args!(" {x:?} {y:?} {z:?}"));
+        }
+        line(format_args!("\n"));
+    }
+    text
+}
+
+/// Step and bytes of the next whole frame, if there is one.
+fn next_frame(reader: &mut impl BufRead, first: bool) -> std::io::Result<Option<(u64, u64)>> {
+    let mut lines = Lines {
+        reader,
+        line: String::new(),
+        bytes: 0,
+    };
+    if first && !(lines.next_is("ITEM: UNITS")? && lines.next_is("lj")?) {
+        return Ok(None);
+    }
+    if !(lines.next_is("ITEM: TIME")? && lines.advance()? && lines.next_is("ITEM: TIMESTEP")?) {
+        return Ok(None);
+    }
+    let Some(step) = lines.next_number()? else {
+        return Ok(None);
+    };
+    if !lines.next_is("ITEM: NUMBER OF ATOMS")? {
+        return Ok(None);
+    }
+    let Some(spheres) = lines.next_number()? else {
+        return Ok(None);
+    };
+    // Box and names of the columns, then the spheres.
+    for _ in 0..spheres.saturating_add(5) {
+        if !lines.advance()? {
+            return Ok(None);
+        }
+    }
+    Ok(Some((step, lines.bytes)))
+}
+
+/// Whether a file begins like one of ours, as far as it goes.
+fn begins_as_ours(file: &mut Growing) -> std::io::Result<bool> {
+    let inner = file.file();
+    inner.seek(SeekFrom::Start(0))?;
+    let mut first = String::new();
+    BufReader::new(inner).read_line(&mut first)?;
+    Ok(UNITS.starts_with(first.as_str()))
+}
+
+/// Whole lines of a file.
+struct Lines<'a, R> {
+    reader: &'a mut R,
+    line: String,
+    bytes: u64,
+}
+
+impl<R: BufRead> Lines<'_, R> {
+    /// Whether there is one more.
+    fn advance(&mut self) -> std::io::Result<bool> {
+        self.line.clear();
+        self.bytes += match self.reader.read_line(&mut self.line) {
+            Ok(read) => read as u64,
+            // A page that was lost in a power cut: no text, no line.
+            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => return Ok(false),
+            Err(error) => return Err(error),
+        };
+        Ok(self.line.ends_with('\n'))
+    }
+
+    fn next_is(&mut self, text: &str) -> std::io::Result<bool> {
+        Ok(self.advance()? && self.line.trim_end() == text)
+    }
+
+    fn next_number(&mut self) -> std::io::Result<Option<u64>> {
+        Ok(if self.advance()? {
+            self.line.trim_end().parse().ok()
+        } else {
+            None
+        })
+    }
+}

@@ -1,0 +1,336 @@
+//! Rays that meet spheres.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use crate::colour::Colour;
+use crate::error::RenderError;
+use crate::light::{Occluder, REACH, shade};
+use crate::picture::Picture;
+use crate::scene::{Finish, Scene, Sphere, View};
+
+/// Rays across and down in a pixel.
+const RAYS: usize = 3;
+/// Most pixels of a picture.
+const MOST_PIXELS: u64 = 1 << 28;
+/// How much of what is behind glass it hides where it faces the eye, and at its rim.
+const GLASS: (f32, f32) = (0.012, 0.5);
+
+/// A sphere as the eye sees it.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    centre: Vec3,
+    radius: f32,
+    colour: Colour,
+}
+
+/// Draws a scene.
+///
+/// # Errors
+/// [`RenderError::Size`] where there are no pixels, or too many.
+pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
+    let (width, height) = (view.width, view.height);
+    let pixels = u64::from(width) * u64::from(height);
+    if pixels == 0 || pixels > MOST_PIXELS {
+        return Err(RenderError::Size {
+            width,
+            height,
+            most: MOST_PIXELS,
+        });
+    }
+    let opaque = seen(scene, view, Finish::Opaque);
+    let glass = seen(scene, view, Finish::Glass);
+    let around = neighbours(&opaque);
+    let rows: Vec<Vec<u8>> = (0..height)
+        .into_par_iter()
+        .map(|row| {
+            draw_row(
+                &Row::new(view, row, &opaque, &glass),
+                &opaque,
+                &glass,
+                &around,
+                scene.background,
+            )
+        })
+        .collect();
+    Ok(Picture::new(width, height, rows.concat()))
+}
+
+/// The spheres of a finish that are in the picture or hide light from what is, from left to right.
+fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
+    let half = 0.5 / view.scale as f32 * Vec3::new(view.width as f32, view.height as f32, 0.0);
+    let mut seen: Vec<Seen> = scene
+        .spheres
+        .iter()
+        .filter(|sphere| {
+            sphere.finish == finish && sphere.radius > 0.0 && sphere.centre.is_finite()
+        })
+        .map(|sphere: &Sphere| Seen {
+            centre: view.seen(sphere.centre),
+            radius: sphere.radius as f32,
+            colour: sphere.colour,
+        })
+        .filter(|sphere| {
+            let margin = 4.0 * sphere.radius;
+            sphere.centre.x.abs() < half.x + margin && sphere.centre.y.abs() < half.y + margin
+        })
+        .collect();
+    seen.sort_by(|one, other| one.centre.x.total_cmp(&other.centre.x));
+    seen
+}
+
+/// For each sphere those near enough to hide light from it.
+fn neighbours(spheres: &[Seen]) -> Vec<Vec<Occluder>> {
+    let largest = spheres
+        .iter()
+        .fold(0.0_f32, |most, sphere| most.max(sphere.radius));
+    spheres
+        .par_iter()
+        .enumerate()
+        .map(|(index, sphere)| {
+            let reach = |other: &Seen| REACH * (sphere.radius + other.radius);
+            let window = REACH * (sphere.radius + largest);
+            let first = spheres.partition_point(|it| it.centre.x < sphere.centre.x - window);
+            let last = spheres.partition_point(|it| it.centre.x <= sphere.centre.x + window);
+            (first..last)
+                .filter(|&other| other != index)
+                .map(|other| spheres[other])
+                .filter(|other| other.centre.distance(sphere.centre) < reach(other))
+                .map(|other| Occluder {
+                    centre: other.centre,
+                    radius: other.radius,
+                })
+                .collect()
+        })
+        .collect()
+}
+
+/// The rays of a row of pixels, and the spheres that they can meet.
+struct Row {
+    /// Rays a pixel row, times rows of rays.
+    across: usize,
+    /// Distance of rays \[d\], and the leftmost.
+    pitch: f32,
+    left: f32,
+    heights: [f32; RAYS],
+    opaque: Vec<usize>,
+    glass: Vec<usize>,
+}
+
+impl Row {
+    fn new(view: &View, row: u32, opaque: &[Seen], glass: &[Seen]) -> Self {
+        let pitch = 1.0 / (view.scale * RAYS as f64);
+        let across = view.width as usize * RAYS;
+        let down = f64::from(view.height) * RAYS as f64;
+        let height = |ray: usize| {
+            ((0.5 * down - (f64::from(row) * RAYS as f64 + ray as f64 + 0.5)) * pitch) as f32
+        };
+        let heights: [f32; RAYS] = std::array::from_fn(height);
+        let meets = |sphere: &Seen| {
+            sphere.centre.y - sphere.radius <= heights[0]
+                && sphere.centre.y + sphere.radius >= heights[RAYS - 1]
+        };
+        let of = |spheres: &[Seen]| {
+            (0..spheres.len())
+                .filter(|&it| meets(&spheres[it]))
+                .collect()
+        };
+        Self {
+            across,
+            pitch: pitch as f32,
+            left: (-0.5 * across as f64 * pitch + 0.5 * pitch) as f32,
+            heights,
+            opaque: of(opaque),
+            glass: of(glass),
+        }
+    }
+
+    /// Calls `meet` with ray, height of the sphere's surface over its centre, and place beside it, for each ray at
+    /// `height` that meets the sphere.
+    fn for_each_meeting(&self, sphere: &Seen, height: f32, mut meet: impl FnMut(usize, Vec3)) {
+        let dy = height - sphere.centre.y;
+        let room = sphere.radius * sphere.radius - dy * dy;
+        if room <= 0.0 {
+            return;
+        }
+        let half = room.sqrt();
+        let ray = |x: f32| (x - self.left) / self.pitch;
+        let first = ray(sphere.centre.x - half).ceil().max(0.0) as usize;
+        let end = (ray(sphere.centre.x + half).floor() + 1.0).clamp(0.0, self.across as f32);
+        for ray in first..end as usize {
+            let dx = self.left + ray as f32 * self.pitch - sphere.centre.x;
+            let depth = room - dx * dx;
+            if depth > 0.0 {
+                meet(ray, Vec3::new(dx, dy, depth.sqrt()));
+            }
+        }
+    }
+}
+
+fn draw_row(
+    row: &Row,
+    opaque: &[Seen],
+    glass: &[Seen],
+    around: &[Vec<Occluder>],
+    background: Colour,
+) -> Vec<u8> {
+    let mut sums = vec![Vec3::ZERO; row.across / RAYS];
+    let mut nearest: Vec<Option<(usize, f32, Vec3)>> = vec![None; row.across];
+    // What glass lets through, and what it adds.
+    let mut veil = vec![(1.0_f32, Vec3::ZERO); row.across];
+    for height in row.heights {
+        nearest.fill(None);
+        veil.fill((1.0, Vec3::ZERO));
+        for &index in &row.opaque {
+            let sphere = &opaque[index];
+            row.for_each_meeting(sphere, height, |ray, beside| {
+                let depth = sphere.centre.z + beside.z;
+                if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
+                    nearest[ray] = Some((index, depth, beside));
+                }
+            });
+        }
+        for &index in &row.glass {
+            let sphere = &glass[index];
+            row.for_each_meeting(sphere, height, |ray, beside| {
+                if nearest[ray].is_some_and(|(_, depth, _)| depth > sphere.centre.z + beside.z) {
+                    return;
+                }
+                let slope = 1.0 - beside.z / sphere.radius;
+                let hides = GLASS.0 + GLASS.1 * slope * slope * slope * slope;
+                let (through, added) = &mut veil[ray];
+                *added += *through * hides * sphere.colour.0;
+                *through *= 1.0 - hides;
+            });
+        }
+        for (ray, (met, (through, added))) in nearest.iter().zip(&veil).enumerate() {
+            let behind = match met {
+                None => background.0,
+                Some((index, _, beside)) => {
+                    let sphere = &opaque[*index];
+                    shade(
+                        sphere.centre + *beside,
+                        *beside / sphere.radius,
+                        sphere.colour,
+                        around[*index].iter(),
+                    )
+                }
+            };
+            sums[ray / RAYS] += *through * behind.min(Vec3::ONE) + *added;
+        }
+    }
+    let part = 1.0 / (RAYS * RAYS) as f32;
+    sums.iter()
+        .flat_map(|sum| Colour(*sum * part).to_srgb())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+
+    use super::*;
+
+    fn sphere(x: f64, depth: f64, colour: Colour, finish: Finish) -> Sphere {
+        Sphere {
+            centre: DVec3::new(x, 0.0, depth),
+            radius: 0.5,
+            colour,
+            finish,
+        }
+    }
+
+    fn front(width: u32) -> View {
+        View {
+            middle: DVec3::ZERO,
+            right: DVec3::X,
+            up: DVec3::Y,
+            width,
+            height: 40,
+            scale: 20.0,
+        }
+    }
+
+    const WHITE: [u8; 3] = [255; 3];
+
+    #[test]
+    fn the_nearer_sphere_is_seen_and_nothing_beside_them() {
+        let (red, blue) = (Colour::srgb(200, 30, 30), Colour::srgb(30, 30, 200));
+        for (red_depth, expected) in [(1.0, 0), (-1.0, 2)] {
+            let scene = Scene {
+                spheres: vec![
+                    sphere(0.0, red_depth, red, Finish::Opaque),
+                    sphere(0.0, 0.0, blue, Finish::Opaque),
+                ],
+                background: Colour::srgb(255, 255, 255),
+            };
+            let picture = render(&scene, &front(60)).unwrap();
+            let middle = picture.pixel(30, 20);
+            assert!(middle[expected] > 2 * middle[2 - expected], "{middle:?}");
+            // A sphere of diameter 1 is 20 pixels across.
+            assert_ne!(picture.pixel(21, 20), WHITE);
+            assert_eq!(picture.pixel(18, 20), WHITE);
+            assert_eq!(picture.pixel(30, 8), WHITE);
+        }
+    }
+
+    #[test]
+    fn glass_lets_what_is_behind_through() {
+        let (red, grey) = (Colour::srgb(200, 30, 30), Colour::srgb(180, 180, 180));
+        let mut scene = Scene {
+            spheres: vec![sphere(0.0, 0.0, red, Finish::Opaque)],
+            background: Colour::srgb(255, 255, 255),
+        };
+        let plain = render(&scene, &front(60)).unwrap();
+        scene.spheres.push(sphere(0.3, 2.0, grey, Finish::Glass));
+        let veiled = render(&scene, &front(60)).unwrap();
+        assert_ne!(plain.pixel(36, 20), veiled.pixel(36, 20));
+        assert!(veiled.pixel(36, 20)[0] > 2 * veiled.pixel(36, 20)[2]);
+        // Glass behind what is opaque is not seen.
+        scene.spheres[1].centre.z = -2.0;
+        let hidden = render(&scene, &front(60)).unwrap();
+        assert_eq!(plain.pixel(36, 20), hidden.pixel(36, 20));
+    }
+
+    #[test]
+    fn spheres_shade_their_neighbours() {
+        let white = Colour::srgb(230, 230, 230);
+        let mut scene = Scene {
+            spheres: vec![sphere(0.0, 0.0, white, Finish::Opaque)],
+            background: Colour::srgb(255, 255, 255),
+        };
+        let alone = render(&scene, &front(60)).unwrap();
+        scene.spheres.push(sphere(1.0, 0.0, white, Finish::Opaque));
+        let beside = render(&scene, &front(60)).unwrap();
+        let (one, other) = (alone.pixel(36, 20)[0], beside.pixel(36, 20)[0]);
+        assert!(u32::from(other) + 5 < u32::from(one), "{one} {other}");
+    }
+
+    #[test]
+    fn a_picture_has_pixels_and_not_too_many() {
+        let scene = Scene {
+            spheres: Vec::new(),
+            background: Colour::srgb(1, 2, 3),
+        };
+        let mut view = front(3);
+        let picture = render(&scene, &view).unwrap();
+        assert_eq!((picture.width(), picture.height()), (3, 40));
+        assert_eq!(picture.pixel(2, 39), [1, 2, 3]);
+        let png = picture.png().unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png))
+            .read_info()
+            .unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut bytes).unwrap();
+        assert_eq!(bytes, [1, 2, 3].repeat(120));
+        for (width, height) in [(0, 4), (1 << 20, 1 << 20)] {
+            (view.width, view.height) = (width, height);
+            assert!(
+                render(&scene, &view)
+                    .unwrap_err()
+                    .to_string()
+                    .contains("pixels")
+            );
+        }
+    }
+}

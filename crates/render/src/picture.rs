@@ -1,0 +1,67 @@
+//! A finished picture.
+
+use crate::error::RenderError;
+
+/// Pixels, row by row from the top, three bytes of sRGB each.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+impl Picture {
+    pub(crate) fn new(width: u32, height: u32, pixels: Vec<u8>) -> Self {
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
+
+    /// Pixels across.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Pixels down.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// The sRGB bytes of a pixel; columns from the left, rows from the top.
+    ///
+    /// # Panics
+    /// Where there is no such pixel.
+    #[must_use]
+    pub fn pixel(&self, column: u32, row: u32) -> [u8; 3] {
+        assert!(
+            column < self.width && row < self.height,
+            "the pixel is within the picture"
+        );
+        let first = 3 * (row as usize * self.width as usize + column as usize);
+        [
+            self.pixels[first],
+            self.pixels[first + 1],
+            self.pixels[first + 2],
+        ]
+    }
+
+    /// The picture as PNG.
+    ///
+    /// # Errors
+    /// [`RenderError::Encoding`].
+    pub fn png(&self) -> Result<Vec<u8>, RenderError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.pixels)?;
+        writer.finish()?;
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,67 @@
+//! What is seen, and from where.
+
+use glam::{DVec3, Vec3};
+
+use crate::colour::Colour;
+
+/// How a sphere's surface looks.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Finish {
+    /// It hides what is behind.
+    Opaque,
+    /// It shows what is behind, and its own rim: what stands before a cut.
+    Glass,
+}
+
+/// A sphere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Centre \[d\].
+    pub centre: DVec3,
+    /// Radius \[d\].
+    pub radius: f64,
+    /// Colour of its surface.
+    pub colour: Colour,
+    /// How its surface looks.
+    pub finish: Finish,
+}
+
+/// Spheres before a background.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The spheres, in any order.
+    pub spheres: Vec<Sphere>,
+    /// What is seen beside them.
+    pub background: Colour,
+}
+
+/// A parallel projection: lengths are the same wherever they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// The point in the middle of the picture \[d\].
+    pub middle: DVec3,
+    /// Direction on the picture to the right, a unit vector.
+    pub right: DVec3,
+    /// Direction on the picture upwards, a unit vector perpendicular to `right`.
+    pub up: DVec3,
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Pixels a unit of length \[1/d\].
+    pub scale: f64,
+}
+
+impl View {
+    /// A point as the eye sees it: to the right, up and towards the eye from the picture's middle \[d\].
+    pub(crate) fn seen(&self, point: DVec3) -> Vec3 {
+        let from_middle = point - self.middle;
+        let towards = self.right.cross(self.up);
+        DVec3::new(
+            from_middle.dot(self.right),
+            from_middle.dot(self.up),
+            from_middle.dot(towards),
+        )
+        .as_vec3()
+    }
+}

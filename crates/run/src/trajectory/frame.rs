@@ -1,0 +1,92 @@
+//! A frame of a run.
+
+use peristalsis_engine::{Simulation, Wall};
+use peristalsis_formats::trajectory::{Frame, FrameContact, Rotation};
+use peristalsis_observe::{TubeShape, instantaneous_flow_rate};
+
+use crate::run::Run;
+
+/// The spheres of a run as they are, with contacts where they are wanted.
+pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
+    let simulation = run.simulation();
+    let (bodies, wall) = (simulation.bodies(), simulation.wall());
+    let mut frame = Frame {
+        step: simulation.step(),
+        time: simulation.time(),
+        length: wall.lattice().length(),
+        width: 0.0,
+        grains: bodies.grains,
+        position: bodies.position.iter().map(|p| p.to_array()).collect(),
+        turns: bodies.turns.clone(),
+        velocity: bodies.velocity.iter().map(|v| v.to_array()).collect(),
+        diameter: bodies.diameter.clone(),
+        rotation: run.orientations().map(|orientations| Rotation {
+            angular_velocity: bodies.angular_velocity[..bodies.grains]
+                .iter()
+                .map(|omega| omega.to_array())
+                .collect(),
+            orientation: orientations.quaternions().to_vec(),
+        }),
+        contacts: Vec::new(),
+        values: values(run),
+    };
+    if let Wall::Prescribed(wall) = wall {
+        for sphere in 0..wall.lattice().spheres() {
+            frame.position.push(wall.sphere_position(sphere).to_array());
+            frame.velocity.push(wall.sphere_velocity(sphere).to_array());
+            frame.turns.push(0);
+            frame.diameter.push(wall.lattice().sphere_diameter);
+        }
+    }
+    frame.width = width(&frame, wall);
+    if with_contacts {
+        frame.contacts = contacts(simulation);
+    }
+    frame
+}
+
+/// Side of a box about the axis that holds every sphere, with a wall sphere's diameter to spare: the same throughout a
+/// run, unless a grain flies far away.
+fn width(frame: &Frame, wall: &Wall) -> f64 {
+    let spare = wall.lattice().sphere_diameter;
+    let spheres = frame.position.iter().zip(&frame.diameter);
+    let reach = spheres
+        .map(|(&[x, y, _], diameter)| x.abs().max(y.abs()) + 0.5 * diameter)
+        .fold(wall.usual_radius() + 0.5 * spare, f64::max);
+    2.0 * (reach + spare)
+}
+
+/// What is logged beside the spheres, named like the columns of the time series; rates over an interval are those of the
+/// last sample.
+fn values(run: &Run) -> Vec<(&'static str, f64)> {
+    let simulation = run.simulation();
+    let sample = run.recorder().samples().last();
+    let of_sample = |value: Option<f64>| value.unwrap_or(f64::NAN);
+    vec![
+        ("period", simulation.wall().cycles()),
+        ("heading", simulation.wall().heading()),
+        ("flow_rate", of_sample(sample.map(|it| it.flow_rate))),
+        (
+            "flow_rate_ratio",
+            of_sample(sample.map(|it| it.flow_rate_ratio)),
+        ),
+        (
+            "flow_rate_instantaneous",
+            instantaneous_flow_rate(simulation, &TubeShape::of(simulation)),
+        ),
+    ]
+}
+
+fn contacts(simulation: &Simulation) -> Vec<FrameContact> {
+    let touching = simulation.touching().into_iter();
+    touching
+        .map(|touch| FrameContact {
+            spheres: [touch.first, touch.second],
+            separation: touch.separation.to_array(),
+            overlap: touch.overlap,
+            normal_force: touch.normal_force,
+            tangential_force: touch.tangential_force,
+            sliding: touch.sliding,
+        })
+        .collect()
+}

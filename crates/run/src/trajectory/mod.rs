@@ -1,0 +1,228 @@
+//! The trajectory of a run: frames in files beside its record, which change nothing of the run.
+
+mod frame;
+mod plan;
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_configuration::Configuration;
+use peristalsis_formats::{FormatError, TrajectoryFile, TrajectoryFormat, atomic};
+
+use crate::RunError;
+use crate::run::Run;
+
+use self::frame::frame;
+pub use self::plan::{Span, TrajectoryPlan, TrajectoryRequest, Window};
+
+/// The plan, in a run's folder.
+const PLAN: &str = "trajectory.toml";
+
+/// A trajectory that is being written.
+///
+/// Frames after the last checkpoint are cut off when the run goes on from there, so that none is doubled and none is
+/// missing: bring the frames to the disk ([`Trajectory::synchronize`]) before the state is saved.
+#[derive(Debug)]
+pub struct Trajectory {
+    folder: PathBuf,
+    plan: TrajectoryPlan,
+    files: Vec<Box<dyn TrajectoryFile>>,
+}
+
+/// What was written of a trajectory.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct TrajectoryReport {
+    /// The files that readers open.
+    pub files: Vec<PathBuf>,
+    /// Frames.
+    pub frames: u64,
+    /// Steps between two frames.
+    pub interval_steps: u64,
+    /// Bytes of all files.
+    pub bytes: u64,
+}
+
+/// What would be written of a trajectory.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct TrajectoryEstimate {
+    /// Frames.
+    pub frames: u64,
+    /// Steps between two frames.
+    pub interval_steps: u64,
+    /// Bytes by format, from a frame of a short trial.
+    pub bytes: Vec<(TrajectoryFormat, u64)>,
+}
+
+impl Trajectory {
+    /// Begins a trajectory in a folder that has none, with the run's present state if that is one of its frames.
+    ///
+    /// # Errors
+    /// [`RunError::HoldsAnotherRun`] where there is one; [`RunError::Format`] where a file cannot be written.
+    pub fn begin(folder: &Path, plan: TrajectoryPlan, run: &mut Run) -> Result<Self, RunError> {
+        Self::check(folder)?;
+        let files = plan
+            .formats
+            .iter()
+            .map(|format| format.create(folder, plan.frames()))
+            .collect::<Result<_, _>>()?;
+        let text = toml::to_string(&plan)
+            .expect("a plan is whole numbers and names, which always serialise");
+        atomic::write(&folder.join(PLAN), text.as_bytes())?;
+        run.follow_orientations();
+        let mut trajectory = Self {
+            folder: folder.to_owned(),
+            plan,
+            files,
+        };
+        trajectory.observe(run)?;
+        Ok(trajectory)
+    }
+
+    /// Whether a folder is free for a trajectory; makes nothing.
+    ///
+    /// # Errors
+    /// [`RunError::HoldsAnotherRun`] where one is there already.
+    pub fn check(folder: &Path) -> Result<(), RunError> {
+        let names = TrajectoryFormat::ALL.map(TrajectoryFormat::file_name);
+        for name in names.into_iter().chain([PLAN]) {
+            if folder.join(name).symlink_metadata().is_ok() {
+                return Err(RunError::HoldsAnotherRun {
+                    folder: folder.to_owned(),
+                    found: name.to_owned(),
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on with the trajectory in the folder of a run, without its frames after the run's present step; `None` where
+    /// it has none.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where a file cannot be read or written, or its frames are not those of the plan.
+    pub fn resume(folder: &Path, run: &mut Run) -> Result<Option<Self>, RunError> {
+        let path = folder.join(PLAN);
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(source) => {
+                return Err(FormatError::Io {
+                    operation: "read",
+                    path,
+                    source,
+                }
+                .into());
+            }
+        };
+        let plan: TrajectoryPlan =
+            toml::from_str(&text).map_err(|error| FormatError::NotATrajectory {
+                path,
+                reason: error.message().to_owned(),
+            })?;
+        run.follow_orientations();
+        let step = run.simulation().step();
+        let files = plan
+            .formats
+            .iter()
+            .map(|format| format.resume(folder, step))
+            .collect::<Result<_, _>>()?;
+        let mut trajectory = Self {
+            folder: folder.to_owned(),
+            plan,
+            files,
+        };
+        trajectory.fill_in(run)?;
+        Ok(Some(trajectory))
+    }
+
+    /// Writes the frame of the present state where a full disk or a kill kept it from its file.
+    fn fill_in(&mut self, run: &Run) -> Result<(), RunError> {
+        let step = run.simulation().step();
+        let expected = self.plan.frames_through(step);
+        let is_due = self.plan.is_due(step);
+        for (format, file) in self.plan.formats.iter().zip(&mut self.files) {
+            let found = file.frames();
+            if found + 1 == expected && is_due {
+                file.append(&frame(run, format.has_contacts()))?;
+            } else if found != expected {
+                return Err(FormatError::NotATrajectory {
+                    path: self.folder.join(format.file_name()),
+                    reason: format!(
+                        "it holds {found} frames up to step {step}, and {expected} were written"
+                    ),
+                }
+                .into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Steps to the next frame, if there is one more.
+    #[must_use]
+    pub fn steps_to_next(&self, run: &Run) -> Option<u64> {
+        self.plan.steps_to_next(run.simulation().step())
+    }
+
+    /// Writes the present state if it is one of the frames; to be asked after every advance, once.
+    ///
+    /// # Errors
+    /// [`RunError::Format`]; the frames before stay.
+    pub fn observe(&mut self, run: &Run) -> Result<(), RunError> {
+        if !self.plan.is_due(run.simulation().step()) {
+            return Ok(());
+        }
+        let with_contacts = self.plan.formats.iter().any(|format| format.has_contacts());
+        let frame = frame(run, with_contacts);
+        for file in &mut self.files {
+            file.append(&frame)?;
+        }
+        Ok(())
+    }
+
+    /// Brings all frames to the disk.
+    ///
+    /// # Errors
+    /// [`RunError::Format`].
+    pub fn synchronize(&mut self) -> Result<(), RunError> {
+        for file in &mut self.files {
+            file.synchronize()?;
+        }
+        Ok(())
+    }
+
+    /// What has been written.
+    #[must_use]
+    pub fn report(&self) -> TrajectoryReport {
+        let names = self.plan.formats.iter().map(|format| format.file_name());
+        TrajectoryReport {
+            files: names.map(|name| self.folder.join(name)).collect(),
+            frames: self
+                .files
+                .iter()
+                .map(|file| file.frames())
+                .max()
+                .unwrap_or(0),
+            interval_steps: self.plan.interval,
+            bytes: self.files.iter().map(|file| file.bytes()).sum(),
+        }
+    }
+}
+
+/// What a trajectory of a whole run would take, by a frame of a run like it with `scale` times fewer spheres.
+pub(crate) fn estimate(
+    request: &TrajectoryRequest,
+    configuration: &Configuration,
+    like: &Run,
+    scale: f64,
+) -> Result<TrajectoryEstimate, RunError> {
+    let plan = TrajectoryPlan::new(request, configuration, 0, configuration.run.steps())?;
+    let frame = frame(like, true);
+    let bytes = |format: &TrajectoryFormat| {
+        let each = scale * format.frame_bytes(&frame) as f64;
+        (*format, (each * plan.frames() as f64) as u64)
+    };
+    Ok(TrajectoryEstimate {
+        frames: plan.frames(),
+        interval_steps: plan.interval,
+        bytes: plan.formats.iter().map(bytes).collect(),
+    })
+}

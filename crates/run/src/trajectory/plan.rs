@@ -1,0 +1,250 @@
+//! Which frames a trajectory has.
+
+use std::fmt;
+use std::str::FromStr;
+
+use peristalsis_configuration::Configuration;
+use peristalsis_formats::TrajectoryFormat;
+
+use crate::RunError;
+
+/// Frames in a period, unless asked for otherwise.
+const FRAMES_PER_PERIOD: f64 = 10.0;
+/// Frames of a run whose wave stands still, unless asked for otherwise.
+const FRAMES_OF_A_STATIC_RUN: u64 = 100;
+/// Most frames of a trajectory.
+const MOST_FRAMES: u64 = 10_000_000;
+
+/// A length of time in a run, or a time in it, as a person gives it: `0.1` in periods, `2.5t` in units of time.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Span {
+    /// In wave periods.
+    Periods(f64),
+    /// In units of time \[t\].
+    Time(f64),
+}
+
+impl FromStr for Span {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (number, span): (_, fn(f64) -> Self) = match text.trim().strip_suffix('t') {
+            Some(time) => (time, Self::Time),
+            None => (text, Self::Periods),
+        };
+        number
+            .trim()
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite() && *value >= 0.0)
+            .map(span)
+            .ok_or_else(|| "a number of periods, such as 0.1, or a time, such as 2.5t".to_owned())
+    }
+}
+
+impl fmt::Display for Span {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Periods(periods) => write!(formatter, "{periods} periods"),
+            Self::Time(time) => write!(formatter, "{time} t"),
+        }
+    }
+}
+
+impl Span {
+    /// The same in steps of a run.
+    fn steps(self, configuration: &Configuration) -> Result<f64, RunError> {
+        match self {
+            Self::Time(time) => Ok(time / configuration.run.time_step),
+            Self::Periods(periods) => match configuration.drive.period() {
+                Some(period) => Ok(periods * period / configuration.run.time_step),
+                None => Err(RunError::Trajectory {
+                    reason: format!("the wave stands still, and {self} last for ever"),
+                    help: "give times instead, such as 2.5t",
+                }),
+            },
+        }
+    }
+}
+
+/// A window of time in a run: `20:25`, `100:` to the end, `:5t` from the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// Its beginning; `None`: that of the run.
+    pub from: Option<Span>,
+    /// Its end; `None`: that of the run.
+    pub to: Option<Span>,
+}
+
+impl FromStr for Window {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = "FROM:TO, such as 20:25 in periods, 100: to the end, or 5t:10t in time";
+        let (from, to) = text.split_once(':').ok_or(expected)?;
+        let end = |text: &str| match text.trim() {
+            "" => Ok(None),
+            text => text.parse().map(Some).map_err(|_| expected.to_owned()),
+        };
+        Ok(Self {
+            from: end(from)?,
+            to: end(to)?,
+        })
+    }
+}
+
+/// What a person wants of a trajectory.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TrajectoryRequest {
+    /// In which formats.
+    pub formats: Vec<TrajectoryFormat>,
+    /// Time between two frames; `None`: a tenth of a period.
+    pub every: Option<Span>,
+    /// When.
+    pub window: Window,
+}
+
+/// Which frames a trajectory has: steps `first`, `first + interval`, ..., at most `last`.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TrajectoryPlan {
+    pub(super) formats: Vec<TrajectoryFormat>,
+    pub(super) interval: u64,
+    pub(super) first: u64,
+    pub(super) last: u64,
+}
+
+impl TrajectoryPlan {
+    /// The frames of a run that stands at step `now` and ends with step `end`, in its window; the interval is rounded to
+    /// whole steps.
+    ///
+    /// # Errors
+    /// [`RunError::Trajectory`] where the interval is less than a step or the window holds no step of the run.
+    pub fn new(
+        request: &TrajectoryRequest,
+        configuration: &Configuration,
+        now: u64,
+        end: u64,
+    ) -> Result<Self, RunError> {
+        let interval = interval(request.every, configuration)?;
+        let place = |span: Option<Span>, missing: u64| {
+            span.map_or(Ok(missing), |span| {
+                Ok::<_, RunError>(span.steps(configuration)?.round() as u64)
+            })
+        };
+        let (from, to) = (
+            place(request.window.from, 0)?,
+            place(request.window.to, end)?.min(end),
+        );
+        // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
+        let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
+        if first > to {
+            return Err(RunError::Trajectory {
+                reason: format!(
+                    "its window holds none of its frames: the run goes from step {now} to step {end}, the window from \
+                     {from} to {to}"
+                ),
+                help: "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t",
+            });
+        }
+        let mut formats = request.formats.clone();
+        formats.sort_unstable();
+        formats.dedup();
+        let plan = Self {
+            formats,
+            interval,
+            first,
+            last: to,
+        };
+        if plan.frames() > MOST_FRAMES {
+            return Err(RunError::Trajectory {
+                reason: format!(
+                    "{} frames are beyond reach: at most {MOST_FRAMES}",
+                    plan.frames()
+                ),
+                help: "take a longer interval or a shorter window",
+            });
+        }
+        Ok(plan)
+    }
+
+    /// The frames from step `now` on, that of `now` included, for so long.
+    ///
+    /// # Errors
+    /// As [`TrajectoryPlan::new`].
+    pub fn onward(
+        request: &TrajectoryRequest,
+        configuration: &Configuration,
+        now: u64,
+        duration: Span,
+    ) -> Result<Self, RunError> {
+        let steps = duration.steps(configuration)?.round() as u64;
+        let on = Self::new(request, configuration, 0, steps)?;
+        Ok(Self {
+            first: now,
+            last: now.saturating_add(steps),
+            ..on
+        })
+    }
+
+    /// Steps between two frames.
+    #[must_use]
+    pub fn interval(&self) -> u64 {
+        self.interval
+    }
+
+    /// The formats.
+    #[must_use]
+    pub fn formats(&self) -> &[TrajectoryFormat] {
+        &self.formats
+    }
+
+    /// Frames in all.
+    #[must_use]
+    pub fn frames(&self) -> u64 {
+        self.frames_through(u64::MAX)
+    }
+
+    /// Frames at or before a step.
+    pub(super) fn frames_through(&self, step: u64) -> u64 {
+        let last = step.min(self.last);
+        match last.checked_sub(self.first) {
+            Some(steps) => steps / self.interval.max(1) + 1,
+            None => 0,
+        }
+    }
+
+    /// Whether there is a frame at a step.
+    pub(super) fn is_due(&self, step: u64) -> bool {
+        step <= self.last
+            && step
+                .checked_sub(self.first)
+                .is_some_and(|steps| steps.is_multiple_of(self.interval.max(1)))
+    }
+
+    /// Steps from a step to the next frame after it.
+    pub(super) fn steps_to_next(&self, step: u64) -> Option<u64> {
+        let next = self.first + self.frames_through(step) * self.interval;
+        (next <= self.last).then(|| next - step)
+    }
+}
+
+/// Steps between two frames.
+fn interval(every: Option<Span>, configuration: &Configuration) -> Result<u64, RunError> {
+    let steps = match (every, configuration.drive.period()) {
+        (Some(span), _) => span.steps(configuration)?,
+        (None, Some(period)) => period / FRAMES_PER_PERIOD / configuration.run.time_step,
+        (None, None) => (configuration.run.steps() / FRAMES_OF_A_STATIC_RUN) as f64,
+    };
+    let rounded = steps.round();
+    match every {
+        Some(span) if rounded < 1.0 => Err(RunError::Trajectory {
+            reason: format!(
+                "frames every {span}, which is {steps:.3} times a step of {:.4} t",
+                configuration.run.time_step
+            ),
+            help: "take a longer interval, or a shorter run.time_step",
+        }),
+        _ => Ok((rounded as u64).max(1)),
+    }
+}
