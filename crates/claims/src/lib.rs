@@ -8,6 +8,7 @@ mod claim;
 mod error;
 mod evidence;
 mod finding;
+mod reproduction;
 mod runs;
 mod studies;
 
@@ -15,5 +16,8 @@ pub use claim::{CLAIMS, Claim};
 pub use error::ClaimError;
 pub use evidence::{Evidence, StudyResults};
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+pub use reproduction::{
+    Event, Examination, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
+};
 pub use runs::{Lattice, Run, Start};
 pub use studies::{STUDIES, Size, StudyFile};

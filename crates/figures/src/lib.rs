@@ -48,5 +48,5 @@ pub use profile::ProfileFigure;
 pub use series::{Profile, Series};
 pub use snapshot::{SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
 pub use style::Width;
-pub use text::escape;
+pub use text::{Letter, Level, escape, letters};
 pub use wall::WallFigure;
