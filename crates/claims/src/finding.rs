@@ -12,7 +12,9 @@ pub enum Verdict {
     Reproduced,
     /// It does not.
     Differs,
-    /// The statistics do not allow a verdict, or what they show is neither.
+    /// A question that the source left open has an answer.
+    Answered,
+    /// The statistics do not allow a verdict, or what they show is none.
     Open,
 }
 
@@ -23,6 +25,7 @@ impl Verdict {
         match self {
             Self::Reproduced => "reproduced",
             Self::Differs => "differs",
+            Self::Answered => "answered",
             Self::Open => "open",
         }
     }
@@ -108,6 +111,8 @@ pub struct Finding {
     pub summary: String,
     /// What is behind it.
     pub statistics: Statistics,
+    /// What a verdict would take.
+    pub needed: Statistics,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,
     /// Paragraphs about method and outcome, in markup.
@@ -139,4 +144,38 @@ fn uncertain<S: Serializer>(number: &Option<Uncertain>, serializer: S) -> Result
             interval_95: ends(number.interval_95),
         })
         .serialize(serializer)
+}
+
+impl Finding {
+    /// A finding of which nothing but the verdict is known yet; the verdict is open where the statistics do not suffice.
+    #[must_use]
+    pub fn new(
+        verdict: Verdict,
+        summary: String,
+        statistics: Statistics,
+        needed: &Statistics,
+    ) -> Self {
+        let verdict = if statistics.suffice(needed) {
+            verdict
+        } else {
+            Verdict::Open
+        };
+        Self {
+            verdict,
+            summary,
+            statistics,
+            needed: *needed,
+            quantities: Vec::new(),
+            paragraphs: Vec::new(),
+            weaknesses: Vec::new(),
+            tables: Vec::new(),
+            figures: Vec::new(),
+        }
+    }
+
+    /// A finding for which there are too few runs to say anything.
+    #[must_use]
+    pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
+        Self::new(Verdict::Open, reason.to_owned(), statistics, needed)
+    }
 }

@@ -6,7 +6,7 @@ use peristalsis_analysis::Interval;
 use peristalsis_claims::{Examination, Quantity, ReportFigure, ReportTable};
 use peristalsis_formats::{Column, FormatError, Table, Values};
 
-use crate::markup::text;
+use crate::markup::plain_text;
 use crate::report::Report;
 
 /// The figures of all claims, each with the name of its files.
@@ -215,7 +215,7 @@ fn column(name: impl Into<String>, values: Values) -> Column {
 
 /// A cell without markup, its minus signs as programs read them.
 fn plain_cell(markup: &str) -> String {
-    text(markup).replace('−', "-")
+    plain_text(markup).replace('−', "-")
 }
 
 #[cfg(test)]
@@ -235,7 +235,7 @@ mod tests {
         };
         assert_eq!(
             csv::encode(&plain_table(&table).unwrap()),
-            "wc,column 2,wc'\n-2.5,\"a, \"\"b\"\"\",x\nshort,\"\",\"\"\n"
+            "w_c,\"column 2\",\"w_c'\"\n\"-2.5\",\"a, \"\"b\"\"\",\"x\"\n\"short\",\"\",\"\"\n"
         );
     }
 

@@ -14,8 +14,6 @@ struct Document<'a> {
     format: u32,
     program: &'a Program,
     size: &'static str,
-    /// What a verdict takes.
-    needed: Statistics,
     claims: Vec<Claim<'a>>,
 }
 
@@ -28,6 +26,8 @@ struct Claim<'a> {
     verdict: Verdict,
     summary: &'a str,
     statistics: Statistics,
+    /// What a verdict takes.
+    needed: Statistics,
     sufficient: bool,
     failure: Option<&'a str>,
     quantities: &'a [Quantity],
@@ -69,7 +69,6 @@ pub(crate) fn text(report: &Report) -> String {
         format: FORMAT,
         program: &report.program,
         size: report.size.name(),
-        needed: Statistics::FOR_A_VERDICT,
         claims: report
             .examinations
             .iter()
@@ -102,6 +101,7 @@ fn claim<'a>(
         verdict: finding.verdict,
         summary: &finding.summary,
         statistics: finding.statistics,
+        needed: finding.needed,
         sufficient: examination.is_sufficient(),
         failure: failure.as_deref(),
         quantities: &finding.quantities,

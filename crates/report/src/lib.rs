@@ -15,4 +15,5 @@ mod picture;
 mod report;
 
 pub use error::ReportError;
+pub use markup::plain_text;
 pub use report::{Program, Report};

@@ -6,6 +6,9 @@ use peristalsis_figures::{Letter, Level, letters};
 /// A dot above the letter before it belongs to that letter, however it is set.
 const COMBINING_DOT: char = '\u{307}';
 
+/// Signs that no line ends beside.
+const RELATIONS: [char; 5] = ['=', '≥', '≤', '±', '×'];
+
 /// Characters of one setting.
 struct Stretch {
     italic: bool,
@@ -41,12 +44,27 @@ pub(crate) fn rich(markup: &str) -> Markup {
     html! { @for part in &parts { (part) } }
 }
 
-/// The characters of a text without its markup.
-pub(crate) fn text(markup: &str) -> String {
-    letters(markup)
-        .iter()
-        .map(|letter| letter.character)
-        .collect()
+/// A text in the markup of figures as plain text: italics are dropped, scripts begin with `_` or `^`.
+///
+/// ```
+/// assert_eq!(peristalsis_report::plain_text("*J*_{max} = 10^{−3}"), "J_max = 10^−3");
+/// ```
+#[must_use]
+pub fn plain_text(markup: &str) -> String {
+    let mut plain = String::with_capacity(markup.len());
+    let mut level = Level::Base;
+    for letter in letters(markup) {
+        if letter.level != level {
+            level = letter.level;
+            match level {
+                Level::Base => {}
+                Level::Subscript => plain.push('_'),
+                Level::Superscript => plain.push('^'),
+            }
+        }
+        plain.push(letter.character);
+    }
+    plain
 }
 
 /// A whole subscript or superscript, of which the first stretch has been taken.
@@ -65,8 +83,11 @@ fn script<'a>(first: &Stretch, rest: &'a [Stretch]) -> (Markup, &'a [Stretch]) {
 }
 
 fn set(stretch: &Stretch) -> Markup {
+    let text = RELATIONS.iter().fold(stretch.text.clone(), |text, sign| {
+        text.replace(&format!(" {sign} "), &format!("\u{a0}{sign}\u{a0}"))
+    });
     html! {
-        @if stretch.italic { i { (stretch.text) } } @else { (stretch.text) }
+        @if stretch.italic { i { (text) } } @else { (text) }
     }
 }
 
@@ -105,6 +126,7 @@ mod tests {
                 "2.79<span class=\"scripts\"><sup>+0.09</sup><sub>−0.03</sub></span> <i>d</i>",
             ),
             ("*ε*\u{307}", "<i>ε\u{307}</i>"),
+            ("*w* = 2.5", "<i>w</i>\u{a0}=\u{a0}2.5"),
             ("run\\_7 \\*", "run_7 *"),
         ] {
             assert_eq!(rich(markup).into_string(), expected, "{markup}");
@@ -117,6 +139,6 @@ mod tests {
             rich("<b onclick=\"x\">*a<*&amp;^{<i>}").into_string(),
             "&lt;b onclick=&quot;x&quot;&gt;<i>a&lt;</i>&amp;amp;<sup>&lt;i&gt;</sup>"
         );
-        assert_eq!(text("*w*_{c}\\* <&"), "wc* <&");
+        assert_eq!(plain_text("*w*_{c}\\* <&"), "w_c* <&");
     }
 }

@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::claim::Claim;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Statistics, Verdict};
+use crate::finding::{Finding, Statistics};
 
 /// A claim with what was found of it.
 #[derive(Clone, Debug)]
@@ -45,25 +45,18 @@ impl Examination {
         };
         Self {
             claim: *claim,
-            finding: Finding {
-                verdict: Verdict::Open,
-                summary: "It could not be examined.".to_owned(),
-                statistics: Statistics::default(),
-                quantities: Vec::new(),
-                paragraphs: Vec::new(),
-                weaknesses: Vec::new(),
-                tables: Vec::new(),
-                figures: Vec::new(),
-            },
+            finding: Finding::nothing(
+                "It could not be examined.",
+                Statistics::default(),
+                &Statistics::FOR_A_VERDICT,
+            ),
             failure: Some(failure),
         }
     }
 
-    /// Whether there was enough for a verdict: the claim has one, by its own rule, or there are as many runs as
-    /// [`Statistics::FOR_A_VERDICT`] asks for.
+    /// Whether there was enough for a verdict.
     #[must_use]
     pub fn is_sufficient(&self) -> bool {
-        self.finding.verdict != Verdict::Open
-            || self.finding.statistics.suffice(&Statistics::FOR_A_VERDICT)
+        self.finding.statistics.suffice(&self.finding.needed)
     }
 }

@@ -10,6 +10,7 @@ mod checking;
 mod describing;
 mod folders;
 mod limits;
+mod reproducing;
 mod running;
 mod streams;
 mod study;

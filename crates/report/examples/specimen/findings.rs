@@ -60,7 +60,7 @@ const fn claim(
     }
 }
 
-const CLAIMS: [Claim; 5] = [
+const CLAIMS: [Claim; 6] = [
     claim(
         "F1",
         "Two kinds of flow",
@@ -91,6 +91,12 @@ const CLAIMS: [Claim; 5] = [
         "F9",
         "Hysteresis",
         "From jammed, a narrow bottleneck stays jammed and a wide one turns at some time into slow flow, at *w*'_c ≠ *w*_c.",
+        &["divergence-coarse"],
+    ),
+    claim(
+        "Q1",
+        "Slow waves",
+        "What is *w*_c for *ε\u{307}* ≤ 10^{−2}?",
         &["divergence-coarse"],
     ),
 ];
@@ -158,21 +164,18 @@ fn texts<const N: usize>(texts: [&str; N]) -> Vec<String> {
 /// What every verdict begins with.
 fn finding(verdict: Verdict, summary: &str, statistics: [usize; 4]) -> Finding {
     let [strain_rates, widths, replicates, runs] = statistics;
-    Finding {
+    let statistics = Statistics {
+        strain_rates,
+        widths,
+        replicates,
+        runs,
+    };
+    Finding::new(
         verdict,
-        summary: summary.to_owned(),
-        statistics: Statistics {
-            strain_rates,
-            widths,
-            replicates,
-            runs,
-        },
-        quantities: Vec::new(),
-        paragraphs: Vec::new(),
-        weaknesses: Vec::new(),
-        tables: Vec::new(),
-        figures: Vec::new(),
-    }
+        summary.to_owned(),
+        statistics,
+        &Statistics::FOR_A_VERDICT,
+    )
 }
 
 fn divergence() -> Result<Finding, FigureError> {
@@ -325,6 +328,14 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
                 "study divergence-coarse: the index of the store, stores/divergence-coarse/index.sqlite: disk I/O error"
                     .to_owned(),
             ),
+        ),
+        (
+            finding(
+                Verdict::Answered,
+                "It turns back: *w*_c is largest at *ε\u{307}* = 0.021(2).",
+                [5, 8, 10, 400],
+            ),
+            None,
         ),
     ];
     let outcome = |file: StudyFile, done, failed, failure: Option<&str>| StudyOutcome {

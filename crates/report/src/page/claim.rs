@@ -1,10 +1,10 @@
 //! The section of a claim.
 
 use maud::{Markup, html};
-use peristalsis_claims::{Examination, Quantity, ReportFigure, ReportTable, Statistics};
+use peristalsis_claims::{Examination, Quantity, ReportFigure, ReportTable};
 
 use super::parts::{anchor, counts, number_of, study_anchor, verdict_badge};
-use crate::markup::{rich, text};
+use crate::markup::{plain_text, rich};
 use crate::number::{distance, interval, plain, with_error};
 use crate::picture::embedded;
 use crate::report::Report;
@@ -66,7 +66,7 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
 /// What is behind the finding, and whether it is enough.
 fn statistics(examination: &Examination) -> Markup {
     let found = examination.finding.statistics;
-    let needed = Statistics::FOR_A_VERDICT;
+    let needed = examination.finding.needed;
     html! {
         @if found.runs == 0 {
             p.statistics { "No finished runs yet." }
@@ -135,7 +135,7 @@ fn drawing(claim: &str, place: usize, number: usize, figure: &ReportFigure) -> M
     let prefix = format!("c{place}f{number}-");
     html! {
         figure.wide[wide] {
-            div.drawing { (embedded(&figure.drawing, &prefix, &text(&figure.caption))) }
+            div.drawing { (embedded(&figure.drawing, &prefix, &plain_text(&figure.caption))) }
             figcaption { b { "Figure " (claim) "." (number + 1) } " " (rich(&figure.caption)) }
         }
     }
@@ -179,6 +179,6 @@ fn table(claim: &str, number: usize, table: &ReportTable) -> Markup {
 
 /// Whether a cell is empty or begins like a number: a column of such cells is set to the right.
 fn is_number(cell: &str) -> bool {
-    let first = text(cell).chars().next();
+    let first = plain_text(cell).chars().next();
     first.is_none_or(|first| first.is_ascii_digit() || "−+–-≤≥<>[(".contains(first))
 }

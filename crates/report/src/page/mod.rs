@@ -114,6 +114,7 @@ fn overview(report: &Report) -> Markup {
                 p.tally {
                     span { b { (number(Verdict::Reproduced)) } " reproduced" } " "
                     span { b { (number(Verdict::Differs)) } " different" } " "
+                    span { b { (number(Verdict::Answered)) } " answered" } " "
                     span { b { (number(Verdict::Open)) } " open" }
                 }
                 table.overview {
@@ -163,7 +164,7 @@ fn reading(report: &Report) -> Markup {
                 div {
                     dt { "Verdicts" }
                     dd {
-                        "A claim is " b { "reproduced" } " if it holds within our errors, and " b { "differs" } " if it does not. It is " b { "open" }
+                        "A claim is " b { "reproduced" } " if it holds within our errors, and " b { "differs" } " if it does not; a question that the source left open is " b { "answered" } ". It is " b { "open" }
                         " while there is too little to say, or if what we see is neither. A verdict takes "
                         (needed.strain_rates) " strain rates, " (needed.widths) " widths at each and " (needed.replicates)
                         " runs of each point, unless a claim says otherwise."

@@ -1,7 +1,7 @@
 //! The studies behind the claims.
 
 use maud::{Markup, html};
-use peristalsis_claims::StudyOutcome;
+use peristalsis_claims::{Size, StudyOutcome};
 
 use super::parts::{anchor, counts, study_anchor};
 use crate::report::Report;
@@ -14,7 +14,10 @@ pub(super) fn section(report: &Report) -> Markup {
                 h2 { "The studies" }
                 p {
                     "Each study is a file; its runs are named by what they compute, so that any of them can be made again or compared \
-                    alone. The texts are those of the " (report.size.name()) " design."
+                    alone."
+                    @if report.size == Size::Quick {
+                        " The texts are those of the quick designs, which lie in " code { "quick/" } " beside the full ones."
+                    }
                 }
                 @for study in &report.studies { (entry(report, study)) }
             }
