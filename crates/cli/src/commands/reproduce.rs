@@ -36,8 +36,9 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     };
     let is_default = !arguments.quick && !arguments.full;
     tell(&format!(
-        "{} claims, {} design{}, in {}",
+        "{} claim{}, {} design{}, in {}",
         claims.len(),
+        if claims.len() == 1 { "" } else { "s" },
         size.name(),
         if is_default {
             " (--full has enough runs for verdicts)"

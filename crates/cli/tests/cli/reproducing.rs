@@ -23,7 +23,7 @@ fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
         .call(BRIEFLY)
         .expect_code(0)
         .says(&[
-            "1 claims, quick design (--full has enough runs for verdicts), in reproduction",
+            "1 claim, quick design (--full has enough runs for verdicts), in reproduction",
             "study 1 of",
             "% of all work",
             "F2 open (thin statistics):",
@@ -40,10 +40,10 @@ fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
     let study = &found[0]["studies"][0];
     assert!(study["runs"].as_u64().unwrap() > study["done"].as_u64().unwrap());
     // What was begun is kept: some run has a checkpoint.
-    let store = out.join("stores").join(study["name"].as_str().unwrap());
     let checkpoints = || -> usize {
-        std::fs::read_dir(store.join("runs"))
+        std::fs::read_dir(out.join("stores"))
             .unwrap()
+            .flat_map(|store| std::fs::read_dir(store.unwrap().path().join("runs")).unwrap())
             .filter(|run| {
                 let run = run.as_ref().unwrap().path();
                 run.join("state.checkpoint").is_file() || run.join("done.json").is_file()
