@@ -1,5 +1,7 @@
 //! What can go wrong on the way from runs to findings.
 
+use std::path::PathBuf;
+
 use peristalsis_figures::FigureError;
 use peristalsis_formats::FormatError;
 use peristalsis_run::RunError;
@@ -23,4 +25,20 @@ pub enum ClaimError {
     /// A claim asked for a study that is not there: an error of ours.
     #[error("the study {0} is not among the evidence")]
     NoSuchStudy(String),
+    /// A claim was asked for that is not there.
+    #[error("there is no claim {asked:?}")]
+    NoSuchClaim {
+        /// What was asked for.
+        asked: String,
+        /// The names of all claims.
+        known: Vec<&'static str>,
+    },
+    /// The folder for the results cannot be made.
+    #[error("cannot write to {}: {source}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
 }

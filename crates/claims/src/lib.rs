@@ -13,6 +13,7 @@ mod crossing;
 mod error;
 mod evidence;
 mod finding;
+mod reproduction;
 mod runs;
 mod studies;
 mod text;
@@ -22,5 +23,8 @@ pub use claims::CLAIMS;
 pub use error::ClaimError;
 pub use evidence::{Evidence, StudyResults};
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+pub use reproduction::{
+    Event, Examination, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
+};
 pub use runs::{Lattice, Run, Start};
 pub use studies::{STUDIES, Size, StudyFile};

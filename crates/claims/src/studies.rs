@@ -9,6 +9,17 @@ pub enum Size {
     Full,
 }
 
+impl Size {
+    /// "quick" or "full".
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Full => "full",
+        }
+    }
+}
+
 /// A study in both sizes; both have the same name, and so share a store and the runs that they have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyFile {
@@ -21,6 +32,22 @@ pub struct StudyFile {
 }
 
 impl StudyFile {
+    /// A study from the texts of its two files; `path` is that of the full one.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        path: &'static str,
+        quick: &'static str,
+        full: &'static str,
+    ) -> Self {
+        Self {
+            name,
+            path,
+            quick,
+            full,
+        }
+    }
+
     /// The text of the study file.
     #[must_use]
     pub fn text(&self, size: Size) -> &'static str {

@@ -1,11 +1,12 @@
 //! The command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use peristalsis_run::{Span, Window};
 
-use crate::commands::study::StudyCommand;
+use crate::commands::study::{StudyCommand, time_span};
 
 /// Grains in a peristaltic tube, by the discrete element method.
 #[derive(Debug, Parser)]
@@ -40,6 +41,8 @@ pub(crate) enum Command {
     /// Ensembles of runs over grids of parameters, in a store that keeps them safe.
     #[command(subcommand)]
     Study(StudyCommand),
+    /// Examine the claims of the source: run their studies and write the report.
+    Reproduce(ReproduceArguments),
     /// Print completions for a shell.
     Completions(CompletionsArguments),
 }
@@ -223,6 +226,40 @@ pub(crate) struct NewtonianArguments {
     /// Print as JSON.
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Called again it goes on where it was; both sizes share their runs. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/."
+)]
+pub(crate) struct ReproduceArguments {
+    /// A few runs of everything, in minutes; the default.
+    #[arg(long, conflicts_with = "full")]
+    pub(crate) quick: bool,
+    /// Enough runs for verdicts, in hours or days.
+    #[arg(long)]
+    pub(crate) full: bool,
+    /// Only these claims, such as F3,F6.
+    #[arg(long, value_name = "CLAIMS", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Folder for report and runs.
+    #[arg(long, value_name = "DIR", default_value = "reproduction")]
+    pub(crate) out: PathBuf,
+    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from.
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    pub(crate) import: Vec<PathBuf>,
+    /// Runs at a time; the default is the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) workers: Option<u16>,
+    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
+    #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
+    pub(crate) limit: Option<Duration>,
+    /// Print claims.json on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -5,9 +5,11 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
+use peristalsis_claims::ClaimError;
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
+use peristalsis_report::ReportError;
 use peristalsis_run::RunError;
 use peristalsis_study::StudyError;
 
@@ -47,6 +49,12 @@ pub(crate) enum Failure {
     /// A study or its store.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// The claims or their studies.
+    #[error(transparent)]
+    Claim(ClaimError),
+    /// The report.
+    #[error(transparent)]
+    Report(#[from] ReportError),
     /// Signals cannot be watched.
     #[error("cannot watch for signals: {0}")]
     Signals(std::io::Error),
@@ -59,6 +67,16 @@ pub(crate) enum Failure {
 const BAD_INPUT: u8 = 2;
 /// Exit code for work that failed.
 const FAILED: u8 = 1;
+
+impl From<ClaimError> for Failure {
+    fn from(error: ClaimError) -> Self {
+        match error {
+            // A study says the same whoever asked for it.
+            ClaimError::Study(error) => Self::Study(error),
+            other => Self::Claim(other),
+        }
+    }
+}
 
 impl Failure {
     fn exit_code(&self) -> u8 {
@@ -89,7 +107,12 @@ impl Failure {
                 | StudyError::Trial(_) => BAD_INPUT,
                 _ => FAILED,
             },
-            Self::Trajectory { .. } | Self::Signals(_) | Self::Output(_) => FAILED,
+            Self::Claim(ClaimError::NoSuchClaim { .. } | ClaimError::Folder { .. }) => BAD_INPUT,
+            Self::Trajectory { .. }
+            | Self::Claim(_)
+            | Self::Report(_)
+            | Self::Signals(_)
+            | Self::Output(_) => FAILED,
         }
     }
 
@@ -126,6 +149,15 @@ impl Failure {
             ),
             Self::Run(RunError::Engine(EngineError::Diverged { .. })) => {
                 Some("take a shorter run.time_step, or softer or fewer grains".to_owned())
+            }
+            Self::Claim(ClaimError::NoSuchClaim { known, .. }) => {
+                Some(format!("claims: {}", known.join(", ")))
+            }
+            Self::Claim(ClaimError::Folder { .. }) => {
+                Some("name another folder with --out".to_owned())
+            }
+            Self::Report(_) => {
+                Some("nothing that was finished is lost: mend the disk and call again".to_owned())
             }
             Self::Study(StudyError::OtherStudy { .. }) => {
                 Some("name another folder with --store, or give the study its old `name`".to_owned())

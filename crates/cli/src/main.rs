@@ -26,6 +26,7 @@ fn main() -> ExitCode {
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),
+        Command::Reproduce(arguments) => commands::reproduce::reproduce(&arguments),
         Command::Study(command) => commands::study::study(&command),
         Command::Completions(arguments) => commands::completions::completions(&arguments),
     };

@@ -63,5 +63,5 @@ pub use series::{Profile, Series};
 pub use snapshot::{SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall};
 pub use space_time::SpaceTimeFigure;
 pub use style::Width;
-pub use text::escape;
+pub use text::{Letter, Level, escape, letters};
 pub use wall::WallFigure;

@@ -5,6 +5,7 @@ pub(crate) mod completions;
 pub(crate) mod newtonian;
 pub(crate) mod presets;
 pub(crate) mod render;
+pub(crate) mod reproduce;
 pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;

@@ -11,6 +11,7 @@ mod describing;
 mod folders;
 mod limits;
 mod pictures;
+mod reproducing;
 mod running;
 mod streams;
 mod study;

@@ -2,22 +2,28 @@
 
 /// Where a character stands on the line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Level {
+pub enum Level {
+    /// On the baseline.
     Base,
+    /// Below it, smaller.
     Subscript,
+    /// Above it, smaller.
     Superscript,
 }
 
 /// One character with its setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Letter {
-    pub(crate) character: char,
-    pub(crate) italic: bool,
-    pub(crate) level: Level,
+pub struct Letter {
+    /// The character.
+    pub character: char,
+    /// Whether it is set in italics.
+    pub italic: bool,
+    /// Where it stands.
+    pub level: Level,
 }
 
 /// Reads the markup; anything that is not markup is taken literally, so that no text fails.
-pub(crate) fn parse(markup: &str) -> Vec<Letter> {
+pub fn letters(markup: &str) -> Vec<Letter> {
     let mut letters = Vec::new();
     let mut italic = false;
     let mut level = Level::Base;
@@ -79,7 +85,7 @@ mod tests {
     use super::*;
 
     fn plain(markup: &str) -> String {
-        parse(markup)
+        letters(markup)
             .iter()
             .map(|letter| letter.character)
             .collect()
@@ -87,7 +93,7 @@ mod tests {
 
     #[test]
     fn italics_and_scripts_are_read() {
-        let letters = parse("*J*_{max}^2x");
+        let letters = letters("*J*_{max}^2x");
         assert_eq!(
             letters[0],
             Letter {

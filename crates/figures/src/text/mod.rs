@@ -4,8 +4,7 @@ mod font;
 mod markup;
 
 pub(crate) use font::{Face, Glyph};
-pub use markup::escape;
-use markup::{Letter, Level};
+pub use markup::{Letter, Level, escape, letters};
 
 /// Size of subscripts and superscripts relative to the line.
 const SCRIPT_SIZE: f64 = 0.7;
@@ -43,7 +42,7 @@ pub(crate) struct Text {
 impl Text {
     /// Sets a label in type of the given size in points.
     pub(crate) fn new(markup: &str, size: f64) -> Self {
-        let letters = markup::parse(markup);
+        let letters = letters(markup);
         let mut glyphs: Vec<PlacedGlyph> = Vec::with_capacity(letters.len());
         let mut pen = 0.0;
         for letter in &letters {

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::{Entry, LEASE_TIMEOUT, State, Store};
 use crate::error::StudyError;
+use crate::estimate::work;
 use crate::identity::Identity;
 use crate::plan::Plan;
 use crate::refinement::{Finding, refine};
@@ -44,6 +45,27 @@ impl Survey {
             *counts.entry(self.state(run.identity).name()).or_default() += 1;
         }
         counts
+    }
+
+    /// The work of all runs of the plan, in grains times steps.
+    #[must_use]
+    pub fn work(&self) -> f64 {
+        self.work_of(|_| true)
+    }
+
+    /// The work of the runs that have not ended, in grains times steps.
+    #[must_use]
+    pub fn work_left(&self) -> f64 {
+        self.work_of(|identity| self.finding(identity).is_none())
+    }
+
+    fn work_of(&self, which: impl Fn(&Identity) -> bool) -> f64 {
+        self.plan
+            .runs()
+            .iter()
+            .filter(|run| which(&run.identity))
+            .map(|run| work(&self.plan.point(run).configuration))
+            .sum()
     }
 
     /// What a run that has ended says of its point.

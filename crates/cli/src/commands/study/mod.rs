@@ -2,7 +2,7 @@
 
 mod keep;
 mod plan;
-mod progress;
+pub(crate) mod progress;
 mod run;
 mod status;
 
@@ -176,7 +176,7 @@ fn usual_store(name: &str) -> PathBuf {
 }
 
 /// Reads a time such as 30m, 1.5h, 90s or 250ms.
-fn time_span(text: &str) -> Result<Duration, String> {
+pub(crate) fn time_span(text: &str) -> Result<Duration, String> {
     let letters = text.find(|letter: char| letter.is_ascii_alphabetic());
     let (number, unit) = text.split_at(letters.unwrap_or(text.len()));
     let factor = match unit {

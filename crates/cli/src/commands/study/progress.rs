@@ -19,8 +19,16 @@ const ESTIMATES_SHOWN: usize = 6;
 /// Workers that are shown on a terminal.
 const WORKERS_SHOWN: usize = 8;
 
+/// How far the whole work is, of which a board may show a part.
+pub(crate) struct Whole {
+    /// In words.
+    pub(crate) words: String,
+    /// Part of the work that is done.
+    pub(crate) fraction: f64,
+}
+
 /// Where progress goes.
-pub(super) enum Display {
+pub(crate) enum Display {
     /// Nowhere.
     Silent,
     /// To lines that are redrawn.
@@ -37,7 +45,7 @@ pub(super) enum Display {
 }
 
 /// The lines on a terminal.
-pub(super) struct Bars {
+pub(crate) struct Bars {
     all: MultiProgress,
     runs: ProgressBar,
     estimates: Vec<ProgressBar>,
@@ -45,7 +53,7 @@ pub(super) struct Bars {
 }
 
 impl Display {
-    pub(super) fn new(quiet: bool, workers: usize) -> Self {
+    pub(crate) fn new(quiet: bool, workers: usize) -> Self {
         if quiet {
             return Self::Silent;
         }
@@ -70,22 +78,33 @@ impl Display {
     }
 
     /// Shows how far the study is.
-    pub(super) fn update(&mut self, board: &Board) {
+    pub(crate) fn update(&mut self, board: &Board) {
+        self.update_part(
+            board,
+            &Whole {
+                words: overall(board),
+                fraction: board.fraction,
+            },
+        );
+    }
+
+    /// Shows how far a study is, and the whole of which it is a part.
+    pub(crate) fn update_part(&mut self, board: &Board, whole: &Whole) {
         match self {
             Self::Silent => {}
-            Self::Bars(bars) => bars.update(board),
+            Self::Bars(bars) => bars.update(board, whole),
             Self::Lines { last, tenth, ended } => {
                 for news in &board.news {
                     say(news);
                 }
-                let now = (10.0 * board.fraction) as u64;
+                let now = (10.0 * whole.fraction) as u64;
                 let is_news = *ended != board.done + board.failed
-                    && (now > *tenth || *ended == usize::MAX || board.done == board.total);
+                    && (now != *tenth || *ended == usize::MAX || board.done == board.total);
                 if is_news || last.elapsed() > LINE_INTERVAL {
                     *ended = board.done + board.failed;
                     *tenth = now;
                     *last = Instant::now();
-                    say(&overall(board));
+                    say(&whole.words);
                     for bracket in &board.brackets {
                         say(&format!("  {}", estimate(bracket)));
                     }
@@ -94,8 +113,17 @@ impl Display {
         }
     }
 
+    /// Says a line that stays.
+    pub(crate) fn tell(&self, text: &str) {
+        match self {
+            Self::Silent => {}
+            Self::Bars(bars) => drop(bars.all.println(text)),
+            Self::Lines { .. } => say(text),
+        }
+    }
+
     /// Takes the lines away.
-    pub(super) fn finish(&self) {
+    pub(crate) fn finish(&self) {
         if let Self::Bars(bars) = self {
             let lines = bars.estimates.iter().chain(&bars.workers);
             for line in lines.chain([&bars.runs]) {
@@ -118,12 +146,12 @@ fn line() -> ProgressBar {
 }
 
 impl Bars {
-    fn update(&mut self, board: &Board) {
+    fn update(&mut self, board: &Board, whole: &Whole) {
         for news in &board.news {
             drop(self.all.println(news));
         }
-        self.runs.set_position((1000.0 * board.fraction) as u64);
-        self.runs.set_message(overall(board));
+        self.runs.set_position((1000.0 * whole.fraction) as u64);
+        self.runs.set_message(whole.words.clone());
         let more = board.brackets.len().saturating_sub(ESTIMATES_SHOWN);
         while self.estimates.len() < board.brackets.len().min(ESTIMATES_SHOWN) {
             let below = self.estimates.len() + 1;

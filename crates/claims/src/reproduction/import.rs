@@ -1,0 +1,148 @@
+//! Finished runs from tables, to whichever studies they belong.
+
+use std::collections::HashSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use peristalsis_formats::{csv, parquet};
+use peristalsis_study::{Identity, Row, State, Store, StudyError};
+
+use super::Reproduction;
+use crate::error::ClaimError;
+
+/// What tables of finished runs gave.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Import {
+    /// Tables that were read.
+    pub tables: usize,
+    /// Files of a folder that hold no rows of runs, with the reason.
+    pub skipped: Vec<(PathBuf, String)>,
+    /// What each study found in them.
+    pub studies: Vec<ImportedRuns>,
+}
+
+/// What a study found in tables of finished runs.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ImportedRuns {
+    /// Name of the study.
+    pub study: String,
+    /// Runs of its plan that were in the tables.
+    pub found: usize,
+    /// Runs of its plan.
+    pub runs: usize,
+}
+
+/// A table of finished runs.
+struct Rows {
+    path: PathBuf,
+    identities: HashSet<Identity>,
+}
+
+impl Reproduction {
+    /// Takes finished runs from tables, CSV or Parquet, or folders of them, into the stores of the studies that they belong
+    /// to, by their identities. A run that is finished in a store stays as it is there.
+    ///
+    /// # Errors
+    /// A path that cannot be read; a file that was named and holds no rows of runs (one in a folder is skipped); errors of
+    /// writing to a store.
+    pub fn import(&self, paths: &[PathBuf]) -> Result<Import, ClaimError> {
+        let mut import = Import::default();
+        let mut tables = Vec::new();
+        for path in paths {
+            if path.is_dir() {
+                for file in files_of(path)? {
+                    match Rows::read(&file) {
+                        Ok(rows) => tables.push(rows),
+                        Err(error) => import.skipped.push((file, error.to_string())),
+                    }
+                }
+            } else {
+                tables.push(Rows::read(path)?);
+            }
+        }
+        import.tables = tables.len();
+        for work in &self.works {
+            // A store that cannot be opened is told of when its study is worked on.
+            if let Ok(store) = &work.store {
+                let (found, runs) = import_into(store, &tables)?;
+                import.studies.push(ImportedRuns {
+                    study: work.file.name.to_owned(),
+                    found,
+                    runs,
+                });
+            }
+        }
+        Ok(import)
+    }
+}
+
+impl Rows {
+    fn read(path: &Path) -> Result<Self, StudyError> {
+        let table = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("parquet") => parquet::read(path)?,
+            _ => csv::read(path)?,
+        };
+        let rows = Row::all_of(&table).map_err(|reason| StudyError::NotRows {
+            path: path.to_owned(),
+            reason,
+        })?;
+        Ok(Self {
+            path: path.to_owned(),
+            identities: rows.iter().map(Row::identity).collect(),
+        })
+    }
+}
+
+/// The tables in a folder, by name.
+fn files_of(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
+    let failed = |source| StudyError::Read {
+        path: folder.to_owned(),
+        source,
+    };
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        let is_table = path
+            .extension()
+            .is_some_and(|extension| extension == "csv" || extension == "parquet");
+        if is_table && path.is_file() {
+            files.push(path);
+        }
+    }
+    files.sort();
+    Ok(files)
+}
+
+/// Imports the tables that hold runs which the study lacks; answers how many runs of its plan are in any table, and how many
+/// there are.
+fn import_into(store: &Store, tables: &[Rows]) -> Result<(usize, usize), StudyError> {
+    loop {
+        let survey = store.survey()?;
+        let planned: HashSet<Identity> =
+            survey.plan.runs().iter().map(|run| run.identity).collect();
+        let is_lacked = |identity: &&Identity| {
+            planned.contains(*identity) && survey.state(**identity) != State::Done
+        };
+        let mut taken: HashSet<&Identity> = HashSet::new();
+        for table in tables {
+            let lacked = table.identities.iter().filter(is_lacked);
+            let before = taken.len();
+            taken.extend(lacked);
+            if taken.len() > before {
+                store.import_table(&table.path)?;
+            }
+        }
+        if taken.is_empty() {
+            let found = planned
+                .iter()
+                .filter(|identity| {
+                    tables
+                        .iter()
+                        .any(|table| table.identities.contains(identity))
+                })
+                .count();
+            return Ok((found, planned.len()));
+        }
+        // Runs that were just found may let refinement ask for more.
+    }
+}

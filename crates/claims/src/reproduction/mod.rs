@@ -1,0 +1,393 @@
+//! From claims to findings: the studies that they need, worked on one after the other, and each claim examined as soon as
+//! its studies have ended.
+
+mod examination;
+mod import;
+mod order;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use peristalsis_study::{Board, Effort, Ending, Specification, Store, StudyError, work_on};
+
+use crate::claim::Claim;
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
+use crate::studies::{Size, StudyFile};
+pub use examination::Examination;
+pub use import::{Import, ImportedRuns};
+
+/// Folder of the stores below that of the results.
+const STORES: &str = "stores";
+
+/// Claims with the studies that they need, each in a store of its own.
+///
+/// A study in either size has the same store: what one size has computed, the other need not compute again.
+#[derive(Debug)]
+pub struct Reproduction {
+    size: Size,
+    claims: Vec<Claim>,
+    works: Vec<Work>,
+}
+
+/// A study and where its runs are kept.
+#[derive(Debug)]
+struct Work {
+    file: StudyFile,
+    study: Specification,
+    store: Result<Store, StudyError>,
+}
+
+/// What there is to tell of a reproduction in progress.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// How far it is; several times a second.
+    Progress(Stage<'a>),
+    /// The studies of a claim have ended, and this is what they say.
+    Examined(&'a Examination),
+    /// A study could not be worked on to its end; the others go on.
+    Trouble {
+        /// Name of the study.
+        study: &'a str,
+        /// Why.
+        reason: &'a str,
+    },
+}
+
+/// How far a reproduction is.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'a> {
+    /// Name of the study that is worked on.
+    pub study: &'a str,
+    /// Its place, counted from 1.
+    pub number: usize,
+    /// How many studies there are.
+    pub of: usize,
+    /// How far it is itself.
+    pub board: &'a Board,
+    /// Part of the work of all studies, in grains times steps, that is done.
+    pub fraction: f64,
+    /// Time left for all studies; `None` while nothing can be said.
+    pub left: Option<Duration>,
+}
+
+/// What became of a study.
+#[derive(Clone, Debug)]
+pub struct StudyOutcome {
+    /// The study.
+    pub file: StudyFile,
+    /// Its title.
+    pub title: String,
+    /// Runs of its plan, those that refinement has added included.
+    pub runs: usize,
+    /// Those that are finished.
+    pub done: usize,
+    /// Those that failed.
+    pub failed: usize,
+    /// Why it could not be worked on or read, if so.
+    pub failure: Option<String>,
+}
+
+impl StudyOutcome {
+    /// Runs that have neither finished nor failed.
+    #[must_use]
+    pub fn missing(&self) -> usize {
+        self.runs.saturating_sub(self.done + self.failed)
+    }
+}
+
+/// What became of a reproduction.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Why the work ended.
+    pub ending: Ending,
+    /// The claims in their order.
+    pub examinations: Vec<Examination>,
+    /// The studies in the order of the claims that need them.
+    pub studies: Vec<StudyOutcome>,
+}
+
+/// The claims of these names, in the order of `all`; every claim where no name is given. Case does not matter.
+///
+/// # Errors
+/// [`ClaimError::NoSuchClaim`].
+pub fn chosen(all: &[Claim], names: &[String]) -> Result<Vec<Claim>, ClaimError> {
+    let is = |claim: &Claim, name: &str| claim.id.eq_ignore_ascii_case(name.trim());
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| !all.iter().any(|claim| is(claim, name)))
+    {
+        return Err(ClaimError::NoSuchClaim {
+            asked: unknown.clone(),
+            known: all.iter().map(|claim| claim.id).collect(),
+        });
+    }
+    Ok(all
+        .iter()
+        .filter(|claim| names.is_empty() || names.iter().any(|name| is(claim, name)))
+        .copied()
+        .collect())
+}
+
+impl Reproduction {
+    /// Makes or opens the stores of the studies that the claims need, in `folder/stores`.
+    ///
+    /// A store that cannot be opened is told of later, and costs only the claims that need it.
+    ///
+    /// # Errors
+    /// [`ClaimError::Folder`], [`ClaimError::NoSuchStudy`], and [`ClaimError::Study`] for a study file that is none.
+    pub fn prepare(
+        folder: &Path,
+        size: Size,
+        claims: &[Claim],
+        studies: &[StudyFile],
+    ) -> Result<Self, ClaimError> {
+        let stores = folder.join(STORES);
+        fs::create_dir_all(&stores).map_err(|source| ClaimError::Folder {
+            path: folder.to_owned(),
+            source,
+        })?;
+        let mut works: Vec<Work> = Vec::new();
+        for name in claims.iter().flat_map(|claim| claim.studies) {
+            if works.iter().any(|work| work.file.name == *name) {
+                continue;
+            }
+            let file = studies
+                .iter()
+                .find(|study| study.name == *name)
+                .ok_or_else(|| ClaimError::NoSuchStudy((*name).to_owned()))?;
+            let study = Specification::from_toml(file.path, file.text(size), |name| {
+                Err(StudyError::Read {
+                    path: name.into(),
+                    source: std::io::Error::other("a study of the claims builds on a preset"),
+                })
+            })?;
+            let store = Store::create(&stores.join(file.name), &study);
+            works.push(Work {
+                file: *file,
+                study,
+                store,
+            });
+        }
+        Ok(Self {
+            size,
+            claims: claims.to_vec(),
+            works,
+        })
+    }
+
+    /// The size of the designs.
+    #[must_use]
+    pub fn size(&self) -> Size {
+        self.size
+    }
+
+    /// Computes what is missing, those studies first that let a claim be examined soonest, and examines the claims.
+    ///
+    /// `stop` is asked often whether to stop; `watch` is told what happens. Both are called from the calling thread.
+    /// Every run is saved when it stops, and claims are examined on what there is by then: nothing that fails on the way
+    /// keeps the rest from being reported.
+    pub fn run(
+        &self,
+        effort: Effort,
+        stop: &dyn Fn() -> bool,
+        watch: &mut dyn FnMut(Event<'_>),
+    ) -> Outcome {
+        let mut course = Course::of(self);
+        let ending = course.work(effort, stop, watch);
+        course.finish(ending, watch)
+    }
+}
+
+/// A reproduction on its way.
+struct Course<'a> {
+    reproduction: &'a Reproduction,
+    /// Work of each study and the part of it that is left, in grains times steps.
+    loads: Vec<Load>,
+    /// Why a study could not be worked on or read, by name.
+    failures: BTreeMap<&'static str, String>,
+    /// Studies whose results are in the evidence, or cannot be.
+    ended: Vec<&'static str>,
+    evidence: Evidence,
+    examinations: BTreeMap<&'static str, Examination>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Load {
+    all: f64,
+    left: f64,
+}
+
+impl<'a> Course<'a> {
+    fn of(reproduction: &'a Reproduction) -> Self {
+        let load = |work: &Work| {
+            let survey = work.store.as_ref().ok()?.survey().ok()?;
+            Some(Load {
+                all: survey.work(),
+                left: survey.work_left(),
+            })
+        };
+        Self {
+            reproduction,
+            // A study that cannot be read takes no time.
+            loads: reproduction
+                .works
+                .iter()
+                .map(|work| load(work).unwrap_or_default())
+                .collect(),
+            failures: BTreeMap::new(),
+            ended: Vec::new(),
+            evidence: Evidence::default(),
+            examinations: BTreeMap::new(),
+        }
+    }
+
+    /// Works on the studies until all have ended or it is time to stop.
+    fn work(
+        &mut self,
+        effort: Effort,
+        stop: &dyn Fn() -> bool,
+        watch: &mut dyn FnMut(Event<'_>),
+    ) -> Ending {
+        let begin = Instant::now();
+        let works = &self.reproduction.works;
+        let costs: Vec<f64> = self.loads.iter().map(|load| load.left).collect();
+        let names: Vec<&str> = works.iter().map(|work| work.file.name).collect();
+        let order = order::cheapest_claims_first(&self.reproduction.claims, &names, &costs);
+        let total: f64 = self.loads.iter().map(|load| load.all).sum();
+        let left_before: f64 = costs.iter().sum();
+        for (turn, &place) in order.iter().enumerate() {
+            let work = &works[place];
+            let is_complete = costs[place] == 0.0;
+            let limit = effort
+                .limit
+                .map(|limit| limit.saturating_sub(begin.elapsed()));
+            if !is_complete {
+                if stop() {
+                    return Ending::Stopped;
+                }
+                if limit.is_some_and(|limit| limit.is_zero()) {
+                    return Ending::TimeUp;
+                }
+            }
+            let others_left: f64 = order[turn + 1..].iter().map(|place| costs[*place]).sum();
+            let load = self.loads[place];
+            let mut show = |board: &Board| {
+                let left = others_left + load.all * (1.0 - board.fraction);
+                let gained = left_before - left;
+                watch(Event::Progress(Stage {
+                    study: work.file.name,
+                    number: turn + 1,
+                    of: order.len(),
+                    board,
+                    fraction: if total > 0.0 { 1.0 - left / total } else { 1.0 },
+                    left: (gained > 0.0).then(|| begin.elapsed().mul_f64(left.max(0.0) / gained)),
+                }));
+            };
+            let ending = match &work.store {
+                Ok(store) => {
+                    let effort = Effort { limit, ..effort };
+                    work_on(store, &work.study, effort, stop, &mut show)
+                        .map_err(|error| error.to_string())
+                }
+                Err(error) => Err(error.to_string()),
+            };
+            match ending {
+                Ok(Ending::Complete) => {}
+                Ok(ending) => return ending,
+                Err(reason) => self.fail(work.file.name, reason, watch),
+            }
+            self.end(place, watch);
+            self.examine_what_has_ended(watch);
+        }
+        Ending::Complete
+    }
+
+    /// Takes the results of all studies that have not ended into the evidence, and examines the rest of the claims.
+    fn finish(mut self, ending: Ending, watch: &mut dyn FnMut(Event<'_>)) -> Outcome {
+        for place in 0..self.reproduction.works.len() {
+            if !self
+                .ended
+                .contains(&self.reproduction.works[place].file.name)
+            {
+                self.end(place, watch);
+            }
+        }
+        self.examine_what_has_ended(watch);
+        Outcome {
+            ending,
+            studies: self
+                .reproduction
+                .works
+                .iter()
+                .map(|work| self.outcome_of(work))
+                .collect(),
+            examinations: self
+                .reproduction
+                .claims
+                .iter()
+                .filter_map(|claim| self.examinations.remove(claim.id))
+                .collect(),
+        }
+    }
+
+    /// Takes the results of a study into the evidence.
+    fn end(&mut self, place: usize, watch: &mut dyn FnMut(Event<'_>)) {
+        let work = &self.reproduction.works[place];
+        self.ended.push(work.file.name);
+        let outcome = match &work.store {
+            Ok(store) => self
+                .evidence
+                .add(store.clone())
+                .map_err(|error| error.to_string()),
+            Err(error) => Err(error.to_string()),
+        };
+        if let Err(reason) = outcome {
+            self.fail(work.file.name, reason, watch);
+        }
+    }
+
+    fn fail(&mut self, study: &'static str, reason: String, watch: &mut dyn FnMut(Event<'_>)) {
+        // The first reason is the cause of those that follow.
+        if !self.failures.contains_key(study) {
+            let reason = &*self.failures.entry(study).or_insert(reason);
+            watch(Event::Trouble { study, reason });
+        }
+    }
+
+    /// Examines the claims whose studies have all ended.
+    fn examine_what_has_ended(&mut self, watch: &mut dyn FnMut(Event<'_>)) {
+        for claim in &self.reproduction.claims {
+            let is_ready = claim.studies.iter().all(|name| self.ended.contains(name));
+            if is_ready && !self.examinations.contains_key(claim.id) {
+                let examination = Examination::of(claim, &self.evidence, &self.failures);
+                watch(Event::Examined(&examination));
+                self.examinations.insert(claim.id, examination);
+            }
+        }
+    }
+
+    fn outcome_of(&self, work: &Work) -> StudyOutcome {
+        let survey = work
+            .store
+            .as_ref()
+            .ok()
+            .and_then(|store| store.survey().ok());
+        let (mut runs, mut done, mut failed) = (0, 0, 0);
+        if let Some(survey) = survey {
+            let counts = survey.counts();
+            let count = |state: &str| counts.get(state).copied().unwrap_or(0);
+            (runs, done, failed) = (survey.plan.runs().len(), count("done"), count("failed"));
+        }
+        StudyOutcome {
+            file: work.file,
+            title: work.study.title.clone(),
+            runs,
+            done,
+            failed,
+            failure: self.failures.get(work.file.name).cloned(),
+        }
+    }
+}

@@ -1,0 +1,179 @@
+//! `peristalsis reproduce`
+
+use std::process::ExitCode;
+use std::time::Duration;
+
+use peristalsis_claims::{
+    CLAIMS, Event, Examination, Import, Outcome, Reproduction, STUDIES, Size, Stage, chosen,
+};
+use peristalsis_report::{Report, plain_text};
+use peristalsis_study::{Effort, Ending};
+
+use super::study::progress::{Display, Whole};
+use crate::arguments::ReproduceArguments;
+use crate::commands::{print, say};
+use crate::failure::Failure;
+use crate::progress::seconds;
+use crate::stop::Stop;
+
+/// Time between two checkpoints of a run.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+
+/// Examines the claims.
+pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    let size = if arguments.full {
+        Size::Full
+    } else {
+        Size::Quick
+    };
+    let claims = chosen(CLAIMS, &arguments.only)?;
+    let reproduction = Reproduction::prepare(&arguments.out, size, &claims, STUDIES)?;
+    let tell = |text: &str| {
+        if !arguments.quiet {
+            say(text);
+        }
+    };
+    let is_default = !arguments.quick && !arguments.full;
+    tell(&format!(
+        "{} claim{}, {} design{}, in {}",
+        claims.len(),
+        if claims.len() == 1 { "" } else { "s" },
+        size.name(),
+        if is_default {
+            " (--full has enough runs for verdicts)"
+        } else {
+            ""
+        },
+        arguments.out.display()
+    ));
+    if !arguments.import.is_empty() {
+        tell(&imported(&reproduction.import(&arguments.import)?));
+    }
+    let processors = std::thread::available_parallelism().map_or(1, |number| number.get());
+    let effort = Effort {
+        workers: arguments.workers.map_or(processors, usize::from),
+        checkpoint_interval: CHECKPOINT_INTERVAL,
+        limit: arguments.limit,
+    };
+    stop.keep_results();
+    let mut display = Display::new(arguments.quiet, effort.workers);
+    let outcome = reproduction.run(
+        effort,
+        &|| stop.requested().is_some(),
+        &mut |event| match event {
+            Event::Progress(stage) => display.update_part(stage.board, &whole(&stage)),
+            Event::Examined(examination) => display.tell(&verdict(examination)),
+            Event::Trouble { study, reason } => display.tell(&format!("study {study}: {reason}")),
+        },
+    );
+    display.finish();
+    let ending = outcome.ending;
+    let is_well = is_well(&outcome);
+    let report = Report::of(size, outcome);
+    let page = report.write(&arguments.out)?;
+    if arguments.json {
+        print(&report.json())?;
+    } else {
+        print(&summary(&report))?;
+        print(&format!("report: {}\n", page.display()))?;
+    }
+    let again = "every run is saved; called again, it goes on";
+    match ending {
+        Ending::Complete => {}
+        Ending::TimeUp => tell(&format!("time is up, {again}")),
+        Ending::Stopped => {
+            tell(&format!("stopped, {again}"));
+            if let Some(code) = stop.requested() {
+                return Ok(ExitCode::from(code));
+            }
+        }
+    }
+    Ok(if is_well {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// Whether every claim could be examined, every study worked on, and no run failed.
+fn is_well(outcome: &Outcome) -> bool {
+    outcome
+        .examinations
+        .iter()
+        .all(|examination| examination.failure.is_none())
+        && outcome
+            .studies
+            .iter()
+            .all(|study| study.failure.is_none() && study.failed == 0)
+}
+
+/// What an import gave, a line a study.
+fn imported(import: &Import) -> String {
+    let mut lines = vec![format!("{} tables of finished runs", import.tables)];
+    for (path, reason) in &import.skipped {
+        lines.push(format!("  {} is left out: {reason}", path.display()));
+    }
+    for study in &import.studies {
+        lines.push(format!(
+            "  {}: {} of {} runs found",
+            study.study, study.found, study.runs
+        ));
+    }
+    lines.join("\n")
+}
+
+/// How far everything is.
+fn whole(stage: &Stage<'_>) -> Whole {
+    let mut words = format!(
+        "study {} of {}, {}: {} of {} runs done",
+        stage.number, stage.of, stage.study, stage.board.done, stage.board.total
+    );
+    if stage.board.failed > 0 {
+        words.push_str(&format!(", {} failed", stage.board.failed));
+    }
+    words.push_str(&format!("; {:.0} % of all work", 100.0 * stage.fraction));
+    if let Some(left) = stage.left {
+        words.push_str(&format!(", {} left", seconds(left.as_secs_f64())));
+    }
+    Whole {
+        words,
+        fraction: stage.fraction,
+    }
+}
+
+/// A claim's verdict in one line.
+fn verdict(examination: &Examination) -> String {
+    let Examination {
+        claim,
+        finding,
+        failure,
+    } = examination;
+    let reason = match failure {
+        Some(failure) => format!("could not be examined: {failure}"),
+        None => plain_text(&finding.summary),
+    };
+    let is_thin = failure.is_none() && !examination.is_sufficient();
+    format!(
+        "{} {}{}: {reason}",
+        claim.id,
+        finding.verdict.name(),
+        if is_thin { " (thin statistics)" } else { "" }
+    )
+}
+
+/// The claims, a line each.
+fn summary(report: &Report) -> String {
+    report
+        .examinations
+        .iter()
+        .map(|examination| {
+            format!(
+                "{:<4} {:<11} {}\n",
+                examination.claim.id,
+                examination.finding.verdict.name(),
+                plain_text(examination.claim.title)
+            )
+        })
+        .collect()
+}

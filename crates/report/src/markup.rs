@@ -1,0 +1,144 @@
+//! The markup of figures as HTML and as plain text.
+
+use maud::{Markup, html};
+use peristalsis_figures::{Letter, Level, letters};
+
+/// A dot above the letter before it belongs to that letter, however it is set.
+const COMBINING_DOT: char = '\u{307}';
+
+/// Signs that no line ends beside.
+const RELATIONS: [char; 5] = ['=', '≥', '≤', '±', '×'];
+
+/// Characters of one setting.
+struct Stretch {
+    italic: bool,
+    level: Level,
+    text: String,
+}
+
+/// A text in the markup of figures as HTML; everything that is not markup is escaped.
+pub(crate) fn rich(markup: &str) -> Markup {
+    let stretches = stretches(&letters(markup));
+    let mut rest = stretches.as_slice();
+    let mut parts: Vec<Markup> = Vec::new();
+    while let [first, after @ ..] = rest {
+        rest = after;
+        if first.level == Level::Base {
+            parts.push(set(first));
+            continue;
+        }
+        let (first, after) = script(first, rest);
+        // A superscript and a subscript side by side stand above each other.
+        match after {
+            [next, ..] if next.level != Level::Base => {
+                let (second, after) = script(next, after.get(1..).unwrap_or_default());
+                rest = after;
+                parts.push(html! { span.scripts { (first) (second) } });
+            }
+            _ => {
+                rest = after;
+                parts.push(first);
+            }
+        }
+    }
+    html! { @for part in &parts { (part) } }
+}
+
+/// A text in the markup of figures as plain text: italics are dropped, scripts begin with `_` or `^`.
+///
+/// ```
+/// assert_eq!(peristalsis_report::plain_text("*J*_{max} = 10^{−3}"), "J_max = 10^−3");
+/// ```
+#[must_use]
+pub fn plain_text(markup: &str) -> String {
+    let mut plain = String::with_capacity(markup.len());
+    let mut level = Level::Base;
+    for letter in letters(markup) {
+        if letter.level != level {
+            level = letter.level;
+            match level {
+                Level::Base => {}
+                Level::Subscript => plain.push('_'),
+                Level::Superscript => plain.push('^'),
+            }
+        }
+        plain.push(letter.character);
+    }
+    plain
+}
+
+/// A whole subscript or superscript, of which the first stretch has been taken.
+fn script<'a>(first: &Stretch, rest: &'a [Stretch]) -> (Markup, &'a [Stretch]) {
+    let more = rest
+        .iter()
+        .take_while(|stretch| stretch.level == first.level)
+        .count();
+    let (own, after) = rest.split_at(more);
+    let content = html! { (set(first)) @for stretch in own { (set(stretch)) } };
+    let markup = match first.level {
+        Level::Superscript => html! { sup { (content) } },
+        _ => html! { sub { (content) } },
+    };
+    (markup, after)
+}
+
+fn set(stretch: &Stretch) -> Markup {
+    let text = RELATIONS.iter().fold(stretch.text.clone(), |text, sign| {
+        text.replace(&format!(" {sign} "), &format!("\u{a0}{sign}\u{a0}"))
+    });
+    html! {
+        @if stretch.italic { i { (text) } } @else { (text) }
+    }
+}
+
+fn stretches(letters: &[Letter]) -> Vec<Stretch> {
+    let mut stretches: Vec<Stretch> = Vec::new();
+    for letter in letters {
+        match stretches.last_mut() {
+            Some(last)
+                if letter.character == COMBINING_DOT
+                    || (last.italic, last.level) == (letter.italic, letter.level) =>
+            {
+                last.text.push(letter.character);
+            }
+            _ => stretches.push(Stretch {
+                italic: letter.italic,
+                level: letter.level,
+                text: letter.character.to_string(),
+            }),
+        }
+    }
+    stretches
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markup_becomes_elements() {
+        for (markup, expected) in [
+            ("*J*/*J*_{max}", "<i>J</i>/<i>J</i><sub>max</sub>"),
+            ("*w*_c", "<i>w</i><sub>c</sub>"),
+            ("10^{−*n*}", "10<sup>−<i>n</i></sup>"),
+            (
+                "2.79^{+0.09}_{−0.03} *d*",
+                "2.79<span class=\"scripts\"><sup>+0.09</sup><sub>−0.03</sub></span> <i>d</i>",
+            ),
+            ("*ε*\u{307}", "<i>ε\u{307}</i>"),
+            ("*w* = 2.5", "<i>w</i>\u{a0}=\u{a0}2.5"),
+            ("run\\_7 \\*", "run_7 *"),
+        ] {
+            assert_eq!(rich(markup).into_string(), expected, "{markup}");
+        }
+    }
+
+    #[test]
+    fn everything_else_is_escaped() {
+        assert_eq!(
+            rich("<b onclick=\"x\">*a<*&amp;^{<i>}").into_string(),
+            "&lt;b onclick=&quot;x&quot;&gt;<i>a&lt;</i>&amp;amp;<sup>&lt;i&gt;</sup>"
+        );
+        assert_eq!(plain_text("*w*_{c}\\* <&"), "w_c* <&");
+    }
+}
