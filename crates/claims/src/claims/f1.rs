@@ -118,7 +118,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ),
             symbol: "*J*/*J*_{max}".to_owned(),
             unit: String::new(),
-            source: Some(1.0),
+            source: None,
             ours: Some(peristalsis_analysis::Uncertain::normal(
                 kind.fast_ratio.0,
                 kind.fast_ratio.1,
