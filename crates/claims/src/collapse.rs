@@ -1,13 +1,13 @@
 //! Collapse of the curves of several strain rates, with free exponents.
 
 use peristalsis_analysis::{
-    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, LEAST_OVERLAP, Scaling, ScatterLawFit,
-    Uncertain, WidthEnsemble,
+    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, LEAST_OVERLAP, Scaling, Uncertain,
+    WidthEnsemble,
 };
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Units, Width};
 
-use crate::critical::Line;
+use crate::critical::{Divergence, Line};
 use crate::error::ClaimError;
 use crate::finding::{Quantity, ReportFigure, ReportTable};
 use crate::text::{estimate, number};
@@ -34,7 +34,7 @@ pub(crate) struct Collapsed {
 
 /// Collapses a quantity of the transition times, mean or variance; `None` where too few strain rates have it.
 pub(crate) fn collapse(
-    fits: &[(&Line<'_>, ScatterLawFit)],
+    fits: &[(&Line<'_>, Divergence)],
     claimed: [f64; 2],
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
@@ -86,7 +86,15 @@ pub(crate) fn collapse(
         resamples: RESAMPLES,
         seed: SEED,
     };
-    let exponents = collapse.bootstrap(&fit, &STEPS, bootstrap).ok()?.estimates;
+    // Curves that differ by more than their errors leave the exponents that much less certain.
+    let stretch = fit.quality.quality.max(1.0).sqrt();
+    let exponents = collapse
+        .bootstrap(&fit, &STEPS, bootstrap)
+        .ok()?
+        .estimates
+        .iter()
+        .map(|exponent| Uncertain::normal(exponent.value, stretch * exponent.error))
+        .collect();
     let left_out = collapse
         .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
         .map(|fits| {

@@ -1,8 +1,8 @@
 //! Transition times at one strain rate, and the power laws fitted to them.
 
 use peristalsis_analysis::{
-    Family, FractionCrossing, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
-    ensembles_by_width, fit_law_with_scatter, fraction_crossing,
+    Family, FractionCrossing, Law, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
+    ensembles_by_width, fit_law_to_runs, fit_law_with_scatter, fraction_crossing,
 };
 use peristalsis_run::THRESHOLDS;
 
@@ -218,14 +218,14 @@ impl Line<'_> {
         fraction_crossing(&width, &jammed).ok()
     }
 
-    /// Power laws of mean and scatter in a window of so many widths next to the critical one.
-    pub(crate) fn fit(&self, number: usize) -> Option<ScatterLawFit> {
+    /// The power law in a window of so many widths next to the critical one.
+    pub(crate) fn fit(&self, number: usize) -> Option<Divergence> {
         let (width, transitions) = self.window(number)?;
-        fit_law_with_scatter(&width, &transitions).ok()
+        Divergence::of(&width, &transitions)
     }
 
     /// Power laws in all windows, from four widths to all: stability against the choice.
-    pub(crate) fn fits(&self) -> Vec<(usize, ScatterLawFit)> {
+    pub(crate) fn fits(&self) -> Vec<(usize, Divergence)> {
         (4..=self.widths().len())
             .filter_map(|number| {
                 let (width, _) = self.window(number)?;
@@ -236,7 +236,7 @@ impl Line<'_> {
             })
             .fold(
                 Vec::new(),
-                |mut fits: Vec<(usize, ScatterLawFit)>, (number, fit)| {
+                |mut fits: Vec<(usize, Divergence)>, (number, fit)| {
                     // Beyond the last usable width nothing changes.
                     if fits.last().is_none_or(|last| last.1 != fit) {
                         fits.push((number, fit));
@@ -244,6 +244,57 @@ impl Line<'_> {
                     fits
                 },
             )
+    }
+}
+
+/// A power law of the mean transition time, tau = A (w_c - w)^-alpha.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Divergence {
+    /// w_c \[d\].
+    pub(crate) critical_width: Uncertain,
+    /// alpha.
+    pub(crate) exponent: Uncertain,
+    /// Transitions seen, and runs without one.
+    pub(crate) observed: usize,
+    pub(crate) censored: usize,
+    /// With the relative variance as a power of the distance, too; `None` where the runs do not determine that.
+    pub(crate) scatter: Option<ScatterLawFit>,
+    ln_amplitude: f64,
+}
+
+impl Divergence {
+    /// Maximum likelihood with the scatter as a power law of its own; with one scatter for all widths where that has no
+    /// maximum.
+    fn of(width: &[f64], transitions: &[Transition]) -> Option<Self> {
+        if let Ok(fit) = fit_law_with_scatter(width, transitions) {
+            return Some(Self {
+                critical_width: fit.critical_width,
+                exponent: fit.exponent,
+                observed: fit.observed,
+                censored: fit.censored,
+                ln_amplitude: fit.ln_amplitude,
+                scatter: Some(fit),
+            });
+        }
+        let fit = fit_law_to_runs(Law::Power, Family::Gamma, width, transitions).ok()?;
+        Some(Self {
+            critical_width: fit.critical_width?,
+            exponent: fit.exponent,
+            observed: fit.observed,
+            censored: fit.censored,
+            ln_amplitude: fit.ln_amplitude,
+            scatter: None,
+        })
+    }
+
+    /// Mean transition time at a width; infinite from w_c on.
+    pub(crate) fn mean(&self, width: f64) -> f64 {
+        let distance = self.critical_width.value - width;
+        if distance > 0.0 {
+            (self.ln_amplitude - self.exponent.value * distance.ln()).exp()
+        } else {
+            f64::INFINITY
+        }
     }
 }
 

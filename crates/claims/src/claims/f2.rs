@@ -3,7 +3,10 @@
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::{LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics};
+use super::{
+    LATTICES, MOST_ESCAPED, agrees, fitted, label, larger, lines_of, rate_colours, spaced,
+    statistics,
+};
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, weighted_mean};
 use crate::error::ClaimError;
@@ -102,7 +105,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 name.clone(),
                 number(line.strain_rate, 3),
                 number(line.threshold, 1),
-                "left out".to_owned(),
+                if line.escaped() > MOST_ESCAPED {
+                    "left out"
+                } else {
+                    "no fit"
+                }
+                .to_owned(),
                 String::new(),
                 String::new(),
                 String::new(),
@@ -224,7 +232,7 @@ fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
             let longest = time.iter().copied().fold(0.0, f64::max);
             let curve: Vec<(f64, f64)> = spaced(from, critical, 200)
                 .into_iter()
-                .map(|width| (width, fit.at(width).0 * line.strain_rate))
+                .map(|width| (width, fit.mean(width) * line.strain_rate))
                 .filter(|point| point.1.is_finite() && point.1 < 3.0 * longest)
                 .collect();
             if curve.len() > 1 {

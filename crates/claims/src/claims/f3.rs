@@ -71,13 +71,13 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     finding.paragraphs.push(
         "*τε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*} with *w*_{c} of each strain rate as fitted for F2, and *a* and *b* \
          free: Houdayer and Hartmann's *S* over the mean transition times, the least overlap of the curves constrained to \
-         one half. Errors by resampling the points within their errors. Where *f* is one power *x*^{−*α*} over the whole \
+         one half. Errors by resampling the points within their errors, stretched by the root of *S* where that exceeds 1. Where *f* is one power *x*^{−*α*} over the whole \
          range, only *a* − *αb* is determined, and *a* and *b* apart only by its bend."
             .to_owned(),
     );
     finding.weaknesses.push(
-        "*S* well above 1 says that the curves differ by more than their errors: then the collapse is approximate, and the \
-         errors of its exponents are too small."
+        "*S* well above 1 says that the curves differ by more than their errors, which are small: then the collapse is \
+         approximate at best."
             .to_owned(),
     );
     finding.figures.push(figure(

@@ -47,7 +47,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         all_rates.extend(used.iter().map(|line| line.strain_rate));
         let name = study.0.name();
         panels.push(panel(&used)?.title(&format!("{name} lattice")));
-        let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.variance_exponent).collect();
+        let exponents: Vec<_> = fits
+            .iter()
+            .filter_map(|(_, fit)| Some(fit.scatter?.variance_exponent))
+            .collect();
         if let Some(mean) = weighted_mean(&exponents) {
             means.push((name.clone(), mean));
             quantities.push(Quantity {
@@ -63,6 +66,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             });
         }
         for (line, fit) in &fits {
+            let Some(fit) = fit.scatter else { continue };
             rows.push(vec![
                 name.clone(),
                 number(line.strain_rate, 3),
@@ -179,7 +183,7 @@ fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
                 .series(number)
                 .tint(tint),
         );
-        if let Some(fit) = line.fit(WINDOW) {
+        if let Some(fit) = line.fit(WINDOW).and_then(|fit| fit.scatter) {
             let from = line.window(WINDOW).map_or(width[0], |window| {
                 window.0.iter().copied().fold(f64::INFINITY, f64::min)
             });

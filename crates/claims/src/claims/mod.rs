@@ -15,11 +15,11 @@ mod q3;
 mod q4;
 mod q5;
 
-use peristalsis_analysis::{ScatterLawFit, Uncertain};
+use peristalsis_analysis::Uncertain;
 use peristalsis_figures::{ColourScale, Quantity as Axis, Units};
 
 use crate::claim::Claim;
-use crate::critical::{Line, Thresholds, WINDOW, lines};
+use crate::critical::{Divergence, Line, Thresholds, WINDOW, lines};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::Statistics;
@@ -71,7 +71,7 @@ fn lines_of<'a>(
 }
 
 /// The lines that hold their grains, each with its fit; those of which too many grains are outside are left out.
-fn fitted<'a, 'b>(lines: &'b [Line<'a>]) -> Vec<(&'b Line<'a>, ScatterLawFit)> {
+fn fitted<'a, 'b>(lines: &'b [Line<'a>]) -> Vec<(&'b Line<'a>, Divergence)> {
     lines
         .iter()
         .filter(|line| line.escaped() <= MOST_ESCAPED)

@@ -57,7 +57,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         found = larger(found, statistics(&used));
         let name = study.0.name();
-        let scatter: Vec<_> = fits.iter().map(|(_, fit)| fit.scatter_exponent).collect();
+        let scatter: Vec<_> = fits
+            .iter()
+            .filter_map(|(_, fit)| Some(fit.scatter?.scatter_exponent))
+            .collect();
         if let Some(mean) = weighted_mean(&scatter) {
             quantities.push(Quantity {
                 name: format!("exponent of the relative variance, {name} lattice"),
@@ -72,6 +75,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             });
         }
         for (line, fit) in &fits {
+            let Some(fit) = fit.scatter else { continue };
             lines_compared += 1;
             chance_excluded += usize::from(fit.chance_probability < 1e-3);
             let Some((width, transitions)) = line.window(WINDOW) else {
