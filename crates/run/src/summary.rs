@@ -49,6 +49,8 @@ pub struct Summary {
     pub flow_rate_ratio: f64,
     /// Its standard error from block averages.
     pub flow_rate_ratio_error: f64,
+    /// Mean of J/Jmax in the second half of the late part less that in the first: a run that is not yet stationary drifts.
+    pub flow_rate_ratio_drift: f64,
     /// Late mean of J/Jmax of all grains.
     pub flow_rate_ratio_raw: f64,
     /// Late mean of J \[1/t\].
@@ -176,6 +178,7 @@ impl Summary {
                 |estimate| estimate.mean,
             ),
             flow_rate_ratio_error: estimate.map_or(f64::NAN, |estimate| estimate.error),
+            flow_rate_ratio_drift: drift(&ratios),
             flow_rate_ratio_raw: mean(|sample| sample.flow_rate_ratio_raw),
             flow_rate: mean(|sample| sample.flow_rate),
             transition_time,
@@ -242,6 +245,16 @@ impl Summary {
             .map(|units| SiSummary::of(&summary, configuration, units));
         summary
     }
+}
+
+/// Mean of the second half of a series less that of the first; NaN below two values.
+fn drift(series: &[f64]) -> f64 {
+    let (first, second) = series.split_at(series.len() / 2);
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    if first.is_empty() {
+        return f64::NAN;
+    }
+    mean(second) - mean(first)
 }
 
 impl Summary {

@@ -112,6 +112,7 @@ const COLUMNS: &[RowColumn] = &[
     later("transition_time_90", "t", "tau with the threshold 0.9; missing where there was none", |o| Cell::optional(o.summary.transition_times[8].time)),
     column("flow_rate_ratio", "1", Real, "late mean of J/Jmax, grains inside", |o| Cell::Real(o.summary.flow_rate_ratio)),
     column("flow_rate_ratio_error", "1", Real, "its standard error from block averages", |o| Cell::Real(o.summary.flow_rate_ratio_error)),
+    later("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", |o| Cell::Real(o.summary.flow_rate_ratio_drift)),
     column("flow_rate_ratio_raw", "1", Real, "late mean of J/Jmax of all grains", |o| Cell::Real(o.summary.flow_rate_ratio_raw)),
     column("flow_rate", "1/t", Real, "late mean of J", |o| Cell::Real(o.summary.flow_rate)),
     column("newtonian_flow_rate_ratio", "1", Real, "J/Jmax of a Newtonian fluid in this tube, phi = b/a", |o| Cell::optional(o.summary.newtonian_flow_rate_ratio)),

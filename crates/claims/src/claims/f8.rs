@@ -1,7 +1,7 @@
 //! F8: what the volume fraction changes.
 
 use peristalsis_analysis::{Uncertain, fit_line};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Corner, Note, Points};
 use peristalsis_figures::{Quantity as Axis, Width};
 
 use super::label;
@@ -316,7 +316,10 @@ fn panels_of(lattice: &str, densities: &[Density]) -> [ChartPanel; 3] {
             .collect();
         let panel = ChartPanel::new(&label(Axis::VolumeFraction), &name);
         if known.is_empty() {
-            return panel.with(Points::new("", &[0.15, 0.6], &[1.0, 1.0]).open());
+            return panel
+                .x_range(0.0..=0.7)
+                .y_range(0.0..=2.0)
+                .with(Note::corner(Corner::TopLeft, "too few transitions"));
         }
         let x: Vec<f64> = known.iter().map(|one| one.0).collect();
         let y: Vec<f64> = known.iter().map(|one| one.1.value).collect();
