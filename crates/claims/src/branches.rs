@@ -10,6 +10,10 @@ const CONTINUED: usize = 3;
 const CLEAR: f64 = 4.0;
 /// A jump counts from this height on.
 const LEAST_JUMP: f64 = 0.1;
+/// A fall between two widths counts from this height on, and from so many of its errors on.
+const LEAST_FALL: f64 = 0.05;
+/// Grains are looked for outside the tube at widths within this distance of the fall \[d\].
+const NEAR: f64 = 0.1;
 
 /// The stationary flow at one width.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,7 +80,8 @@ pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
 }
 
 impl Branch {
-    /// The branch that some runs of one tube at one strain rate show.
+    /// The branch that some runs of one tube at one strain rate show; those that still drift are left out, and with them
+    /// widths at which most do.
     pub(crate) fn of<'a>(runs: impl Iterator<Item = &'a Run>, start: Start) -> Self {
         let mut runs: Vec<&Run> = runs
             .filter(|run| run.start == start && run.flow_rate_ratio.is_finite())
@@ -84,37 +89,68 @@ impl Branch {
         runs.sort_by(|one, other| one.width.total_cmp(&other.width));
         let points = runs
             .chunk_by(|one, other| one.width == other.width)
-            .map(|group| {
+            .filter_map(|all| {
+                let group: Vec<&&Run> = all.iter().filter(|run| run.is_stationary()).collect();
+                if 2 * group.len() < all.len() {
+                    return None;
+                }
                 let ratios: Vec<f64> = group.iter().map(|run| run.flow_rate_ratio).collect();
                 let (mean, mut error) = mean_and_error(&ratios);
                 if !error.is_finite() {
                     error = group[0].flow_rate_ratio_error;
                 }
-                BranchPoint {
+                Some(BranchPoint {
                     width: group[0].width,
                     mean,
                     error,
-                    runs: group.len(),
+                    runs: all.len(),
                     escaped: group.iter().map(|run| run.escaped_fraction()).sum::<f64>()
                         / group.len() as f64,
-                }
+                })
             })
             .collect();
         Self { points }
     }
 
-    /// Where it falls most; `None` with a single width.
+    /// Where it falls most steeply of all falls that are clear, or most where none is; `None` with a single width.
     pub(crate) fn drop(&self) -> Option<Drop> {
+        let fall = |pair: &[BranchPoint]| pair[0].mean - pair[1].mean;
+        let clear = |pair: &[BranchPoint]| {
+            let error = pair[0].error.max(0.0).hypot(pair[1].error.max(0.0));
+            fall(pair) > LEAST_FALL.max(CLEAR * error)
+        };
+        let steepness = |pair: &[BranchPoint]| fall(pair) / (pair[1].width - pair[0].width);
+        let most = |value: &dyn Fn(&[BranchPoint]) -> f64, pairs: Vec<&'_ [BranchPoint]>| {
+            pairs
+                .into_iter()
+                .max_by(|one, other| value(one).total_cmp(&value(other)))
+                .map(|pair| Drop {
+                    before: pair[0].width,
+                    after: pair[1].width,
+                    ratio: (pair[0].mean, pair[1].mean),
+                })
+        };
+        let pairs = || self.points.windows(2);
+        most(&steepness, pairs().filter(|pair| clear(pair)).collect())
+            .or_else(|| most(&fall, pairs().collect()))
+    }
+
+    /// J/Jmax midway between the two branches at the jump.
+    pub(crate) fn threshold(&self) -> Option<f64> {
+        let drop = self.drop()?;
+        Some(self.jump().map_or(drop.threshold(), |jump| {
+            0.5 * (jump.upper.value + jump.lower.value)
+        }))
+    }
+
+    /// Largest fraction of grains outside at a width next to the fall, over all widths without one.
+    pub(crate) fn escaped(&self) -> f64 {
+        let middle = self.drop().map(|drop| 0.5 * (drop.before + drop.after));
         self.points
-            .windows(2)
-            .map(|pair| Drop {
-                before: pair[0].width,
-                after: pair[1].width,
-                ratio: (pair[0].mean, pair[1].mean),
-            })
-            .max_by(|one, other| {
-                (one.ratio.0 - one.ratio.1).total_cmp(&(other.ratio.0 - other.ratio.1))
-            })
+            .iter()
+            .filter(|point| middle.is_none_or(|middle| (point.width - middle).abs() <= NEAR))
+            .map(|point| point.escaped)
+            .fold(0.0, f64::max)
     }
 
     /// The jump at the largest fall, both sides continued to it as straight lines; `None` where a side is missing.

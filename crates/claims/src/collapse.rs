@@ -1,8 +1,7 @@
 //! Collapse of the curves of several strain rates, with free exponents.
 
 use peristalsis_analysis::{
-    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, LEAST_OVERLAP, Scaling, Uncertain,
-    WidthEnsemble,
+    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, Scaling, Uncertain, WidthEnsemble,
 };
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Units, Width};
@@ -16,6 +15,10 @@ use crate::text::{estimate, number};
 const STARTS: usize = 12;
 const RESAMPLES: usize = 200;
 const SEED: u64 = 20_120_331;
+/// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
+const OVERLAP: f64 = 0.75;
+/// S up to which curves count as collapsed: their distance is a few of their errors.
+const COLLAPSED: f64 = 10.0;
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
@@ -32,15 +35,17 @@ pub(crate) struct Collapsed {
     left_out: Vec<(f64, Vec<f64>)>,
 }
 
-/// Collapses a quantity of the transition times, mean or variance; `None` where too few strain rates have it.
+/// Collapses a quantity of the transition times, mean or variance, that goes about as (w_c - w)^-slope; `None` where too few strain rates have it.
 pub(crate) fn collapse(
     fits: &[(&Line<'_>, Divergence)],
     claimed: [f64; 2],
+    slope: f64,
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
     let mut critical = Vec::new();
     let mut curves = Vec::new();
     for (line, fit) in fits {
+        let critical_width = fit.critical_width;
         let points: Vec<CurvePoint> = line
             .ensembles()
             .iter()
@@ -54,10 +59,12 @@ pub(crate) fn collapse(
             .filter_map(|ensemble| {
                 let found =
                     quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
+                // A critical width that is off by its error moves a point along the curve.
+                let steepness = slope * found.value / (critical_width.value - ensemble.width);
                 Some(CurvePoint {
                     x: ensemble.width,
                     y: found.value,
-                    error: found.error,
+                    error: found.error.hypot(steepness * critical_width.error),
                 })
             })
             .collect();
@@ -79,7 +86,7 @@ pub(crate) fn collapse(
     let collapse = Collapse {
         curves: &curves,
         transform: &transform,
-        least_overlap: LEAST_OVERLAP,
+        least_overlap: OVERLAP,
     };
     let fit = collapse.fit(&claimed, &STEPS, STARTS, SEED).ok()?;
     let bootstrap = Bootstrap {
@@ -120,25 +127,19 @@ pub(crate) fn collapse(
 }
 
 impl Collapsed {
-    /// Whether both exponents of the source lie within the range that leaving out one curve, or the errors, span.
-    pub(crate) fn agrees(&self) -> bool {
-        (0..2).all(|place| {
-            let found = &self.exponents[place];
-            let (least, largest) = self.range(place);
-            let reach = 2.0 * found.error;
-            (least - reach..=largest + reach).contains(&self.claimed.0[place])
-        })
-    }
-
-    /// Range of an exponent over fits without one of the curves.
-    fn range(&self, place: usize) -> (f64, f64) {
-        let value = self.exponents[place].value;
-        self.left_out
-            .iter()
-            .map(|(_, parameters)| parameters[place])
-            .fold((value, value), |(least, largest), value| {
-                (least.min(value), largest.max(value))
-            })
+    /// Whether both exponents are those of the source; not, where the curves do not collapse at all; `None` where the errors
+    /// are too large to say.
+    pub(crate) fn agrees(&self) -> Option<bool> {
+        if self.fit.quality.quality > COLLAPSED {
+            return Some(false);
+        }
+        let each: Vec<Option<bool>> = (0..2)
+            .map(|place| super::claims::agrees(&self.exponents[place], self.claimed.0[place]))
+            .collect();
+        if each.contains(&Some(false)) {
+            return Some(false);
+        }
+        each.iter().all(Option::is_some).then_some(true)
     }
 
     /// The exponents with the quality of the collapse.
@@ -237,7 +238,7 @@ pub(crate) fn figure(
     found: &[(String, Collapsed)],
     claimed: [f64; 2],
     name: &str,
-    [x_label, y_label]: [&str; 2],
+    [x_label, y_label, best_label]: [&str; 3],
     slope: f64,
     caption: &str,
 ) -> Result<ReportFigure, ClaimError> {
@@ -260,11 +261,7 @@ pub(crate) fn figure(
                 } else {
                     "(*w*_{c} − *w*)/*ε̇*^{*b*}"
                 },
-                if is_claimed {
-                    y_label
-                } else {
-                    "scaled by *ε̇*^{*a*}"
-                },
+                if is_claimed { y_label } else { best_label },
             )
             .title(title)
             .x_scale(Scale::Logarithmic)

@@ -40,7 +40,7 @@ impl Thresholds {
                 let here = runs
                     .iter()
                     .filter(|run| run.lattice == lattice && run.strain_rate == rate);
-                Some((rate, Branch::of(here, Start::Rest).drop()?.threshold()))
+                Some((rate, Branch::of(here, Start::Rest).threshold()?))
             })
             .collect();
         Self { known }
@@ -62,6 +62,13 @@ impl Thresholds {
             .min_by(|one, other| (one - wanted).abs().total_cmp(&(other - wanted).abs()))
             .unwrap_or(0.5)
     }
+}
+
+/// Longest time that a run was given, in periods.
+pub(crate) fn longest<'a>(runs: impl Iterator<Item = &'a Run>) -> f64 {
+    runs.map(|run| run.time * run.strain_rate)
+        .fold(0.0, f64::max)
+        .round()
 }
 
 /// The distinct strain rates, ascending.
@@ -152,21 +159,29 @@ impl Line<'_> {
         self.runs.len()
     }
 
-    /// Most grains outside the tube, as a fraction, at any width from which on the fits look.
+    /// Largest fraction of grains outside the tube, mean over the runs at a width, of the widths that a fit looks at.
     pub(crate) fn escaped(&self) -> f64 {
-        let from = self
-            .window(WINDOW)
-            .map_or(f64::NEG_INFINITY, |window| window.0[0]);
-        let fractions: Vec<f64> = self
-            .runs
-            .iter()
-            .filter(|run| run.width >= from)
-            .map(|run| run.escaped_fraction())
-            .collect();
-        if fractions.is_empty() {
-            return 0.0;
-        }
-        mean_and_error(&fractions).0
+        let from = self.window(WINDOW).map_or(f64::NEG_INFINITY, |window| {
+            window.0.iter().copied().fold(f64::INFINITY, f64::min)
+        });
+        self.widths()
+            .into_iter()
+            .filter(|width| *width >= from)
+            .map(|width| {
+                let fractions: Vec<f64> = self
+                    .runs
+                    .iter()
+                    .filter(|run| run.width == width)
+                    .map(|run| run.escaped_fraction())
+                    .collect();
+                mean_and_error(&fractions).0
+            })
+            .fold(0.0, f64::max)
+    }
+
+    /// Longest time that a run was given, in periods.
+    pub(crate) fn periods(&self) -> f64 {
+        longest(self.runs.iter().copied())
     }
 
     /// The transition times at each width.

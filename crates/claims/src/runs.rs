@@ -4,6 +4,9 @@ use peristalsis_analysis::Transition;
 use peristalsis_formats::{FormatError, Table};
 use peristalsis_run::THRESHOLDS;
 
+/// Drift of J/Jmax between the halves of the late part beyond which a flow is in its transient.
+const MOST_DRIFT: f64 = 0.05;
+
 /// How the grains stood at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Start {
@@ -77,6 +80,8 @@ pub struct Run {
     pub flow_rate_ratio: f64,
     /// Its standard error.
     pub flow_rate_ratio_error: f64,
+    /// Mean of the second half of the late part less that of the first; NaN where the table does not say.
+    pub flow_rate_ratio_drift: f64,
     /// Grains outside at the end.
     pub escaped: i64,
     /// Transition time \[t\] at the threshold of the study; NaN where there was none.
@@ -138,6 +143,12 @@ impl Run {
             .map(|(_, value)| *value)
     }
 
+    /// Whether its late mean is that of a stationary flow: it drifts by less than [`MOST_DRIFT`].
+    #[must_use]
+    pub fn is_stationary(&self) -> bool {
+        self.flow_rate_ratio_drift.is_nan() || self.flow_rate_ratio_drift.abs() <= MOST_DRIFT
+    }
+
     /// Fraction of the grains outside at the end.
     #[must_use]
     pub fn escaped_fraction(&self) -> f64 {
@@ -163,6 +174,8 @@ impl Run {
             (reals("radius")?, reals("wavelength")?, integers("waves")?);
         let time = reals("time")?;
         let (ratio, error) = (reals("flow_rate_ratio")?, reals("flow_rate_ratio_error")?);
+        let drift = reals("flow_rate_ratio_drift")
+            .map_or_else(|_| vec![f64::NAN; table.rows()], <[f64]>::to_vec);
         let escaped = integers("escaped")?;
         let (own_time, own_threshold) = (reals("transition_time")?, reals("transition_threshold")?);
         let replicate = integers("replicate")?;
@@ -205,6 +218,7 @@ impl Run {
                 time: time[row],
                 flow_rate_ratio: ratio[row],
                 flow_rate_ratio_error: error[row],
+                flow_rate_ratio_drift: drift[row],
                 escaped: escaped[row],
                 transition_time: own_time[row],
                 transition_threshold: own_threshold[row],

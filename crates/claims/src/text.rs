@@ -38,9 +38,25 @@ pub(crate) fn interval(number: &Uncertain) -> String {
     )
 }
 
+/// A probability; very small ones come from the tails of approximate distributions, and are called small.
+pub(crate) fn probability(value: f64) -> String {
+    if value < 1e-3 {
+        "< 0.001".to_owned()
+    } else {
+        number(value, 3)
+    }
+}
+
 /// A plain number with so many decimals.
 pub(crate) fn number(value: f64, decimals: usize) -> String {
     if value.is_finite() {
+        // No minus before what is zero in these digits.
+        let rounded = 10_f64.powi(decimals as i32);
+        let value = if (value * rounded).round() == 0.0 {
+            0.0
+        } else {
+            value
+        };
         typeset(&format!("{value:.decimals$}"))
     } else {
         "–".to_owned()

@@ -76,6 +76,7 @@ impl Tube {
             time,
             flow_rate_ratio: slow + if end { self.jump } else { 0.0 } + 0.002 * normal(replicate),
             flow_rate_ratio_error: 0.002,
+            flow_rate_ratio_drift: 0.0,
             escaped: 0,
             transition_time: tau,
             transition_threshold: 0.5,

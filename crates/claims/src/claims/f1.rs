@@ -6,13 +6,13 @@ use peristalsis_figures::{ColourScale, Quantity as Axis, Width};
 use peristalsis_configuration::{Configuration, Sources};
 use peristalsis_run::{RunError, snapshot_stack};
 
-use super::{LATTICES, MOST_ESCAPED, label};
+use super::{LATTICES, MOST_ESCAPED, Part, judge, label};
 use crate::branches::Branch;
 use crate::claim::Claim;
-use crate::critical::strain_rates;
+use crate::critical::{longest, strain_rates};
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
 use crate::runs::{Lattice, Run, Start};
 use crate::text::{number, with_error};
 
@@ -26,6 +26,8 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
+/// J/Jmax below which a flow is slow.
+const SLOW: f64 = 0.5;
 /// J/Jmax from which on a flow is near Jmax.
 const NEAR_ONE: f64 = 0.9;
 /// Distance below the jump \[d\] at which the jammed flow is read off.
@@ -48,18 +50,26 @@ struct Kind {
     slow_ratio: (f64, f64),
     fast_ratio: (f64, f64),
     escaped: f64,
+    /// Whether the branch has a jump at all.
+    jumps: bool,
 }
 
 impl Kind {
     fn holds(&self) -> bool {
-        self.slow >= NEARLY_ALL && self.fast >= NEARLY_ALL && self.fast_ratio.0 >= NEAR_ONE
+        self.jumps
+            && self.slow >= NEARLY_ALL
+            && self.fast >= NEARLY_ALL
+            && self.slow_ratio.0 < SLOW
+            && self.fast_ratio.0 >= NEAR_ONE
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut kinds = Vec::new();
+    let mut periods: f64 = 0.0;
     for (lattice, _, branches) in LATTICES {
         let runs = &evidence.study(branches)?.runs;
+        periods = periods.max(longest(runs.iter()));
         for rate in strain_rates(runs.iter()) {
             kinds.extend(kind(runs, lattice, rate));
         }
@@ -79,7 +89,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         runs: tight(lattice).map(|kind| kind.runs).sum(),
     };
     let needed = Statistics::FOR_A_VERDICT;
-    let statistics = super::larger(of(Lattice::FINE), of(Lattice::COARSE));
+    let parts = LATTICES.map(|(lattice, ..)| Part {
+        lattice: lattice.name(),
+        holds: (tight(lattice).count() > 0).then(|| tight(lattice).all(Kind::holds)),
+        statistics: of(lattice),
+    });
+    let (verdict, statistics, why) = judge(&parts, &needed);
     if kinds.is_empty() {
         return Ok(Finding::nothing("No runs yet.", statistics, &needed));
     }
@@ -94,17 +109,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             )
         })
         .collect();
-    let holds = LATTICES
-        .iter()
-        .any(|(lattice, ..)| tight(*lattice).count() > 0 && tight(*lattice).all(Kind::holds));
     let mut finding = Finding::new(
-        if holds {
-            Verdict::Reproduced
-        } else {
-            Verdict::Differs
-        },
+        verdict,
         format!(
-            "Slow beyond the jump and above {NEAR_ONE} *J*_{{max}} well below it {}.",
+            "Slow beyond a jump (below {SLOW} *J*_{{max}}) and fast {BELOW} *d* below it (above {NEAR_ONE} *J*_{{max}}) {}.{why}",
             counts.join(" and ")
         ),
         statistics,
@@ -150,14 +158,16 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .collect(),
     });
     finding.paragraphs.push(
-        "The fast flow is that of Jmax where the wave is fast: at small strain rates on the coarse lattice the jammed flow \
-         itself slows down continuously as the bottleneck widens, since grains have time to slip back through it."
+        "Runs that still drift at their end are left out. Where the fast flow stays below *J*_{max} the jammed grains slip back \
+         through the bottleneck: see the branches of F6."
             .to_owned(),
     );
     finding.weaknesses.push(
-        "Which flow is the slow one is decided by where the stationary flow falls most between two widths, within 500 periods \
-         a run: next to *w*_{c} a transition may come later."
-            .to_owned(),
+        format!(
+            "Which flow is the slow one is decided by where the stationary flow falls, within {} periods a run: next to *w*_{{c}} a \
+             transition may come later.",
+            periods
+        ),
     );
     finding
         .figures
@@ -174,7 +184,7 @@ fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
     };
     let branch = Branch::of(here(), Start::Rest);
     let drop = branch.drop()?;
-    let threshold = drop.threshold();
+    let threshold = branch.threshold()?;
     let fraction = |beyond: bool| {
         let side = || {
             here().filter(move |run| {
@@ -191,8 +201,7 @@ fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
     let fast = branch
         .points
         .iter()
-        .rfind(|point| point.width <= drop.before - BELOW)
-        .or(branch.points.first())?;
+        .rfind(|point| point.width <= drop.before - BELOW)?;
     let slow = branch
         .points
         .iter()
@@ -207,7 +216,8 @@ fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
         fast: fraction(false),
         slow_ratio: (slow.mean, slow.error),
         fast_ratio: (fast.mean, fast.error),
-        escaped: fast.escaped.max(slow.escaped),
+        escaped: branch.escaped(),
+        jumps: branch.jumps(),
     })
 }
 

@@ -1,12 +1,12 @@
 //! F3: whether transition times of several strain rates collapse.
 
-use super::{LATTICES, fitted, larger, lines_of, statistics};
+use super::{LATTICES, Part, fitted, judge, lines_of, statistics};
 use crate::claim::Claim;
 use crate::collapse::{Collapsed, collapse, figure};
 use crate::critical::Line;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Statistics, Verdict};
+use crate::finding::{Finding, Statistics};
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F3",
@@ -28,18 +28,24 @@ const EXPONENTS: [f64; 2] = [3.5, 1.5];
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut found: Vec<(String, Collapsed)> = Vec::new();
-    let mut statistics_found = Statistics::default();
+    let mut parts = Vec::new();
     for study in LATTICES {
         let lines = lines_of(evidence, study)?;
         let fits = fitted(&lines);
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
-        statistics_found = larger(statistics_found, statistics(&used));
         let mean =
             |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.mean);
-        if let Some(collapsed) = collapse(&fits, EXPONENTS, mean) {
+        let collapsed = collapse(&fits, EXPONENTS, 1.0, mean);
+        parts.push(Part {
+            lattice: study.0.name(),
+            holds: collapsed.as_ref().and_then(Collapsed::agrees),
+            statistics: statistics(&used),
+        });
+        if let Some(collapsed) = collapsed {
             found.push((study.0.name(), collapsed));
         }
     }
+    let (verdict, statistics_found, why) = judge(&parts, &Statistics::FOR_A_VERDICT);
     if found.is_empty() {
         return Ok(Finding::nothing(
             "Too few strain rates with transitions to compare.",
@@ -47,18 +53,13 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             &Statistics::FOR_A_VERDICT,
         ));
     }
-    let holds = found.iter().any(|(_, collapsed)| collapsed.agrees());
     let words: Vec<String> = found
         .iter()
         .map(|(name, collapsed)| format!("{name} lattice: {}", collapsed.in_words()))
         .collect();
     let mut finding = Finding::new(
-        if holds {
-            Verdict::Reproduced
-        } else {
-            Verdict::Differs
-        },
-        format!("{}. The source says 7/2 and 3/2.", words.join("; ")),
+        verdict,
+        format!("{}. The source says 7/2 and 3/2.{why}", words.join("; ")),
         statistics_found,
         &Statistics::FOR_A_VERDICT,
     );
@@ -70,8 +71,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     finding.paragraphs.push(
         "*τε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*} with *w*_{c} of each strain rate as fitted for F2, and *a* and *b* \
-         free: Houdayer and Hartmann's *S* over the mean transition times, the least overlap of the curves constrained to \
-         one half. Errors by resampling the points within their errors, stretched by the root of *S* where that exceeds 1. Where *f* is one power *x*^{−*α*} over the whole \
+         free: Houdayer and Hartmann's *S* over the mean transition times, at least three quarters of the points \
+         overlapping. Errors by resampling the points within their errors, stretched by the root of *S* where that exceeds 1. Where *f* is one power *x*^{−*α*} over the whole \
          range, only *a* − *αb* is determined, and *a* and *b* apart only by its bend."
             .to_owned(),
     );
@@ -84,7 +85,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         &found,
         EXPONENTS,
         "collapse-of-transition-times",
-        ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"],
+        ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}", "*τε̇*^{*a*}"],
         -1.0,
         "Mean transition times scaled with the exponents of the source (left) and with those that collapse them best \
          (right), lattice by lattice; dashed: slope −1.",

@@ -3,13 +3,15 @@
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::{LATTICES, agrees, fitted, label, larger, lines_of, rate_colours, spaced, statistics};
+use super::{
+    LATTICES, Part, agrees, fitted, judge, label, lines_of, rate_colours, spaced, statistics,
+};
 use crate::claim::Claim;
 use crate::collapse::{Collapsed, collapse, figure};
 use crate::critical::{Line, WINDOW, weighted_mean};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
 use crate::text::{estimate, interval, number};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -32,7 +34,7 @@ const EXPONENT: f64 = 3.0;
 const SCALING: [f64; 2] = [7.0, 1.5];
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut statistics_found = Statistics::default();
+    let mut parts = Vec::new();
     let mut quantities = Vec::new();
     let mut rows = Vec::new();
     let mut panels = Vec::new();
@@ -43,7 +45,6 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let lines = lines_of(evidence, study)?;
         let fits = fitted(&lines);
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
-        statistics_found = larger(statistics_found, statistics(&used));
         all_rates.extend(used.iter().map(|line| line.strain_rate));
         let name = study.0.name();
         panels.push(panel(&used)?.title(&format!("{name} lattice")));
@@ -51,7 +52,13 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .iter()
             .filter_map(|(_, fit)| Some(fit.scatter?.variance_exponent))
             .collect();
-        if let Some(mean) = weighted_mean(&exponents) {
+        let mean = weighted_mean(&exponents);
+        parts.push(Part {
+            lattice: name.clone(),
+            holds: mean.and_then(|mean| agrees(&mean, EXPONENT)),
+            statistics: statistics(&used),
+        });
+        if let Some(mean) = mean {
             means.push((name.clone(), mean));
             quantities.push(Quantity {
                 name: format!("exponent of the variance of the transition time, {name} lattice"),
@@ -73,17 +80,18 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 estimate(&fit.variance_exponent),
                 interval(&fit.variance_exponent),
                 estimate(&fit.scatter_exponent),
-                format!("{:.1e}", fit.chance_probability),
+                crate::text::probability(fit.chance_probability),
             ]);
         }
         let variance =
             |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.variance);
-        if let Some(collapsed) = collapse(&fits, SCALING, variance) {
+        if let Some(collapsed) = collapse(&fits, SCALING, EXPONENT, variance) {
             quantities
                 .extend(collapsed.quantities(&format!("variance, {name}"), ["*a_{χ}*", "*b_{χ}*"]));
             collapses.push((name, collapsed));
         }
     }
+    let (verdict, statistics_found, why) = judge(&parts, &Statistics::FOR_A_VERDICT);
     if means.is_empty() {
         return Ok(Finding::nothing(
             "Too few runs had a transition.",
@@ -91,18 +99,16 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             &Statistics::FOR_A_VERDICT,
         ));
     }
-    let holds = means.iter().any(|(_, mean)| agrees(mean, EXPONENT));
     let words: Vec<String> = means
         .iter()
         .map(|(name, mean)| format!("*β* = {} on the {name} lattice", estimate(mean)))
         .collect();
     let mut finding = Finding::new(
-        if holds {
-            Verdict::Reproduced
-        } else {
-            Verdict::Differs
-        },
-        format!("{}; the source says 3.", words.join(", ")),
+        verdict,
+        format!(
+            "{}; the source says 3 (its scaling with the strain rate: see the collapse).{why}",
+            words.join(", ")
+        ),
         statistics_found,
         &Statistics::FOR_A_VERDICT,
     );
@@ -122,8 +128,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         rows,
     });
     finding.weaknesses.push(
-        "A variance from 30 runs has a relative error of a quarter at each width, and all of its rise hangs on the few widths \
-         next to *w*_{c}."
+        "A variance from *n* runs has a relative error of some (2/*n*)^{1/2} at each width, and all of its rise hangs on the few \
+         widths next to *w*_{c}."
             .to_owned(),
     );
     let drawing = ChartFigure::grid(2, panels)
@@ -144,7 +150,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             &collapses,
             SCALING,
             "collapse-of-variances",
-            ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"],
+            ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}", "*χ_{τ}ε̇*^{*a*}"],
             -3.0,
             "Variances scaled with the exponents of the source (left) and with those that collapse them best (right); \
              dashed: slope −3.",

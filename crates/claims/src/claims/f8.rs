@@ -4,13 +4,13 @@ use peristalsis_analysis::{Uncertain, fit_line};
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Corner, Note, Points};
 use peristalsis_figures::{Quantity as Axis, Width};
 
-use super::label;
+use super::{Part, judge, label};
 use crate::branches::Branch;
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, lines_at_own_threshold, weighted_mean};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
 use crate::runs::{Run, Start};
 use crate::text::{estimate, number, with_error};
 
@@ -49,13 +49,11 @@ struct Density {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut found = Statistics::default();
+    let mut words = Vec::new();
     let mut parts = Vec::new();
     let mut quantities = Vec::new();
     let mut rows = Vec::new();
     let mut panels: Vec<ChartPanel> = Vec::new();
-    let mut enough = false;
-    let mut holds = false;
     for (lattice, study) in [("fine", "density-fine"), ("coarse", "density-coarse")] {
         let densities = densities(&evidence.study(study)?.runs);
         if densities.is_empty() {
@@ -71,11 +69,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 runs: one.runs + other.runs,
             })
             .unwrap_or_default();
-        found = super::larger(found, least);
-        enough |= densities.len() >= DENSITIES;
-        let judged = judge(&densities);
-        holds |= judged.all();
-        parts.push(format!("{lattice} lattice: {}", judged.in_words()));
+        let judged = judged(&densities);
+        let enough = densities.len() >= DENSITIES;
+        parts.push(Part {
+            lattice: lattice.to_owned(),
+            holds: judged.all(),
+            // Too few densities never suffice.
+            statistics: if enough {
+                least
+            } else {
+                Statistics {
+                    replicates: 0,
+                    ..least
+                }
+            },
+        });
+        words.push(format!("{lattice} lattice: {}", judged.in_words()));
         quantities.extend(judged.quantities(lattice));
         rows.extend(densities.iter().map(|density| {
             vec![
@@ -94,29 +103,16 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         }));
         panels.extend(panels_of(lattice, &densities));
     }
-    if parts.is_empty() {
+    let (verdict, found, why) = judge(&parts, &NEEDED);
+    if words.is_empty() {
         return Ok(Finding::nothing("No runs yet.", found, &NEEDED));
     }
-    let needed = if enough {
-        NEEDED
-    } else {
-        // Too few densities never suffice.
-        Statistics {
-            strain_rates: usize::MAX,
-            ..NEEDED
-        }
-    };
     let mut finding = Finding::new(
-        if holds {
-            Verdict::Reproduced
-        } else {
-            Verdict::Differs
-        },
-        parts.join(". "),
+        verdict,
+        format!("{}.{why}", words.join(". ")),
         found,
-        &needed,
+        &NEEDED,
     );
-    finding.needed = NEEDED;
     finding.quantities = quantities;
     finding.paragraphs.push(format!(
         "J/Jmax of the jammed flow is compared at *w* = {COMPARED} *d*; *w*_{{c}} and *α* are those of the power law of F2 at \
@@ -166,7 +162,7 @@ fn densities(runs: &[Run]) -> Vec<Density> {
             let ratio = branch
                 .points
                 .iter()
-                .find(|point| (point.width - COMPARED).abs() < 0.06)
+                .find(|point| (point.width - COMPARED).abs() < 1e-9)
                 .map(|point| (point.mean, point.error));
             Density {
                 fraction: here[0].volume_fraction,
@@ -194,17 +190,15 @@ fn densities(runs: &[Run]) -> Vec<Density> {
 
 /// The three parts of the claim.
 struct Judged {
-    slower: bool,
+    /// Whether the flow falls with every density, by more than its errors; `None` without one at each.
+    slower: Option<bool>,
     change: Option<Uncertain>,
     relative_change: f64,
     exponent: Option<Uncertain>,
 }
 
-fn judge(densities: &[Density]) -> Judged {
-    let ratios: Vec<f64> = densities
-        .iter()
-        .filter_map(|density| Some(density.ratio?.0))
-        .collect();
+fn judged(densities: &[Density]) -> Judged {
+    let ratios: Option<Vec<(f64, f64)>> = densities.iter().map(|density| density.ratio).collect();
     let (mut fraction, mut width, mut error) = (vec![], vec![], vec![]);
     for density in densities {
         if let Some(critical) = density.critical {
@@ -227,7 +221,12 @@ fn judge(densities: &[Density]) -> Judged {
         .filter_map(|density| density.exponent)
         .collect();
     Judged {
-        slower: ratios.len() > 1 && ratios.windows(2).all(|pair| pair[1] < pair[0]),
+        slower: ratios.map(|ratios| {
+            ratios.windows(2).all(|pair| {
+                let error = pair[0].1.max(0.0).hypot(pair[1].1.max(0.0));
+                pair[0].0 - pair[1].0 > 2.0 * error
+            })
+        }),
         change,
         relative_change: (largest - least) / largest,
         exponent: weighted_mean(&exponents),
@@ -235,21 +234,27 @@ fn judge(densities: &[Density]) -> Judged {
 }
 
 impl Judged {
-    fn all(&self) -> bool {
-        self.slower
-            && self.relative_change < HARDLY
-            && self
-                .exponent
-                .is_some_and(|exponent| super::agrees(&exponent, 1.0))
+    /// Whether all three hold; `None` where one of them cannot be told.
+    fn all(&self) -> Option<bool> {
+        let exponent = self.exponent.map(|exponent| super::agrees(&exponent, 1.0));
+        let each = [
+            self.slower,
+            Some(self.relative_change < HARDLY),
+            exponent.flatten(),
+        ];
+        if each.contains(&Some(false)) {
+            return Some(false);
+        }
+        each.iter().all(Option::is_some).then_some(true)
     }
 
     fn in_words(&self) -> String {
         format!(
             "the flow {} with density, *w*_{{c}} changes by {} per cent over the range, *α* = {}",
-            if self.slower {
-                "decreases"
-            } else {
-                "does not always decrease"
+            match self.slower {
+                Some(true) => "decreases",
+                Some(false) => "does not always decrease",
+                None => "is not known at every density, hence not how it changes",
             },
             number(100.0 * self.relative_change, 1),
             self.exponent.map_or("–".to_owned(), |one| estimate(&one)),

@@ -22,7 +22,7 @@ use crate::claim::Claim;
 use crate::critical::{Divergence, Line, Thresholds, WINDOW, lines};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::Statistics;
+use crate::finding::{Statistics, Verdict};
 use crate::runs::Lattice;
 
 /// All claims, in the order of the report.
@@ -97,15 +97,71 @@ fn statistics(lines: &[&Line<'_>]) -> Statistics {
     }
 }
 
-/// The better of two.
-fn larger(one: Statistics, other: Statistics) -> Statistics {
-    let sum = one.runs + other.runs;
-    let best = if (one.strain_rates, one.runs) >= (other.strain_rates, other.runs) {
-        one
-    } else {
-        other
+/// What one lattice says of a claim: whether it holds there (`None`: errors too large to say) and what is behind it.
+struct Part {
+    lattice: String,
+    holds: Option<bool>,
+    statistics: Statistics,
+}
+
+/// The verdict of several lattices: that of those with enough behind them, where they agree; open where they do not. With it
+/// the statistics of the lattice that has most, and why the verdict is open, if it is.
+fn judge(parts: &[Part], needed: &Statistics) -> (Verdict, Statistics, String) {
+    let enough: Vec<&Part> = parts
+        .iter()
+        .filter(|part| part.statistics.suffice(needed))
+        .collect();
+    let statistics = parts
+        .iter()
+        .map(|part| part.statistics)
+        .max_by_key(|one| {
+            (
+                one.suffice(needed),
+                one.strain_rates,
+                one.replicates,
+                one.widths,
+            )
+        })
+        .unwrap_or_default();
+    let named = |holds: bool| -> Vec<&str> {
+        enough
+            .iter()
+            .filter(|part| part.holds == Some(holds))
+            .map(|part| part.lattice.as_str())
+            .collect()
     };
-    Statistics { runs: sum, ..best }
+    let (holding, failing) = (named(true), named(false));
+    let (verdict, why) = match (holding.is_empty(), failing.is_empty()) {
+        (false, true) => (Verdict::Reproduced, String::new()),
+        (true, false) => (Verdict::Differs, String::new()),
+        (false, false) => (
+            Verdict::Open,
+            format!(
+                " It holds on the {} lattice and not on the {} one: open.",
+                holding.join(" and "),
+                failing.join(" and ")
+            ),
+        ),
+        (true, true) if enough.is_empty() => (Verdict::Open, String::new()),
+        (true, true) => (
+            Verdict::Open,
+            " The errors are too large to tell.".to_owned(),
+        ),
+    };
+    (verdict, statistics, why)
+}
+
+/// The statistics that suffice, or come nearest to that.
+fn best(all: impl Iterator<Item = Statistics>, needed: &Statistics) -> Statistics {
+    all.max_by_key(|one| {
+        (
+            one.suffice(needed),
+            one.strain_rates,
+            one.replicates,
+            one.widths,
+        )
+    })
+    .unwrap_or_default()
 }
 
 /// Colours for strain rates.
@@ -121,9 +177,14 @@ fn rate_colours(rates: impl Iterator<Item = f64>) -> ColourScale {
     ColourScale::new(&label(Axis::StrainRate), least, largest).logarithmic()
 }
 
-/// Whether a value is within two standard errors of what the source says.
-fn agrees(found: &Uncertain, source: f64) -> bool {
-    found.deviations_from(source).abs() <= 2.0
+/// Error beyond which a value says nothing of one that the source gives, as a fraction of the latter.
+const LARGE_ERROR: f64 = 0.25;
+
+/// Whether a value is within two standard errors of what the source says; `None` where these are so large that hardly
+/// anything would not be.
+pub(crate) fn agrees(found: &Uncertain, source: f64) -> Option<bool> {
+    let within = found.deviations_from(source).abs() <= 2.0;
+    (!within || found.error <= LARGE_ERROR * source.abs()).then_some(within)
 }
 
 /// Equally spaced numbers from end to end.

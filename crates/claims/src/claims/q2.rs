@@ -148,7 +148,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     });
     finding
         .weaknesses
-        .push("One threshold, 0.4, for all lattices; 500 periods.".to_owned());
+        .push("One threshold, 0.4, for all lattices.".to_owned());
     finding.figures.push(ReportFigure {
         name: "roughness".to_owned(),
         caption: "Critical width against the depth of the hollows of the wall. Lattices that leak are left out.".to_owned(),

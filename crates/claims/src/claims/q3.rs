@@ -207,7 +207,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .to_owned(),
     );
     finding.weaknesses.push(
-        "One threshold, 0.5, and 500 periods; the radius at fixed fractions of the diameter."
+        "One threshold, 0.5; the radius at fixed fractions of the diameter. What has no row saw a transition at every width, or at none."
             .to_owned(),
     );
     let panels = PARTS

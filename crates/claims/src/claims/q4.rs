@@ -157,9 +157,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             Verdict::Open
         },
         format!(
-            "The transition time goes as *L* to the power {}: −1 would be a jam that begins anywhere by chance and spreads, 0 one \
+            "The transition time {}: −1 would be a jam that begins anywhere by chance and spreads, 0 one \
              that the whole tube prepares together.",
-            mean.map_or("–".to_owned(), |mean| with_error(mean.value, mean.error))
+            mean.map_or("has no exponent in *L* yet".to_owned(), |mean| format!(
+                "goes as *L* to the power {}",
+                with_error(mean.value, mean.error)
+            ))
         ),
         found,
         &NEEDED,
@@ -177,7 +180,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .push("One strain rate, 0.1, on the fine lattice.".to_owned());
     finding.figures.push(ReportFigure {
         name: "length".to_owned(),
-        caption: "Stationary flow (a) and mean transition time (b) in tubes of several lengths."
+        caption: "Stationary flow and, where it is known, mean transition time in tubes of several lengths."
             .to_owned(),
         drawing: ChartFigure::grid(2, [flow].into_iter().chain(timed.then_some(times)))
             .width(Width::DoubleColumn)

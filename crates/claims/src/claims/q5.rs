@@ -4,7 +4,7 @@ use peristalsis_analysis::{Family, Law, Survival, Transition, compare_laws};
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
-use super::{LATTICES, fitted, label, larger, lines_of, rate_colours, statistics};
+use super::{LATTICES, best, fitted, label, lines_of, rate_colours, statistics};
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, weighted_mean};
 use crate::error::ClaimError;
@@ -39,7 +39,7 @@ const WORSE: f64 = 4.0;
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let needed = Statistics::FOR_A_VERDICT;
-    let mut found = Statistics::default();
+    let mut all = Vec::new();
     let mut rows = Vec::new();
     let mut quantities = Vec::new();
     let mut ratios = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
@@ -47,6 +47,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .y_scale(Scale::Logarithmic);
     let mut rates = Vec::new();
     let mut power_best = 0;
+    let mut barrier_best = 0;
+    let mut exponential_best = 0;
     let mut compared = 0;
     let mut chance_excluded = 0;
     let mut lines_compared = 0;
@@ -55,7 +57,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let lines = lines_of(evidence, study)?;
         let fits = fitted(&lines);
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
-        found = larger(found, statistics(&used));
+        all.push(statistics(&used));
         let name = study.0.name();
         let scatter: Vec<_> = fits
             .iter()
@@ -97,6 +99,15 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             if let Some(power) = evidence.iter().find(|one| one.law == Law::Power) {
                 compared += 1;
                 power_best += usize::from(power.excess < WORSE);
+                let good = |of: fn(&Law) -> bool| {
+                    usize::from(
+                        evidence
+                            .iter()
+                            .any(|one| of(&one.law) && one.excess < WORSE),
+                    )
+                };
+                barrier_best += good(|law| matches!(law, Law::Barrier { .. }));
+                exponential_best += good(|law| *law == Law::Exponential);
             }
             rows.push(vec![
                 name.clone(),
@@ -106,12 +117,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 of(LAWS[2].1),
                 of(LAWS[3].1),
                 estimate(&fit.scatter_exponent),
-                format!("{:.0e}", fit.chance_probability),
+                crate::text::probability(fit.chance_probability),
                 number(fit.constant_probability, 3),
                 number(fit.inverse_probability, 3),
             ]);
             let critical = fit.critical_width.value;
-            let known: Vec<(f64, f64)> = line
+            let known: Vec<(f64, f64, f64)> = line
                 .ensembles()
                 .iter()
                 .filter(|ensemble| {
@@ -120,13 +131,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 .filter_map(|ensemble| {
                     let lifetime = ensemble.fit?;
                     let ratio = lifetime.variance.value / lifetime.mean.value.powi(2);
-                    (ratio > 0.0).then_some((critical - ensemble.width, ratio))
+                    let error = lifetime.variance.error / lifetime.mean.value.powi(2);
+                    (ratio > 0.0).then_some((critical - ensemble.width, ratio, error))
                 })
                 .collect();
             if !known.is_empty() {
-                let (x, y): (Vec<f64>, Vec<f64>) = known.into_iter().unzip();
+                let x: Vec<f64> = known.iter().map(|one| one.0).collect();
+                let y: Vec<f64> = known.iter().map(|one| one.1).collect();
+                let error: Vec<f64> = known.iter().map(|one| one.2).collect();
                 rates.push(line.strain_rate);
                 let points = Points::new("", &x, &y)
+                    .y_errors(&error)
                     .series(usize::from(name == "coarse"))
                     .tint(Tint::Value(line.strain_rate));
                 ratios = ratios.with(points);
@@ -136,6 +151,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             }
         }
     }
+    let found = best(all.into_iter(), &needed);
     if rows.is_empty() {
         return Ok(Finding::nothing(
             "Too few runs had a transition.",
@@ -146,8 +162,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut finding = Finding::new(
         Verdict::Answered,
         format!(
-            "Pure chance (*χ_{{τ}}*/*τ*^2 = 1) is excluded at {chance_excluded} of {lines_compared} strain rates: transition times \
-             scatter far less than their mean. A power law is as good as any of the laws compared at {power_best} of {compared}."
+            "Pure chance (*χ_{{τ}}*/*τ*^2 = 1) is excluded at {chance_excluded} of {lines_compared} strain rates. A power law is as good \
+             as the best law at {power_best} of {compared}, a barrier at {barrier_best}, an exponential without a critical width at \
+             {exponential_best}."
         ),
         found,
         &needed,
@@ -166,15 +183,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         rows,
     });
     finding.paragraphs.push(
-        "From rest the flow does not wait for a chance event: it is heated slowly by the wall, *J* creeps up for hundreds of periods \
-         to where it runs away, and the transition time is how long that takes. Beyond *w*_{c} the heating saturates before. That \
-         makes transition times sharp, and their mean diverge as the final level approaches the one from which it runs away. The \
-         transition is of first order in its jump and its hysteresis, and its time is that of a passage near the end of a branch."
+        "A transition that begins by chance at a constant rate has *χ_{τ}*/*τ*^2 = 1 and the grey survival curve; one that takes the \
+         same time in each run has 0 and a step. Runs under way are in the figure of F1: how *J* goes before it jumps."
             .to_owned(),
     );
     finding.weaknesses.push(
-        "Next to *w*_{c} the relative variance rises, and within the errors chance may take over there: the widths closest to it \
-         decide, and have the fewest transitions."
+        "The widths closest to *w*_{c} decide, and have the fewest transitions; probabilities are asymptotic."
             .to_owned(),
     );
     if !rates.is_empty() {
@@ -199,7 +213,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 .to_owned(),
             drawing: ChartFigure::new(panel)
                 .colour_scale(scale)
-                .description("Survival curves far steeper than an exponential.")
+                .description("Survival curves beside an exponential.")
                 .draw()?,
         });
     }
@@ -208,7 +222,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
 
 /// Survival against time over its mean at each width below the critical one, coloured by the width.
 fn survival_panel(line: &Line<'_>, critical: f64) -> Option<(ChartPanel, ColourScale)> {
-    let mut panel = ChartPanel::new("time over its mean, *t*/⟨*τ*⟩", &label(Axis::Survival))
+    let mut panel = ChartPanel::new("time over its mean, *t*/*τ*_{mean}", &label(Axis::Survival))
         .x_range(0.0..=2.5)
         .y_range(0.0..=1.05);
     let (width, transitions) = line.columns();
