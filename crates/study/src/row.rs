@@ -253,6 +253,24 @@ impl Row {
         }
     }
 
+    /// What this row says of the configuration that its run cannot have, in words; `None` where all agrees. A table is believed
+    /// by its identities: one that was edited, or joined wrongly, must not pass.
+    pub(crate) fn contradiction(&self, configuration: &Configuration) -> Option<String> {
+        let of_run = configured(configuration);
+        of_run.into_iter().find_map(|(name, expected)| {
+            let found = &self.table.column(name).ok()?.values;
+            let agrees = match (&expected, found) {
+                (Cell::Real(expected), Values::Real(found)) => {
+                    found[0] == *expected || found[0].is_nan() && expected.is_nan()
+                }
+                (Cell::Integer(expected), Values::Integer(found)) => found[0] == *expected,
+                (Cell::Text(expected), Values::Text(found)) => found[0] == *expected,
+                _ => false,
+            };
+            (!agrees).then(|| format!("the run {} has another {name}", self.identity))
+        })
+    }
+
     /// As CSV with its header, exact to the bit.
     #[must_use]
     pub fn to_csv(&self) -> String {
@@ -289,6 +307,42 @@ impl Row {
                 .map(|column| of_kind(column, Values::empty(column.kind))),
         )
     }
+}
+
+/// The columns of a row that its configuration alone decides.
+fn configured(configuration: &Configuration) -> Vec<(&'static str, Cell)> {
+    let tube = &configuration.tube;
+    vec![
+        (
+            "initial_state",
+            Cell::Text(state_name(configuration.initial.state).into()),
+        ),
+        ("width", Cell::optional(width(configuration))),
+        (
+            "force_amplitude",
+            Cell::optional(force_amplitude(configuration)),
+        ),
+        ("strain_rate", Cell::Real(configuration.drive.strain_rate)),
+        (
+            "volume_fraction",
+            Cell::Real(configuration.volume_fraction()),
+        ),
+        ("grains", Cell::whole(configuration.grains.number)),
+        ("radius", Cell::Real(tube.radius)),
+        ("wavelength", Cell::Real(tube.wavelength)),
+        ("waves", Cell::Integer(tube.waves.into())),
+        (
+            "spheres_per_ring",
+            Cell::Integer(tube.spheres_per_ring.into()),
+        ),
+        ("rings_per_wave", Cell::Integer(tube.rings_per_wave.into())),
+        (
+            "transition_threshold",
+            Cell::Real(configuration.observe.transition_threshold),
+        ),
+        ("time_step", Cell::Real(configuration.run.time_step)),
+        ("seed", Cell::whole(configuration.run.seed)),
+    ]
 }
 
 fn of_kind(column: &RowColumn, values: Values) -> Column {

@@ -78,14 +78,20 @@ impl Reproduction {
 
 impl Rows {
     fn read(path: &Path) -> Result<Self, StudyError> {
-        let table = match path.extension().and_then(|extension| extension.to_str()) {
-            Some("parquet") => parquet::read(path)?,
-            _ => csv::read(path)?,
-        };
-        let rows = Row::all_of(&table).map_err(|reason| StudyError::NotRows {
+        fs::metadata(path).map_err(|source| StudyError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        let not_rows = |reason: String| StudyError::NotRows {
             path: path.to_owned(),
             reason,
-        })?;
+        };
+        let table = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("parquet") => parquet::read(path),
+            _ => csv::read(path),
+        }
+        .map_err(|error| not_rows(error.to_string()))?;
+        let rows = Row::all_of(&table).map_err(not_rows)?;
         Ok(Self {
             path: path.to_owned(),
             identities: rows.iter().map(Row::identity).collect(),

@@ -10,12 +10,14 @@ use sha2::{Digest, Sha256};
 use super::{Entry, IMPORTED, State, Store, done, set_aside};
 use crate::error::StudyError;
 use crate::identity::{Identity, hexadecimal};
+use crate::plan::PlannedRun;
 use crate::row::Row;
 
 impl Store {
     /// Takes rows of finished runs from a table, CSV or Parquet, by their identity; answers how many it has.
     ///
-    /// The table is copied into the store. A run that is finished here stays as it is.
+    /// The table is copied into the store. A run that is finished here stays as it is. A row that says other parameters than
+    /// the study's run of its identity has is refused, and with it the table.
     ///
     /// # Errors
     /// [`StudyError::NotRows`] and errors of reading.
@@ -25,6 +27,24 @@ impl Store {
         let Some(first) = rows.first() else {
             return Ok(0);
         };
+        let survey = self.survey()?;
+        let runs: HashMap<Identity, &PlannedRun> = survey
+            .plan
+            .runs()
+            .iter()
+            .map(|run| (run.identity, run))
+            .collect();
+        for row in &rows {
+            let contradiction = runs
+                .get(&row.identity())
+                .and_then(|run| row.contradiction(&survey.plan.configuration(run)));
+            if let Some(reason) = contradiction {
+                return Err(StudyError::NotRows {
+                    path: path.to_owned(),
+                    reason,
+                });
+            }
+        }
         let mut table = first.table().clone();
         for row in &rows[1..] {
             table.append(row.table().clone())?;

@@ -36,6 +36,38 @@ fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
 }
 
 #[test]
+fn a_row_that_contradicts_its_run_is_refused_with_its_table() {
+    let first = Place::new(SMALL);
+    first.complete();
+    first.tables();
+    let text = fs::read_to_string(first.path("tables/small.csv")).unwrap();
+    let head = text.lines().find(|line| line.contains("identity")).unwrap();
+    let place = head
+        .split(',')
+        .position(|name| name == "strain_rate")
+        .unwrap();
+    let edited: Vec<String> = text
+        .lines()
+        .map(|line| {
+            let mut cells: Vec<&str> = line.split(',').collect();
+            if line != head && !line.starts_with('#') {
+                cells[place] = "0.07";
+            }
+            cells.join(",")
+        })
+        .collect();
+    let table = first.path("tables/edited.csv");
+    fs::write(&table, edited.join("\n") + "\n").unwrap();
+    let second = Place::new(SMALL);
+    let error = second.store().import_table(&table).unwrap_err();
+    assert!(
+        matches!(&error, StudyError::NotRows { reason, .. } if reason.contains("strain_rate")),
+        "{error}"
+    );
+    assert_eq!(second.store().rows().unwrap().rows(), 0);
+}
+
+#[test]
 fn a_study_goes_on_from_the_rows_that_it_is_given() {
     let whole = Place::new(SMALL);
     whole.complete();
