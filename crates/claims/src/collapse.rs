@@ -93,16 +93,7 @@ pub(crate) fn collapse(
         resamples: RESAMPLES,
         seed: SEED,
     };
-    // Curves that differ by more than their errors leave the exponents that much less certain.
-    let stretch = fit.quality.quality.max(1.0).sqrt();
-    let exponents = collapse
-        .bootstrap(&fit, &STEPS, bootstrap)
-        .ok()?
-        .estimates
-        .iter()
-        .map(|exponent| Uncertain::normal(exponent.value, stretch * exponent.error))
-        .collect();
-    let left_out = collapse
+    let left_out: Vec<(f64, Vec<f64>)> = collapse
         .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
         .map(|fits| {
             curves
@@ -112,6 +103,22 @@ pub(crate) fn collapse(
                 .collect()
         })
         .unwrap_or_default();
+    // Curves that differ by more than their errors leave the exponents that much less certain.
+    let stretch = fit.quality.quality.max(1.0).sqrt();
+    let exponents = collapse
+        .bootstrap(&fit, &STEPS, bootstrap)
+        .ok()?
+        .estimates
+        .iter()
+        .enumerate()
+        .map(|(place, exponent)| {
+            let fits: Vec<f64> = left_out.iter().map(|(_, fit)| fit[place]).collect();
+            Uncertain::normal(
+                exponent.value,
+                (stretch * exponent.error).max(jackknife(&fits)),
+            )
+        })
+        .collect();
     let claimed_quality = collapse
         .quality(&claimed)
         .ok()
@@ -124,6 +131,15 @@ pub(crate) fn collapse(
         left_out,
         curves,
     })
+}
+
+/// Standard error from estimates that leave out one of n curves each, [(n - 1)/n sum (t_i - mean)^2]^(1/2); 0 without any.
+/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
+fn jackknife(estimates: &[f64]) -> f64 {
+    let number = estimates.len().max(1) as f64;
+    let mean = estimates.iter().sum::<f64>() / number;
+    let squares: f64 = estimates.iter().map(|one| (one - mean).powi(2)).sum();
+    (squares * (number - 1.0) / number).sqrt()
 }
 
 impl Collapsed {

@@ -96,7 +96,12 @@ fn tables_are_looked_through_for_runs_of_the_studies() {
     // Named, it must be a table of runs.
     place
         .call(BRIEFLY.iter().chain(&["--import", "study.toml"]))
-        .expect_code(1);
+        .expect_code(2)
+        .says(&["study.toml"]);
+    place
+        .call(BRIEFLY.iter().chain(&["--import", "nowhere"]))
+        .expect_code(2)
+        .says(&["nowhere"]);
     place
         .call(
             BRIEFLY
