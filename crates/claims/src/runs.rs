@@ -143,7 +143,7 @@ impl Run {
             .map(|(_, value)| *value)
     }
 
-    /// Whether its late mean is that of a stationary flow: it drifts by less than [`MOST_DRIFT`].
+    /// Whether its late mean is that of a stationary flow: it drifts by less than 0.05 from the first half to the second.
     #[must_use]
     pub fn is_stationary(&self) -> bool {
         self.flow_rate_ratio_drift.is_nan() || self.flow_rate_ratio_drift.abs() <= MOST_DRIFT

@@ -143,7 +143,7 @@ pub(crate) struct DriveKeys {
     pub(crate) waveform: Option<Waveform>,
     /// Body force on the grains g, force over mass along the wave: negative is back pressure, against which the wave has to
     /// pump. With grains of several sizes it acts as gravity along the tube. The pressure rise over a wavelength that it
-    /// stands for is N <m> (-g) lambda/(L pi a^2).
+    /// stands for is N m (-g) lambda/(L pi a^2).
     #[schemars(extend("x-unit" = "d t^-2", "minimum" = -1e6, "maximum" = 1e6, "default" = 0))]
     pub(crate) body_force: Option<f64>,
     /// Which way the wave runs: forward is towards -z under strain control and towards +z under stress control, as the
