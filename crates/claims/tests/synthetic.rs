@@ -166,6 +166,17 @@ fn every_claim_is_open_without_runs_and_needs_known_studies_only() {
 }
 
 #[test]
+fn one_lattice_alone_is_examined() {
+    let mut evidence = empty();
+    evidence.add_runs("divergence-fine", SOURCE.divergence(Lattice::FINE));
+    evidence.add_runs("branches-fine", SOURCE.branches(Lattice::FINE));
+    for claim in CLAIMS {
+        let finding = (claim.examine)(&evidence).unwrap();
+        assert!(!finding.summary.is_empty(), "{}", claim.id);
+    }
+}
+
+#[test]
 fn every_study_file_is_valid_and_named_for_itself() {
     for study in STUDIES {
         for size in [Size::Quick, Size::Full] {

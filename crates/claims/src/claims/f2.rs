@@ -47,7 +47,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         all_rates.extend(lines.iter().map(|line| line.strain_rate));
         let name = study.0.name();
-        panels.push(panel(&lines)?.title(&format!("{name} lattice")));
+        panels.extend(panel(&lines).map(|panel| panel.title(&format!("{name} lattice"))));
         let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.exponent).collect();
         let mean = weighted_mean(&exponents);
         parts.push(Part {
@@ -194,8 +194,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     Ok(finding)
 }
 
-/// Mean transition times of one lattice with the fitted laws.
-fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
+/// Mean transition times of one lattice with the fitted laws; `None` without any.
+fn panel(lines: &[Line<'_>]) -> Option<ChartPanel> {
+    let mut drawn = false;
     let mut panel = ChartPanel::new(&label(Axis::Width), &label(Axis::TransitionPeriod))
         .y_scale(Scale::Logarithmic);
     for (number, line) in lines.iter().enumerate() {
@@ -219,6 +220,7 @@ fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
         if width.is_empty() {
             continue;
         }
+        drawn = true;
         let tint = Tint::Value(line.strain_rate);
         let points = Points::new("", &width, &time)
             .y_errors(&error)
@@ -243,5 +245,5 @@ fn panel(lines: &[Line<'_>]) -> Result<ChartPanel, ClaimError> {
             }
         }
     }
-    Ok(panel)
+    drawn.then_some(panel)
 }

@@ -47,7 +47,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let used: Vec<&Line<'_>> = fits.iter().map(|(line, _)| *line).collect();
         all_rates.extend(used.iter().map(|line| line.strain_rate));
         let name = study.0.name();
-        panels.push(panel(&used)?.title(&format!("{name} lattice")));
+        panels.extend(panel(&used).map(|panel| panel.title(&format!("{name} lattice"))));
         let exponents: Vec<_> = fits
             .iter()
             .filter_map(|(_, fit)| Some(fit.scatter?.variance_exponent))
@@ -159,8 +159,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     Ok(finding)
 }
 
-/// Variances of one lattice with the fitted laws.
-fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
+/// Variances of one lattice with the fitted laws; `None` without any.
+fn panel(lines: &[&Line<'_>]) -> Option<ChartPanel> {
+    let mut drawn = false;
     let mut panel =
         ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2").y_scale(Scale::Logarithmic);
     for (number, line) in lines.iter().enumerate() {
@@ -182,6 +183,7 @@ fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
         if width.is_empty() {
             continue;
         }
+        drawn = true;
         let tint = Tint::Value(line.strain_rate);
         panel = panel.with(
             Points::new("", &width, &variance)
@@ -208,5 +210,5 @@ fn panel(lines: &[&Line<'_>]) -> Result<ChartPanel, ClaimError> {
             }
         }
     }
-    Ok(panel)
+    drawn.then_some(panel)
 }
