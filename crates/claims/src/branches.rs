@@ -2,6 +2,7 @@
 
 use peristalsis_analysis::{Jump, Uncertain, jump_height};
 
+use crate::finding::Statistics;
 use crate::runs::{Run, Start};
 
 /// Points of a branch that are continued to the jump by a straight line.
@@ -133,6 +134,21 @@ impl Branch {
         let pairs = || self.points.windows(2);
         most(&steepness, pairs().filter(|pair| clear(pair)).collect())
             .or_else(|| most(&fall, pairs().collect()))
+    }
+
+    /// What is behind it, at its one strain rate.
+    pub(crate) fn statistics(&self, runs: usize) -> Statistics {
+        Statistics {
+            strain_rates: 1,
+            widths: self.points.len(),
+            replicates: self
+                .points
+                .iter()
+                .map(|point| point.runs)
+                .min()
+                .unwrap_or(0),
+            runs,
+        }
     }
 
     /// J/Jmax midway between the two branches at the jump.

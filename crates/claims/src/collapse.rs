@@ -47,7 +47,7 @@ pub(crate) fn collapse(
     for (line, fit) in fits {
         let critical_width = fit.critical_width;
         let points: Vec<CurvePoint> = line
-            .ensembles()
+            .ensembles
             .iter()
             .filter(|ensemble| ensemble.observed >= 3 * ensemble.censored && ensemble.observed > 2)
             .filter(|ensemble| ensemble.width < fit.critical_width.value)

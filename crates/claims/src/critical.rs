@@ -7,6 +7,8 @@ use peristalsis_analysis::{
 use peristalsis_run::THRESHOLDS;
 
 use crate::branches::{Branch, mean_and_error};
+use crate::crossing::behind;
+use crate::finding::Statistics;
 use crate::runs::{Lattice, Run, Start};
 
 /// Widths closest to the critical one that a fit uses, of those at which at least half of the runs had a transition.
@@ -22,6 +24,8 @@ pub(crate) struct Line<'a> {
     /// J/Jmax whose crossing counts.
     pub(crate) threshold: f64,
     runs: Vec<&'a Run>,
+    /// The transition times at each width.
+    pub(crate) ensembles: Vec<WidthEnsemble>,
 }
 
 /// Thresholds midway between the branches at the strain rates where these are known.
@@ -91,12 +95,9 @@ pub(crate) fn lines<'a>(
     };
     strain_rates(of_lattice())
         .into_iter()
-        .map(|strain_rate| Line {
-            strain_rate,
-            threshold: thresholds.at(strain_rate),
-            runs: of_lattice()
-                .filter(|run| run.strain_rate == strain_rate)
-                .collect(),
+        .map(|strain_rate| {
+            let here = of_lattice().filter(|run| run.strain_rate == strain_rate);
+            Line::new(strain_rate, thresholds.at(strain_rate), here.collect())
         })
         .collect()
 }
@@ -115,21 +116,32 @@ pub(crate) fn lines_at_own_threshold(runs: &[Run]) -> Vec<Line<'_>> {
     lines(runs, lattice, &Thresholds { known })
 }
 
-impl Line<'_> {
+/// Width and transition of every run at a threshold.
+fn columns(runs: &[&Run], threshold: f64) -> (Vec<f64>, Vec<Transition>) {
+    runs.iter()
+        .map(|run| (run.width, run.transition_at(threshold)))
+        .unzip()
+}
+
+impl<'a> Line<'a> {
+    fn new(strain_rate: f64, threshold: f64, runs: Vec<&'a Run>) -> Self {
+        let (width, transitions) = columns(&runs, threshold);
+        Self {
+            strain_rate,
+            threshold,
+            runs,
+            ensembles: ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default(),
+        }
+    }
+
     /// The same runs watched at another threshold.
     pub(crate) fn at_threshold(&self, threshold: f64) -> Self {
-        Self {
-            threshold,
-            ..self.clone()
-        }
+        Self::new(self.strain_rate, threshold, self.runs.clone())
     }
 
     /// Width and transition of every run.
     pub(crate) fn columns(&self) -> (Vec<f64>, Vec<Transition>) {
-        self.runs
-            .iter()
-            .map(|run| (run.width, run.transition_at(self.threshold)))
-            .unzip()
+        columns(&self.runs, self.threshold)
     }
 
     /// Period of the wave \[t\].
@@ -145,25 +157,14 @@ impl Line<'_> {
         widths
     }
 
-    /// Runs of the width that has fewest.
-    pub(crate) fn replicates(&self) -> usize {
-        self.widths()
-            .into_iter()
-            .map(|width| self.runs.iter().filter(|run| run.width == width).count())
-            .min()
-            .unwrap_or(0)
-    }
-
-    /// Runs.
-    pub(crate) fn number(&self) -> usize {
-        self.runs.len()
+    /// What is behind it.
+    pub(crate) fn statistics(&self) -> Statistics {
+        behind(&self.runs)
     }
 
     /// Largest fraction of grains outside the tube, mean over the runs at a width, of the widths that a fit looks at.
     pub(crate) fn escaped(&self) -> f64 {
-        let from = self.window(WINDOW).map_or(f64::NEG_INFINITY, |window| {
-            window.0.iter().copied().fold(f64::INFINITY, f64::min)
-        });
+        let from = self.window_from(WINDOW).unwrap_or(f64::NEG_INFINITY);
         self.widths()
             .into_iter()
             .filter(|width| *width >= from)
@@ -184,17 +185,11 @@ impl Line<'_> {
         longest(self.runs.iter().copied())
     }
 
-    /// The transition times at each width.
-    pub(crate) fn ensembles(&self) -> Vec<WidthEnsemble> {
-        let (width, transitions) = self.columns();
-        ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default()
-    }
-
-    /// The runs at the last widths at which at least half of the runs had a transition that averages over periods
-    /// resolve, and at all beyond; `None` with fewer than three such widths.
-    pub(crate) fn window(&self, number: usize) -> Option<(Vec<f64>, Vec<Transition>)> {
+    /// The first of the last so many widths at which at least half of the runs had a transition that averages over periods
+    /// resolve; `None` with fewer than three such widths.
+    pub(crate) fn window_from(&self, number: usize) -> Option<f64> {
         let usable: Vec<f64> = self
-            .ensembles()
+            .ensembles
             .iter()
             .filter(|ensemble| ensemble.observed >= ensemble.censored)
             .filter(|ensemble| {
@@ -207,7 +202,12 @@ impl Line<'_> {
         if usable.len() < 3 {
             return None;
         }
-        let from = usable[usable.len().saturating_sub(number)];
+        Some(usable[usable.len().saturating_sub(number)])
+    }
+
+    /// The runs from there on, the widths beyond included.
+    pub(crate) fn window(&self, number: usize) -> Option<(Vec<f64>, Vec<Transition>)> {
+        let from = self.window_from(number)?;
         let (width, transitions) = self.columns();
         Some(
             width
@@ -220,16 +220,11 @@ impl Line<'_> {
 
     /// The width at which half of the runs have a transition before their end.
     pub(crate) fn crossing(&self) -> Option<FractionCrossing> {
-        let (width, jammed): (Vec<f64>, Vec<bool>) = self
-            .runs
+        let (width, transitions) = self.columns();
+        let jammed: Vec<bool> = transitions
             .iter()
-            .map(|run| {
-                (
-                    run.width,
-                    run.transition_at(self.threshold).observed().is_some(),
-                )
-            })
-            .unzip();
+            .map(|transition| transition.observed().is_some())
+            .collect();
         fraction_crossing(&width, &jammed).ok()
     }
 
@@ -240,25 +235,15 @@ impl Line<'_> {
     }
 
     /// Power laws in all windows, from four widths to all: stability against the choice.
-    pub(crate) fn fits(&self) -> Vec<(usize, Divergence)> {
-        (4..=self.widths().len())
-            .filter_map(|number| {
-                let (width, _) = self.window(number)?;
-                let mut distinct = width;
-                distinct.sort_by(f64::total_cmp);
-                distinct.dedup();
-                Some((number, self.fit(number)?))
-            })
-            .fold(
-                Vec::new(),
-                |mut fits: Vec<(usize, Divergence)>, (number, fit)| {
-                    // Beyond the last usable width nothing changes.
-                    if fits.last().is_none_or(|last| last.1 != fit) {
-                        fits.push((number, fit));
-                    }
-                    fits
-                },
-            )
+    pub(crate) fn fits(&self) -> Vec<Divergence> {
+        let mut windows: Vec<f64> = (4..=self.widths().len())
+            .filter_map(|number| self.window_from(number))
+            .collect();
+        // Beyond the last usable width nothing changes.
+        windows.dedup();
+        (4..4 + windows.len())
+            .filter_map(|number| self.fit(number))
+            .collect()
     }
 }
 

@@ -53,6 +53,20 @@ impl Statistics {
         runs: 320,
     };
 
+    /// What is behind several parts that are compared: their strain rates and runs together, and the fewest widths and
+    /// replicates of any; nothing where there is no part.
+    #[must_use]
+    pub fn weakest(parts: impl Iterator<Item = Self>) -> Self {
+        parts
+            .reduce(|one, other| Self {
+                strain_rates: one.strain_rates + other.strain_rates,
+                widths: one.widths.min(other.widths),
+                replicates: one.replicates.min(other.replicates),
+                runs: one.runs + other.runs,
+            })
+            .unwrap_or_default()
+    }
+
     /// Whether there is as much as that in every respect.
     #[must_use]
     pub fn suffice(&self, needed: &Self) -> bool {

@@ -39,10 +39,8 @@ const NEARLY_ALL: f64 = 0.95;
 struct Kind {
     lattice: Lattice,
     strain_rate: f64,
-    /// Widths, replicates and runs behind it.
-    widths: usize,
-    replicates: usize,
-    runs: usize,
+    /// What is behind it.
+    statistics: Statistics,
     /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
     slow: f64,
     fast: f64,
@@ -79,15 +77,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .iter()
             .filter(move |kind| kind.lattice == lattice && kind.escaped <= MOST_ESCAPED)
     };
-    let of = |lattice: Lattice| Statistics {
-        strain_rates: tight(lattice).count(),
-        widths: tight(lattice).map(|kind| kind.widths).min().unwrap_or(0),
-        replicates: tight(lattice)
-            .map(|kind| kind.replicates)
-            .min()
-            .unwrap_or(0),
-        runs: tight(lattice).map(|kind| kind.runs).sum(),
-    };
+    let of = |lattice: Lattice| Statistics::weakest(tight(lattice).map(|kind| kind.statistics));
     let needed = Statistics::FOR_A_VERDICT;
     let parts = LATTICES.map(|(lattice, ..)| Part {
         lattice: lattice.name(),
@@ -209,9 +199,7 @@ fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
     Some(Kind {
         lattice,
         strain_rate,
-        widths: branch.points.len(),
-        replicates: branch.points.iter().map(|point| point.runs).min()?,
-        runs: here().count(),
+        statistics: branch.statistics(here().count()),
         slow: fraction(true),
         fast: fraction(false),
         slow_ratio: (slow.mean, slow.error),

@@ -1,17 +1,17 @@
 //! F2: how the mean transition time diverges.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
 use super::{
-    LATTICES, MOST_ESCAPED, Part, agrees, fitted, judge, label, lines_of, rate_colours, spaced,
-    statistics,
+    LATTICES, MOST_ESCAPED, fitted, fitted_curve, judge, label, lines_of, of_exponents,
+    rate_colours, statistics,
 };
 use crate::claim::Claim;
-use crate::critical::{Line, WINDOW, weighted_mean};
+use crate::critical::{Line, WINDOW};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::finding::{Finding, ReportFigure, ReportTable, Statistics};
 use crate::text::{estimate, interval, number};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -49,29 +49,21 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let name = study.0.name();
         panels.extend(panel(&lines).map(|panel| panel.title(&format!("{name} lattice"))));
         let exponents: Vec<_> = fits.iter().map(|(_, fit)| fit.exponent).collect();
-        let mean = weighted_mean(&exponents);
-        parts.push(Part {
-            lattice: name.clone(),
-            holds: mean.and_then(|mean| agrees(&mean, EXPONENT)),
-            statistics: statistics(&used),
-        });
-        if let Some(mean) = mean {
+        let (part, mean) = of_exponents(
+            &name,
+            &exponents,
+            EXPONENT,
+            ["mean transition time", "*α*"],
+            statistics(&used),
+        );
+        parts.push(part);
+        if let Some((mean, quantity)) = mean {
             means.push((name.clone(), mean));
-            quantities.push(Quantity {
-                name: format!("exponent of the mean transition time, {name} lattice"),
-                symbol: "*α*".to_owned(),
-                unit: String::new(),
-                source: Some(EXPONENT),
-                ours: Some(mean),
-                method: format!(
-                    "weighted mean over {} strain rates of likelihood fits to the {WINDOW} widths next to *w*_{{c}}",
-                    exponents.len()
-                ),
-            });
+            quantities.push(quantity);
         }
         for (line, fit) in &fits {
             let windows = line.fits();
-            let range = windows.iter().map(|(_, fit)| fit.exponent.value).fold(
+            let range = windows.iter().map(|fit| fit.exponent.value).fold(
                 (f64::INFINITY, f64::NEG_INFINITY),
                 |(least, largest), value| (least.min(value), largest.max(value)),
             );
@@ -201,7 +193,7 @@ fn panel(lines: &[Line<'_>]) -> Option<ChartPanel> {
         .y_scale(Scale::Logarithmic);
     for (number, line) in lines.iter().enumerate() {
         let (mut width, mut time, mut error, mut limit) = (vec![], vec![], vec![], vec![]);
-        for ensemble in line.ensembles() {
+        for ensemble in &line.ensembles {
             let seen = ensemble.observed >= ensemble.censored && ensemble.observed > 0;
             let mean = ensemble.fit.map(|fit| fit.mean);
             let value = if seen {
@@ -229,20 +221,8 @@ fn panel(lines: &[Line<'_>]) -> Option<ChartPanel> {
             .tint(tint);
         panel = panel.with(points);
         if let Some(fit) = line.fit(WINDOW) {
-            let from = line.window(WINDOW).map_or(width[0], |window| {
-                window.0.iter().copied().fold(f64::INFINITY, f64::min)
-            });
-            let critical = fit.critical_width.value;
-            let longest = time.iter().copied().fold(0.0, f64::max);
-            let curve: Vec<(f64, f64)> = spaced(from, critical, 200)
-                .into_iter()
-                .map(|width| (width, fit.mean(width) * line.strain_rate))
-                .filter(|point| point.1.is_finite() && point.1 < 3.0 * longest)
-                .collect();
-            if curve.len() > 1 {
-                let (x, y): (Vec<f64>, Vec<f64>) = curve.into_iter().unzip();
-                panel = panel.with(Curve::new("", &x, &y).tint(tint).weight(0.8));
-            }
+            let mean = |width| fit.mean(width) * line.strain_rate;
+            panel = panel.with_all(fitted_curve(line, fit.critical_width.value, &time, mean));
         }
     }
     drawn.then_some(panel)

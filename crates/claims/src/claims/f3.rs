@@ -72,8 +72,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     finding.paragraphs.push(
         "*τε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*} with *w*_{c} of each strain rate as fitted for F2, and *a* and *b* \
          free: Houdayer and Hartmann's *S* over the mean transition times, at least three quarters of the points \
-         overlapping. Errors by resampling the points within their errors, stretched by the root of *S* where that exceeds 1, or by leaving out one curve at a time, whichever is larger. Where *f* is one power *x*^{−*α*} over the whole \
-         range, only *a* − *αb* is determined, and *a* and *b* apart only by its bend."
+         overlapping. Errors by resampling the points within their errors, stretched by the root of *S* where that exceeds \
+         1, or by leaving out one curve at a time, whichever is larger. Where *f* is one power *x*^{−*α*} over the whole range, only *a* − *αb* is determined, and *a* and *b* apart only by its bend."
             .to_owned(),
     );
     finding.weaknesses.push(

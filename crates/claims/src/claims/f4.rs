@@ -1,17 +1,17 @@
 //! F4: how the scatter of the transition times diverges, and whether it collapses.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Tint};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
 use super::{
-    LATTICES, Part, agrees, fitted, judge, label, lines_of, rate_colours, spaced, statistics,
+    LATTICES, fitted, fitted_curve, judge, label, lines_of, of_exponents, rate_colours, statistics,
 };
 use crate::claim::Claim;
 use crate::collapse::{Collapsed, collapse, figure};
-use crate::critical::{Line, WINDOW, weighted_mean};
+use crate::critical::{Line, WINDOW};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::finding::{Finding, ReportFigure, ReportTable, Statistics};
 use crate::text::{estimate, interval, number};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -52,25 +52,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .iter()
             .filter_map(|(_, fit)| Some(fit.scatter?.variance_exponent))
             .collect();
-        let mean = weighted_mean(&exponents);
-        parts.push(Part {
-            lattice: name.clone(),
-            holds: mean.and_then(|mean| agrees(&mean, EXPONENT)),
-            statistics: statistics(&used),
-        });
-        if let Some(mean) = mean {
+        let (part, mean) = of_exponents(
+            &name,
+            &exponents,
+            EXPONENT,
+            ["variance of the transition time", "*β*"],
+            statistics(&used),
+        );
+        parts.push(part);
+        if let Some((mean, quantity)) = mean {
             means.push((name.clone(), mean));
-            quantities.push(Quantity {
-                name: format!("exponent of the variance of the transition time, {name} lattice"),
-                symbol: "*β*".to_owned(),
-                unit: String::new(),
-                source: Some(EXPONENT),
-                ours: Some(mean),
-                method: format!(
-                    "weighted mean over {} strain rates of likelihood fits to the {WINDOW} widths next to *w*_{{c}}",
-                    exponents.len()
-                ),
-            });
+            quantities.push(quantity);
         }
         for (line, fit) in &fits {
             let Some(fit) = fit.scatter else { continue };
@@ -167,7 +159,7 @@ fn panel(lines: &[&Line<'_>]) -> Option<ChartPanel> {
     for (number, line) in lines.iter().enumerate() {
         let squared = line.strain_rate * line.strain_rate;
         let (mut width, mut variance, mut error) = (vec![], vec![], vec![]);
-        for ensemble in line.ensembles() {
+        for ensemble in &line.ensembles {
             let Some(fit) = ensemble
                 .fit
                 .filter(|_| ensemble.observed >= ensemble.censored)
@@ -192,22 +184,11 @@ fn panel(lines: &[&Line<'_>]) -> Option<ChartPanel> {
                 .tint(tint),
         );
         if let Some(fit) = line.fit(WINDOW).and_then(|fit| fit.scatter) {
-            let from = line.window(WINDOW).map_or(width[0], |window| {
-                window.0.iter().copied().fold(f64::INFINITY, f64::min)
-            });
-            let largest = variance.iter().copied().fold(0.0, f64::max);
-            let curve: Vec<(f64, f64)> = spaced(from, fit.critical_width.value, 200)
-                .into_iter()
-                .map(|width| {
-                    let (mean, relative) = fit.at(width);
-                    (width, mean * mean * relative * squared)
-                })
-                .filter(|point| point.1.is_finite() && point.1 < 3.0 * largest)
-                .collect();
-            if curve.len() > 1 {
-                let (x, y): (Vec<f64>, Vec<f64>) = curve.into_iter().unzip();
-                panel = panel.with(Curve::new("", &x, &y).tint(tint).weight(0.8));
-            }
+            let at = |width| {
+                let (mean, relative) = fit.at(width);
+                mean * mean * relative * squared
+            };
+            panel = panel.with_all(fitted_curve(line, fit.critical_width.value, &variance, at));
         }
     }
     drawn.then_some(panel)

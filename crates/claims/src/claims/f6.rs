@@ -47,11 +47,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .y_range(-0.05..=1.1)
             .title(&format!("{} lattice", lattice.name()));
         let (mut jumping, mut tight) = (0, 0);
-        let mut statistics = Statistics {
-            widths: usize::MAX,
-            replicates: usize::MAX,
-            ..Statistics::default()
-        };
+        let mut statistics = Vec::new();
         let mut heights = Vec::new();
         for (place, rate) in strain_rates(runs.iter()).into_iter().enumerate() {
             let here = || runs.iter().filter(move |run| run.strain_rate == rate);
@@ -84,16 +80,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             if escaped <= MOST_ESCAPED {
                 tight += 1;
                 jumping += usize::from(branch.jumps());
-                statistics.strain_rates += 1;
-                statistics.widths = statistics.widths.min(branch.points.len());
-                let least = branch
-                    .points
-                    .iter()
-                    .map(|point| point.runs)
-                    .min()
-                    .unwrap_or(0);
-                statistics.replicates = statistics.replicates.min(least);
-                statistics.runs += here().count();
+                statistics.push(branch.statistics(here().count()));
                 near_all.extend(near.iter().filter(|_| lattice == Lattice::FINE));
             }
             let height = branch.jump().map(|jump| jump.height);
@@ -124,13 +111,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 number(escaped, 2),
             ]);
         }
-        if statistics.strain_rates == 0 {
-            statistics = Statistics::default();
-        }
         parts.push(Part {
             lattice: lattice.name(),
             holds: (tight > 0).then_some(jumping == tight),
-            statistics,
+            statistics: Statistics::weakest(statistics.into_iter()),
         });
         verdicts.push((lattice, jumping, tight));
         drop_heights(&mut quantities, lattice, &heights);

@@ -4,7 +4,7 @@ use peristalsis_analysis::{Uncertain, fit_line};
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Corner, Note, Points};
 use peristalsis_figures::{Quantity as Axis, Width};
 
-use super::{Part, judge, label};
+use super::{Part, best, judge, label};
 use crate::branches::Branch;
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, lines_at_own_threshold, weighted_mean};
@@ -51,6 +51,7 @@ struct Density {
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut words = Vec::new();
     let mut parts = Vec::new();
+    let mut all = Vec::new();
     let mut quantities = Vec::new();
     let mut rows = Vec::new();
     let mut panels: Vec<ChartPanel> = Vec::new();
@@ -59,32 +60,23 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         if densities.is_empty() {
             continue;
         }
-        let least = densities
-            .iter()
-            .map(|density| density.statistics)
-            .reduce(|one, other| Statistics {
-                strain_rates: 1,
-                widths: one.widths.min(other.widths),
-                replicates: one.replicates.min(other.replicates),
-                runs: one.runs + other.runs,
-            })
-            .unwrap_or_default();
+        let least = Statistics {
+            strain_rates: 1,
+            ..Statistics::weakest(densities.iter().map(|density| density.statistics))
+        };
+        all.push(least);
         let judged = judged(&densities);
-        let enough = densities.len() >= DENSITIES;
-        parts.push(Part {
-            lattice: lattice.to_owned(),
-            holds: judged.all(),
-            // Too few densities never suffice.
-            statistics: if enough {
-                least
-            } else {
-                Statistics {
-                    replicates: 0,
-                    ..least
-                }
-            },
-        });
-        words.push(format!("{lattice} lattice: {}", judged.in_words()));
+        let mut said = judged.in_words();
+        if densities.len() >= DENSITIES {
+            parts.push(Part {
+                lattice: lattice.to_owned(),
+                holds: judged.all(),
+                statistics: least,
+            });
+        } else {
+            said.push_str(&format!(", with fewer than {DENSITIES} densities"));
+        }
+        words.push(format!("{lattice} lattice: {said}"));
         quantities.extend(judged.quantities(lattice));
         rows.extend(densities.iter().map(|density| {
             vec![
@@ -103,7 +95,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         }));
         panels.extend(panels_of(lattice, &densities));
     }
-    let (verdict, found, why) = judge(&parts, &NEEDED);
+    let (verdict, _, why) = judge(&parts, &NEEDED);
+    let found = best(all.into_iter(), &NEEDED);
     if words.is_empty() {
         return Ok(Finding::nothing("No runs yet.", found, &NEEDED));
     }
@@ -171,17 +164,7 @@ fn densities(runs: &[Run]) -> Vec<Density> {
                     .or_else(|| branch.drop().map(|drop| drop.width())),
                 exponent: fit.map(|fit| fit.exponent),
                 ratio,
-                statistics: Statistics {
-                    strain_rates: 1,
-                    widths: branch.points.len(),
-                    replicates: branch
-                        .points
-                        .iter()
-                        .map(|point| point.runs)
-                        .min()
-                        .unwrap_or(0),
-                    runs: here.len(),
-                },
+                statistics: branch.statistics(here.len()),
                 branch,
             }
         })

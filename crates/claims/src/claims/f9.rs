@@ -76,22 +76,6 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 .filter_map(|rate| loop_of(runs, lattice, rate)),
         );
     }
-    let of = |lattice: Lattice| {
-        let tight = || {
-            loops
-                .iter()
-                .filter(move |one| one.lattice == lattice && one.escaped <= MOST_ESCAPED)
-        };
-        Statistics {
-            strain_rates: tight().count(),
-            widths: tight().map(|one| one.statistics.widths).min().unwrap_or(0),
-            replicates: tight()
-                .map(|one| one.statistics.replicates)
-                .min()
-                .unwrap_or(0),
-            runs: tight().map(|one| one.statistics.runs).sum(),
-        }
-    };
     let tight = |lattice: Lattice| {
         loops
             .iter()
@@ -104,7 +88,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         // Both halves of the claim: two states, and jams that break up.
         holds: (tight(lattice).count() > 0)
             .then(|| looping(lattice) >= needed.strain_rates && closed(lattice) > 0),
-        statistics: of(lattice),
+        statistics: Statistics::weakest(tight(lattice).map(|one| one.statistics)),
     });
     let (verdict, found, why) = judge(&parts, &needed);
     if loops.is_empty() {
@@ -216,14 +200,6 @@ fn loop_of(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Loop> {
         .or_else(|| Some(drop.width()));
     let outlives = jammed.1.iter().all(|jammed| *jammed);
     let largest = jammed.0.iter().copied().fold(0.0, f64::max);
-    let least_of = |branch: &Branch| {
-        branch
-            .points
-            .iter()
-            .map(|point| point.runs)
-            .min()
-            .unwrap_or(0)
-    };
     Some(Loop {
         lattice,
         strain_rate,
@@ -235,9 +211,12 @@ fn loop_of(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Loop> {
         escaped: from_rest.escaped().max(from_jammed.escaped()),
         statistics: Statistics {
             strain_rates: 1,
-            widths: from_rest.points.len().min(from_jammed.points.len()),
-            replicates: least_of(&from_rest).min(least_of(&from_jammed)),
             runs: here.len(),
+            ..Statistics::weakest(
+                [&from_rest, &from_jammed]
+                    .map(|branch| branch.statistics(0))
+                    .into_iter(),
+            )
         },
         from_rest,
         from_jammed,

@@ -16,13 +16,14 @@ mod q4;
 mod q5;
 
 use peristalsis_analysis::Uncertain;
+use peristalsis_figures::chart::{Line as Curve, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Units};
 
 use crate::claim::Claim;
-use crate::critical::{Divergence, Line, Thresholds, WINDOW, lines};
+use crate::critical::{Divergence, Line, Thresholds, WINDOW, lines, weighted_mean};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Statistics, Verdict};
+use crate::finding::{Quantity, Statistics, Verdict};
 use crate::runs::Lattice;
 
 /// All claims, in the order of the report.
@@ -81,20 +82,7 @@ fn fitted<'a, 'b>(lines: &'b [Line<'a>]) -> Vec<(&'b Line<'a>, Divergence)> {
 
 /// How much is behind some lines.
 fn statistics(lines: &[&Line<'_>]) -> Statistics {
-    Statistics {
-        strain_rates: lines.len(),
-        widths: lines
-            .iter()
-            .map(|line| line.widths().len())
-            .min()
-            .unwrap_or(0),
-        replicates: lines
-            .iter()
-            .map(|line| line.replicates())
-            .min()
-            .unwrap_or(0),
-        runs: lines.iter().map(|line| line.number()).sum(),
-    }
+    Statistics::weakest(lines.iter().map(|line| line.statistics()))
 }
 
 /// What one lattice says of a claim: whether it holds there (`None`: errors too large to say) and what is behind it.
@@ -111,18 +99,7 @@ fn judge(parts: &[Part], needed: &Statistics) -> (Verdict, Statistics, String) {
         .iter()
         .filter(|part| part.statistics.suffice(needed))
         .collect();
-    let statistics = parts
-        .iter()
-        .map(|part| part.statistics)
-        .max_by_key(|one| {
-            (
-                one.suffice(needed),
-                one.strain_rates,
-                one.replicates,
-                one.widths,
-            )
-        })
-        .unwrap_or_default();
+    let statistics = best(parts.iter().map(|part| part.statistics), needed);
     let named = |holds: bool| -> Vec<&str> {
         enough
             .iter()
@@ -162,6 +139,54 @@ fn best(all: impl Iterator<Item = Statistics>, needed: &Statistics) -> Statistic
         )
     })
     .unwrap_or_default()
+}
+
+/// A fitted law in the window of its fit, as far as it stays in sight of the points; `None` where nothing of it does.
+fn fitted_curve(
+    line: &Line<'_>,
+    critical: f64,
+    points: &[f64],
+    law: impl Fn(f64) -> f64,
+) -> Option<Curve> {
+    let largest = points.iter().copied().fold(0.0, f64::max);
+    let (x, y): (Vec<f64>, Vec<f64>) = spaced(line.window_from(WINDOW)?, critical, 200)
+        .into_iter()
+        .map(|width| (width, law(width)))
+        .filter(|point| point.1.is_finite() && point.1 < 3.0 * largest)
+        .unzip();
+    (x.len() > 1).then(|| {
+        Curve::new("", &x, &y)
+            .tint(Tint::Value(line.strain_rate))
+            .weight(0.8)
+    })
+}
+
+/// What one lattice says of an exponent, the weighted mean over its strain rates, with the quantity of the report.
+fn of_exponents(
+    lattice: &str,
+    exponents: &[Uncertain],
+    source: f64,
+    [what, symbol]: [&str; 2],
+    statistics: Statistics,
+) -> (Part, Option<(Uncertain, Quantity)>) {
+    let mean = weighted_mean(exponents);
+    let part = Part {
+        lattice: lattice.to_owned(),
+        holds: mean.and_then(|mean| agrees(&mean, source)),
+        statistics,
+    };
+    let quantity = |mean| Quantity {
+        name: format!("exponent of the {what}, {lattice} lattice"),
+        symbol: symbol.to_owned(),
+        unit: String::new(),
+        source: Some(source),
+        ours: Some(mean),
+        method: format!(
+            "weighted mean over {} strain rates of likelihood fits to the {WINDOW} widths next to *w*_{{c}}",
+            exponents.len()
+        ),
+    };
+    (part, mean.map(|mean| (mean, quantity(mean))))
 }
 
 /// Colours for strain rates.

@@ -60,11 +60,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         ("coarse", "small-strain-rate-coarse", "branches-coarse"),
         ("fine", "small-strain-rate-fine", "branches-fine"),
     ] {
-        let mut least = Statistics {
-            widths: usize::MAX,
-            replicates: usize::MAX,
-            ..Statistics::default()
-        };
+        let mut of_lattice = Vec::new();
         for (name, is_small) in [(small, true), (usual, false)] {
             let runs = &evidence.study(name)?.runs;
             for rate in strain_rates(runs.iter()) {
@@ -84,16 +80,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                     continue;
                 }
                 if is_small {
-                    least.strain_rates += 1;
-                    least.widths = least.widths.min(branch.points.len());
-                    let fewest = branch
-                        .points
-                        .iter()
-                        .map(|point| point.runs)
-                        .min()
-                        .unwrap_or(0);
-                    least.replicates = least.replicates.min(fewest);
-                    least.runs += here().count();
+                    of_lattice.push(branch.statistics(here().count()));
                 }
                 rows.push(Row {
                     lattice,
@@ -111,10 +98,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 });
             }
         }
-        if least.strain_rates == 0 {
-            least = Statistics::default();
-        }
-        all.push(least);
+        all.push(Statistics::weakest(of_lattice.into_iter()));
     }
     let found = super::best(all.into_iter(), &NEEDED);
     if rows.is_empty() {

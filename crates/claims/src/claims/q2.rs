@@ -42,11 +42,8 @@ fn depth(run: &Run) -> f64 {
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let runs = &evidence.study("roughness")?.runs;
-    let mut found = Statistics {
-        widths: usize::MAX,
-        replicates: usize::MAX,
-        ..Statistics::default()
-    };
+    let mut strain_rates = 0;
+    let mut of_lattices = Vec::new();
     let mut panel = ChartPanel::new(
         "depth of the hollows of the wall, *h*/*d*",
         &label(Axis::CriticalWidth),
@@ -62,10 +59,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         for (_, here) in grouped(&of_rate, |run| {
             (run.lattice.spheres_per_ring, run.lattice.rings_per_wave)
         }) {
-            let least = behind(&here);
-            found.widths = found.widths.min(least.widths);
-            found.replicates = found.replicates.min(least.replicates);
-            found.runs += least.runs;
+            of_lattices.push(behind(&here));
             let Some(found) = crossing(&here) else {
                 continue;
             };
@@ -101,7 +95,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         if x.is_empty() {
             continue;
         }
-        found.strain_rates += 1;
+        strain_rates += 1;
         let (smoothest, roughest) = extremes(&x, &y);
         ends.push(format!(
             "from {} *d* on the roughest to {} *d* on the smoothest wall at *ε̇* = {rate}",
@@ -130,7 +124,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             Verdict::Open
         },
         format!("*w*_{{c}} goes {}.", ends.join(" and ")),
-        found,
+        Statistics {
+            strain_rates,
+            ..Statistics::weakest(of_lattices.into_iter())
+        },
         &NEEDED,
     );
     finding.quantities = quantities;

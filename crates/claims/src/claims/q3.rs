@@ -101,20 +101,12 @@ struct Row {
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut found = Statistics {
-        strain_rates: 1,
-        widths: usize::MAX,
-        replicates: usize::MAX,
-        runs: 0,
-    };
+    let mut of_values = Vec::new();
     let mut rows = Vec::new();
     for (part, Part { study, value, .. }) in PARTS.iter().enumerate() {
         let runs = &evidence.study(study)?.runs;
         for ((value, strain_rate), here) in grouped(runs, |run| (value(run), run.strain_rate)) {
-            let least = behind(&here);
-            found.widths = found.widths.min(least.widths);
-            found.replicates = found.replicates.min(least.replicates);
-            found.runs += least.runs;
+            of_values.push(behind(&here));
             if let Some(crossing) = crossing(&here) {
                 rows.push(Row {
                     part,
@@ -154,7 +146,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             "Over the ranges looked at, *w*_{{c}}/(2*a*) changes by {}.",
             spans.join(", ")
         ),
-        found,
+        Statistics {
+            strain_rates: 1,
+            ..Statistics::weakest(of_values.into_iter())
+        },
         &NEEDED,
     );
     finding.tables.push(ReportTable {

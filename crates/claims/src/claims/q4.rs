@@ -34,11 +34,9 @@ const NEEDED: Statistics = Statistics {
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let study = evidence.study("length")?;
     let groups = grouped(&study.runs, |run| run.waves);
-    let mut found = Statistics {
+    let found = Statistics {
         strain_rates: 1,
-        widths: usize::MAX,
-        replicates: usize::MAX,
-        runs: 0,
+        ..Statistics::weakest(groups.iter().map(|(_, here)| behind(here)))
     };
     let mut flow =
         ChartPanel::new(&label(Axis::Width), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
@@ -50,10 +48,6 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     // Waves with width, mean time and its error, to compare lengths at the same width.
     let mut means: Vec<(f64, f64, Uncertain)> = Vec::new();
     for (series, (waves, here)) in groups.iter().enumerate() {
-        let least = behind(here);
-        found.widths = found.widths.min(least.widths);
-        found.replicates = found.replicates.min(least.replicates);
-        found.runs += least.runs;
         let branch = Branch::of(here.iter().copied(), Start::Rest);
         if branch.points.is_empty() {
             continue;

@@ -123,7 +123,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ]);
             let critical = fit.critical_width.value;
             let known: Vec<(f64, f64, f64)> = line
-                .ensembles()
+                .ensembles
                 .iter()
                 .filter(|ensemble| {
                     ensemble.observed > 2 * ensemble.censored && ensemble.width < critical
@@ -227,7 +227,7 @@ fn survival_panel(line: &Line<'_>, critical: f64) -> Option<(ChartPanel, ColourS
         .y_range(0.0..=1.05);
     let (width, transitions) = line.columns();
     let mut widths = Vec::new();
-    for ensemble in line.ensembles() {
+    for ensemble in &line.ensembles {
         let resolved = ensemble
             .naive_mean
             .is_some_and(|mean| mean > 10.0 * line.period());
