@@ -81,7 +81,11 @@ fn a_drive_that_changes_on_the_way_is_one_that_was_to_change_from_the_start() {
         left_alone.advance(1000).unwrap();
         assert_ne!(bits(&driven), bits(&left_alone));
         assert!(driven.wall().cycles() > left_alone.wall().cycles() + 0.1);
-        assert!(driven.energy_residual() < 1e-2, "{}", driven.energy_residual());
+        assert!(
+            driven.energy_residual() < 1e-2,
+            "{}",
+            driven.energy_residual()
+        );
     }
 }
 
@@ -114,18 +118,24 @@ fn friction_that_changes_slides_at_once_and_stays_in_the_ledger() {
     let mut smooth = simulation.clone();
     smooth.set_friction(0.01, 0.005).unwrap();
     let friction = smooth.parameters().contact.friction.unwrap();
-    assert_eq!((friction.static_friction, friction.kinetic_friction), (0.01, 0.005));
+    assert_eq!(
+        (friction.static_friction, friction.kinetic_friction),
+        (0.01, 0.005)
+    );
     let slid = |simulation: &Simulation| simulation.ledger().sliding_dissipated;
     let before = slid(&smooth);
     smooth.advance(400).unwrap();
     simulation.advance(400).unwrap();
     assert_ne!(bits(&smooth), bits(&simulation));
     assert!(slid(&smooth) >= before);
-    assert!(smooth.energy_residual() < 1e-2, "{}", smooth.energy_residual());
+    assert!(
+        smooth.energy_residual() < 1e-2,
+        "{}",
+        smooth.energy_residual()
+    );
     // Gone on with from a snapshot under the new law: the same bits.
     let wall = CASES[3].0(constant(0.005), constant(0.02));
-    let mut restored =
-        Simulation::restore(smooth.snapshot(), wall, *smooth.parameters()).unwrap();
+    let mut restored = Simulation::restore(smooth.snapshot(), wall, *smooth.parameters()).unwrap();
     restored.advance(100).unwrap();
     smooth.advance(100).unwrap();
     assert_eq!(bits(&restored), bits(&smooth));
@@ -148,11 +158,20 @@ fn what_would_jump_or_is_another_tube_is_refused() {
         assert!(matches!(refused, Err(EngineError::OtherWall { .. })));
     }
     let no_friction = simulation.set_friction(0.5, 0.4);
-    assert!(matches!(no_friction, Err(EngineError::InvalidParameter { .. })));
+    assert!(matches!(
+        no_friction,
+        Err(EngineError::InvalidParameter { .. })
+    ));
     assert_eq!(simulation.snapshot(), before);
 
     let mut rough = start(CASES[1]);
-    for (of_rest, of_motion) in [(0.0, 0.0), (-1.0, 0.0), (0.3, 0.4), (0.3, -0.1), (f64::NAN, 0.1)] {
+    for (of_rest, of_motion) in [
+        (0.0, 0.0),
+        (-1.0, 0.0),
+        (0.3, 0.4),
+        (0.3, -0.1),
+        (f64::NAN, 0.1),
+    ] {
         assert!(rough.set_friction(of_rest, of_motion).is_err());
     }
 }
