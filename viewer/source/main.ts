@@ -39,6 +39,8 @@ class Page {
   private replaying = false;
   private shownFrame: Frame | null = null;
   private riding = false;
+  /** Whether the picked grain stays in the middle. */
+  private following = false;
   /** Wavelengths that the wave had run in the frame that was shown last. */
   private rode = 0;
   private field = "axial";
@@ -192,7 +194,8 @@ class Page {
     }
     const frame = this.history.frames[this.shown()];
     if (frame !== this.shownFrame) {
-      if (this.riding) scene.slide(this.ridden(frame, tube));
+      if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
+      else if (this.riding) scene.slide(this.ridden(frame, tube));
       this.rode = frame.period;
       scene.show(frame, FIELDS[this.field]);
       this.shownFrame = frame;
@@ -233,6 +236,9 @@ class Page {
     element("live").dataset.live = String(this.cursor === null);
     element("play").setAttribute("aria-pressed", String(this.playing()));
     element("onward").hidden = this.cursor === null;
+    const speed = element<HTMLSelectElement>("speed");
+    const asked = (this.newest() ?? frame).speed;
+    if (speed !== document.activeElement) speed.value = asked === null ? "" : String(asked);
     element("pace").textContent = frame.pace ? `at most ${written(frame.pace, 2)} T/s` : "";
     this.showDriven((this.newest() ?? frame).driven);
     const { sample } = frame;
@@ -328,6 +334,7 @@ class Page {
     };
     tick("marks", (scene, on) => (scene.marks = on));
     tick("lightness", (scene, on) => (scene.lightness = on));
+    tick("follow", (_, on) => (this.following = on));
     tick("ride", (_, on) => (this.riding = on));
     element("play").onclick = () => this.play();
     element("back").onclick = () => this.step(-1);

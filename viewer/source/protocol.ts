@@ -58,6 +58,8 @@ export interface Head {
   epoch: number;
   playing: boolean;
   ended: boolean;
+  /** Periods a second that were asked for. */
+  speed: number | null;
   pace: number | null;
   step: number;
   time: number;

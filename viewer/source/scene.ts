@@ -36,7 +36,7 @@ export class Scene {
   private values = new Float32Array(0);
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly tube: Welcome) {
-    this.renderer = new three.WebGLRenderer({ canvas, antialias: false, alpha: true, preserveDrawingBuffer: true });
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
     this.renderer.setClearColor(0, 0);
     this.scaleTexture = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
     this.scaleTexture.magFilter = this.scaleTexture.minFilter = three.LinearFilter;
@@ -82,10 +82,10 @@ export class Scene {
 
   /** From a little above, with some waves in the picture. */
   home(): void {
-    const shown = Math.min(this.tube.length, (this.canvas.clientWidth < 600 ? 1.3 : 2.4) * this.tube.wavelength);
+    const shown = Math.min(this.tube.length, (this.canvas.clientWidth < 600 ? 1.2 : 2.0) * this.tube.wavelength);
     const distance = (0.5 * shown) / (Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect);
     const least = (2.6 * this.tube.radius) / Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180);
-    this.camera.position.set(0, 0.22, 1).setLength(Math.max(distance, 0.62 * least) + this.tube.radius);
+    this.camera.position.set(-0.42, 0.24, 1).setLength(Math.max(distance, 0.62 * least) + this.tube.radius);
     this.orbit.target.set(0, 0, 0);
     this.orbit.minDistance = 2.2 * this.tube.radius;
     this.orbit.maxDistance = 4 * this.tube.length;
@@ -176,8 +176,9 @@ export class Scene {
     const spacing = tube.wavelength / tube.rings_per_wave;
     const rings = tube.rings_per_wave * tube.waves;
     const side = this.camera.position;
-    const flat = Math.abs(side.x) / side.length() < 0.5;
-    const half = flat ? Math.min(this.halfShown(), 0.5 * tube.length) : 0.5 * tube.length;
+    // Looking along the tube one sees to its end.
+    const oblique = 1 / Math.max(0.05, 1 - 1.5 * (Math.abs(side.x) / side.length()));
+    const half = Math.min(oblique * this.halfShown(), 0.5 * tube.length);
     let number = 0;
     const put = (x: number, y: number, z: number) => {
       wallSpheres.centre.array.set([x, y, z], 3 * number);

@@ -27,6 +27,8 @@ pub(crate) struct Head {
     pub(crate) playing: bool,
     /// Whether there is no more to come: the run diverged.
     pub(crate) ended: bool,
+    /// Periods a second that were asked for; null is as fast as possible.
+    pub(crate) speed: Option<f64>,
     /// Periods a second that the engine would do at most, NaN (null) before it is known.
     pub(crate) pace: f64,
     pub(crate) step: u64,

@@ -388,6 +388,7 @@ impl Tube {
             epoch: self.epoch,
             playing: self.playing,
             ended: self.ended,
+            speed: self.speed,
             pace: self.run.configuration().run.time_step / (self.step_seconds * self.unit_period()),
             step: simulation.step(),
             time: simulation.time(),

@@ -260,20 +260,20 @@ impl Scope<'_> {
         target: &Target,
         context: &mut Context<'_>,
     ) -> Option<Vec<(f64, f64)>> {
-        let form = match keys.form {
-            ScheduleFormName::Course => "a course",
-            _ => "a schedule in steps",
+        let (takes, needs) = match keys.form {
+            ScheduleFormName::Course => ("a course takes", "a course needs"),
+            _ => ("steps take", "steps need"),
         };
         let of_a_ramp = [keys.from, keys.to, keys.start, keys.end];
         if of_a_ramp.iter().any(Option::is_some) {
             refuse(
                 context,
-                format!("{form} takes at and values, not from, to, start or end"),
+                format!("{takes} at and values, not from, to, start or end"),
             );
             return None;
         }
         let (Some(at), Some(values)) = (&keys.at, &keys.values) else {
-            refuse(context, format!("{form} needs both at and values"));
+            refuse(context, format!("{needs} both at and values"));
             return None;
         };
         if at.len() != values.len() {
