@@ -16,6 +16,8 @@ export interface Ink {
   against: string;
   wall: string;
   back: string;
+  stageMiddle: string;
+  stageEdge: string;
 }
 
 export function ink(): Ink {
@@ -30,6 +32,8 @@ export function ink(): Ink {
     against: read("against"),
     wall: read("wall"),
     back: read("panel"),
+    stageMiddle: read("stage-middle"),
+    stageEdge: read("stage-edge"),
   };
 }
 

@@ -201,7 +201,7 @@ class Page {
       this.shownFrame = frame;
     }
     const colours = ink();
-    scene.draw(colours.text);
+    scene.draw(colours);
     if (this.chartsStale && now - this.chartsDrawn > CHARTS) {
       this.chartsStale = false;
       this.chartsDrawn = now;
@@ -368,7 +368,8 @@ class Page {
       this.scene?.resize();
       this.chartsStale = true;
     }).observe(element("stage"));
-    new ResizeObserver(() => (this.chartsStale = true)).observe(element("flow"));
+    const sizes = new ResizeObserver(() => (this.chartsStale = true));
+    for (const id of ["flow", "loop", "profile", "map"]) sizes.observe(element(id));
     this.listenToPointers();
     document.addEventListener("keydown", (event) => this.key(event));
     this.showLegend();

@@ -1,5 +1,6 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Ink } from "./charts";
 import { colourAt, type Field, stops } from "./fields";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
@@ -36,8 +37,7 @@ export class Scene {
   private values = new Float32Array(0);
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly tube: Welcome) {
-    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-    this.renderer.setClearColor(0, 0);
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: false, preserveDrawingBuffer: true });
     this.scaleTexture = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
     this.scaleTexture.magFilter = this.scaleTexture.minFilter = three.LinearFilter;
     this.shared = {
@@ -51,7 +51,7 @@ export class Scene {
     };
     this.grainUniforms = this.own(0, Side.All, 0);
     this.wallUniforms = this.own(1, Side.Back, 0);
-    const front = this.own(1, Side.Front, 0.16);
+    const front = this.own(1, Side.Front, 0.12);
     this.meshes = {
       wallBack: drawn(this.wallSpheres, this.shared, this.wallUniforms, false),
       wallFront: drawn(this.wallSpheres, this.shared, front, true),
@@ -143,12 +143,13 @@ export class Scene {
   }
 
   /** Draws, where there is something new. */
-  draw(rim: string): void {
+  draw({ text, stageMiddle, stageEdge }: Ink): void {
     this.orbit.update();
     if (!this.stale || !this.frame) return;
     this.stale = false;
     const begin = performance.now();
-    (this.shared.rim.value as three.Color).setStyle(rim, three.LinearSRGBColorSpace);
+    this.backdrop(stageMiddle, stageEdge);
+    (this.shared.rim.value as three.Color).setStyle(text, three.LinearSRGBColorSpace);
     this.shared.middle.value = this.middle;
     (this.shared.eye.value as three.Vector3).copy(this.camera.position).normalize();
     this.grainUniforms.marks.value = this.marks ? 1 : 0;
@@ -162,6 +163,28 @@ export class Scene {
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
     this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
+  }
+
+  /** Paints what is behind the tube, where its colours have changed. */
+  private backdrop(middle: string, edge: string): void {
+    const name = `${middle} ${edge}`;
+    if (this.scene.background instanceof three.Texture) {
+      if (this.scene.background.name === name) return;
+      this.scene.background.dispose();
+    }
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = 256;
+    const context = canvas.getContext("2d");
+    if (!context) return;
+    const gradient = context.createRadialGradient(128, 60, 0, 128, 60, 230);
+    gradient.addColorStop(0, middle);
+    gradient.addColorStop(1, edge);
+    context.fillStyle = gradient;
+    context.fillRect(0, 0, 256, 256);
+    const texture = new three.CanvasTexture(canvas);
+    texture.colorSpace = three.SRGBColorSpace;
+    texture.name = name;
+    this.scene.background = texture;
   }
 
   /** Half of the length that is in the picture. */

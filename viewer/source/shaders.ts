@@ -71,7 +71,7 @@ void main() {
     // A ring round the grain that was picked.
     if (marked == 1 && room > -0.56 * size * size && room < -0.12 * size * size) {
       colour = vec4(rim, 1.0);
-      vec4 clip = projectionMatrix * vec4(sphere, 1.0);
+      vec4 clip = projectionMatrix * vec4(sphere * (1.0 - size / length(sphere)), 1.0);
       gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
       return;
     }
