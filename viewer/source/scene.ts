@@ -9,6 +9,9 @@ export const WALLS = ["cut open", "glass", "closed", "hidden"] as const;
 export type WallLook = (typeof WALLS)[number];
 
 const FIELD_OF_VIEW = 24;
+/** Milliseconds from picture to picture above which pixels are saved, and beyond which the picture just stood still. */
+const SLOW = 55;
+const SLOW_AT_MOST = 1000;
 
 /** The tube in space: grains and wall, the camera, and what is under a finger. */
 export class Scene {
@@ -34,10 +37,14 @@ export class Scene {
   private readonly scaleTexture: three.DataTexture;
   private frame: Frame | null = null;
   private stale = true;
+  /** Part of the full resolution that is drawn: less where pictures take too long. */
+  private fineness = 1;
+  private drawnAt = 0;
+  private interval = 0;
   private values = new Float32Array(0);
 
   constructor(private readonly canvas: HTMLCanvasElement, private readonly tube: Welcome) {
-    this.renderer = new three.WebGLRenderer({ canvas, antialias: true, alpha: false, preserveDrawingBuffer: true });
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: false, alpha: false, preserveDrawingBuffer: true });
     this.scaleTexture = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
     this.scaleTexture.magFilter = this.scaleTexture.minFilter = three.LinearFilter;
     this.shared = {
@@ -116,7 +123,7 @@ export class Scene {
 
   resize(): void {
     const { clientWidth: width, clientHeight: height } = this.canvas;
-    this.renderer.setPixelRatio(Math.min(2, devicePixelRatio));
+    this.renderer.setPixelRatio(this.fineness * Math.min(2, Math.max(1.5, devicePixelRatio)));
     this.renderer.setSize(Math.max(1, width), Math.max(1, height), false);
     this.camera.aspect = Math.max(1, width) / Math.max(1, height);
     this.camera.updateProjectionMatrix();
@@ -162,7 +169,20 @@ export class Scene {
     if (this.wall !== "hidden") this.placeWall(this.frame);
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
+    this.keepUp(begin);
     this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
+  }
+
+  /** Draws fewer pixels where pictures that follow one another take too long. */
+  private keepUp(now: number): void {
+    const since = now - this.drawnAt;
+    this.drawnAt = now;
+    if (since > SLOW_AT_MOST) return;
+    this.interval += 0.2 * (since - this.interval);
+    if (this.interval < SLOW || this.fineness < 0.5) return;
+    this.fineness *= 0.8;
+    this.interval = 0;
+    this.resize();
   }
 
   /** Paints what is behind the tube, where its colours have changed. */

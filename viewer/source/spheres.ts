@@ -61,7 +61,6 @@ export function drawn(spheres: Spheres, shared: Uniforms, own: Uniforms, glass: 
     fragmentShader: FRAGMENT,
     uniforms: { ...shared, ...own },
     transparent: glass,
-    alphaToCoverage: !glass,
     depthWrite: !glass,
   });
   const mesh = new three.Mesh(spheres.geometry, material);
