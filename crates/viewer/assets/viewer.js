@@ -4303,9 +4303,7 @@ void main() {
     }
     discard;
   }
-  // The edge covers its pixel in part.
   float edge = sqrt(miss) / size;
-  float cover = clamp((1.0 - edge) / max(fwidth(edge), 1e-5), 0.0, 1.0);
   vec3 hit = ray * (along - sqrt(room));
   vec3 normal = (hit - sphere) / size;
   float facing = max(0.0, -dot(normal, ray));
@@ -4329,8 +4327,9 @@ void main() {
   lit *= mix(0.55, 1.0, shade) * mix(0.62, 1.0, smoothstep(0.0, 0.6, facing));
   float gloss = pow(max(0.0, dot(reflect(ray, normal), key)), 40.0);
   lit += 0.16 * gloss;
+  float cover = 1.0;
   if (glass > 0.0) {
-    cover *= glass * (0.2 + 1.3 * pow(1.0 - facing, 2.0)) + 0.3 * gloss;
+    cover = smoothstep(1.0, 0.96, edge) * glass * (0.2 + 1.3 * pow(1.0 - facing, 2.0)) + 0.3 * gloss;
     lit = base * (0.55 + 0.45 * sky) + 0.5 * gloss;
   }
   colour = vec4(pow(lit, vec3(1.0 / 2.2)), clamp(cover, 0.0, 1.0));
