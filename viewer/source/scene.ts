@@ -9,9 +9,10 @@ export const WALLS = ["cut open", "glass", "closed", "hidden"] as const;
 export type WallLook = (typeof WALLS)[number];
 
 const FIELD_OF_VIEW = 24;
-/** Milliseconds from picture to picture above which pixels are saved, and beyond which the picture just stood still. */
+/** Milliseconds from picture to picture above which pixels are saved. */
 const SLOW = 55;
-const SLOW_AT_MOST = 1000;
+/** Milliseconds after which a picture counts as still. */
+const STILL = 700;
 
 /** The tube in space: grains and wall, the camera, and what is under a finger. */
 export class Scene {
@@ -40,6 +41,7 @@ export class Scene {
   /** Part of the full resolution that is drawn: less where pictures take too long. */
   private fineness = 1;
   private drawnAt = 0;
+  private sharp = false;
   private interval = 0;
   private values = new Float32Array(0);
 
@@ -152,6 +154,7 @@ export class Scene {
   /** Draws, where there is something new. */
   draw({ text, stageMiddle, stageEdge }: Ink): void {
     this.orbit.update();
+    if (!this.stale) this.sharpen();
     if (!this.stale || !this.frame) return;
     this.stale = false;
     const begin = performance.now();
@@ -173,11 +176,26 @@ export class Scene {
     this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
   }
 
+  /** Draws a picture that stands still once more with all its pixels. */
+  private sharpen(): void {
+    const still = performance.now() - this.drawnAt > STILL;
+    if (this.fineness === 1 || this.sharp || !still) return;
+    const usual = this.fineness;
+    this.fineness = 1;
+    this.resize();
+    this.fineness = usual;
+    this.sharp = true;
+  }
+
   /** Draws fewer pixels where pictures that follow one another take too long. */
   private keepUp(now: number): void {
     const since = now - this.drawnAt;
     this.drawnAt = now;
-    if (since > SLOW_AT_MOST) return;
+    if (since > STILL) return;
+    if (this.sharp) {
+      this.sharp = false;
+      this.resize();
+    }
     this.interval += 0.2 * (since - this.interval);
     if (this.interval < SLOW || this.fineness < 0.5) return;
     this.fineness *= 0.8;

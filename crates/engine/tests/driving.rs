@@ -19,7 +19,7 @@ fn constant(value: f64) -> Schedule {
 /// Constant up to half a step after `step`, then linear within 20 time units.
 fn from_step(step: u64, from: f64, to: f64) -> Schedule {
     let start = (step as f64 + 0.5) * TIME_STEP;
-    Schedule::through(vec![(start, from), (start + 20.0, to)]).unwrap()
+    Schedule::through(vec![(start, from), (start + 20.0, to)]).expect("two knots in order")
 }
 
 fn prescribed(amplitude: Schedule, frequency: Schedule) -> Wall {

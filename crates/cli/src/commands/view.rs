@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use peristalsis_configuration::preset;
+use peristalsis_configuration::{PRESETS, preset};
 use peristalsis_engine::Instructions;
 use peristalsis_run::{Run, RunFolder};
 use peristalsis_viewer::{Options, Viewer};
@@ -46,6 +46,16 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
         return Ok((again, options(title, record)));
     }
     let named = arguments.source.to_str().filter(|it| preset(it).is_some());
+    if named.is_none() && !arguments.source.exists() {
+        let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+        return Err(Failure::Usage {
+            message: format!(
+                "{} is no folder, no file and no preset",
+                arguments.source.display()
+            ),
+            help: Some(format!("presets: {}", names.join(", "))),
+        });
+    }
     let configuration = ConfigurationArguments {
         file: named.is_none().then(|| arguments.source.clone()),
         preset: named.map(str::to_owned),
