@@ -20,6 +20,8 @@ const FRAME: Duration = Duration::from_millis(33);
 const PATIENCE: Duration = Duration::from_millis(4);
 /// Periods within which a parameter goes to where its slider was put: no wall jumps.
 const RAMP: f64 = 0.25;
+/// Periods a second beyond which nobody asks for a speed.
+const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed so many frames sees a gap.
 const ROWS: usize = 64;
 /// Rows that a client gets at first, at most.
@@ -158,7 +160,9 @@ impl Tube {
                 self.playing = playing && !self.ended;
                 self.seeking = None;
             }
-            Command::Speed { periods_per_second } => self.speed = periods_per_second,
+            Command::Speed { periods_per_second } => {
+                self.speed = periods_per_second.map(|speed| speed.min(FASTEST));
+            }
             Command::Step {} => {
                 self.playing = false;
                 let each = self.run.configuration().run.steps_per_sample;
