@@ -228,7 +228,7 @@ class Page {
 
   private showNumbers(frame: Frame, averages: number[], tube: Welcome, scene: Scene): void {
     const at = this.history.rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
-    element("ratio").textContent = at >= 0 ? averages[at].toFixed(3).replace("-", "−") : "–";
+    element("ratio").textContent = at >= 0 ? averages[at].toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "") : "–";
     element("clock").textContent = `${frame.clock.toFixed(2)} T`;
     const slider = element<HTMLInputElement>("time");
     slider.value = String(this.shown());

@@ -22,8 +22,8 @@ const PATIENCE: Duration = Duration::from_millis(4);
 const RAMP: f64 = 0.25;
 /// Periods a second beyond which nobody asks for a speed.
 const FASTEST: f64 = 1e6;
-/// Rows of the time series in each frame: a client that missed so many frames sees a gap.
-const ROWS: usize = 64;
+/// Rows of the time series in each frame: a client that missed more sees a gap.
+const ROWS: usize = 256;
 /// Rows that a client gets at first, at most.
 const FIRST_ROWS: usize = 4000;
 /// States kept to come back to.
