@@ -312,7 +312,7 @@ impl Configuration {
     }
 
     /// Pressure rise over one wavelength that the wave has to pump against \[m d^-1 t^-2\]: the weight of the grains of a
-    /// wavelength under the body force g over the section of the straight tube, Dp = -N <m> g lambda/(L pi a^2).
+    /// wavelength under the body force g over the section of the straight tube, Dp = -N \<m\> g lambda/(L pi a^2).
     #[must_use]
     pub fn pressure_rise(&self) -> f64 {
         let Tube {
