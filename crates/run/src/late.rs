@@ -15,7 +15,7 @@ pub(crate) fn error_of(series: impl Iterator<Item = f64>) -> f64 {
 pub struct Pumping {
     /// g, force over mass along the wave, negative where it is back pressure \[d/t^2\].
     pub body_force: f64,
-    /// The pressure rise over a wavelength that it stands for, Dp = -N <m> g lambda/(L pi a^2) \[m/(d t^2)\].
+    /// The pressure rise over a wavelength that it stands for, Dp = -N \<m\> g lambda/(L pi a^2) \[m/(d t^2)\].
     pub pressure_rise: f64,
     /// Useful power: that of the flow against the body force, -g sum m v_z; negative where the grains go with it.
     pub useful_power: f64,

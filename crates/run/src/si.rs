@@ -7,7 +7,7 @@ use crate::summary::Summary;
 /// The outcome of a run in SI; missing numbers are `null` in JSON. Late means, as in the [`Summary`].
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SiSummary {
-    /// Mass of grains that goes through a section in a second, J <m> \[kg/s\].
+    /// Mass of grains that goes through a section in a second, J \<m\> \[kg/s\].
     pub mass_flow_rate_kg_per_s: f64,
     /// Power of wall or drive \[W\].
     pub wall_power_w: f64,
@@ -72,7 +72,7 @@ pub struct SiEstimate {
     pub duration_s: f64,
     /// Step taken \[s\].
     pub time_step_s: f64,
-    /// What goes through a section in a second if all grains go with the wave, Jmax <m> \[kg/s\].
+    /// What goes through a section in a second if all grains go with the wave, Jmax \<m\> \[kg/s\].
     pub largest_mass_flow_rate_kg_per_s: f64,
     /// Body force along the wave \[m/s^2\].
     pub body_force_m_per_s2: f64,
