@@ -105,8 +105,8 @@ async function checkDriving(browser) {
 
   // The grain in the middle, by hand.
   const box = await page.locator("#stage").boundingBox();
-  for (let k = 0; k < 60 && !(await page.isVisible("#grain")); k++)
-    await page.mouse.click(box.x + box.width * (0.2 + 0.01 * k), box.y + box.height * 0.5);
+  for (let k = 0; k < 90 && !(await page.isVisible("#grain")); k++)
+    await page.mouse.click(box.x + box.width * (0.2 + 0.02 * (k % 30)), box.y + box.height * (0.46 + 0.03 * Math.floor(k / 30)));
   assert(await page.isVisible("#grain"), "no grain can be picked");
   await page.check("#marks");
   await shoot(page, "picked");

@@ -378,6 +378,8 @@ class Page {
   private pick(grain: number): void {
     if (!this.scene) return;
     this.scene.picked = grain;
+    const frame = this.history.frames[this.shown()];
+    if (this.tube && frame) this.showGrain(frame, this.tube, grain);
     this.scene.touch();
     this.chartsStale = true;
   }
