@@ -8,7 +8,7 @@ test:
 
 # The checks, the long validation runs, the audit of unsafe code and the clients of trajectories (about three quarters of
 # an hour on two cores).
-full-check: check audit clients
+full-check: check audit clients check-viewer
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
@@ -19,6 +19,14 @@ audit:
 # Trajectories as gsd, PyVista and OVITO from PyPI read them.
 clients:
     bash scripts/check_clients.sh
+
+# The viewer in Debian's headless Chromium; --pictures DIR leaves a picture of every state.
+check-viewer *options:
+    bash scripts/check_viewer.sh {{options}}
+
+# The viewer's page made anew from viewer/ (TypeScript, three.js).
+viewer-bundle:
+    bash scripts/viewer_bundle.sh
 
 # The fast kernels' instructions against those on record (see benchmarks/instructions/README.md); --record
 count-instructions *options:

@@ -32,6 +32,8 @@ pub(crate) enum Command {
     Trajectory(TrajectoryArguments),
     /// Draw the tube of a run as it looks in its saved state, as PNG.
     Render(RenderArguments),
+    /// Watch and drive a tube in the browser, while the engine runs it.
+    View(ViewArguments),
     /// List the presets, or print one.
     Presets(PresetsArguments),
     /// Print the JSON schema of the configuration.
@@ -184,6 +186,31 @@ pub(crate) struct RenderArguments {
     /// File for the picture; the default is DIR/tube-VIEW.png.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Prints an address on this machine that only you know; open it in a browser, through `ssh -L PORT:localhost:PORT` from afar. Ctrl-C ends."
+)]
+pub(crate) struct ViewArguments {
+    /// Folder of a run, configuration in TOML, or name of a preset.
+    #[arg(value_name = "DIR|FILE|PRESET", default_value = "frictionless")]
+    pub(crate) source: PathBuf,
+    /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Begin with the saved state of a folder, not with its start.
+    #[arg(long, conflicts_with = "overrides")]
+    pub(crate) from_state: bool,
+    /// Port; a free one unless given.
+    #[arg(long, value_name = "PORT", default_value_t = 0)]
+    pub(crate) port: u16,
+    /// Folder for the states that are saved.
+    #[arg(long, value_name = "DIR", default_value = "saved-states")]
+    pub(crate) saves: PathBuf,
+    /// Threads to compute with; they pay from some ten thousand grains on.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: u16,
 }
 
 #[derive(Debug, Args)]

@@ -12,6 +12,7 @@ use peristalsis_formats::FormatError;
 use peristalsis_report::ReportError;
 use peristalsis_run::RunError;
 use peristalsis_study::StudyError;
+use peristalsis_viewer::ViewerError;
 
 use crate::commands::say;
 
@@ -55,6 +56,9 @@ pub(crate) enum Failure {
     /// The report.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// The viewer.
+    #[error(transparent)]
+    Viewer(#[from] ViewerError),
     /// Signals cannot be watched.
     #[error("cannot watch for signals: {0}")]
     Signals(std::io::Error),
@@ -111,6 +115,7 @@ impl Failure {
             Self::Trajectory { .. }
             | Self::Claim(_)
             | Self::Report(_)
+            | Self::Viewer(_)
             | Self::Signals(_)
             | Self::Output(_) => FAILED,
         }
@@ -155,6 +160,9 @@ impl Failure {
             }
             Self::Claim(ClaimError::Folder { .. }) => {
                 Some("name another folder with --out".to_owned())
+            }
+            Self::Viewer(ViewerError::Listen { .. }) => {
+                Some("name another port with --port, or leave it out to get a free one".to_owned())
             }
             Self::Report(_) => {
                 Some("nothing that was finished is lost: mend the disk and call again".to_owned())

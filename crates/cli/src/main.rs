@@ -23,6 +23,7 @@ fn main() -> ExitCode {
         Command::Check(arguments) => commands::check::check(&arguments),
         Command::Trajectory(arguments) => commands::trajectory::trajectory(&arguments),
         Command::Render(arguments) => commands::render::render(&arguments),
+        Command::View(arguments) => commands::view::view(&arguments),
         Command::Presets(arguments) => commands::presets::presets(&arguments),
         Command::Schema => commands::schema::schema(),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),

@@ -116,13 +116,17 @@ fn write_schedule(schedule: &Schedule, text: &mut String) {
             append(text, format_args!("from = {from:?}\nto = {to:?}\n"));
             append(text, format_args!("start = {start:?}\nend = {end:?}\n"));
         }
-        ScheduleForm::Steps { steps } => {
+        ScheduleForm::Steps { steps: points } | ScheduleForm::Course { knots: points } => {
+            let form = match &schedule.form {
+                ScheduleForm::Course { .. } => "course",
+                _ => "steps",
+            };
             append(
                 text,
-                format_args!("form = \"steps\"\nparameter = \"{parameter}\"\n"),
+                format_args!("form = \"{form}\"\nparameter = \"{parameter}\"\n"),
             );
-            let times = list(&mut steps.iter().map(|(time, _)| *time));
-            let values = list(&mut steps.iter().map(|(_, value)| *value));
+            let times = list(&mut points.iter().map(|(time, _)| *time));
+            let values = list(&mut points.iter().map(|(_, value)| *value));
             append(text, format_args!("at = [{times}]\nvalues = [{values}]\n"));
         }
     }

@@ -155,7 +155,8 @@ pub(crate) struct DriveKeys {
     pub(crate) angle: Option<DriveAngle>,
     /// How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude grows from nothing
     /// within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to = 2.6, end = 100 } or
-    /// { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, or a list of such tables.
+    /// { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, in which "course" instead of "steps"
+    /// goes from value to value in straight lines, or a list of such tables.
     #[schemars(extend("default" = "sudden"))]
     pub(crate) schedule: Option<ScheduleKeys>,
     /// Length of the ramp of schedule = "ramp", in wave periods.
@@ -179,7 +180,7 @@ pub(crate) enum ScheduleKeys {
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ScheduleTableKeys {
-    /// Course in time: ramp takes from, to, start and end; steps takes at and values.
+    /// Course in time: ramp takes from, to, start and end; steps and course take at and values.
     pub(crate) form: ScheduleFormName,
     /// The parameter that follows the schedule. Missing: the amplitude of the drive (width under strain control,
     /// force_amplitude under stress control).
@@ -196,10 +197,11 @@ pub(crate) struct ScheduleTableKeys {
     /// When a ramp ends, after start.
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub(crate) end: Option<f64>,
-    /// When each of the values of steps begins to hold, ascending; before the first the parameter has its own value.
+    /// When each of the values of steps begins to hold, or a course has it, ascending; before the first of steps the
+    /// parameter has its own value.
     #[schemars(extend("x-unit" = "periods", "minItems" = 1, "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub(crate) at: Option<Vec<f64>>,
-    /// The values of steps, as many as at, in the unit of the parameter.
+    /// The values of steps or of a course, as many as at, in the unit of the parameter.
     #[schemars(extend("x-unit" = "that of the parameter", "minItems" = 1, "items" = {"type": "number", "minimum": 0, "maximum": 1e6}))]
     pub(crate) values: Option<Vec<f64>>,
 }

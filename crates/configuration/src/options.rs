@@ -137,6 +137,8 @@ pub(crate) enum ScheduleFormName {
     Ramp,
     /// Constant between the times given.
     Steps,
+    /// Linear in time from each value to the next, constant before the first and after the last.
+    Course,
 }
 
 /// A parameter of the drive that may follow a schedule.

@@ -44,9 +44,57 @@ pub enum ScheduleForm {
         /// (time in periods, value), times ascending, at least one.
         steps: Vec<(f64, f64)>,
     },
+    /// Linear in time from each value to the next, constant before the first and after the last.
+    Course {
+        /// (time in periods, value), times ascending, at least one.
+        knots: Vec<(f64, f64)>,
+    },
 }
 
 impl Schedule {
+    /// A course that has been at `value` up to now.
+    #[must_use]
+    pub fn resting(parameter: ScheduledParameter, value: f64) -> Self {
+        Self {
+            parameter,
+            form: ScheduleForm::Course {
+                knots: vec![(0.0, value)],
+            },
+            before: value,
+        }
+    }
+
+    /// The same schedule up to `start`, from there linear in time to `value` at `end`, and constant; in periods.
+    ///
+    /// `None` where the schedule has not come to rest by `start`, or `end` is not after it: what has been goes on to be
+    /// exactly what it was.
+    #[must_use]
+    pub fn going_on(&self, start: f64, end: f64, value: f64) -> Option<Self> {
+        let mut knots = self.knots();
+        let &(rest, resting) = knots.last()?;
+        if rest > start || end.partial_cmp(&start)? != std::cmp::Ordering::Greater {
+            return None;
+        }
+        // Steps are knots in pairs, which the other form cannot say.
+        if matches!(self.form, ScheduleForm::Steps { .. }) {
+            return None;
+        }
+        if rest < start {
+            knots.push((start, resting));
+        }
+        knots.push((end, value));
+        Some(Self {
+            form: ScheduleForm::Course { knots },
+            ..self.clone()
+        })
+    }
+
+    /// When it comes to rest, in periods.
+    #[must_use]
+    pub fn rest(&self) -> f64 {
+        self.knots().last().map_or(0.0, |knot| knot.0)
+    }
+
     /// The course as knots (time in periods, value): linear between knots, constant before the first and after the last;
     /// of two knots at one time the later holds from then on.
     #[must_use]
@@ -67,6 +115,7 @@ impl Schedule {
                 }
                 knots
             }
+            ScheduleForm::Course { knots } => knots.clone(),
         }
     }
 
@@ -88,6 +137,17 @@ impl Schedule {
                 passed
                     .checked_sub(1)
                     .map_or(self.before, |last| steps[last].1)
+            }
+            ScheduleForm::Course { knots } => {
+                let passed = knots.partition_point(|(time, _)| *time <= periods);
+                let (_, from) = knots[passed.saturating_sub(1)];
+                match (passed.checked_sub(1), knots.get(passed)) {
+                    (Some(last), Some((end, to))) => {
+                        let start = knots[last].0;
+                        from + (to - from) * ((periods - start) / (end - start))
+                    }
+                    _ => from,
+                }
             }
         }
     }
@@ -114,6 +174,22 @@ mod tests {
             assert_eq!(ramp.value(time), value, "at {time}");
         }
         assert_eq!(ramp.knots(), [(1.0, 3.0), (5.0, 2.0)]);
+    }
+
+    #[test]
+    fn a_course_goes_from_value_to_value() {
+        let knots = vec![(1.0, 3.0), (2.0, 4.0), (6.0, 2.0)];
+        let course = Schedule {
+            parameter: ScheduledParameter::Width,
+            form: ScheduleForm::Course {
+                knots: knots.clone(),
+            },
+            before: 2.5,
+        };
+        for (time, value) in [(0.0, 3.0), (1.5, 3.5), (2.0, 4.0), (5.0, 2.5), (9.0, 2.0)] {
+            assert_eq!(course.value(time), value, "at {time}");
+        }
+        assert_eq!(course.knots(), knots);
     }
 
     #[test]

@@ -36,6 +36,12 @@ pub enum EngineError {
         /// Grains outside the wall.
         outside: usize,
     },
+    /// A wall that cannot take the place of another.
+    #[error("the drive cannot go on with this wall: {reason}")]
+    OtherWall {
+        /// What differs.
+        reason: &'static str,
+    },
     /// A snapshot does not belong to this simulation.
     #[error("the snapshot does not fit this simulation: {reason}")]
     SnapshotMismatch {

@@ -183,6 +183,58 @@ impl Simulation {
         Ok(())
     }
 
+    /// Lets the drive take another course from now on: `wall` is this wall with other schedules, which have the values
+    /// of the old ones now.
+    ///
+    /// A simulation that never calls it, and one that calls it with the wall that it has, compute the same bits.
+    ///
+    /// # Errors
+    /// [`EngineError::OtherWall`] where `wall` differs in more, or would not be where the wall is; nothing is changed.
+    pub fn drive_by(&mut self, mut wall: Wall) -> Result<(), EngineError> {
+        wall.move_to(self.time());
+        let difference = self.system.wall.difference(&wall, self.time());
+        if let Some(reason) = difference {
+            return Err(EngineError::OtherWall { reason });
+        }
+        self.system.wall = wall;
+        Ok(())
+    }
+
+    /// Gives contacts other coefficients of friction from now on; a tangential spring beyond the new bound slides.
+    ///
+    /// # Errors
+    /// [`EngineError::InvalidParameter`] where there is no friction to change, or for coefficients that no law has: both
+    /// finite, `kinetic` from 0 to `static_friction`, that positive. Nothing is changed.
+    pub fn set_friction(&mut self, static_friction: f64, kinetic: f64) -> Result<(), EngineError> {
+        let refused = |parameter, value, allowed| {
+            Err(EngineError::InvalidParameter {
+                parameter,
+                value,
+                allowed,
+            })
+        };
+        if !(static_friction.is_finite() && static_friction > 0.0) {
+            let allowed = "a positive number";
+            return refused("contact.static_friction", static_friction, allowed);
+        }
+        if !(0.0..=static_friction).contains(&kinetic) {
+            let allowed = "from 0 to contact.static_friction";
+            return refused("contact.kinetic_friction", kinetic, allowed);
+        }
+        let (Memory::Frictional(law, _), Some(known)) = (
+            &mut self.memory,
+            &mut self.system.parameters.contact.friction,
+        ) else {
+            let allowed = "grains that began without friction keep none";
+            return refused("contact.static_friction", static_friction, allowed);
+        };
+        for law in [law, known] {
+            law.static_friction = static_friction;
+            law.kinetic_friction = kinetic;
+        }
+        Ok(())
+    }
+
     /// The spheres.
     #[must_use]
     pub fn bodies(&self) -> &Bodies {

@@ -51,6 +51,12 @@ pub enum RunError {
         /// What to ask for instead.
         help: &'static str,
     },
+    /// A run cannot be driven like that.
+    #[error("cannot drive the run so: {reason}")]
+    Steering {
+        /// Why.
+        reason: String,
+    },
     /// There is no run to go on with.
     #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {

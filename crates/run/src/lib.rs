@@ -15,6 +15,7 @@ mod render;
 mod run;
 mod si;
 mod softness;
+mod steering;
 mod stopping;
 mod summary;
 mod tables;

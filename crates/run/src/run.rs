@@ -269,7 +269,25 @@ impl Run {
         }
     }
 
-    /// The configuration.
+    /// Lets the drive follow the schedules of another configuration of the same run from now on.
+    pub(crate) fn follow(&mut self, configuration: Configuration) -> Result<(), RunError> {
+        self.simulation.drive_by(walls(&configuration))?;
+        self.configuration = configuration;
+        Ok(())
+    }
+
+    /// Gives contacts the friction of another configuration of the same run from now on.
+    pub(crate) fn rub_by(&mut self, configuration: Configuration) -> Result<(), RunError> {
+        let Some(friction) = configuration.contact.friction else {
+            return Ok(());
+        };
+        self.simulation
+            .set_friction(friction.static_friction, friction.kinetic_friction)?;
+        self.configuration = configuration;
+        Ok(())
+    }
+
+    /// The configuration; of a run that was steered, with the course that it has taken.
     #[must_use]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration

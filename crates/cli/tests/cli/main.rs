@@ -19,6 +19,8 @@ mod trajectories;
 
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod viewing;
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;

@@ -127,7 +127,12 @@ impl Scope<'_> {
         let target = self.target(keys, context)?;
         let form = match keys.form {
             ScheduleFormName::Ramp => self.ramp(keys, &target, context)?,
-            ScheduleFormName::Steps => self.steps(keys, &target, context)?,
+            ScheduleFormName::Steps => ScheduleForm::Steps {
+                steps: self.points(keys, &target, context)?,
+            },
+            ScheduleFormName::Course => ScheduleForm::Course {
+                knots: self.points(keys, &target, context)?,
+            },
         };
         Some(Schedule {
             parameter: target.resolved,
@@ -248,22 +253,27 @@ impl Scope<'_> {
         })
     }
 
-    fn steps(
+    /// Times and values of steps or of a course.
+    fn points(
         &self,
         keys: &ScheduleTableKeys,
         target: &Target,
         context: &mut Context<'_>,
-    ) -> Option<ScheduleForm> {
+    ) -> Option<Vec<(f64, f64)>> {
+        let (takes, needs) = match keys.form {
+            ScheduleFormName::Course => ("a course takes", "a course needs"),
+            _ => ("steps take", "steps need"),
+        };
         let of_a_ramp = [keys.from, keys.to, keys.start, keys.end];
         if of_a_ramp.iter().any(Option::is_some) {
             refuse(
                 context,
-                "steps take at and values, not from, to, start or end".into(),
+                format!("{takes} at and values, not from, to, start or end"),
             );
             return None;
         }
         let (Some(at), Some(values)) = (&keys.at, &keys.values) else {
-            refuse(context, "steps need both at and values".into());
+            refuse(context, format!("{needs} both at and values"));
             return None;
         };
         if at.len() != values.len() {
@@ -279,7 +289,6 @@ impl Scope<'_> {
             .iter()
             .map(|value| self.resolved(*value, target, context))
             .collect();
-        let steps = at.iter().map(|time| time + 0.0).zip(values?).collect();
-        Some(ScheduleForm::Steps { steps })
+        Some(at.iter().map(|time| time + 0.0).zip(values?).collect())
     }
 }

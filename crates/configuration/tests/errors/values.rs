@@ -223,6 +223,15 @@ fn schedules_are_checked_at_all_times() {
         ),
         ("form = 'steps', at = [1]", "need both"),
         (
+            "form = 'course', parameter = 'width', at = [0, 1], values = [2.7, 3.2]",
+            "above",
+        ),
+        (
+            "form = 'course', at = [0, 1], values = [2.7, 2.8], end = 2",
+            "a course takes at and values",
+        ),
+        ("form = 'course', at = [0, 1]", "a course needs both"),
+        (
             "form = 'ramp', parameter = 'force_amplitude', end = 2",
             "drive.control = \"stress\"",
         ),

@@ -38,6 +38,41 @@ impl Wall {
         }
     }
 
+    /// What keeps `other`, brought to the same time, from taking this wall's place.
+    pub(crate) fn difference(&self, other: &Self, time: f64) -> Option<&'static str> {
+        let (same_kind, amplitudes) = match (self, other) {
+            (Self::Prescribed(this), Self::Prescribed(other)) => {
+                let (this, other) = (this.wave(), other.wave());
+                let same = this.mean_radius == other.mean_radius
+                    && this.waveform == other.waveform
+                    && this.heading == other.heading;
+                (same, (this.amplitude, other.amplitude))
+            }
+            (Self::Elastic(this), Self::Elastic(other)) => {
+                let (theirs, ours) = (other.parameters(), this.parameters());
+                let rescheduled = ElasticParameters {
+                    force_amplitude: ours.force_amplitude.clone(),
+                    frequency: ours.frequency.clone(),
+                    ..theirs.clone()
+                };
+                (rescheduled == *ours, (this.amplitude(), other.amplitude()))
+            }
+            _ => (false, (0.0, 0.0)),
+        };
+        // Sums over more pieces of a schedule round differently.
+        let apart = |one: f64, other: f64| (one - other).abs() > 1e-9 * one.abs().max(1.0);
+        if !same_kind || self.lattice() != other.lattice() {
+            Some("it differs in more than its schedules")
+        } else if apart(amplitudes.0, amplitudes.1)
+            || apart(self.frequency(time), other.frequency(time))
+            || apart(self.cycles(), other.cycles())
+        {
+            Some("its schedules have other values now, and it would jump")
+        } else {
+            None
+        }
+    }
+
     /// The lattice of the wall's spheres.
     #[must_use]
     pub fn lattice(&self) -> &Lattice {

@@ -1,0 +1,84 @@
+//! `peristalsis view`: a server that says where it is, and ends when asked to.
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Command, Stdio};
+
+use crate::Place;
+
+/// Views, asks for the page, and stops; answers the page.
+fn page_of(place: &Place, arguments: &[&str]) -> String {
+    let mut child = place
+        .command(["view"].iter().chain(arguments))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    let mut address = String::new();
+    BufReader::new(child.stdout.take().unwrap())
+        .read_line(&mut address)
+        .unwrap();
+    let (host, path) = address
+        .trim()
+        .strip_prefix("http://")
+        .unwrap()
+        .split_once('/')
+        .unwrap();
+    let mut stream = TcpStream::connect(host).unwrap();
+    let request = format!("GET /{path} HTTP/1.1\r\nHost: {host}\r\nConnection: close\r\n\r\n");
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut page = String::new();
+    stream.read_to_string(&mut page).unwrap();
+    let sent = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    page
+}
+
+#[test]
+fn presets_files_and_folders_are_served() {
+    let place = Place::new();
+    place.write("narrow.toml", "preset = \"frictionless\"\ntube.waves = 2\n");
+    place
+        .call([
+            "run",
+            "narrow.toml",
+            "--set",
+            "run.periods=1",
+            "--out",
+            "done",
+        ])
+        .expect_code(0);
+    let views: [&[&str]; 4] = [
+        &["frictionless", "--set", "tube.waves=2"],
+        &["narrow.toml"],
+        &["done"],
+        &["done", "--from-state"],
+    ];
+    for arguments in views {
+        let page = page_of(&place, arguments);
+        assert!(page.starts_with("HTTP/1.1 200"), "{arguments:?}: {page}");
+        assert!(page.contains("viewer.js"), "{arguments:?}: {page}");
+    }
+    assert!(!place.path("saved-states").exists());
+}
+
+#[test]
+fn what_cannot_be_viewed_is_refused() {
+    let place = Place::new();
+    std::fs::create_dir(place.path("empty")).unwrap();
+    for (arguments, part) in [
+        (["view", "frictionles", "--port=0"], "frictionles"),
+        (
+            ["view", "frictionless", "--set=drive.width=9"],
+            "drive.width",
+        ),
+        (["view", "frictionless", "--port=70000"], "70000"),
+        (["view", "empty", "--port=0"], "config.toml"),
+    ] {
+        place.call(arguments).expect_code(2).says(&[part]);
+    }
+}

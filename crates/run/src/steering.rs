@@ -1,0 +1,125 @@
+//! Driving a run while it goes on.
+
+use peristalsis_configuration::{Control, Schedule, ScheduledParameter};
+
+use crate::error::RunError;
+use crate::run::Run;
+
+/// Largest force amplitude and strain rate, as for the keys of the drive.
+const LARGEST: f64 = 1e6;
+
+impl Run {
+    /// What a parameter of the drive is now, in the units of its key; `None` for the amplitude of the other control.
+    #[must_use]
+    pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {
+        let drive = &self.configuration().drive;
+        let constant = match (parameter, drive.control) {
+            (ScheduledParameter::StrainRate, _) => drive.strain_rate,
+            (ScheduledParameter::Width, Control::Strain { width }) => width,
+            (
+                ScheduledParameter::ForceAmplitude,
+                Control::Stress {
+                    force_amplitude, ..
+                },
+            ) => force_amplitude,
+            _ => return None,
+        };
+        let now = self.simulation().time() / drive.period().unwrap_or(1.0);
+        let schedule = self.schedule(parameter);
+        Some(schedule.map_or(constant, |schedule| schedule.value(now)))
+    }
+
+    /// Whether a parameter of the drive stays what it is.
+    #[must_use]
+    pub fn is_at_rest(&self, parameter: ScheduledParameter) -> bool {
+        self.schedule(parameter)
+            .is_none_or(|schedule| schedule.rest() <= self.soonest())
+    }
+
+    /// Leads a parameter of the drive to `value` within so many periods, linearly in time, beginning with the next step.
+    ///
+    /// The configuration keeps the course, so that a run from its start, or from a checkpoint, under the
+    /// [configuration](Run::configuration) as it is then takes the same course to the same bits.
+    ///
+    /// # Errors
+    /// [`RunError::Steering`] for a value out of range, where the wave stands still (its periods never pass), and while
+    /// the parameter is still under way.
+    pub fn drive_to(
+        &mut self,
+        parameter: ScheduledParameter,
+        value: f64,
+        periods: f64,
+    ) -> Result<(), RunError> {
+        let refused = |reason: String| Err(RunError::Steering { reason });
+        let Some(now) = self.driven(parameter) else {
+            return refused("this tube is controlled otherwise".to_owned());
+        };
+        if self.configuration().drive.period().is_none() {
+            return refused("its wave stands still".to_owned());
+        }
+        let most = match parameter {
+            ScheduledParameter::Width => 2.0 * self.configuration().tube.radius,
+            _ => LARGEST,
+        };
+        if !(0.0..=most).contains(&value) {
+            return refused(format!("{value} is not from 0 to {most}"));
+        }
+        let start = self.soonest();
+        let going_on = self
+            .schedule(parameter)
+            .cloned()
+            .unwrap_or_else(|| Schedule::resting(parameter, now))
+            .going_on(start, start + periods, value);
+        let Some(schedule) = going_on else {
+            return refused("the parameter is still under way".to_owned());
+        };
+        let mut configuration = self.configuration().clone();
+        let schedules = &mut configuration.drive.schedules;
+        schedules.retain(|known| known.parameter != parameter);
+        schedules.push(schedule);
+        schedules.sort_by_key(|schedule| schedule.parameter);
+        self.follow(configuration)
+    }
+
+    /// Gives contacts this coefficient of kinetic friction from the next step on, and a static one in the proportion that
+    /// they had.
+    ///
+    /// The configuration keeps the coefficients that hold now: a checkpoint goes on with them, but a run from the start
+    /// would have them from the start.
+    ///
+    /// # Errors
+    /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not positive.
+    pub fn set_friction(&mut self, kinetic: f64) -> Result<(), RunError> {
+        let mut configuration = self.configuration().clone();
+        let Some(friction) = &mut configuration.contact.friction else {
+            return Err(RunError::Steering {
+                reason: "its grains began without friction".to_owned(),
+            });
+        };
+        if !(kinetic > 0.0 && kinetic <= LARGEST) {
+            return Err(RunError::Steering {
+                reason: format!("a coefficient of friction of {kinetic} is not positive"),
+            });
+        }
+        let proportion = if friction.kinetic_friction > 0.0 {
+            friction.static_friction / friction.kinetic_friction
+        } else {
+            1.0
+        };
+        friction.kinetic_friction = kinetic;
+        friction.static_friction = (proportion * kinetic).max(kinetic);
+        self.rub_by(configuration)
+    }
+
+    fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
+        let mut schedules = self.configuration().drive.schedules.iter();
+        schedules.find(|schedule| schedule.parameter == parameter)
+    }
+
+    /// When the next course can begin, in periods: between two steps, so that no step sees half of it.
+    fn soonest(&self) -> f64 {
+        let run = &self.configuration().run;
+        let period = self.configuration().drive.period().unwrap_or(1.0);
+        (self.simulation().step() as f64 + 0.5) * run.time_step / period
+    }
+}

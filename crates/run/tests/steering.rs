@@ -1,0 +1,105 @@
+//! A run that is driven by hand is the run of the configuration that it leaves.
+
+mod common;
+
+use common::configuration;
+use peristalsis_configuration::{ScheduledParameter, SourceFile, Sources};
+use peristalsis_run::{Configuration, Run, RunError, RunFolder};
+
+fn read_back(text: &str) -> Configuration {
+    Configuration::from_sources(&Sources {
+        file: Some(SourceFile {
+            name: "config.toml",
+            text,
+        }),
+        preset: None,
+        overrides: &[],
+    })
+    .unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn advance(run: &mut Run, samples: usize) {
+    for _ in 0..samples {
+        run.advance().expect("does not diverge");
+    }
+}
+
+#[test]
+fn the_course_that_was_driven_can_be_run_from_the_start() {
+    let settings = ["tube.waves=2", "drive.width=2.6", "run.periods=20"];
+    let mut driven = Run::new(configuration("frictionless", &settings)).unwrap();
+    advance(&mut driven, 13);
+    driven
+        .drive_to(ScheduledParameter::Width, 2.9, 0.5)
+        .unwrap();
+    assert!(!driven.is_at_rest(ScheduledParameter::Width));
+    let under_way = driven.drive_to(ScheduledParameter::Width, 2.8, 0.5);
+    assert!(matches!(under_way, Err(RunError::Steering { .. })));
+    advance(&mut driven, 5);
+    driven
+        .drive_to(ScheduledParameter::StrainRate, 0.08, 0.25)
+        .unwrap();
+    advance(&mut driven, 20);
+    assert_eq!(driven.driven(ScheduledParameter::Width), Some(2.9));
+    assert_eq!(driven.driven(ScheduledParameter::StrainRate), Some(0.08));
+    driven
+        .drive_to(ScheduledParameter::Width, 2.7, 0.5)
+        .unwrap();
+    advance(&mut driven, 30);
+
+    let written = read_back(&driven.configuration().to_toml());
+    assert_eq!(&written, driven.configuration());
+    let mut again = Run::new(written).unwrap();
+    advance(&mut again, 13 + 5 + 20 + 30);
+    assert_eq!(
+        driven.simulation().snapshot(),
+        again.simulation().snapshot()
+    );
+    assert_eq!(driven.recorder().samples(), again.recorder().samples());
+    let ratio = driven.simulation().wall().cycles();
+    assert!(ratio > 3.5, "the wave went faster: {ratio}");
+}
+
+#[test]
+fn a_steered_run_goes_on_from_its_checkpoint_to_the_same_bits() {
+    let settings = ["tube.waves=2", "run.periods=3"];
+    let mut run = Run::new(configuration("frictional", &settings)).unwrap();
+    advance(&mut run, 4);
+    run.drive_to(ScheduledParameter::ForceAmplitude, 0.006, 0.1)
+        .unwrap();
+    run.set_friction(0.1).unwrap();
+    let friction = run.configuration().contact.friction.unwrap();
+    assert!((friction.static_friction - 0.125).abs() < 1e-15);
+    advance(&mut run, 1);
+
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("saved");
+    let saved = RunFolder::create(&path, run.configuration()).unwrap();
+    saved.save_state(&run).unwrap();
+    let (_, mut resumed) = RunFolder::resume(&path).unwrap();
+    advance(&mut run, 3);
+    advance(&mut resumed, 3);
+    assert_eq!(run.simulation().snapshot(), resumed.simulation().snapshot());
+    assert!(run.simulation().energy_residual() < 1e-2);
+}
+
+#[test]
+fn what_cannot_be_driven_is_refused() {
+    let mut run = Run::new(configuration("frictionless", &["tube.waves=2"])).unwrap();
+    let before = run.configuration().clone();
+    for (parameter, value) in [
+        (ScheduledParameter::Width, -0.1),
+        (ScheduledParameter::Width, 3.1),
+        (ScheduledParameter::Width, f64::NAN),
+        (ScheduledParameter::StrainRate, f64::INFINITY),
+        (ScheduledParameter::ForceAmplitude, 0.004),
+    ] {
+        assert!(
+            run.drive_to(parameter, value, 0.5).is_err(),
+            "{parameter:?} {value}"
+        );
+    }
+    assert!(run.drive_to(ScheduledParameter::Width, 2.8, 0.0).is_err());
+    assert!(run.set_friction(0.3).is_err());
+    assert_eq!(run.configuration(), &before);
+}

@@ -1,0 +1,133 @@
+//! A frame as it is sent: a head in JSON, then numbers.
+//!
+//! | bytes | content |
+//! |---|---|
+//! | 4 | length n of the head, a multiple of 4, little-endian |
+//! | n | the head: JSON, filled up with spaces |
+//! | 12 N | centres of the grains, x y z |
+//! | 12 N | their velocities |
+//! | 4 N | their diameters |
+//! | 12 N | their angular velocities, where grains turn |
+//! | 12 W or 4 R | centres of the spheres of an elastic wall, or radii of the rings of one wavelength of a prescribed one |
+//!
+//! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
+
+use peristalsis_engine::{Bodies, Wall};
+use peristalsis_observe::Sample;
+use peristalsis_run::Run;
+use serde::Serialize;
+
+use crate::welcome::Driven;
+
+/// What a frame says beside where the spheres are.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Head {
+    /// Grows when the run jumps back, so that what was drawn after that time is void.
+    pub(crate) epoch: u64,
+    pub(crate) playing: bool,
+    /// Whether there is no more to come: the run diverged.
+    pub(crate) ended: bool,
+    /// Periods a second that were asked for; null is as fast as possible.
+    pub(crate) speed: Option<f64>,
+    /// Periods a second that the engine would do at most, NaN (null) before it is known.
+    pub(crate) pace: f64,
+    pub(crate) step: u64,
+    pub(crate) time: f64,
+    /// Time in periods of the drive's own strain rate.
+    pub(crate) clock: f64,
+    /// Wavelengths that the wave has run.
+    pub(crate) period: f64,
+    pub(crate) wave_speed: f64,
+    pub(crate) grains: usize,
+    pub(crate) wall_spheres: usize,
+    pub(crate) rings: usize,
+    pub(crate) turning: bool,
+    pub(crate) driven: Driven,
+    /// The last rows of the time series; clients know by their numbers which they have.
+    pub(crate) rows: Vec<Row>,
+    /// The last sample.
+    pub(crate) sample: Option<Shown>,
+}
+
+/// A row of the time series as the charts want it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Row {
+    pub(crate) number: usize,
+    pub(crate) clock: f64,
+    pub(crate) flow_rate_ratio: f64,
+    pub(crate) bottleneck: f64,
+    /// Width or force amplitude.
+    pub(crate) amplitude: f64,
+    pub(crate) strain_rate: f64,
+}
+
+/// Numbers of a sample that are shown.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Shown {
+    flow_rate: f64,
+    flow_rate_ratio: f64,
+    granular_temperature: f64,
+    contacts: f64,
+    escaped: f64,
+    bottleneck: f64,
+    wall_power: f64,
+    energy_residual: f64,
+}
+
+impl From<&Sample> for Shown {
+    fn from(sample: &Sample) -> Self {
+        Self {
+            flow_rate: sample.flow_rate,
+            flow_rate_ratio: sample.flow_rate_ratio,
+            granular_temperature: sample.granular_temperature,
+            contacts: sample.contacts,
+            escaped: sample.escaped,
+            bottleneck: sample.bottleneck,
+            wall_power: sample.wall_power,
+            energy_residual: sample.energy_residual,
+        }
+    }
+}
+
+/// Puts a frame together.
+pub(crate) fn encode(head: &Head, run: &Run) -> Vec<u8> {
+    let mut json = serde_json::to_vec(head).expect("a head holds numbers and words only");
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let mut bytes = Vec::with_capacity(4 + json.len() + 44 * head.grains);
+    bytes.extend((json.len() as u32).to_le_bytes());
+    bytes.extend(json);
+    let Bodies {
+        grains,
+        position,
+        velocity,
+        diameter,
+        angular_velocity,
+        ..
+    } = run.simulation().bodies();
+    let mut number = |value: f64| bytes.extend((value as f32).to_le_bytes());
+    for vectors in [position, velocity] {
+        for vector in &vectors[..*grains] {
+            vector.to_array().into_iter().for_each(&mut number);
+        }
+    }
+    diameter[..*grains].iter().copied().for_each(&mut number);
+    if head.turning {
+        for vector in &angular_velocity[..*grains] {
+            vector.to_array().into_iter().for_each(&mut number);
+        }
+    }
+    match run.simulation().wall() {
+        Wall::Elastic(_) => {
+            for vector in &position[*grains..] {
+                vector.to_array().into_iter().for_each(&mut number);
+            }
+        }
+        Wall::Prescribed(wall) => {
+            for ring in 0..head.rings {
+                let z = wall.lattice().axial_position(ring as u32);
+                number(wall.wave().radius(z, wall.cycles()));
+            }
+        }
+    }
+    bytes
+}

@@ -1,0 +1,136 @@
+//! What a page asks, and what it is told besides frames: JSON.
+
+use serde::{Deserialize, Serialize};
+
+/// What a client may ask.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
+pub enum Command {
+    /// Goes on, or stops.
+    Play {
+        /// Whether to go on.
+        playing: bool,
+    },
+    /// How fast to go on.
+    Speed {
+        /// Periods of the wave a second, at most; as fast as possible where it is missing.
+        periods_per_second: Option<f64>,
+    },
+    /// Goes on by one frame.
+    Step {},
+    /// Leads a parameter to a value while the run goes on.
+    Steer {
+        /// Which.
+        parameter: Steered,
+        /// The value, in the unit of its key.
+        value: f64,
+    },
+    /// Computes the run anew up to this time, on the course that it took.
+    Seek {
+        /// Time in periods of the drive's own strain rate.
+        period: f64,
+    },
+    /// Writes a folder from which the command line goes on.
+    Save {},
+}
+
+/// What can be changed while a run goes on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Steered {
+    /// w, strain control.
+    Width,
+    /// f^P, stress control.
+    ForceAmplitude,
+    /// c/lambda.
+    StrainRate,
+    /// mu_k; mu_s keeps its proportion to it.
+    Friction,
+}
+
+/// What clients are told besides frames.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(tag = "type", rename_all = "snake_case")]
+pub(crate) enum Notice {
+    /// The state was saved.
+    Saved {
+        /// The folder.
+        folder: String,
+        /// What goes on from there.
+        command: String,
+        /// The configuration.
+        toml: String,
+        /// Time in periods.
+        period: f64,
+    },
+    /// Something cannot be done; the run is as it was.
+    Problem {
+        /// What, in words.
+        message: String,
+    },
+}
+
+impl Command {
+    /// Reads a command; in words what is wrong with it otherwise.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
+        let number = match command {
+            Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),
+            Self::Steer { value, .. } => value,
+            Self::Seek { period } => period,
+            Self::Play { .. } | Self::Step {} | Self::Save {} => 0.0,
+        };
+        if number.is_finite() && number >= 0.0 {
+            Ok(command)
+        } else {
+            Err(format!("{number} is not a number from 0 on"))
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn commands_are_read() {
+        let read = |text| Command::read(text).unwrap();
+        assert_eq!(
+            read(r#"{"type":"play","playing":true}"#),
+            Command::Play { playing: true }
+        );
+        assert_eq!(
+            read(r#"{"type":"speed","periods_per_second":null}"#),
+            Command::Speed {
+                periods_per_second: None
+            }
+        );
+        assert_eq!(
+            read(r#"{"type":"steer","parameter":"width","value":2.7}"#),
+            Command::Steer {
+                parameter: Steered::Width,
+                value: 2.7
+            }
+        );
+        assert_eq!(read(r#"{"type":"save"}"#), Command::Save {});
+    }
+
+    #[test]
+    fn what_is_no_command_is_refused() {
+        for text in [
+            "",
+            "{}",
+            "[]",
+            "null",
+            r#"{"type":"quit"}"#,
+            r#"{"type":"save","folder":"/etc"}"#,
+            r#"{"type":"seek","period":-1}"#,
+            r#"{"type":"seek","period":1e999}"#,
+            r#"{"type":"speed","periods_per_second":-2}"#,
+            r#"{"type":"steer","parameter":"seed","value":1}"#,
+            r#"{"type":"play","playing":"yes"}"#,
+        ] {
+            assert!(Command::read(text).is_err(), "{text}");
+        }
+    }
+}

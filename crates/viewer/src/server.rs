@@ -1,0 +1,340 @@
+//! The server: the page, and a WebSocket for frames and commands.
+
+use std::net::Ipv4Addr;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::time::Duration;
+
+use axum::Router;
+use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::extract::{Path, Request, State};
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::middleware::{self, Next};
+use axum::response::{IntoResponse, Response};
+use axum::routing::get;
+use futures_util::{SinkExt, StreamExt};
+use peristalsis_observe::Sample;
+use peristalsis_run::Run;
+use tokio::net::TcpListener;
+use tokio::runtime::Runtime;
+use tokio::sync::{Semaphore, broadcast, oneshot, watch};
+
+use crate::ViewerError;
+use crate::assets::asset;
+use crate::guard::{Token, is_loopback, is_own};
+use crate::message::{Command, Notice};
+use crate::tube::{self, Labels, Tube, Voices};
+
+/// Clients at a time.
+const CLIENTS: usize = 8;
+/// Bytes of a message from a client, at most.
+const MESSAGE_BYTES: usize = 4096;
+/// Requests that wait for the run, at most.
+const WAITING: usize = 64;
+/// Notices that a slow client may lag behind.
+const NOTICES: usize = 64;
+/// Time from one look at whether to stop to the next.
+const LOOK: Duration = Duration::from_millis(50);
+/// Time that a client may take for a frame before it is left alone.
+const SLOW: Duration = Duration::from_secs(30);
+
+/// What the page may load: itself, and nothing else.
+const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
+     connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+/// How to serve a run.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Port on loopback; 0 takes a free one.
+    pub port: u16,
+    /// What the run is called; the names of saved states begin with it.
+    pub title: String,
+    /// Folder in which states are saved.
+    pub saves: PathBuf,
+    /// The time series of the same run from before, if it has been computed.
+    pub record: Vec<Sample>,
+}
+
+/// A viewer that listens.
+#[derive(Debug)]
+pub struct Viewer {
+    runtime: Runtime,
+    listener: TcpListener,
+    port: u16,
+    token: String,
+    router: Router,
+}
+
+/// What every request needs.
+#[derive(Clone)]
+struct Shared {
+    token: Arc<Token>,
+    requests: SyncSender<tube::Request>,
+    voices: Voices,
+    clients: Arc<Semaphore>,
+}
+
+impl Viewer {
+    /// Listens on loopback and puts the run into a thread of its own, at rest.
+    ///
+    /// # Errors
+    /// [`ViewerError`] where the system gives no port, thread or random number.
+    pub fn open(run: Run, options: Options) -> Result<Self, ViewerError> {
+        let refused = |source| ViewerError::Listen {
+            port: options.port,
+            source,
+        };
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .map_err(ViewerError::Thread)?;
+        let listener = runtime
+            .block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)))
+            .map_err(refused)?;
+        let port = listener.local_addr().map_err(refused)?.port();
+        let token = Token::random()?;
+        let (requests, received) = sync_channel(WAITING);
+        let voices = Voices {
+            frames: watch::Sender::new(Arc::new(Vec::new())),
+            notices: broadcast::Sender::new(NOTICES),
+        };
+        let labels = Labels {
+            title: options.title,
+            saves: options.saves,
+            record: options.record,
+        };
+        let tube = Tube::new(run, labels, voices.clone());
+        std::thread::Builder::new()
+            .name("tube".to_owned())
+            .spawn(move || tube.work(&received))
+            .map_err(ViewerError::Thread)?;
+        let shared = Shared {
+            token: Arc::new(token.clone()),
+            requests,
+            voices,
+            clients: Arc::new(Semaphore::new(CLIENTS)),
+        };
+        Ok(Self {
+            runtime,
+            listener,
+            port,
+            token: token.as_str().to_owned(),
+            router: router(shared),
+        })
+    }
+
+    /// The address to open in a browser; whoever knows it can drive the run.
+    #[must_use]
+    pub fn address(&self) -> String {
+        format!("http://127.0.0.1:{}/{}/", self.port, self.token)
+    }
+
+    /// Serves until `stop` says so.
+    ///
+    /// # Errors
+    /// [`ViewerError::Listen`] where the system takes the port away.
+    pub fn serve(self, stop: impl Fn() -> bool) -> Result<(), ViewerError> {
+        let Self {
+            runtime,
+            listener,
+            port,
+            router,
+            ..
+        } = self;
+        let outcome = runtime.block_on(async {
+            let stopped = async {
+                while !stop() {
+                    tokio::time::sleep(LOOK).await;
+                }
+            };
+            tokio::select! {
+                served = async { axum::serve(listener, router).await } => served,
+                () = stopped => Ok(()),
+            }
+        });
+        runtime.shutdown_background();
+        outcome.map_err(|source| ViewerError::Listen { port, source })
+    }
+}
+
+fn router(shared: Shared) -> Router {
+    Router::new()
+        .route("/{token}/", get(page))
+        .route("/{token}/live", get(live))
+        .route("/{token}/{name}", get(file))
+        .layer(middleware::from_fn(guard))
+        .with_state(shared)
+}
+
+/// Whether a request names this machine, and comes from its page or from none.
+fn is_known(headers: &HeaderMap) -> bool {
+    let text = |name| {
+        let value: Option<&HeaderValue> = headers.get(name);
+        value.map(|value| value.to_str().unwrap_or("?"))
+    };
+    let host = text(header::HOST);
+    is_loopback(host) && is_own(text(header::ORIGIN), host.unwrap_or_default())
+}
+
+/// Refuses who comes from elsewhere, and lets no answer be used elsewhere.
+async fn guard(request: Request, next: Next) -> Response {
+    let mut response = if is_known(request.headers()) {
+        next.run(request).await
+    } else {
+        StatusCode::FORBIDDEN.into_response()
+    };
+    for (name, value) in [
+        ("content-security-policy", CONTENT_SECURITY_POLICY),
+        ("referrer-policy", "no-referrer"),
+        ("x-content-type-options", "nosniff"),
+        ("cache-control", "no-store"),
+        ("cross-origin-resource-policy", "same-origin"),
+        ("cross-origin-opener-policy", "same-origin"),
+    ] {
+        let value = HeaderValue::from_static(value);
+        response.headers_mut().insert(name, value);
+    }
+    response
+}
+
+async fn page(State(shared): State<Shared>, Path(token): Path<String>) -> Response {
+    serve_asset(&shared, &token, "")
+}
+
+async fn file(
+    State(shared): State<Shared>,
+    Path((token, name)): Path<(String, String)>,
+) -> Response {
+    serve_asset(&shared, &token, &name)
+}
+
+/// What is not there and what is not for everyone look the same.
+fn serve_asset(shared: &Shared, token: &str, name: &str) -> Response {
+    match asset(name) {
+        Some(asset) if shared.token.is(token) => {
+            ([(header::CONTENT_TYPE, asset.content_type)], asset.bytes).into_response()
+        }
+        _ => StatusCode::NOT_FOUND.into_response(),
+    }
+}
+
+async fn live(
+    State(shared): State<Shared>,
+    Path(token): Path<String>,
+    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
+) -> Response {
+    if !shared.token.is(&token) {
+        return StatusCode::NOT_FOUND.into_response();
+    }
+    let upgrade = match upgrade {
+        Ok(upgrade) => upgrade,
+        Err(rejection) => return rejection.into_response(),
+    };
+    let Ok(place) = Arc::clone(&shared.clients).try_acquire_owned() else {
+        let wait = [(header::RETRY_AFTER, "5")];
+        return (StatusCode::SERVICE_UNAVAILABLE, wait).into_response();
+    };
+    upgrade
+        .max_message_size(MESSAGE_BYTES)
+        .max_frame_size(MESSAGE_BYTES)
+        .on_upgrade(async move |socket| {
+            attend(socket, shared).await;
+            drop(place);
+        })
+}
+
+/// Serves one client until either side has had enough.
+async fn attend(socket: WebSocket, shared: Shared) {
+    let (mut to, mut from) = socket.split();
+    let mut frames = shared.voices.frames.subscribe();
+    let mut notices = shared.voices.notices.subscribe();
+    let Some(welcome) = welcome(&shared).await else {
+        return;
+    };
+    if to.send(Message::Text(welcome.into())).await.is_err() {
+        return;
+    }
+    frames.mark_changed();
+    loop {
+        let message = tokio::select! {
+            received = from.next() => match received {
+                Some(Ok(Message::Text(text))) => match ask(&shared, &text) {
+                    Answer::Nothing => continue,
+                    Answer::Say(text) => Message::Text(text.into()),
+                    Answer::Close(reason) => {
+                        let notice = problem(reason.clone());
+                        drop(to.send(Message::Text(notice.into())).await);
+                        farewell(close_code::POLICY, &reason)
+                    }
+                },
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
+                Some(Ok(Message::Binary(_))) => farewell(close_code::UNSUPPORTED, "commands are text"),
+                // Gone, or no WebSocket any more.
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+            },
+            changed = frames.changed() => {
+                if changed.is_err() {
+                    return;
+                }
+                let frame = Arc::clone(&frames.borrow_and_update());
+                Message::Binary(frame.to_vec().into())
+            }
+            notice = notices.recv() => match notice {
+                Ok(text) => Message::Text(text.into()),
+                Err(broadcast::error::RecvError::Lagged(_)) => continue,
+                Err(broadcast::error::RecvError::Closed) => return,
+            },
+        };
+        let last = matches!(message, Message::Close(_));
+        let sent = tokio::time::timeout(SLOW, to.send(message)).await;
+        if last || !matches!(sent, Ok(Ok(()))) {
+            return;
+        }
+    }
+}
+
+async fn welcome(shared: &Shared) -> Option<String> {
+    let (reply, answer) = oneshot::channel();
+    shared
+        .requests
+        .try_send(tube::Request::Welcome(reply))
+        .ok()?;
+    answer.await.ok()
+}
+
+/// What becomes of a message.
+enum Answer {
+    Nothing,
+    Say(String),
+    Close(String),
+}
+
+fn ask(shared: &Shared, text: &str) -> Answer {
+    let command = match Command::read(text) {
+        Ok(command) => command,
+        Err(reason) => return Answer::Close(format!("not a command: {reason}")),
+    };
+    match shared.requests.try_send(tube::Request::Command(command)) {
+        Ok(()) => Answer::Nothing,
+        Err(TrySendError::Full(_)) => Answer::Say(problem("too many commands at once".to_owned())),
+        Err(TrySendError::Disconnected(_)) => Answer::Close("the run has ended".to_owned()),
+    }
+}
+
+fn problem(message: String) -> String {
+    serde_json::to_string(&Notice::Problem { message }).expect("a notice holds words only")
+}
+
+fn farewell(code: u16, reason: &str) -> Message {
+    // A close frame holds 123 bytes of reason at most.
+    let mut end = reason.len().min(120);
+    while !reason.is_char_boundary(end) {
+        end -= 1;
+    }
+    Message::Close(Some(CloseFrame {
+        code,
+        reason: reason[..end].to_owned().into(),
+    }))
+}

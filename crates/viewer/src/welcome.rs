@@ -1,0 +1,138 @@
+//! What a page must know of a run before its first frame.
+
+use peristalsis_configuration::{Control, ScheduledParameter};
+use peristalsis_engine::Wall;
+use peristalsis_run::{Run, VERSION};
+use serde::Serialize;
+
+use crate::frame::Row;
+
+/// The tube and the ranges of its sliders.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Welcome {
+    #[serde(rename = "type")]
+    kind: &'static str,
+    version: &'static str,
+    title: String,
+    control: &'static str,
+    grains: usize,
+    length: f64,
+    wavelength: f64,
+    waves: u32,
+    radius: f64,
+    spheres_per_ring: u32,
+    rings_per_wave: u32,
+    wall_sphere_diameter: f64,
+    heading: f64,
+    /// Largest radius that is expected.
+    reach: f64,
+    /// Time of a period of the drive's own strain rate.
+    unit_period: f64,
+    ranges: Ranges,
+    driven: Driven,
+    /// A run that was computed before: its whole course, (time in periods, J/Jmax).
+    record: Vec<(f64, f64)>,
+    /// What was computed since the viewer began.
+    rows: Vec<Row>,
+    /// Time in periods to which the run was meant to go.
+    end: f64,
+}
+
+/// Least and largest value of each slider; none where there is nothing to change.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Ranges {
+    width: Option<(f64, f64)>,
+    force_amplitude: Option<(f64, f64)>,
+    strain_rate: Option<(f64, f64)>,
+    friction: Option<(f64, f64)>,
+}
+
+/// What is driven, as it is now.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Driven {
+    pub(crate) width: Option<f64>,
+    pub(crate) force_amplitude: Option<f64>,
+    pub(crate) strain_rate: Option<f64>,
+    pub(crate) friction: Option<f64>,
+}
+
+impl Driven {
+    pub(crate) fn of(run: &Run) -> Self {
+        Self {
+            width: run.driven(ScheduledParameter::Width),
+            force_amplitude: run.driven(ScheduledParameter::ForceAmplitude),
+            strain_rate: run.driven(ScheduledParameter::StrainRate),
+            friction: run
+                .configuration()
+                .contact
+                .friction
+                .map(|it| it.kinetic_friction),
+        }
+    }
+}
+
+impl Ranges {
+    fn of(run: &Run) -> Self {
+        let configuration = run.configuration();
+        let radius = configuration.tube.radius;
+        let diameter = configuration.wall.sphere_diameter;
+        let (width, force_amplitude) = match configuration.drive.control {
+            // From a throat that a grain just does not pass to a straight tube.
+            Control::Strain { width } => {
+                let least = (1.6 * diameter).min(width).min(2.0 * radius);
+                (Some((least, 2.0 * radius)), None)
+            }
+            Control::Stress {
+                force_amplitude, ..
+            } => (None, Some((0.0, (2.5 * force_amplitude).max(0.008)))),
+        };
+        let strain_rate = configuration.drive.strain_rate;
+        Self {
+            width,
+            force_amplitude,
+            strain_rate: (strain_rate > 0.0).then_some((0.1 * strain_rate, 4.0 * strain_rate)),
+            friction: configuration
+                .contact
+                .friction
+                .map(|it| (0.01, it.kinetic_friction.max(1.0))),
+        }
+    }
+}
+
+impl Welcome {
+    pub(crate) fn of(run: &Run, title: &str, record: Vec<(f64, f64)>, rows: Vec<Row>) -> Self {
+        let configuration = run.configuration();
+        let wall = run.simulation().wall();
+        let lattice = wall.lattice();
+        let unit_period = configuration.drive.period().unwrap_or(1.0);
+        let steps = configuration.run.steps() as f64;
+        Self {
+            kind: "welcome",
+            version: VERSION,
+            title: title.to_owned(),
+            control: match wall {
+                Wall::Prescribed(_) => "strain",
+                Wall::Elastic(_) => "stress",
+            },
+            grains: run.simulation().bodies().grains,
+            length: lattice.length(),
+            wavelength: lattice.wavelength,
+            waves: lattice.waves,
+            radius: configuration.tube.radius,
+            spheres_per_ring: lattice.spheres_per_ring,
+            rings_per_wave: lattice.rings_per_wave,
+            wall_sphere_diameter: lattice.sphere_diameter,
+            heading: wall.heading(),
+            reach: match wall {
+                Wall::Prescribed(_) => 2.0 * configuration.tube.radius,
+                Wall::Elastic(_) => wall.usual_radius(),
+            },
+            unit_period,
+            ranges: Ranges::of(run),
+            driven: Driven::of(run),
+            record,
+            rows,
+            end: steps * configuration.run.time_step / unit_period,
+        }
+    }
+}

@@ -1,0 +1,174 @@
+/** Small charts on canvases, in the colours of the page. */
+
+export interface Box {
+  left: number;
+  top: number;
+  width: number;
+  height: number;
+}
+
+export interface Ink {
+  text: string;
+  faint: string;
+  line: string;
+  accent: string;
+  along: string;
+  against: string;
+  wall: string;
+  back: string;
+  stageMiddle: string;
+  stageEdge: string;
+}
+
+export function ink(): Ink {
+  const style = getComputedStyle(document.documentElement);
+  const read = (name: string) => style.getPropertyValue(`--${name}`).trim();
+  return {
+    text: read("text"),
+    faint: read("faint"),
+    line: read("hairline"),
+    accent: read("accent"),
+    along: read("along"),
+    against: read("against"),
+    wall: read("wall"),
+    back: read("panel"),
+    stageMiddle: read("stage-middle"),
+    stageEdge: read("stage-edge"),
+  };
+}
+
+/** A linear axis. */
+export class Axis {
+  constructor(readonly from: number, readonly to: number, readonly start: number, readonly end: number) {}
+
+  at(value: number): number {
+    return this.start + ((value - this.from) / (this.to - this.from || 1)) * (this.end - this.start);
+  }
+
+  value(place: number): number {
+    return this.from + ((place - this.start) / (this.end - this.start || 1)) * (this.to - this.from);
+  }
+
+  ticks(most: number): number[] {
+    const span = this.to - this.from;
+    const rough = span / Math.max(1, most);
+    const power = 10 ** Math.floor(Math.log10(rough));
+    const step = power * ([1, 2, 5, 10].find((it) => it * power >= rough) ?? 10);
+    const ticks: number[] = [];
+    for (let k = Math.ceil(this.from / step - 1e-9); k * step <= this.to + 1e-9 * span; k++) ticks.push(k * step);
+    return ticks;
+  }
+}
+
+export const written = (value: number, digits = 3): string => {
+  if (!Number.isFinite(value)) return "–";
+  const text = Math.abs(value) >= 1e4 || (value !== 0 && Math.abs(value) < 1e-3)
+    ? value.toExponential(digits - 1)
+    : String(Number(value.toPrecision(digits)));
+  return text.replace("-", "−");
+};
+
+/** A canvas with two axes. */
+export class Chart {
+  readonly context: CanvasRenderingContext2D;
+  box: Box = { left: 0, top: 0, width: 0, height: 0 };
+  x = new Axis(0, 1, 0, 1);
+  y = new Axis(0, 1, 0, 1);
+
+  constructor(readonly canvas: HTMLCanvasElement) {
+    const context = canvas.getContext("2d");
+    if (!context) throw new Error("this browser draws no canvas");
+    this.context = context;
+  }
+
+  /** Clears, and lays the axes out. */
+  begin(x: [number, number], y: [number, number], labels: [string, string], colours: Ink): void {
+    const { canvas, context } = this;
+    const density = Math.min(3, devicePixelRatio);
+    const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+    if (canvas.width !== Math.round(width * density)) canvas.width = Math.round(width * density);
+    if (canvas.height !== Math.round(height * density)) canvas.height = Math.round(height * density);
+    context.setTransform(density, 0, 0, density, 0, 0);
+    context.clearRect(0, 0, width, height);
+    context.font = "11px system-ui, sans-serif";
+    this.box = { left: 38, top: 20, width: width - 50, height: height - 50 };
+    const { left, top, width: across, height: high } = this.box;
+    this.x = new Axis(...x, left, left + across);
+    this.y = new Axis(...y, top + high, top);
+    context.lineWidth = 1;
+    context.fillStyle = colours.faint;
+    context.textAlign = "center";
+    context.textBaseline = "top";
+    for (const tick of this.x.ticks(across / 60)) {
+      context.strokeStyle = colours.line;
+      this.line(this.x.at(tick), top, this.x.at(tick), top + high);
+      context.fillText(written(tick), this.x.at(tick), top + high + 5);
+    }
+    context.textAlign = "right";
+    context.textBaseline = "middle";
+    for (const tick of this.y.ticks(high / 34)) {
+      context.strokeStyle = colours.line;
+      this.line(left, this.y.at(tick), left + across, this.y.at(tick));
+      context.fillText(written(tick), left - 6, this.y.at(tick));
+    }
+    context.fillStyle = colours.text;
+    context.textAlign = "left";
+    context.fillText(labels[1], 2, 8);
+    context.textAlign = "right";
+    context.fillText(labels[0], left + across, top + high + 24);
+  }
+
+  line(x0: number, y0: number, x1: number, y1: number): void {
+    this.context.beginPath();
+    this.context.moveTo(x0, y0);
+    this.context.lineTo(x1, y1);
+    this.context.stroke();
+  }
+
+  /** A curve through points; values that are no numbers break it. */
+  curve(points: Iterable<[number, number]>, colour: string, width = 1.5, dash: number[] = []): void {
+    const { context } = this;
+    context.save();
+    this.clip();
+    context.beginPath();
+    let pen = false;
+    for (const [x, y] of points) {
+      if (!Number.isFinite(y)) pen = false;
+      else if (pen) context.lineTo(this.x.at(x), this.y.at(y));
+      else {
+        context.moveTo(this.x.at(x), this.y.at(y));
+        pen = true;
+      }
+    }
+    context.strokeStyle = colour;
+    context.lineWidth = width;
+    context.lineJoin = "round";
+    context.setLineDash(dash);
+    context.stroke();
+    context.restore();
+  }
+
+  dot(x: number, y: number, radius: number, colour: string, rim: string): void {
+    const { context } = this;
+    context.beginPath();
+    context.arc(this.x.at(x), this.y.at(y), radius, 0, 2 * Math.PI);
+    context.fillStyle = colour;
+    context.fill();
+    context.strokeStyle = rim;
+    context.lineWidth = 1.5;
+    context.stroke();
+  }
+
+  upright(x: number, colour: string): void {
+    this.context.strokeStyle = colour;
+    this.context.lineWidth = 1;
+    this.line(this.x.at(x), this.box.top, this.x.at(x), this.box.top + this.box.height);
+  }
+
+  clip(): void {
+    const { left, top, width, height } = this.box;
+    this.context.beginPath();
+    this.context.rect(left - 1, top - 1, width + 2, height + 2);
+    this.context.clip();
+  }
+}

@@ -1,0 +1,484 @@
+import { Chart, ink, written } from "./charts";
+import { Connection } from "./connection";
+import { colourAt, css, FIELDS, inWave, stops } from "./fields";
+import { History } from "./history";
+import { drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
+import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
+import { Scene, WALLS, type WallLook } from "./scene";
+
+function element<T extends HTMLElement>(id: string): T {
+  const found = document.getElementById(id);
+  if (!found) throw new Error(`the page has no ${id}`);
+  return found as T;
+}
+
+const NAMES: Record<Steered, { name: string; digits: number }> = {
+  width: { name: "Width <i>w</i>", digits: 3 },
+  force_amplitude: { name: "Force amplitude <i>f</i>", digits: 5 },
+  strain_rate: { name: "Strain rate <i>ε̇</i>", digits: 4 },
+  friction: { name: "Friction <i>μ</i>", digits: 2 },
+};
+
+/** Milliseconds between two drawings of the charts. */
+const CHARTS = 120;
+
+/** The page. */
+class Page {
+  private tube: Welcome | null = null;
+  private scene: Scene | null = null;
+  private readonly history = new History();
+  private readonly connection: Connection;
+  private readonly charts = {
+    flow: new Chart(element<HTMLCanvasElement>("flow")),
+    loop: new Chart(element<HTMLCanvasElement>("loop")),
+    profile: new Chart(element<HTMLCanvasElement>("profile")),
+  };
+  /** Number of the frame that is shown; the newest where it is null. */
+  private cursor: number | null = null;
+  /** Whether kept frames are played from the cursor on. */
+  private replaying = false;
+  private shownFrame: Frame | null = null;
+  private riding = false;
+  /** Whether the picked grain stays in the middle. */
+  private following = false;
+  /** Wavelengths that the wave had run in the frame that was shown last. */
+  private rode = 0;
+  private field = "axial";
+  private chartsDrawn = 0;
+  private chartsStale = true;
+  /** When each slider was last moved by hand. */
+  private readonly moved = new Map<Steered, number>();
+
+  constructor() {
+    this.connection = new Connection({
+      told: (message) => this.told(message),
+      frame: (frame) => this.receive(frame),
+      lost: () => this.status("connection lost: is the program still running?", true),
+    });
+    this.listen();
+    requestAnimationFrame((now) => this.tick(now));
+  }
+
+  private told(message: Told): void {
+    if (message.type === "welcome") this.welcome(message);
+    else if (message.type === "saved") this.saved(message);
+    else this.status(message.message, true);
+  }
+
+  private welcome(tube: Welcome): void {
+    this.status("", false);
+    this.tube = tube;
+    this.history.frames = [];
+    this.history.rows = [];
+    this.history.addRows(tube.rows);
+    this.scene ??= new Scene(element<HTMLCanvasElement>("stage"), tube);
+    document.title = `${tube.title} – peristalsis`;
+    element("title").textContent = tube.title;
+    element("facts").textContent =
+      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control`;
+    this.makeSliders(tube);
+    document.body.dataset.ready = "true";
+  }
+
+  private makeSliders(tube: Welcome): void {
+    const box = element("sliders");
+    box.replaceChildren();
+    for (const [key, { name, digits }] of Object.entries(NAMES) as [Steered, (typeof NAMES)[Steered]][]) {
+      const range = tube.ranges[key];
+      if (!range) continue;
+      const label = document.createElement("label");
+      label.innerHTML = `<span>${name}</span><input type="number" inputmode="decimal"><input type="range">`;
+      const [number, slider] = label.querySelectorAll("input");
+      for (const input of [number, slider]) {
+        input.min = String(range[0]);
+        input.max = String(range[1]);
+        input.step = key === "width" ? "0.005" : String(10 ** -digits);
+      }
+      slider.step = key === "width" ? "0.005" : String((range[1] - range[0]) / 400);
+      slider.setAttribute("aria-label", label.textContent ?? key);
+      slider.id = `slider-${key}`;
+      number.id = `number-${key}`;
+      const steer = (value: number) => {
+        if (!Number.isFinite(value)) return;
+        const within = Math.min(range[1], Math.max(range[0], value));
+        number.value = within.toFixed(digits);
+        slider.value = String(within);
+        this.moved.set(key, performance.now());
+        this.goLive();
+        this.connection.send({ type: "steer", parameter: key, value: within });
+      };
+      slider.oninput = () => steer(slider.valueAsNumber);
+      number.onchange = () => steer(number.valueAsNumber);
+      box.append(label);
+    }
+    this.showDriven(tube.driven);
+  }
+
+  private showDriven(driven: Driven): void {
+    for (const key of Object.keys(NAMES) as Steered[]) {
+      const value = driven[key];
+      const slider = document.getElementById(`slider-${key}`) as HTMLInputElement | null;
+      const number = document.getElementById(`number-${key}`) as HTMLInputElement | null;
+      if (value === null || !slider || !number) continue;
+      // A slider that is in a hand stays there; a mark shows where the run is.
+      const low = Number(slider.min);
+      slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
+      if (performance.now() - (this.moved.get(key) ?? -1e9) < 4000 || number === document.activeElement) continue;
+      slider.value = String(value);
+      number.value = value.toFixed(NAMES[key].digits);
+    }
+  }
+
+  private receive(frame: Frame): void {
+    const epoch = this.history.frames.at(-1)?.epoch;
+    this.history.add(frame);
+    if (epoch !== undefined && epoch !== frame.epoch) this.cursor = null;
+    if (this.cursor === null) this.shownFrame = null;
+    this.chartsStale = true;
+    const slider = element<HTMLInputElement>("time");
+    slider.max = String(Math.max(1, this.history.frames.length - 1));
+    element("play").setAttribute("aria-pressed", String(this.playing()));
+  }
+
+  private playing(): boolean {
+    return this.cursor === null ? this.newest()?.playing === true : this.replaying;
+  }
+
+  private newest(): Frame | undefined {
+    return this.history.frames.at(-1);
+  }
+
+  private shown(): number {
+    return this.cursor ?? this.history.frames.length - 1;
+  }
+
+  private goLive(): void {
+    this.cursor = null;
+    this.replaying = false;
+    this.shownFrame = null;
+    this.chartsStale = true;
+  }
+
+  private play(): void {
+    if (this.cursor !== null) {
+      this.replaying = !this.replaying;
+    } else {
+      this.connection.send({ type: "play", playing: !this.playing() });
+    }
+    this.chartsStale = true;
+  }
+
+  private scrub(index: number): void {
+    if (this.newest()?.playing) this.connection.send({ type: "play", playing: false });
+    const last = this.history.frames.length - 1;
+    this.replaying = false;
+    this.cursor = index >= last ? null : Math.max(0, index);
+    this.shownFrame = null;
+    this.chartsStale = true;
+  }
+
+  private step(direction: number): void {
+    if (direction > 0 && this.cursor === null) this.connection.send({ type: "step" });
+    else this.scrub(this.shown() + direction);
+  }
+
+  private tick(now: number): void {
+    requestAnimationFrame((next) => this.tick(next));
+    const { scene, tube } = this;
+    if (!scene || !tube || this.history.frames.length === 0) return;
+    if (this.replaying && this.cursor !== null) {
+      this.cursor += 1;
+      this.shownFrame = null;
+      this.chartsStale = true;
+      if (this.cursor >= this.history.frames.length - 1) this.goLive();
+    }
+    const frame = this.history.frames[this.shown()];
+    if (frame !== this.shownFrame) {
+      if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
+      else if (this.riding) scene.slide(this.ridden(frame, tube));
+      this.rode = frame.period;
+      scene.show(frame, FIELDS[this.field]);
+      this.shownFrame = frame;
+    }
+    const colours = ink();
+    scene.draw(colours);
+    if (this.chartsStale && now - this.chartsDrawn > CHARTS) {
+      this.chartsStale = false;
+      this.chartsDrawn = now;
+      this.drawCharts(frame, tube, scene);
+    }
+  }
+
+  /** How far the wave ran since the frame that was shown before. */
+  private ridden(frame: Frame, tube: Welcome): number {
+    const run = frame.period - this.rode;
+    return Math.abs(run) < 2 ? run * tube.wavelength : 0;
+  }
+
+  private drawCharts(frame: Frame, tube: Welcome, scene: Scene): void {
+    const colours = ink();
+    const averages = this.history.averages();
+    drawFlow(this.charts.flow, this.history, averages, tube, frame.clock, colours);
+    drawLoop(this.charts.loop, this.history, averages, tube, frame.clock, colours);
+    drawProfile(this.charts.profile, this.history, this.shown(), tube, colours);
+    const view = { middle: scene.middle, half: scene.halfShown() / 1.1 };
+    drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[this.field], tube, scene.lightness, view, colours);
+    this.showNumbers(frame, averages, tube, scene);
+  }
+
+  private showNumbers(frame: Frame, averages: number[], tube: Welcome, scene: Scene): void {
+    const at = this.history.rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
+    element("ratio").textContent = at >= 0 ? averages[at].toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "") : "–";
+    element("clock").textContent = `${frame.clock.toFixed(2)} T`;
+    const slider = element<HTMLInputElement>("time");
+    slider.value = String(this.shown());
+    slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} periods`);
+    element("live").dataset.live = String(this.cursor === null);
+    element("play").setAttribute("aria-pressed", String(this.playing()));
+    element("onward").hidden = this.cursor === null;
+    const speed = element<HTMLSelectElement>("speed");
+    const asked = (this.newest() ?? frame).speed;
+    if (speed !== document.activeElement) speed.value = asked === null ? "" : String(asked);
+    element("pace").textContent = frame.pace ? `at most ${written(frame.pace, 2)} T/s` : "";
+    this.showDriven((this.newest() ?? frame).driven);
+    const { sample } = frame;
+    const facts: [string, string][] = [
+      ["bottleneck", sample ? `${written(sample.bottleneck)} d` : "–"],
+      ["contacts a grain", sample ? written(sample.contacts) : "–"],
+      ["granular temperature", sample ? written(sample.granular_temperature) : "–"],
+      ["power of the wall", sample ? written(sample.wall_power) : "–"],
+      ["escaped grains", sample ? String(sample.escaped) : "–"],
+      ["energy unaccounted", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
+    ];
+    fill(element("numbers"), facts);
+    this.showGrain(frame, tube, scene.picked);
+  }
+
+  private showGrain(frame: Frame, tube: Welcome, grain: number): void {
+    const box = element("grain");
+    box.hidden = grain < 0 || grain >= frame.grains;
+    if (box.hidden) return;
+    const [x, y, z] = frame.position.subarray(3 * grain, 3 * grain + 3);
+    const [vx, vy, vz] = frame.velocity.subarray(3 * grain, 3 * grain + 3);
+    const c = frame.wave_speed || NaN;
+    const facts: [string, string][] = [
+      ["grain", String(grain)],
+      ["diameter", `${written(frame.diameter[grain])} d`],
+      ["from the axis", `${written(Math.hypot(x, y))} d`],
+      ["along the tube", `${written(z, 4)} d`],
+      ["place in the wave", written(inWave(frame, tube, z))],
+      ["along the wave", `${written((tube.heading * vz) / c)} c`],
+      ["speed", `${written(Math.hypot(vx, vy, vz) / c)} c`],
+    ];
+    if (frame.turning) {
+      const spin = frame.spin.subarray(3 * grain, 3 * grain + 3);
+      facts.push(["spin", written(Math.hypot(spin[0], spin[1], spin[2]))]);
+    }
+    fill(element("grain-numbers"), facts);
+  }
+
+  private saved(saved: Saved): void {
+    element("saved-command").textContent = saved.command;
+    element("saved-folder").textContent = saved.folder;
+    const link = element<HTMLAnchorElement>("saved-toml");
+    URL.revokeObjectURL(link.href);
+    link.href = URL.createObjectURL(new Blob([saved.toml], { type: "application/toml" }));
+    link.download = `${saved.folder.split("/").at(-1) ?? "state"}.toml`;
+    element<HTMLDialogElement>("saved").showModal();
+  }
+
+  private status(text: string, trouble: boolean): void {
+    const box = element("status");
+    box.textContent = text;
+    box.hidden = text === "";
+    box.dataset.trouble = String(trouble);
+    if (text && trouble) setTimeout(() => box.textContent === text && (box.hidden = true), 8000);
+  }
+
+  private showLegend(): void {
+    const field = FIELDS[this.field];
+    const scale = stops(field, this.scene?.lightness ?? false);
+    const parts = Array.from({ length: 9 }, (_, k) => css(colourAt(scale, k / 8)));
+    element("bar").style.background = `linear-gradient(90deg, ${parts.join(",")})`;
+    element("bar-from").textContent = field.ends[0];
+    element("bar-to").textContent = field.ends[1];
+    element("bar-middle").textContent = field.diverging ? "0" : "";
+    element("key").hidden = !(this.scene?.marks ?? false) || !field.diverging;
+  }
+
+  private redraw(): void {
+    this.shownFrame = null;
+    this.chartsStale = true;
+    this.showLegend();
+  }
+
+  private listen(): void {
+    const fields = element<HTMLSelectElement>("field");
+    for (const [key, field] of Object.entries(FIELDS)) fields.add(new Option(field.name, key));
+    fields.onchange = () => {
+      this.field = fields.value;
+      this.redraw();
+    };
+    const walls = element<HTMLSelectElement>("wall");
+    for (const look of WALLS) walls.add(new Option(look, look));
+    walls.onchange = () => {
+      if (this.scene) this.scene.wall = walls.value as WallLook;
+      this.redraw();
+    };
+    const tick = (id: string, change: (scene: Scene, on: boolean) => void) => {
+      const box = element<HTMLInputElement>(id);
+      box.onchange = () => {
+        if (this.scene) change(this.scene, box.checked);
+        this.redraw();
+      };
+    };
+    tick("marks", (scene, on) => (scene.marks = on));
+    tick("lightness", (scene, on) => (scene.lightness = on));
+    tick("follow", (_, on) => (this.following = on));
+    tick("ride", (_, on) => (this.riding = on));
+    element("play").onclick = () => this.play();
+    element("back").onclick = () => this.step(-1);
+    element("forth").onclick = () => this.step(1);
+    element("live").onclick = () => this.goLive();
+    element("home").onclick = () => this.scene?.home();
+    element("save").onclick = () => this.connection.send({ type: "save" });
+    element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
+    element("onward").onclick = () => {
+      const frame = this.history.frames[this.shown()];
+      this.connection.send({ type: "seek", period: frame.clock });
+    };
+    element("again").onclick = () => this.connection.send({ type: "seek", period: 0 });
+    element("grain-close").onclick = () => this.pick(-1);
+    for (const dialog of document.querySelectorAll("dialog"))
+      dialog.onclick = (event) => event.target === dialog && dialog.close();
+    const time = element<HTMLInputElement>("time");
+    time.oninput = () => this.scrub(time.valueAsNumber);
+    const speed = element<HTMLSelectElement>("speed");
+    speed.onchange = () => {
+      const periods_per_second = speed.value === "" ? null : Number(speed.value);
+      this.connection.send({ type: "speed", periods_per_second });
+    };
+    const look = element<HTMLSelectElement>("look");
+    look.onchange = () => {
+      document.documentElement.dataset.look = look.value;
+      this.redraw();
+    };
+    matchMedia("(prefers-color-scheme: dark)").onchange = () => this.redraw();
+    new ResizeObserver(() => {
+      this.scene?.resize();
+      this.chartsStale = true;
+    }).observe(element("stage"));
+    const sizes = new ResizeObserver(() => (this.chartsStale = true));
+    for (const id of ["flow", "loop", "profile", "map"]) sizes.observe(element(id));
+    this.listenToPointers();
+    document.addEventListener("keydown", (event) => this.key(event));
+    this.showLegend();
+  }
+
+  private pick(grain: number): void {
+    if (!this.scene) return;
+    this.scene.picked = grain;
+    const frame = this.history.frames[this.shown()];
+    if (this.tube && frame) this.showGrain(frame, this.tube, grain);
+    this.scene.touch();
+    this.chartsStale = true;
+  }
+
+  private listenToPointers(): void {
+    const stage = element("stage");
+    let down: [number, number] | null = null;
+    stage.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
+    stage.addEventListener("pointerup", (event) => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || !this.scene) return;
+      const box = stage.getBoundingClientRect();
+      const x = (2 * (event.clientX - box.left)) / box.width - 1;
+      const y = 1 - (2 * (event.clientY - box.top)) / box.height;
+      this.pick(this.scene.pick(x, y));
+    });
+    stage.addEventListener("pointermove", () => (this.chartsStale = true));
+    const dragged = (id: string, move: (part: number) => void) => {
+      const canvas = element(id);
+      const follow = (event: PointerEvent) => {
+        const box = canvas.getBoundingClientRect();
+        move((event.clientX - box.left) / box.width);
+      };
+      canvas.addEventListener("pointerdown", (event) => {
+        canvas.setPointerCapture(event.pointerId);
+        follow(event);
+      });
+      canvas.addEventListener("pointermove", (event) => event.buttons > 0 && follow(event));
+    };
+    dragged("map", (part) => {
+      if (!this.scene || !this.tube) return;
+      const { heading, length } = this.tube;
+      this.scene.middle = (heading > 0 ? part : 1 - part) * length;
+      this.scene.touch();
+      this.chartsStale = true;
+    });
+    dragged("flow", (part) => {
+      const { flow } = this.charts;
+      this.scrub(this.history.at(flow.x.value(part * flow.canvas.clientWidth)));
+    });
+  }
+
+  private key(event: KeyboardEvent): void {
+    const { target } = event;
+    const typing = target instanceof HTMLSelectElement ||
+      (target instanceof HTMLInputElement && (target.type === "number" || target.type === "range"));
+    if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
+    const click = (id: string) => () => element(id).click();
+    const actions: Record<string, () => void> = {
+      " ": () => this.play(),
+      ArrowLeft: () => (event.shiftKey ? this.scene?.slide(-1) : this.step(-1)),
+      ArrowRight: () => (event.shiftKey ? this.scene?.slide(1) : this.step(1)),
+      ArrowUp: () => this.scene?.move(0, -0.08, 1),
+      ArrowDown: () => this.scene?.move(0, 0.08, 1),
+      a: () => this.scene?.move(-0.08, 0, 1),
+      d: () => this.scene?.move(0.08, 0, 1),
+      "+": () => this.scene?.move(0, 0, 0.9),
+      "-": () => this.scene?.move(0, 0, 1 / 0.9),
+      "0": () => this.scene?.home(),
+      l: () => this.goLive(),
+      m: click("marks"),
+      r: click("ride"),
+      s: click("save"),
+      "?": click("help"),
+      Escape: () => this.pick(-1),
+    };
+    const action = actions[event.key];
+    if (!action || (event.key === " " && target instanceof HTMLButtonElement)) return;
+    event.preventDefault();
+    action();
+    this.chartsStale = true;
+  }
+
+  /** What tests look at. */
+  get measured(): { frames: number; pictures: number; drawing: number; clock: number; ratio: number | null } {
+    const frame = this.newest();
+    return {
+      frames: this.history.frames.length,
+      pictures: this.scene?.pictures ?? 0,
+      drawing: this.scene?.frameTime ?? 0,
+      clock: frame?.clock ?? 0,
+      ratio: frame?.sample?.flow_rate_ratio ?? null,
+    };
+  }
+}
+
+function fill(list: HTMLElement, facts: [string, string][]): void {
+  list.replaceChildren(
+    ...facts.flatMap(([name, value]) => {
+      const [term, definition] = [document.createElement("dt"), document.createElement("dd")];
+      term.textContent = name;
+      definition.textContent = value;
+      return [term, definition];
+    }),
+  );
+}
+
+declare global {
+  interface Window {
+    viewer: Page;
+  }
+}
+window.viewer = new Page();

@@ -1,0 +1,169 @@
+import { type Chart, type Ink } from "./charts";
+import { colourAt, css, inWave, stops, type Field } from "./fields";
+import type { History } from "./history";
+import type { Frame, Welcome } from "./protocol";
+
+/** Frames that a profile is averaged over. */
+const AVERAGED = 16;
+const BINS = 24;
+
+/** J/Jmax against time, with the time that is shown. */
+export function drawFlow(chart: Chart, history: History, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
+  const { rows } = history;
+  const record = tube.record;
+  const last = Math.max(rows.at(-1)?.clock ?? 0, record.at(-1)?.[0] ?? 0, 2);
+  let [least, most] = [-0.05, 1.05];
+  for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  chart.begin([0, last], [least, most], ["time / periods", "J / Jmax"], colours);
+  chart.curve([[0, 0], [last, 0]], colours.faint, 1);
+  chart.curve(record.map(([x, y]) => [x, y ?? NaN]), colours.wall, 1.5, [4, 3]);
+  chart.curve(sparse(rows.map((row) => [row.clock, row.flow_rate_ratio ?? NaN])), colours.line, 1);
+  chart.curve(sparse(rows.map((row, k) => [row.clock, averages[k]])), colours.accent, 2);
+  chart.upright(clock, colours.text);
+  const at = rows.findLastIndex((row) => row.clock <= clock + 1e-9);
+  if (at >= 0) chart.dot(rows[at].clock, averages[at], 4, colours.accent, colours.back);
+}
+
+function sparse(points: [number, number][]): [number, number][] {
+  const each = Math.ceil(points.length / 3000);
+  return each > 1 ? points.filter((_, index) => index % each === 0) : points;
+}
+
+/** J/Jmax against width or force: the hysteresis loop as it is driven. */
+export function drawLoop(chart: Chart, history: History, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
+  const rows = history.rows;
+  const range = (tube.control === "strain" ? tube.ranges.width : tube.ranges.force_amplitude) ?? [0, 1];
+  let [least, most] = [-0.05, 1.05];
+  for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  const seen = rows.map((row) => row.amplitude);
+  let [from, to] = [Math.min(...seen.slice(-4000), Infinity), Math.max(...seen.slice(-4000), -Infinity)];
+  const room = Math.max(0.12 * (range[1] - range[0]), 0.15 * (to - from));
+  [from, to] = rows.length ? [from - room, to + room] : range;
+  const name = tube.control === "strain" ? "width w / d" : "force amplitude";
+  chart.begin([from, to], [least, most], [name, "J / Jmax"], colours);
+  const each = Math.ceil(rows.length / 4000);
+  let before = 0;
+  // Which way the parameter went last decides how the piece is drawn: full upwards, dashed downwards.
+  let pieces: [number, number][] = [];
+  let direction = 0;
+  const finish = () => {
+    const colour = direction > 0 ? colours.along : direction < 0 ? colours.against : colours.faint;
+    chart.curve(pieces, colour, 2, direction < 0 ? [5, 3] : []);
+  };
+  for (let k = 0; k < rows.length; k += each) {
+    const step = rows[k].amplitude - rows[before].amplitude;
+    const now = Math.abs(step) < 1e-9 ? direction : Math.sign(step);
+    if (now !== direction) {
+      finish();
+      pieces = pieces.slice(-1);
+      direction = now;
+    }
+    pieces.push([rows[k].amplitude, averages[k]]);
+    before = k;
+  }
+  finish();
+  const at = rows.findLastIndex((row) => row.clock <= clock + 1e-9);
+  if (at >= 0) chart.dot(rows[at].amplitude, averages[at], 5, colours.accent, colours.back);
+}
+
+/** Density and axial velocity in the frame of the wave, under the outline of the tube. */
+export function drawProfile(chart: Chart, history: History, shown: number, tube: Welcome, colours: Ink): void {
+  const frames = history.frames.slice(Math.max(0, shown - AVERAGED + 1), shown + 1);
+  const number = new Float64Array(BINS);
+  const velocity = new Float64Array(BINS);
+  for (const frame of frames) {
+    for (let i = 0; i < frame.grains; i++) {
+      const bin = Math.min(BINS - 1, Math.floor(BINS * inWave(frame, tube, frame.position[3 * i + 2])));
+      number[bin] += 1;
+      velocity[bin] += (tube.heading * frame.velocity[3 * i + 2]) / (frame.wave_speed || NaN);
+    }
+  }
+  const means = Array.from(velocity, (sum, bin) => sum / number[bin]);
+  const least = Math.min(-0.25, ...means.filter(Number.isFinite));
+  chart.begin([0, 1], [least, 1.3], ["place in the wave (z − ct)/λ", "⟨v⟩/c and density"], colours);
+  const middle = (bin: number) => (bin + 0.5) / BINS;
+  // The tube's outline above and below the middle of the chart.
+  const radius = outline(history.frames[shown], tube);
+  const centre = 0.5 * (least + 1.3);
+  const scale = (0.46 * (1.3 - least)) / Math.max(...radius, 1);
+  const { context } = chart;
+  context.save();
+  chart.clip();
+  context.beginPath();
+  radius.forEach((r, k) => context.lineTo(chart.x.at(k / (radius.length - 1)), chart.y.at(centre + scale * r)));
+  for (let k = radius.length - 1; k >= 0; k--)
+    context.lineTo(chart.x.at(k / (radius.length - 1)), chart.y.at(centre - scale * radius[k]));
+  context.closePath();
+  context.globalAlpha = 0.2;
+  context.fillStyle = colours.wall;
+  context.fill();
+  context.restore();
+  const peak = Math.max(...number, 1);
+  chart.curve(Array.from(number, (count, bin) => [middle(bin), count / peak]), colours.faint, 1.5, [2, 3]);
+  chart.curve([[0, 0], [1, 0]], colours.faint, 1);
+  chart.curve(means.map((mean, bin) => [middle(bin), mean]), colours.accent, 2);
+}
+
+/** Radius of the tube at 49 places of the wave. */
+function outline(frame: Frame | undefined, tube: Welcome): number[] {
+  const places = 48;
+  if (!frame) return [];
+  const sums = Array.from({ length: places }, () => [0, 0]);
+  const add = (z: number, radius: number) => {
+    const bin = Math.min(places - 1, Math.floor(places * inWave(frame, tube, z)));
+    sums[bin][0] += radius;
+    sums[bin][1] += 1;
+  };
+  if (frame.wall_spheres > 0) {
+    for (let i = 0; i < frame.wall_spheres; i++)
+      add(frame.wall[3 * i + 2], Math.hypot(frame.wall[3 * i], frame.wall[3 * i + 1]));
+  } else {
+    const rings = frame.rings;
+    // Between rings straight lines.
+    for (let k = 0; k < 8 * rings; k++) {
+      const [ring, part] = [Math.floor(k / 8), (k % 8) / 8];
+      const radius = frame.ringRadius[ring] * (1 - part) + frame.ringRadius[(ring + 1) % rings] * part;
+      add(((k / 8) * tube.wavelength) / rings, radius);
+    }
+  }
+  const means = sums.map(([sum, count]) => sum / count);
+  const known = means.findIndex(Number.isFinite);
+  for (let k = 0; k < places; k++) {
+    const at = (known + k) % places;
+    if (!Number.isFinite(means[at])) means[at] = means[(at + places - 1) % places];
+  }
+  return [...means, means[0]];
+}
+
+/** The whole tube from end to end, with what is in the picture. */
+export function drawMap(
+  canvas: HTMLCanvasElement, frame: Frame, values: Field, tube: Welcome, lightness: boolean,
+  view: { middle: number; half: number }, colours: Ink,
+): void {
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  const density = Math.min(2, devicePixelRatio);
+  const [width, height] = [canvas.clientWidth, canvas.clientHeight];
+  canvas.width = Math.round(width * density);
+  canvas.height = Math.round(height * density);
+  context.setTransform(density, 0, 0, density, 0, 0);
+  const scale = stops(values, lightness);
+  const tones = new Float32Array(frame.grains);
+  values.values(frame, tube, tones);
+  const place = (z: number) => (tube.heading > 0 ? z : tube.length - z) / tube.length;
+  const reach = 1.15 * tube.reach;
+  const thick = Math.max(1, (width / tube.length) * 0.8);
+  for (let i = 0; i < frame.grains; i++) {
+    context.fillStyle = css(colourAt(scale, values.diverging ? 0.5 + 0.5 * tones[i] : tones[i]));
+    const y = 0.5 * height * (1 - frame.position[3 * i] / reach);
+    context.fillRect(place(frame.position[3 * i + 2]) * width - 0.5 * thick, y - 1.25, thick, 2.5);
+  }
+  const half = Math.min(0.5, view.half / tube.length);
+  const centre = place(view.middle);
+  context.strokeStyle = colours.text;
+  context.lineWidth = 1.5;
+  if (half < 0.49) {
+    for (const turn of [-1, 0, 1])
+      context.strokeRect((centre - half + turn) * width, 0.75, 2 * half * width, height - 1.5);
+  }
+}

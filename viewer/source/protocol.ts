@@ -1,0 +1,130 @@
+/** What the server sends and takes; crates/viewer/src/{frame,welcome,message}.rs say the same. */
+
+export type Range = [number, number] | null;
+export type Steered = "width" | "force_amplitude" | "strain_rate" | "friction";
+export type Driven = Record<Steered, number | null>;
+
+/** A row of the time series. */
+export interface Row {
+  number: number;
+  /** Time in periods of the drive's own strain rate. */
+  clock: number;
+  flow_rate_ratio: number | null;
+  bottleneck: number;
+  /** Width or force amplitude. */
+  amplitude: number;
+  strain_rate: number;
+}
+
+export interface Welcome {
+  type: "welcome";
+  version: string;
+  title: string;
+  control: "strain" | "stress";
+  grains: number;
+  length: number;
+  wavelength: number;
+  waves: number;
+  radius: number;
+  spheres_per_ring: number;
+  rings_per_wave: number;
+  wall_sphere_diameter: number;
+  heading: number;
+  reach: number;
+  unit_period: number;
+  ranges: Record<Steered, Range>;
+  driven: Driven;
+  record: [number, number | null][];
+  rows: Row[];
+  end: number;
+}
+
+export interface Saved {
+  type: "saved";
+  folder: string;
+  command: string;
+  toml: string;
+  period: number;
+}
+
+export interface Problem {
+  type: "problem";
+  message: string;
+}
+
+export type Told = Welcome | Saved | Problem;
+
+export interface Head {
+  epoch: number;
+  playing: boolean;
+  ended: boolean;
+  /** Periods a second that were asked for. */
+  speed: number | null;
+  pace: number | null;
+  step: number;
+  time: number;
+  clock: number;
+  period: number;
+  wave_speed: number;
+  grains: number;
+  wall_spheres: number;
+  rings: number;
+  turning: boolean;
+  driven: Driven;
+  rows: Row[];
+  sample: {
+    flow_rate: number;
+    flow_rate_ratio: number | null;
+    granular_temperature: number;
+    contacts: number;
+    escaped: number;
+    bottleneck: number;
+    wall_power: number;
+    energy_residual: number | null;
+  } | null;
+}
+
+/** The spheres at one time; vectors as x y z x y z ... in the frame of the tube. */
+export interface Frame extends Head {
+  bytes: number;
+  position: Float32Array;
+  velocity: Float32Array;
+  diameter: Float32Array;
+  /** Angular velocities, or nothing where grains do not turn. */
+  spin: Float32Array;
+  /** Centres of the spheres of an elastic wall. */
+  wall: Float32Array;
+  /** Radii of the rings of one wavelength of a prescribed wall. */
+  ringRadius: Float32Array;
+}
+
+export type Command =
+  | { type: "play"; playing: boolean }
+  | { type: "speed"; periods_per_second: number | null }
+  | { type: "step" }
+  | { type: "steer"; parameter: Steered; value: number }
+  | { type: "seek"; period: number }
+  | { type: "save" };
+
+/** Takes a frame apart; its arrays look into the bytes, nothing is copied. */
+export function decode(bytes: ArrayBuffer): Frame {
+  const headBytes = new DataView(bytes).getUint32(0, true);
+  const text = new TextDecoder().decode(new Uint8Array(bytes, 4, headBytes));
+  const head = JSON.parse(text) as Head;
+  let at = 4 + headBytes;
+  const take = (count: number) => {
+    const numbers = new Float32Array(bytes, at, count);
+    at += 4 * count;
+    return numbers;
+  };
+  return {
+    ...head,
+    bytes: bytes.byteLength,
+    position: take(3 * head.grains),
+    velocity: take(3 * head.grains),
+    diameter: take(head.grains),
+    spin: take(head.turning ? 3 * head.grains : 0),
+    wall: take(3 * head.wall_spheres),
+    ringRadius: take(head.rings),
+  };
+}

@@ -1,0 +1,296 @@
+import * as three from "three";
+import { OrbitControls } from "three/addons/controls/OrbitControls.js";
+import type { Ink } from "./charts";
+import { colourAt, type Field, stops } from "./fields";
+import type { Frame, Welcome } from "./protocol";
+import { drawn, Side, Spheres, type Uniforms } from "./spheres";
+
+export const WALLS = ["cut open", "glass", "closed", "hidden"] as const;
+export type WallLook = (typeof WALLS)[number];
+
+const FIELD_OF_VIEW = 24;
+/** Milliseconds from picture to picture above which pixels are saved. */
+const SLOW = 55;
+/** Milliseconds after which a picture counts as still. */
+const STILL = 700;
+
+/** The tube in space: grains and wall, the camera, and what is under a finger. */
+export class Scene {
+  readonly renderer: three.WebGLRenderer;
+  /** z of what is in the middle of the picture. */
+  middle = 0;
+  wall: WallLook = "cut open";
+  marks = false;
+  lightness = false;
+  picked = -1;
+  /** Milliseconds of the last pictures, and how many were drawn. */
+  frameTime = 0;
+  pictures = 0;
+  private readonly scene = new three.Scene();
+  private readonly camera = new three.PerspectiveCamera(FIELD_OF_VIEW, 1, 1, 2000);
+  private readonly orbit: OrbitControls;
+  private readonly grains = new Spheres();
+  private readonly wallSpheres = new Spheres();
+  private readonly meshes: { wallBack: three.Mesh; wallFront: three.Mesh; wallAll: three.Mesh };
+  private readonly shared: Uniforms;
+  private readonly grainUniforms: Uniforms;
+  private readonly wallUniforms: Uniforms;
+  private readonly scaleTexture: three.DataTexture;
+  private frame: Frame | null = null;
+  private stale = true;
+  /** Part of the full resolution that is drawn: less where pictures take too long. */
+  private fineness = 1;
+  private drawnAt = 0;
+  private sharp = false;
+  private interval = 0;
+  private values = new Float32Array(0);
+
+  constructor(private readonly canvas: HTMLCanvasElement, private readonly tube: Welcome) {
+    this.renderer = new three.WebGLRenderer({ canvas, antialias: false, alpha: false, preserveDrawingBuffer: true });
+    this.scaleTexture = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
+    this.scaleTexture.magFilter = this.scaleTexture.minFilter = three.LinearFilter;
+    this.shared = {
+      heading: { value: tube.heading },
+      middle: { value: 0 },
+      tubeLength: { value: tube.length },
+      reach: { value: tube.radius },
+      eye: { value: new three.Vector3() },
+      rim: { value: new three.Color(0, 0, 0) },
+      scale: { value: this.scaleTexture },
+    };
+    this.grainUniforms = this.own(0, Side.All, 0);
+    this.wallUniforms = this.own(1, Side.Back, 0);
+    const front = this.own(1, Side.Front, 0.12);
+    this.meshes = {
+      wallBack: drawn(this.wallSpheres, this.shared, this.wallUniforms, false),
+      wallFront: drawn(this.wallSpheres, this.shared, front, true),
+      wallAll: drawn(this.wallSpheres, this.shared, this.own(1, Side.All, 0), false),
+    };
+    this.scene.add(drawn(this.grains, this.shared, this.grainUniforms, false), ...Object.values(this.meshes));
+    this.orbit = new OrbitControls(this.camera, canvas);
+    this.orbit.enablePan = false;
+    this.orbit.enableDamping = true;
+    this.orbit.dampingFactor = 0.12;
+    this.orbit.addEventListener("change", () => this.touch());
+    this.middle = 0.5 * Math.min(tube.length, 3 * tube.wavelength);
+    this.resize();
+    this.home();
+  }
+
+  private own(kind: number, side: Side, glass: number): Uniforms {
+    const stone = new three.Color().setRGB(206 / 255, 200 / 255, 190 / 255);
+    return {
+      kind: { value: kind },
+      side: { value: side },
+      glass: { value: glass },
+      marks: { value: 0 },
+      picked: { value: -1 },
+      plain: { value: stone },
+    };
+  }
+
+  /** From a little above, with some waves in the picture. */
+  home(): void {
+    const shown = Math.min(this.tube.length, (this.canvas.clientWidth < 600 ? 1.2 : 2.0) * this.tube.wavelength);
+    const distance = (0.5 * shown) / (Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect);
+    const least = (2.6 * this.tube.radius) / Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180);
+    this.camera.position.set(-0.42, 0.24, 1).setLength(Math.max(distance, 0.62 * least) + this.tube.radius);
+    this.orbit.target.set(0, 0, 0);
+    this.orbit.minDistance = 2.2 * this.tube.radius;
+    this.orbit.maxDistance = 4 * this.tube.length;
+    this.orbit.update();
+    this.touch();
+  }
+
+  /** Turns round the tube, or nearer. */
+  move(around: number, up: number, nearer: number): void {
+    const spherical = new three.Spherical().setFromVector3(this.camera.position);
+    spherical.theta += around;
+    spherical.phi = Math.min(Math.PI - 0.05, Math.max(0.05, spherical.phi + up));
+    spherical.radius = Math.min(this.orbit.maxDistance, Math.max(this.orbit.minDistance, spherical.radius * nearer));
+    this.camera.position.setFromSpherical(spherical);
+    this.orbit.update();
+    this.touch();
+  }
+
+  slide(distance: number): void {
+    const { length, heading } = this.tube;
+    this.middle = (((this.middle + heading * distance) % length) + length) % length;
+    this.touch();
+  }
+
+  touch(): void {
+    this.stale = true;
+  }
+
+  resize(): void {
+    const { clientWidth: width, clientHeight: height } = this.canvas;
+    this.renderer.setPixelRatio(this.fineness * Math.min(2, Math.max(1.5, devicePixelRatio)));
+    this.renderer.setSize(Math.max(1, width), Math.max(1, height), false);
+    this.camera.aspect = Math.max(1, width) / Math.max(1, height);
+    this.camera.updateProjectionMatrix();
+    this.touch();
+  }
+
+  show(frame: Frame, field: Field): void {
+    this.frame = frame;
+    const number = frame.grains;
+    this.grains.reserve(number);
+    if (this.values.length !== number) this.values = new Float32Array(number);
+    field.values(frame, this.tube, this.values);
+    this.grains.centre.array.set(frame.position);
+    for (let i = 0; i < number; i++) {
+      this.grains.radius.array[i] = 0.5 * frame.diameter[i];
+      this.grains.value.array[i] = field.diverging ? 0.5 + 0.5 * this.values[i] : this.values[i];
+    }
+    this.grains.written(number);
+    const scale = stops(field, this.lightness);
+    const texels = this.scaleTexture.image.data as Uint8Array;
+    for (let i = 0; i < 256; i++) texels.set([...colourAt(scale, i / 255), 255], 4 * i);
+    this.scaleTexture.needsUpdate = true;
+    this.touch();
+  }
+
+  /** Draws, where there is something new. */
+  draw({ text, stageMiddle, stageEdge }: Ink): void {
+    this.orbit.update();
+    if (!this.stale) this.sharpen();
+    if (!this.stale || !this.frame) return;
+    this.stale = false;
+    const begin = performance.now();
+    this.backdrop(stageMiddle, stageEdge);
+    (this.shared.rim.value as three.Color).setStyle(text, three.LinearSRGBColorSpace);
+    this.shared.middle.value = this.middle;
+    (this.shared.eye.value as three.Vector3).copy(this.camera.position).normalize();
+    this.grainUniforms.marks.value = this.marks ? 1 : 0;
+    this.grainUniforms.picked.value = this.picked;
+    this.meshes.wallBack.visible = this.wall === "cut open";
+    this.meshes.wallFront.visible = this.wall === "cut open" || this.wall === "glass";
+    this.meshes.wallAll.visible = this.wall === "closed";
+    const front = (this.meshes.wallFront.material as three.RawShaderMaterial).uniforms;
+    front.side.value = this.wall === "glass" ? Side.All : Side.Front;
+    if (this.wall !== "hidden") this.placeWall(this.frame);
+    this.renderer.render(this.scene, this.camera);
+    this.pictures += 1;
+    this.keepUp(begin);
+    this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
+  }
+
+  /** Draws a picture that stands still once more with all its pixels. */
+  private sharpen(): void {
+    const still = performance.now() - this.drawnAt > STILL;
+    if (this.fineness === 1 || this.sharp || !still) return;
+    const usual = this.fineness;
+    this.fineness = 1;
+    this.resize();
+    this.fineness = usual;
+    this.sharp = true;
+  }
+
+  /** Draws fewer pixels where pictures that follow one another take too long. */
+  private keepUp(now: number): void {
+    const since = now - this.drawnAt;
+    this.drawnAt = now;
+    if (since > STILL) return;
+    if (this.sharp) {
+      this.sharp = false;
+      this.resize();
+    }
+    this.interval += 0.2 * (since - this.interval);
+    if (this.interval < SLOW || this.fineness < 0.5) return;
+    this.fineness *= 0.8;
+    this.interval = 0;
+    this.resize();
+  }
+
+  /** Paints what is behind the tube, where its colours have changed. */
+  private backdrop(middle: string, edge: string): void {
+    const name = `${middle} ${edge}`;
+    if (this.scene.background instanceof three.Texture) {
+      if (this.scene.background.name === name) return;
+      this.scene.background.dispose();
+    }
+    const canvas = document.createElement("canvas");
+    canvas.width = canvas.height = 256;
+    const context = canvas.getContext("2d");
+    if (!context) return;
+    const gradient = context.createRadialGradient(128, 60, 0, 128, 60, 230);
+    gradient.addColorStop(0, middle);
+    gradient.addColorStop(1, edge);
+    context.fillStyle = gradient;
+    context.fillRect(0, 0, 256, 256);
+    const texture = new three.CanvasTexture(canvas);
+    texture.colorSpace = three.SRGBColorSpace;
+    texture.name = name;
+    this.scene.background = texture;
+  }
+
+  /** Half of the length that is in the picture. */
+  halfShown(): number {
+    const away = this.camera.position.length() + this.tube.reach;
+    return away * Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect * 1.1 + this.tube.radius;
+  }
+
+  /** The wall's spheres that can be in the picture. */
+  private placeWall(frame: Frame): void {
+    const { tube, wallSpheres } = this;
+    const spacing = tube.wavelength / tube.rings_per_wave;
+    const rings = tube.rings_per_wave * tube.waves;
+    const side = this.camera.position;
+    // Looking along the tube one sees to its end.
+    const oblique = 1 / Math.max(0.05, 1 - 1.5 * (Math.abs(side.x) / side.length()));
+    const half = Math.min(oblique * this.halfShown(), 0.5 * tube.length);
+    let number = 0;
+    const put = (x: number, y: number, z: number) => {
+      wallSpheres.centre.array.set([x, y, z], 3 * number);
+      wallSpheres.radius.array[number] = 0.5 * tube.wall_sphere_diameter;
+      number += 1;
+    };
+    wallSpheres.reserve(tube.spheres_per_ring * rings);
+    if (frame.wall_spheres > 0) {
+      wallSpheres.reserve(frame.wall_spheres);
+      for (let i = 0; i < frame.wall_spheres; i++)
+        put(frame.wall[3 * i], frame.wall[3 * i + 1], frame.wall[3 * i + 2]);
+    } else {
+      const first = Math.ceil((this.middle - half) / spacing);
+      const last = Math.min(first + rings - 1, Math.floor((this.middle + half) / spacing));
+      for (let unfolded = first; unfolded <= last; unfolded++) {
+        const ring = ((unfolded % rings) + rings) % rings;
+        const radius = frame.ringRadius[ring % tube.rings_per_wave];
+        for (let place = 0; place < tube.spheres_per_ring; place++) {
+          const angle = ((2 * place + (ring % 2)) * Math.PI) / tube.spheres_per_ring;
+          put(radius * Math.cos(angle), radius * Math.sin(angle), ring * spacing);
+        }
+      }
+    }
+    wallSpheres.written(number);
+  }
+
+  /** The grain at a place of the canvas from -1 to 1, or -1. */
+  pick(x: number, y: number): number {
+    const frame = this.frame;
+    if (!frame) return -1;
+    const { origin, direction } = this.ray(x, y);
+    const { heading, length } = this.tube;
+    let nearest = Infinity;
+    let found = -1;
+    const centre = new three.Vector3();
+    for (let i = 0; i < frame.grains; i++) {
+      let along = heading * (frame.position[3 * i + 2] - this.middle);
+      along -= length * Math.floor(along / length + 0.5);
+      centre.set(along, frame.position[3 * i], heading * frame.position[3 * i + 1]).sub(origin);
+      const ahead = centre.dot(direction);
+      const room = (0.5 * frame.diameter[i]) ** 2 - centre.lengthSq() + ahead * ahead;
+      if (room < 0 || ahead - Math.sqrt(room) >= nearest) continue;
+      nearest = ahead - Math.sqrt(room);
+      found = i;
+    }
+    return found;
+  }
+
+  private ray(x: number, y: number): { origin: three.Vector3; direction: three.Vector3 } {
+    const caster = new three.Raycaster();
+    caster.setFromCamera(new three.Vector2(x, y), this.camera);
+    return caster.ray;
+  }
+}
