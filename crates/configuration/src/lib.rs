@@ -22,6 +22,7 @@
 //! ```
 
 mod canonical;
+mod change;
 mod configuration;
 mod contract;
 pub mod defaults;
