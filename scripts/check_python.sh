@@ -19,7 +19,14 @@ wheel=$(ls "$wheels"/peristalsis-*.whl)
 step "tests"
 cargo build --locked --package peristalsis
 PERISTALSIS_PROGRAM=$PWD/target/debug/peristalsis "$environment/bin/python" -m pytest crates/python
-"$environment/bin/python" -m pytest crates/python --doctest-modules --pyargs peristalsis
+"$environment/bin/python" -m pytest -c crates/python/pyproject.toml --doctest-modules --pyargs peristalsis
+
+step "the same replicas through four pools"
+for pool in futures joblib dask ray; do
+    "$environment/bin/python" "examples/python/with_$pool.py" | grep "J/Jmax" | sed "s/^/$pool: /"
+done | tee target/python-pools.txt
+[ "$(cut -d: -f2- target/python-pools.txt | sort -u | wc -l)" -eq 1 ] || { echo "the pools disagree"; exit 1; }
+[ "$(wc -l < target/python-pools.txt)" -eq 4 ] || { echo "a pool said nothing"; exit 1; }
 
 step "types"
 "$environment/bin/mypy" --config-file crates/python/pyproject.toml crates/python/python
@@ -29,6 +36,6 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
 "$scratch/venv/bin/pip" install --quiet "$wheel"
-(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/crates/python/README.md")
+(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/crates/python/README.md" "$OLDPWD/docs/python/collapse.md")
 
 step "the Python package is well"

@@ -149,7 +149,7 @@ def _value(value: Any) -> str:
         return _text(value)
     if isinstance(value, bool):
         return "true" if value else "false"
-    if isinstance(value, Sequence) or hasattr(value, "tolist") and getattr(value, "ndim", 0):
+    if isinstance(value, Sequence) or getattr(value, "ndim", None):
         return "[" + ", ".join(_value(item) for item in value) + "]"
     if hasattr(value, "__index__"):
         return str(int(value))

@@ -319,7 +319,8 @@ def fit_law(
         w_c where it is known: a number, with its error as a pair or an `Uncertain`.
     """
     known = None if critical_width is None else _pair(critical_width)
-    return result(LawFit, _core.fit_law(_law(law), *_columns(width, value, error), known))
+    widths, values, errors = _columns(width, value, error)
+    return result(LawFit, _core.fit_law(_law(law), widths, values, errors, known))
 
 
 def fit_law_to_runs(
@@ -482,7 +483,10 @@ class Collapse:
         *,
         least_overlap: float = 0.5,
     ) -> None:
-        self.curves = [(float(p), *_columns(x, y, error)) for p, x, y, error in curves]
+        self.curves: list[tuple[float, Array, Array, Array]] = []
+        for parameter, *columns in curves:
+            x, y, error = _columns(*columns)
+            self.curves.append((float(parameter), x, y, error))
         self.scaling = dict(scaling) if isinstance(scaling, Mapping) else scaling
         self.least_overlap = float(least_overlap)
 
@@ -553,6 +557,6 @@ class Collapse:
         """The scaled curves (p, x, y, error)."""
         _, columns = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
         return [
-            (curve[0], *(np.array(column, dtype=np.float64) for column in scaled))
-            for curve, scaled in zip(self.curves, columns, strict=True)
+            (curve[0], np.array(x), np.array(y), np.array(error))
+            for curve, (x, y, error) in zip(self.curves, columns, strict=True)
         ]

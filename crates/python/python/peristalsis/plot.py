@@ -19,6 +19,7 @@ from .analysis import Collapse, CollapseResult, Survival
 try:
     import matplotlib
     import matplotlib.pyplot as plt
+    from cycler import cycler
 except ImportError as error:
     raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from error
 
@@ -36,7 +37,7 @@ COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
 ALONG, AGAINST, GREY = "#B2182B", "#2166AC", "#808080"
 
 #: Matplotlib settings of the program's figures: ``with matplotlib.rc_context(STYLE): ...``.
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.family": "sans-serif",
     "font.sans-serif": ["Arimo", "Arial", "Liberation Sans", "Helvetica", "DejaVu Sans"],
     "font.size": 7.0,
@@ -47,7 +48,7 @@ STYLE: dict[str, Any] = {
     "legend.fontsize": 6.8,
     "legend.frameon": False,
     "axes.linewidth": 0.55,
-    "axes.prop_cycle": matplotlib.cycler(color=COLOURS),
+    "axes.prop_cycle": cycler(color=COLOURS),
     "xtick.direction": "in",
     "ytick.direction": "in",
     "xtick.top": True,
@@ -86,7 +87,7 @@ def flow(simulation: Simulation, into: Axes | None = None, **line: Any) -> Axes:
     new = axes() if into is None else into
     series, summary = simulation.timeseries(), simulation.summary()
     time, ratio = series["time"], series["flow_rate_ratio"]
-    each = round(1.0 / (simulation.strain_rate * simulation.configuration.time_step * simulation._run.steps_per_sample)) if simulation.strain_rate else 0
+    each = _samples_per_period(simulation)
     (drawn,) = new.plot(time, ratio, **{"alpha": 0.3, "linewidth": 0.5, "color": COLOURS[0], **line})
     if each and len(time) >= each:
         whole = len(time) // each * each
@@ -100,6 +101,12 @@ def flow(simulation: Simulation, into: Axes | None = None, **line: Any) -> Axes:
     if new.get_legend_handles_labels()[0]:
         new.legend()
     return new
+
+
+def _samples_per_period(simulation: Simulation) -> int:
+    """Samples in a period of the wave as it is driven now; 0 for a static wave."""
+    interval = simulation.configuration.time_step * simulation._run.steps_per_sample
+    return round(1.0 / (simulation.strain_rate * interval)) if simulation.strain_rate else 0
 
 
 def snapshot(simulation: Simulation, into: Axes | None = None) -> Axes:
