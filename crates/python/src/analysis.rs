@@ -175,9 +175,7 @@ fn fit_law_to_runs<'py>(
 ) -> Answer<'py> {
     let (law, family): (Law, Family) = (named(law)?, named(family)?);
     let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || {
-        analysis::fit_law_to_runs(law, family, &width, &runs)
-    })
+    answer(py, || analysis::fit_law_to_runs(law, family, &width, &runs))
 }
 
 #[pyfunction]
@@ -192,9 +190,7 @@ fn compare_laws<'py>(
     let laws: Vec<Law> = laws.iter().map(named).collect::<PyResult<_>>()?;
     let family: Family = named(family)?;
     let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || {
-        analysis::compare_laws(&laws, family, &width, &runs)
-    })
+    answer(py, || analysis::compare_laws(&laws, family, &width, &runs))
 }
 
 #[pyfunction]
@@ -351,11 +347,10 @@ impl<'py> Scheme<'py> {
                     point.error,
                 );
                 // A search asks often and long: Ctrl-C is heard on the way.
-                let scaled = function.py().check_signals().and_then(|()| {
-                    function
-                        .call1(arguments)?
-                        .extract::<(f64, f64, f64)>()
-                });
+                let scaled = function
+                    .py()
+                    .check_signals()
+                    .and_then(|()| function.call1(arguments)?.extract::<(f64, f64, f64)>());
                 match scaled {
                     Ok((x, y, error)) => CurvePoint { x, y, error },
                     Err(error) => {

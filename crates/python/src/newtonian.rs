@@ -95,7 +95,9 @@ impl Newtonian {
     /// Volume fraction of the fluid near the wall that moves back on average: 0 without any.
     #[getter]
     fn reflux_volume_fraction(&self) -> f64 {
-        self.flow.reflux().map_or(0.0, |layer| layer.volume_fraction)
+        self.flow
+            .reflux()
+            .map_or(0.0, |layer| layer.volume_fraction)
     }
 
     fn wall_radius<'py>(

@@ -100,7 +100,7 @@ impl Run {
                 }
                 run.advance_at_most(piece.min(steps - done))?;
                 // Short pieces at first, so that the limit holds for large tubes as well.
-                piece *= 2;
+                piece = piece.saturating_mul(2);
             }
         })
         .map_err(of_run)

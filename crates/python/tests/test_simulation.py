@@ -149,7 +149,7 @@ def test_errors_are_those_of_the_command_line() -> None:
     with pytest.raises(ConfigurationError, match="widht"):
         Simulation.preset("frictionless", widht=2.6)
     with pytest.raises(DoesNotFitError, match="do not fit"):
-        Simulation.preset("frictionless", volume_fraction=20.0)
+        Simulation.preset("frictionless", number=20_000)
     with pytest.raises(TypeError, match="drive.width"):
         Simulation.preset("frictionless", width=object())
 

@@ -70,7 +70,10 @@ fn a_changed_run_is_the_run_that_was_planned_so_and_its_ledger_stays_right() {
 
 #[test]
 fn the_value_that_there_is_changes_no_bit() {
-    let (mut touched, mut left) = (begin("frictionless", &NARROW), begin("frictionless", &NARROW));
+    let (mut touched, mut left) = (
+        begin("frictionless", &NARROW),
+        begin("frictionless", &NARROW),
+    );
     for run in [&mut touched, &mut left] {
         advance(run, 5);
     }
@@ -81,7 +84,10 @@ fn the_value_that_there_is_changes_no_bit() {
     for run in [&mut touched, &mut left] {
         advance(run, 5);
     }
-    assert_eq!(touched.simulation().snapshot(), left.simulation().snapshot());
+    assert_eq!(
+        touched.simulation().snapshot(),
+        left.simulation().snapshot()
+    );
 }
 
 #[test]
