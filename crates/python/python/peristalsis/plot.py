@@ -6,8 +6,9 @@ Okabe and Ito, which stay apart for colour-blind readers; red moves along the wa
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
+from typing import TYPE_CHECKING, Any, ParamSpec
 
 import numpy as np
 import numpy.typing as npt
@@ -20,11 +21,15 @@ try:
     import matplotlib
     import matplotlib.pyplot as plt
     from cycler import cycler
+    from matplotlib.collections import EllipseCollection
+    from matplotlib.colors import Normalize
 except ImportError as error:
     raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from error
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+
+Parameters = ParamSpec("Parameters")
 
 __all__ = ["STYLE", "axes", "collapse", "flow", "profile", "snapshot", "stationary_flow", "survival"]
 
@@ -72,6 +77,17 @@ STYLE: Any = {
 }
 
 
+def _styled(draw: Callable[Parameters, Axes]) -> Callable[Parameters, Axes]:
+    """The same function with the settings of `STYLE`."""
+
+    @wraps(draw)
+    def styled(*arguments: Parameters.args, **keywords: Parameters.kwargs) -> Axes:
+        with matplotlib.rc_context(STYLE):
+            return draw(*arguments, **keywords)
+
+    return styled
+
+
 def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     """New axes in the style, in a figure of `width` by `height` millimetres."""
     with matplotlib.rc_context(STYLE):
@@ -82,13 +98,14 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     return new
 
 
+@_styled
 def flow(simulation: Simulation, into: Axes | None = None, **line: Any) -> Axes:
     """J/Jmax against time: samples faint, period averages over them, the Newtonian fluid for reference."""
     new = axes() if into is None else into
     series, summary = simulation.timeseries(), simulation.summary()
     time, ratio = series["time"], series["flow_rate_ratio"]
     each = _samples_per_period(simulation)
-    (drawn,) = new.plot(time, ratio, **{"alpha": 0.3, "linewidth": 0.5, "color": COLOURS[0], **line})
+    (drawn,) = new.plot(time, ratio, **{"alpha": 0.4, "linewidth": 0.5, "color": COLOURS[0], **line})
     if each and len(time) >= each:
         whole = len(time) // each * each
         middle = time[:whole].reshape(-1, each).mean(axis=1)
@@ -109,6 +126,7 @@ def _samples_per_period(simulation: Simulation) -> int:
     return round(1.0 / (simulation.strain_rate * interval)) if simulation.strain_rate else 0
 
 
+@_styled
 def snapshot(simulation: Simulation, into: Axes | None = None) -> Axes:
     """Grains from the side, the wave to the right, coloured by axial velocity along it in units of its speed."""
     new = axes(DOUBLE_COLUMN, 45.0) if into is None else into
@@ -117,27 +135,33 @@ def snapshot(simulation: Simulation, into: Axes | None = None) -> Axes:
     def along(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         return z if heading > 0 else length - z
 
-    wall, grains = simulation.wall_positions, simulation.positions
+    wall, grains, diameters = simulation.wall_positions, simulation.positions, simulation.diameters
     speed = simulation.strain_rate * length / simulation.configuration.waves
     velocity = heading * simulation.velocities[:, 2] / (speed or 1.0)
     order = np.argsort(grains[:, 0])
     new.scatter(along(wall[:, 2]), wall[:, 1], s=1.0, color=GREY, linewidths=0, alpha=0.4)
-    drawn = new.scatter(
-        along(grains[order, 2]),
-        grains[order, 1],
-        c=velocity[order],
-        s=8.0,
+    drawn = EllipseCollection(
+        diameters[order],
+        diameters[order],
+        np.zeros(len(order)),
+        units="xy",
+        offsets=np.column_stack([along(grains[order, 2]), grains[order, 1]]),
+        offset_transform=new.transData,
+        array=velocity[order],
         cmap="RdBu_r",
-        vmin=-1.0,
-        vmax=1.0,
+        norm=Normalize(-1.0, 1.0),
         edgecolors="black",
         linewidths=0.2,
     )
-    new.set(xlabel=r"$z$ [$d$]", ylabel=r"$y$ [$d$]", aspect="equal", xlim=(0.0, length))
+    new.add_collection(drawn)
+    # Grains that escaped are far away, and not shown.
+    outermost = 1.1 * float(np.hypot(wall[:, 0], wall[:, 1]).max())
+    new.set(xlabel=r"$z$ [$d$]", ylabel=r"$y$ [$d$]", aspect="equal", xlim=(0.0, length), ylim=(-outermost, outermost))
     new.figure.colorbar(drawn, ax=new, label=r"$v_z/c$", shrink=0.8)
     return new
 
 
+@_styled
 def profile(simulation: Simulation, column: str = "density", into: Axes | None = None, **line: Any) -> Axes:
     """A column of the late profile against the position in the wave's frame, with its error where it has one."""
     new = axes() if into is None else into
@@ -154,6 +178,7 @@ def profile(simulation: Simulation, column: str = "density", into: Axes | None =
     return new
 
 
+@_styled
 def stationary_flow(
     width: npt.ArrayLike,
     ratio: npt.ArrayLike,
@@ -175,6 +200,7 @@ def stationary_flow(
     return new
 
 
+@_styled
 def survival(curve: Survival, into: Axes | None = None, **line: Any) -> Axes:
     """Part of the runs without a transition, as a step function with its interval of 68 per cent."""
     new = axes() if into is None else into
@@ -191,6 +217,7 @@ def survival(curve: Survival, into: Axes | None = None, **line: Any) -> Axes:
     return new
 
 
+@_styled
 def collapse(
     what: Collapse,
     parameters: CollapseResult | Sequence[float],
