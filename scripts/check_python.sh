@@ -28,14 +28,17 @@ done | tee target/python-pools.txt
 [ "$(cut -d: -f2- target/python-pools.txt | sort -u | wc -l)" -eq 1 ] || { echo "the pools disagree"; exit 1; }
 [ "$(wc -l < target/python-pools.txt)" -eq 4 ] || { echo "a pool said nothing"; exit 1; }
 
+step "the notebooks"
+"$environment/bin/python" scripts/run_notebooks.py examples/notebooks/*.ipynb
+
 step "types"
 "$environment/bin/mypy" --config-file crates/python/pyproject.toml crates/python/python
 
-step "the wheel in an empty environment, with the snippets of its README"
+step "the wheel in an empty environment, with the snippets of the README and the tutorial"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
 "$scratch/venv/bin/pip" install --quiet "$wheel"
-(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/crates/python/README.md" "$OLDPWD/docs/python/collapse.md")
+(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/README.md" "$OLDPWD/crates/python/README.md" "$OLDPWD/docs/python/collapse.md")
 
 step "the Python package is well"
