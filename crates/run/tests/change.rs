@@ -10,12 +10,13 @@ fn begin(preset: &str, overrides: &[&str]) -> Run {
         preset: Some(preset),
         overrides: &overrides,
     });
-    Run::new(configuration.unwrap()).unwrap()
+    let configuration = configuration.expect("a preset with known keys");
+    Run::new(configuration).expect("a tube that holds its grains")
 }
 
 fn advance(run: &mut Run, samples: usize) {
     for _ in 0..samples {
-        run.advance().unwrap();
+        run.advance().expect("a step that is short enough");
     }
 }
 
