@@ -6,9 +6,9 @@ check:
 test:
     cargo test --workspace
 
-# The checks, the long validation runs, the audit of unsafe code and the clients of trajectories (about three quarters of
+# The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
 # an hour on two cores).
-full-check: check audit clients check-viewer
+full-check: check audit clients check-viewer python
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
@@ -27,6 +27,16 @@ check-viewer *options:
 # The viewer's page made anew from viewer/ (TypeScript, three.js).
 viewer-bundle:
     bash scripts/viewer_bundle.sh
+
+# The Python package as a wheel for this machine, below target/wheels.
+wheel:
+    [ -x target/python/bin/python ] || python3 -m venv target/python
+    target/python/bin/pip install --quiet maturin
+    target/python/bin/maturin build --release --locked --manifest-path crates/python/Cargo.toml --out target/wheels
+
+# Tests, types and wheel of the Python package, in environments below target/.
+python:
+    bash scripts/check_python.sh
 
 # The fast kernels' instructions against those on record (see benchmarks/instructions/README.md); --record
 count-instructions *options:

@@ -198,7 +198,7 @@ pub(crate) struct ScheduleTableKeys {
     #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub(crate) end: Option<f64>,
     /// When each of the values of steps begins to hold, or a course has it, ascending; before the first of steps the
-    /// parameter has its own value.
+    /// parameter has its own value. A course jumps where two of its times are equal.
     #[schemars(extend("x-unit" = "periods", "minItems" = 1, "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
     pub(crate) at: Option<Vec<f64>>,
     /// The values of steps or of a course, as many as at, in the unit of the parameter.

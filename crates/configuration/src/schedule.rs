@@ -46,7 +46,7 @@ pub enum ScheduleForm {
     },
     /// Linear in time from each value to the next, constant before the first and after the last.
     Course {
-        /// (time in periods, value), times ascending, at least one.
+        /// (time in periods, value), times ascending, at least one; of two at one time the later holds from then on.
         knots: Vec<(f64, f64)>,
     },
 }
@@ -64,23 +64,22 @@ impl Schedule {
         }
     }
 
-    /// The same schedule up to `start`, from there linear in time to `value` at `end`, and constant; in periods.
+    /// The same schedule up to `start`, from there linear in time to `value` at `end`, and constant; in periods. With the
+    /// end at the start it jumps, and an earlier jump at that time is forgotten.
     ///
-    /// `None` where the schedule has not come to rest by `start`, or `end` is not after it: what has been goes on to be
+    /// `None` where the schedule has not come to rest by `start`, or `end` is before it: what has been goes on to be
     /// exactly what it was.
     #[must_use]
     pub fn going_on(&self, start: f64, end: f64, value: f64) -> Option<Self> {
         let mut knots = self.knots();
         let &(rest, resting) = knots.last()?;
-        if rest > start || end.partial_cmp(&start)? != std::cmp::Ordering::Greater {
-            return None;
-        }
-        // Steps are knots in pairs, which the other form cannot say.
-        if matches!(self.form, ScheduleForm::Steps { .. }) {
+        if !(rest <= start && start <= end) {
             return None;
         }
         if rest < start {
             knots.push((start, resting));
+        } else if start == end && knots.len() > 1 && knots[knots.len() - 2].0 == start {
+            knots.pop();
         }
         knots.push((end, value));
         Some(Self {
@@ -190,6 +189,34 @@ mod tests {
             assert_eq!(course.value(time), value, "at {time}");
         }
         assert_eq!(course.knots(), knots);
+    }
+
+    #[test]
+    fn a_schedule_goes_on_by_ramps_and_jumps() {
+        let steps = Schedule {
+            parameter: ScheduledParameter::Width,
+            form: ScheduleForm::Steps {
+                steps: vec![(1.0, 3.0)],
+            },
+            before: 2.5,
+        };
+        assert_eq!(steps.going_on(0.5, 2.0, 2.8), None, "under way");
+        assert_eq!(steps.going_on(2.0, 1.5, 2.8), None, "backwards");
+        let ramped = steps.going_on(2.0, 4.0, 2.0).unwrap();
+        let jumped = ramped.going_on(5.0, 5.0, 2.9).unwrap();
+        let thought_better = jumped.going_on(5.0, 5.0, 2.7).unwrap();
+        for (time, value) in [
+            (0.0, 2.5),
+            (1.0, 3.0),
+            (3.0, 2.5),
+            (4.5, 2.0),
+            (5.0, 2.7),
+            (9.0, 2.7),
+        ] {
+            assert_eq!(thought_better.value(time), value, "at {time}");
+        }
+        assert_eq!(jumped.value(5.0), 2.9);
+        assert_eq!(jumped.knots().len(), thought_better.knots().len());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use peristalsis_configuration::Configuration;
+use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{EngineError, Instructions, Simulation, Snapshot, SnapshotView};
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
@@ -16,6 +16,12 @@ use crate::stopping::Stopping;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
 const STATE_LAYOUT: u32 = 7;
+/// What a snapshot is: its configuration is inside, so that it belongs to any physics.
+const SNAPSHOT: CheckpointIdentity = CheckpointIdentity {
+    kind: *b"snapshot",
+    layout_version: STATE_LAYOUT,
+    physics_hash: [0; 32],
+};
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 
@@ -128,6 +134,32 @@ impl Run {
     pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
         let identity = checkpoint_identity(&self.configuration);
         Ok(checkpoint::write(path, &identity, &self.state_view())?)
+    }
+
+    /// Configuration and state in one piece, from which [`Run::from_snapshot`] goes on anywhere.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the state is too large.
+    pub fn to_snapshot(&self) -> Result<Vec<u8>, RunError> {
+        let whole = (self.configuration.to_toml(), self.state_view());
+        Ok(checkpoint::encode(&SNAPSHOT, &whole)?)
+    }
+
+    /// Goes on from what [`Run::to_snapshot`] gave, with the same bits.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the bytes are damaged or something else, and as [`Run::resume`].
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self, RunError> {
+        let (text, state): (String, RunState) = checkpoint::decode(&SNAPSHOT, bytes)?;
+        let configuration = Configuration::from_sources(&Sources {
+            file: Some(SourceFile {
+                name: "snapshot",
+                text: &text,
+            }),
+            preset: None,
+            overrides: &[],
+        })?;
+        Self::resume(configuration, state)
     }
 
     /// Lets the run end before its time. The rule is no part of the state: give it again after a restart.

@@ -9,7 +9,8 @@ use crate::run::Run;
 const LARGEST: f64 = 1e6;
 
 impl Run {
-    /// What a parameter of the drive is now, in the units of its key; `None` for the amplitude of the other control.
+    /// What a parameter of the drive is for the next step, in the units of its key; `None` for the amplitude of the other
+    /// control.
     #[must_use]
     pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {
         let drive = &self.configuration().drive;
@@ -24,9 +25,8 @@ impl Run {
             ) => force_amplitude,
             _ => return None,
         };
-        let now = self.simulation().time() / drive.period().unwrap_or(1.0);
         let schedule = self.schedule(parameter);
-        Some(schedule.map_or(constant, |schedule| schedule.value(now)))
+        Some(schedule.map_or(constant, |schedule| schedule.value(self.soonest())))
     }
 
     /// Whether a parameter of the drive stays what it is.
@@ -36,14 +36,16 @@ impl Run {
             .is_none_or(|schedule| schedule.rest() <= self.soonest())
     }
 
-    /// Leads a parameter of the drive to `value` within so many periods, linearly in time, beginning with the next step.
+    /// Leads a parameter of the drive to `value` within so many periods, linearly in time, beginning with the next step;
+    /// within 0 periods it jumps there, and what the wall does to the contacts that it then finds is booked as its work.
     ///
     /// The configuration keeps the course, so that a run from its start, or from a checkpoint, under the
-    /// [configuration](Run::configuration) as it is then takes the same course to the same bits.
+    /// [configuration](Run::configuration) as it is then takes the same course to the same bits. The value that the
+    /// parameter has already changes nothing, not by a bit.
     ///
     /// # Errors
     /// [`RunError::Steering`] for a value out of range, where the wave stands still (its periods never pass), and while
-    /// the parameter is still under way.
+    /// the parameter is still under way; nothing is changed then.
     pub fn drive_to(
         &mut self,
         parameter: ScheduledParameter,
@@ -51,18 +53,25 @@ impl Run {
         periods: f64,
     ) -> Result<(), RunError> {
         let refused = |reason: String| Err(RunError::Steering { reason });
+        let (name, most) = match parameter {
+            ScheduledParameter::Width => ("drive.width", 2.0 * self.configuration().tube.radius),
+            ScheduledParameter::ForceAmplitude => ("drive.force_amplitude", LARGEST),
+            ScheduledParameter::StrainRate => ("drive.strain_rate", LARGEST),
+        };
         let Some(now) = self.driven(parameter) else {
-            return refused("this tube is controlled otherwise".to_owned());
+            return refused(format!("{name} belongs to the other drive.control"));
         };
         if self.configuration().drive.period().is_none() {
-            return refused("its wave stands still".to_owned());
+            return refused(format!("{name} cannot follow a wave that stands still"));
         }
-        let most = match parameter {
-            ScheduledParameter::Width => 2.0 * self.configuration().tube.radius,
-            _ => LARGEST,
-        };
-        if !(0.0..=most).contains(&value) {
-            return refused(format!("{value} is not from 0 to {most}"));
+        if value > most {
+            return refused(format!("{name} = {value} is above {most}"));
+        }
+        if value.is_nan() || value < 0.0 {
+            return refused(format!("{name} = {value} is not a number from 0 on"));
+        }
+        if value == now && self.is_at_rest(parameter) {
+            return Ok(());
         }
         let start = self.soonest();
         let going_on = self
@@ -71,7 +80,7 @@ impl Run {
             .unwrap_or_else(|| Schedule::resting(parameter, now))
             .going_on(start, start + periods, value);
         let Some(schedule) = going_on else {
-            return refused("the parameter is still under way".to_owned());
+            return refused(format!("{name} still follows its schedule"));
         };
         let mut configuration = self.configuration().clone();
         let schedules = &mut configuration.drive.schedules;

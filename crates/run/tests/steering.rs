@@ -99,7 +99,7 @@ fn what_cannot_be_driven_is_refused() {
             "{parameter:?} {value}"
         );
     }
-    assert!(run.drive_to(ScheduledParameter::Width, 2.8, 0.0).is_err());
+    assert!(run.drive_to(ScheduledParameter::Width, 2.8, -0.5).is_err());
     assert!(run.set_friction(0.3).is_err());
     assert_eq!(run.configuration(), &before);
 }

@@ -32,6 +32,8 @@ const CLIENTS: usize = 8;
 const MESSAGE_BYTES: usize = 4096;
 /// Requests that wait for the run, at most.
 const WAITING: usize = 64;
+/// Time after which a request that found no place is tried again.
+const FULL: Duration = Duration::from_millis(2);
 /// Notices that a slow client may lag behind.
 const NOTICES: usize = 64;
 /// Time from one look at whether to stop to the next.
@@ -260,10 +262,9 @@ async fn attend(socket: WebSocket, shared: Shared) {
     loop {
         let message = tokio::select! {
             received = from.next() => match received {
-                Some(Ok(Message::Text(text))) => match ask(&shared, &text) {
-                    Answer::Nothing => continue,
-                    Answer::Say(text) => Message::Text(text.into()),
-                    Answer::Close(reason) => {
+                Some(Ok(Message::Text(text))) => match ask(&shared, &text).await {
+                    Ok(()) => continue,
+                    Err(reason) => {
                         let notice = problem(reason.clone());
                         drop(to.send(Message::Text(notice.into())).await);
                         farewell(close_code::POLICY, &reason)
@@ -297,29 +298,27 @@ async fn attend(socket: WebSocket, shared: Shared) {
 
 async fn welcome(shared: &Shared) -> Option<String> {
     let (reply, answer) = oneshot::channel();
-    shared
-        .requests
-        .try_send(tube::Request::Welcome(reply))
-        .ok()?;
+    request(shared, tube::Request::Welcome(reply)).await?;
     answer.await.ok()
 }
 
-/// What becomes of a message.
-enum Answer {
-    Nothing,
-    Say(String),
-    Close(String),
+/// Passes a message on to the run; else the reason to close the connection.
+async fn ask(shared: &Shared, text: &str) -> Result<(), String> {
+    let command = Command::read(text).map_err(|reason| format!("not a command: {reason}"))?;
+    request(shared, tube::Request::Command(command))
+        .await
+        .ok_or_else(|| "the run has ended".to_owned())
 }
 
-fn ask(shared: &Shared, text: &str) -> Answer {
-    let command = match Command::read(text) {
-        Ok(command) => command,
-        Err(reason) => return Answer::Close(format!("not a command: {reason}")),
-    };
-    match shared.requests.try_send(tube::Request::Command(command)) {
-        Ok(()) => Answer::Nothing,
-        Err(TrySendError::Full(_)) => Answer::Say(problem("too many commands at once".to_owned())),
-        Err(TrySendError::Disconnected(_)) => Answer::Close("the run has ended".to_owned()),
+/// Waits for a place among the requests: who sends too many waits for the run, and nobody's are lost.
+async fn request(shared: &Shared, mut request: tube::Request) -> Option<()> {
+    loop {
+        request = match shared.requests.try_send(request) {
+            Ok(()) => return Some(()),
+            Err(TrySendError::Full(request)) => request,
+            Err(TrySendError::Disconnected(_)) => return None,
+        };
+        tokio::time::sleep(FULL).await;
     }
 }
 

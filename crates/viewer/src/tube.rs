@@ -199,7 +199,6 @@ impl Tube {
             };
             let steered = match scheduled {
                 Some(scheduled) if !self.run.is_at_rest(scheduled) => continue,
-                Some(scheduled) if self.run.driven(scheduled) == Some(value) => Ok(()),
                 Some(scheduled) => self.run.drive_to(scheduled, value, RAMP),
                 None => self.run.set_friction(value),
             };

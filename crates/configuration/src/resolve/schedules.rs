@@ -260,10 +260,14 @@ impl Scope<'_> {
         target: &Target,
         context: &mut Context<'_>,
     ) -> Option<Vec<(f64, f64)>> {
-        let (takes, needs) = match keys.form {
-            ScheduleFormName::Course => ("a course takes", "a course needs"),
-            _ => ("steps take", "steps need"),
+        // A course jumps where it has two values at one time.
+        let (takes, needs, most, but) = match keys.form {
+            ScheduleFormName::Course => {
+                ("a course takes", "a course needs", 2, " (two may be equal)")
+            }
+            _ => ("steps take", "steps need", 1, ""),
         };
+        let all_equal = |times: &[f64]| times.iter().all(|time| *time == times[0]);
         let of_a_ramp = [keys.from, keys.to, keys.start, keys.end];
         if of_a_ramp.iter().any(Option::is_some) {
             refuse(
@@ -281,8 +285,8 @@ impl Scope<'_> {
             refuse(context, format!("{times} times in at, but {values} values"));
             return None;
         }
-        if at.windows(2).any(|pair| pair[0] >= pair[1]) {
-            refuse(context, "the times in at do not ascend".into());
+        if at.windows(2).any(|pair| pair[0] > pair[1]) || at.windows(most + 1).any(all_equal) {
+            refuse(context, format!("the times in at do not ascend{but}"));
             return None;
         }
         let values: Option<Vec<f64>> = values

@@ -232,6 +232,10 @@ fn schedules_are_checked_at_all_times() {
         ),
         ("form = 'course', at = [0, 1]", "a course needs both"),
         (
+            "form = 'course', at = [1, 1, 1], values = [2.5, 2.6, 2.7]",
+            "do not ascend (two may be equal)",
+        ),
+        (
             "form = 'ramp', parameter = 'force_amplitude', end = 2",
             "drive.control = \"stress\"",
         ),

@@ -155,7 +155,7 @@ fn a_ninth_client_waits_for_a_place() {
 }
 
 #[test]
-fn a_flood_of_commands_is_told_to_wait_and_does_no_harm() {
+fn a_flood_of_commands_waits_and_does_no_harm() {
     let served = Served::small();
     let (mut client, _) = served.client();
     for _ in 0..2000 {

@@ -1,0 +1,69 @@
+"""Keywords for the dotted keys of a configuration: ``width`` for ``drive.width``, ``initial_state`` for ``initial.state``."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from functools import cache
+from typing import Any
+
+from . import _core
+from ._core import ConfigurationError
+
+
+def _leaves(schema: Mapping[str, Any], root: Mapping[str, Any], path: str = "") -> Iterator[str]:
+    """Full names of the keys below a part of the schema."""
+    forms = [schema, *schema.get("anyOf", []), *schema.get("oneOf", []), *schema.get("allOf", [])]
+    for form in forms:
+        name = form.get("$ref", "").rpartition("/")[2]
+        definition = root.get("$defs", {}).get(name, {}) if name else form
+        properties = definition.get("properties", {})
+        if path == "drive.schedule":
+            continue
+        for key, below in properties.items():
+            full = f"{path}.{key}" if path else key
+            yield full
+            yield from _leaves(below, root, full)
+
+
+@cache
+def keywords() -> dict[str, tuple[str, ...]]:
+    """The keys that each keyword may mean: the last word of a key, or the whole of it with ``_`` for its dots."""
+    root = json.loads(_core.schema())
+    found: dict[str, set[str]] = {}
+    every = set(_leaves(root, root))
+    for key in every:
+        if any(other.startswith(key + ".") for other in every):
+            continue
+        for keyword in {key.rpartition(".")[2], key.replace(".", "_")}:
+            found.setdefault(keyword, set()).add(key)
+    return {keyword: tuple(sorted(keys)) for keyword, keys in found.items()}
+
+
+def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> dict[str, Any]:
+    """One dictionary of dotted keys: those of `settings`, tables in it flattened, and the keywords given.
+
+    Raises
+    ------
+    ConfigurationError
+        For a keyword that could mean several keys.
+    """
+    joined = dict(_flat(settings or {}))
+    for keyword, value in given.items():
+        keys = keywords().get(keyword, (keyword,))
+        if len(keys) > 1:
+            raise ConfigurationError(
+                f"{keyword} could mean {' or '.join(keys)}\n"
+                f"  help: write {' or '.join(key.replace('.', '_') for key in keys)}"
+            )
+        joined[keys[0]] = value
+    return joined
+
+
+def _flat(settings: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:
+    for key, value in settings.items():
+        full = f"{path}.{key}" if path else key
+        if isinstance(value, Mapping) and full != "drive.schedule":
+            yield from _flat(value, full)
+        else:
+            yield full, value

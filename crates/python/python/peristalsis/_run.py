@@ -1,0 +1,43 @@
+"""One run as a function: what pools of workers and clusters take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from ._simulation import Simulation
+
+
+def run(config: Mapping[str, Any]) -> dict[str, Any]:
+    """Run a configuration to its end and answer its summary.
+
+    Function, argument and answer can be pickled, so that replicas go through `concurrent.futures`, joblib, Dask or Ray
+    as they are.
+
+    Parameters
+    ----------
+    config : mapping
+        ``preset`` (a name) or ``file`` (a path), and keywords or dotted keys as of `Simulation.preset`.
+
+    Returns
+    -------
+    dict
+        The summary, with the given `config` under its own name.
+
+    Examples
+    --------
+    >>> summary = run({"preset": "frictionless", "waves": 2, "periods": 2, "seed": 3})
+    >>> summary["seed"], summary["config"]["waves"]
+    (3, 2)
+    """
+    settings = dict(config)
+    preset, file = settings.pop("preset", None), settings.pop("file", None)
+    if (preset is None) == (file is None):
+        raise TypeError("a configuration to run names a preset or a file")
+    dotted = {key: settings.pop(key) for key in list(settings) if "." in key}
+    if file is None:
+        simulation = Simulation.preset(preset, dotted, **settings)
+    else:
+        simulation = Simulation.from_file(file, dotted, **settings)
+    simulation.run()
+    return {"config": dict(config), **simulation.summary()}

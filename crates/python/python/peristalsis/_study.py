@@ -1,0 +1,156 @@
+"""Studies: many runs over parameters, kept in a store."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from . import _core
+from ._core import Configuration, Table
+
+
+class PlannedRun(NamedTuple):
+    """One run of a study."""
+
+    identity: str
+    replicate: int
+    settings: dict[str, float | str]
+    configuration: Configuration
+
+
+def study(
+    source: str | os.PathLike[str] | Mapping[str, Any], store: str | os.PathLike[str] | None = None
+) -> Study:
+    """A study from its file, or from a dictionary of the same shape.
+
+    Parameters
+    ----------
+    source : path or mapping
+        A study file (``peristalsis study schema`` says what it may hold), or its content::
+
+            {"name": "widths", "preset": "frictionless", "replicates": 4,
+             "base": {"tube.waves": 2},
+             "axes": [{"key": "drive.width", "from": 2.6, "to": 2.9, "step": 0.1}]}
+
+    store : path, optional
+        Folder that keeps the runs; ``stores/NAME`` by default. The command line works on the same store.
+    """
+    if isinstance(source, Mapping):
+        name, text = "study", _toml(source)
+    else:
+        name, text = os.fspath(source), Path(source).read_text(encoding="utf-8")
+    read = _core.Study(name, text)
+    return Study(read, Path("stores", read.name) if store is None else Path(store))
+
+
+class Study:
+    """A study with the store that keeps its runs.
+
+    Work on it as often as you like, in several processes at once: what is done is not done again, and the rows come out
+    the same bit for bit.
+    """
+
+    def __init__(self, study: _core.Study, store: Path) -> None:
+        self._study = study
+        self.store = store
+
+    @classmethod
+    def open(cls, store: str | os.PathLike[str]) -> Study:
+        """The study of a store that there is."""
+        return cls(_core.Study.of_store(os.fspath(store)), Path(store))
+
+    @property
+    def name(self) -> str:
+        """Short name."""
+        return self._study.name
+
+    @property
+    def title(self) -> str:
+        """What it is about."""
+        return self._study.title
+
+    def plan(self) -> list[PlannedRun]:
+        """The runs, in the order of the axes; those that refinement will add are not among them."""
+        return [PlannedRun(*run) for run in self._study.plan()]
+
+    def run(
+        self,
+        workers: int | None = None,
+        *,
+        limit: float | None = None,
+        progress: bool = False,
+    ) -> str:
+        """Compute what is missing.
+
+        Parameters
+        ----------
+        workers : int, optional
+            Runs at a time; one for each processor by default.
+        limit : float, optional
+            Seconds after which to stop, every run in progress saved.
+        progress : bool
+            Show how far it is, on standard error.
+
+        Returns
+        -------
+        {"complete", "time_up"}
+            Ctrl-C raises `KeyboardInterrupt` once every run is saved; call again to go on.
+        """
+
+        def watch(done: int, failed: int, total: int, part: float, left: float | None) -> None:
+            rest = "" if left is None else f"  {left:.0f} s left"
+            print(f"\r{part:4.0%}  {done} of {total} runs, {failed} failed{rest}   ", end="", file=sys.stderr)
+
+        self.store.parent.mkdir(parents=True, exist_ok=True)
+        number = (os.cpu_count() or 1) if workers is None else int(workers)
+        ending = self._study.work(os.fspath(self.store), number, limit, watch if progress else None)
+        if progress:
+            print(file=sys.stderr)
+        return ending
+
+    def rows(self) -> Table:
+        """The finished runs, one a row: an Arrow table, which pandas, polars and pyarrow take without a copy."""
+        return _core.store_rows(os.fspath(self.store))
+
+    def counts(self) -> dict[str, int]:
+        """How many runs are in which state."""
+        return _core.store_counts(os.fspath(self.store))
+
+    def export(self, folder: str | os.PathLike[str], series: bool = False) -> list[str]:
+        """Write the tables as Parquet and CSV; answers the files."""
+        files = _core.store_export(os.fspath(self.store), os.fspath(folder), series)
+        return [os.fspath(file) for file in files]
+
+    def __repr__(self) -> str:
+        return f"<peristalsis.Study: {self.name}, {len(self._study.plan())} runs planned, store {self.store}>"
+
+
+def _toml(content: Mapping[str, Any]) -> str:
+    """A study's content as TOML."""
+    return "".join(f"{_key(key)} = {_value(value)}\n" for key, value in content.items())
+
+
+def _key(key: str) -> str:
+    return ".".join(_text(part) for part in key.split("."))
+
+
+def _text(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"')
+    return '"' + "".join(c if c >= " " and c != "\x7f" else f"\\u{ord(c):04x}" for c in escaped) + '"'
+
+
+def _value(value: Any) -> str:
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(key)} = {_value(item)}" for key, item in value.items()) + "}"
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Sequence) or getattr(value, "ndim", None):
+        return "[" + ", ".join(_value(item) for item in value) + "]"
+    if hasattr(value, "__index__"):
+        return str(int(value))
+    return repr(float(value))

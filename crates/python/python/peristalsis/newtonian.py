@@ -1,0 +1,60 @@
+"""Newtonian peristalsis, the reference: Shapiro, Jaffrin & Weinberg, J. Fluid Mech. 37, 799 (1969), axisymmetric.
+
+A viscous fluid in a tube with a long sine wave, without inertia. Radial lengths are in a, axial ones in lambda,
+velocities in c, flow rates in pi a^2 c, pressures in 8 mu c lambda/a^2; x = (z - c t)/lambda has the belly at 1/4 and the
+throat at 3/4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from ._core import Newtonian, trapping_threshold
+
+__all__ = ["Newtonian", "field", "flow_rate_ratio", "trapping_threshold"]
+
+Array = npt.NDArray[np.float64]
+
+
+def flow_rate_ratio(
+    width: npt.ArrayLike, radius: float = 1.5, pressure: float = 0.0
+) -> Array:
+    """J/Jmax of a fluid against the width of the bottleneck, Q/(1 + phi^2/2) with phi = 1 - w/(2 a).
+
+    Parameters
+    ----------
+    width : array_like
+        w, in the unit of `radius`, from 0 to 2 a.
+    radius : float
+        a; 1.5 in the frictionless presets. For the clear bore between spheres of diameter d take w - d and a - d/2.
+    pressure : float
+        P = a^2 Dp/(8 mu c lambda).
+
+    Returns
+    -------
+    ndarray
+        Of the shape of `width`.
+
+    Examples
+    --------
+    >>> float(flow_rate_ratio(0.0))
+    1.0
+    """
+    widths = np.asarray(width, dtype=np.float64)
+    ratios = [Newtonian.from_width(w, radius, pressure).flow_rate_ratio for w in widths.flat]
+    return np.array(ratios, dtype=np.float64).reshape(widths.shape)
+
+
+def field(
+    flow: Newtonian, radius: npt.ArrayLike, phase: npt.ArrayLike
+) -> tuple[Array, Array, Array]:
+    """Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2] in the laboratory.
+
+    `radius` [a] and `phase` are broadcast against each other; the answers have their common shape.
+    """
+    r, x = np.broadcast_arrays(
+        np.asarray(radius, dtype=np.float64), np.asarray(phase, dtype=np.float64)
+    )
+    axial, radial, stream = flow.field(np.ascontiguousarray(r).ravel(), np.ascontiguousarray(x).ravel())
+    return axial.reshape(r.shape), radial.reshape(r.shape), stream.reshape(r.shape)

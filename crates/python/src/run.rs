@@ -1,0 +1,295 @@
+//! One run, shared by the threads of Python.
+
+use std::time::{Duration, Instant};
+
+use glam::DVec3;
+use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use parking_lot::Mutex;
+use peristalsis_engine::{Instructions, Wall};
+use peristalsis_run::{Status, Summary, profile_table, timeseries_table, waves_table};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use pythonize::pythonize;
+
+use crate::configuration::{Configuration, scheduled};
+use crate::error::of_run;
+use crate::table::{Table, read_only};
+
+/// A simulation with what was measured of it, behind a lock that is fair: who looks at it while another thread advances
+/// it sees a whole step, and soon.
+#[pyclass(frozen, module = "peristalsis._core")]
+pub(crate) struct Run {
+    run: Mutex<peristalsis_run::Run>,
+}
+
+impl Run {
+    fn of(run: peristalsis_run::Run) -> Self {
+        Self {
+            run: Mutex::new(run),
+        }
+    }
+
+    /// Looks at the run, without the interpreter.
+    fn look<T: Send>(
+        &self,
+        py: Python<'_>,
+        look: impl FnOnce(&mut peristalsis_run::Run) -> T + Send,
+    ) -> T {
+        py.detach(|| look(&mut self.run.lock()))
+    }
+
+    /// A vector of each grain, shape (N, 3).
+    fn vectors<'py>(
+        &self,
+        py: Python<'py>,
+        vectors: impl FnOnce(&peristalsis_run::Run) -> Vec<DVec3> + Send,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let flat: Vec<f64> = self.look(py, |run| {
+            vectors(run)
+                .into_iter()
+                .flat_map(|vector| vector.to_array())
+                .collect()
+        });
+        let number = flat.len() / 3;
+        let array = PyArray1::from_vec(py, flat).reshape([number, 3])?;
+        array.readwrite().make_nonwriteable();
+        Ok(array)
+    }
+}
+
+#[pymethods]
+impl Run {
+    /// Packs the grains.
+    #[new]
+    fn new(py: Python<'_>, configuration: &Configuration) -> PyResult<Self> {
+        let configuration = configuration.inner.clone();
+        py.detach(|| peristalsis_run::Run::new(configuration))
+            .map(Self::of)
+            .map_err(of_run)
+    }
+
+    /// Goes on from the bytes of a snapshot.
+    #[staticmethod]
+    fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+        py.detach(|| peristalsis_run::Run::from_snapshot(bytes))
+            .map(Self::of)
+            .map_err(of_run)
+    }
+
+    /// Configuration and state.
+    fn to_bytes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let bytes = self.look(py, |run| run.to_snapshot()).map_err(of_run)?;
+        Ok(PyBytes::new(py, &bytes))
+    }
+
+    /// A run that goes on by itself from here.
+    fn copy(&self, py: Python<'_>) -> Self {
+        Self::of(self.look(py, |run| run.clone()))
+    }
+
+    /// Advances by `steps` steps, or until so many seconds are over; answers the steps done.
+    fn advance(&self, py: Python<'_>, steps: u64, seconds: f64) -> PyResult<u64> {
+        let limit = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+        self.look(py, |run| {
+            let (begin, first) = (Instant::now(), run.simulation().step());
+            let mut piece = 8;
+            loop {
+                let done = run.simulation().step() - first;
+                if done >= steps || begin.elapsed() >= limit {
+                    return Ok(done);
+                }
+                run.advance_at_most(piece.min(steps - done))?;
+                // Short pieces at first, so that the limit holds for large tubes as well.
+                piece = piece.saturating_mul(2);
+            }
+        })
+        .map_err(of_run)
+    }
+
+    /// Leads a parameter of the drive to a value within so many periods; within 0 it jumps there with the next step.
+    fn drive_to(&self, py: Python<'_>, name: &str, value: f64, periods: f64) -> PyResult<()> {
+        let parameter = scheduled(name)?;
+        self.look(py, |run| run.drive_to(parameter, value, periods))
+            .map_err(of_run)
+    }
+
+    /// Value of a parameter of the drive for the next step; `None` where there is no such parameter.
+    fn driven(&self, py: Python<'_>, name: &str) -> PyResult<Option<f64>> {
+        let parameter = scheduled(name)?;
+        Ok(self.look(py, |run| run.driven(parameter)))
+    }
+
+    /// Computes with so many threads from now on.
+    fn compute_with(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
+        self.look(py, |run| run.compute_with(Instructions::widest(), threads))
+            .map_err(of_run)
+    }
+
+    /// The configuration, changes of the drive included.
+    #[getter]
+    fn configuration(&self, py: Python<'_>) -> Configuration {
+        Configuration {
+            inner: self.look(py, |run| run.configuration().clone()),
+        }
+    }
+
+    /// Centres of the grains.
+    #[getter]
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |run| {
+            let bodies = run.simulation().bodies();
+            bodies.position[..bodies.grains].to_vec()
+        })
+    }
+
+    /// Velocities of the grains.
+    #[getter]
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |run| {
+            let bodies = run.simulation().bodies();
+            bodies.velocity[..bodies.grains].to_vec()
+        })
+    }
+
+    /// Angular velocities of the grains.
+    #[getter]
+    fn angular_velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |run| {
+            let bodies = run.simulation().bodies();
+            bodies.angular_velocity[..bodies.grains].to_vec()
+        })
+    }
+
+    /// Centres of the wall's spheres.
+    #[getter]
+    fn wall_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        self.vectors(py, |run| match run.simulation().wall() {
+            Wall::Prescribed(wall) => (0..wall.lattice().spheres())
+                .map(|sphere| wall.sphere_position(sphere))
+                .collect(),
+            Wall::Elastic(_) => {
+                let bodies = run.simulation().bodies();
+                bodies.position[bodies.grains..].to_vec()
+            }
+        })
+    }
+
+    /// Diameters of the grains.
+    #[getter]
+    fn diameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        let diameters = self.look(py, |run| {
+            let bodies = run.simulation().bodies();
+            bodies.diameter[..bodies.grains].to_vec()
+        });
+        read_only(py, diameters)
+    }
+
+    /// Turns of the grains round the tube.
+    #[getter]
+    fn turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i32>> {
+        let turns = self.look(py, |run| {
+            let bodies = run.simulation().bodies();
+            bodies.turns[..bodies.grains].to_vec()
+        });
+        let array = PyArray1::from_vec(py, turns);
+        array.readwrite().make_nonwriteable();
+        array
+    }
+
+    /// Steps done.
+    #[getter]
+    fn steps(&self, py: Python<'_>) -> u64 {
+        self.look(py, |run| run.simulation().step())
+    }
+
+    /// Steps from one sample to the next.
+    #[getter]
+    fn steps_per_sample(&self, py: Python<'_>) -> u64 {
+        self.look(py, |run| run.configuration().run.steps_per_sample)
+    }
+
+    /// Time since the start.
+    #[getter]
+    fn time(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().time())
+    }
+
+    /// Wavelengths that the wave has run.
+    #[getter]
+    fn period(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().wall().cycles())
+    }
+
+    /// +1 where the wave runs towards +z, -1 where towards -z.
+    #[getter]
+    fn heading(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().wall().heading())
+    }
+
+    /// J/Jmax of the last whole period, or of the last sample before there is one.
+    #[getter]
+    fn flow_rate_ratio(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.progress().flow_rate_ratio)
+    }
+
+    /// Time of the transition, if it has been found.
+    #[getter]
+    fn transition_time(&self, py: Python<'_>) -> Option<f64> {
+        self.look(py, |run| run.recorder().transition_time())
+    }
+
+    /// Where energy is, where it came from and where it went.
+    #[getter]
+    fn energy_ledger<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (ledger, now) = self.look(py, |run| {
+            let simulation = run.simulation();
+            let (bodies, tally) = (simulation.bodies(), simulation.tally());
+            let now = [
+                ("kinetic_energy", bodies.kinetic_energy(0..bodies.grains)),
+                ("rotational_energy", bodies.rotational_energy()),
+                (
+                    "wall_kinetic_energy",
+                    bodies.kinetic_energy(bodies.grains..bodies.number()),
+                ),
+                ("potential_energy", tally.potential_energy()),
+                ("energy", simulation.energy()),
+                ("energy_residual", simulation.energy_residual()),
+            ];
+            (*simulation.ledger(), now)
+        });
+        let answer = pythonize(py, &ledger)?.cast_into::<PyDict>()?;
+        answer.del_item("initial_axial_moment")?;
+        for (name, value) in now {
+            answer.set_item(name, value)?;
+        }
+        Ok(answer)
+    }
+
+    /// The time series so far.
+    fn timeseries(&self, py: Python<'_>) -> PyResult<Table> {
+        Table::made(self.look(py, |run| timeseries_table(run)))
+    }
+
+    /// The late profile in the wave's frame.
+    fn profile(&self, py: Python<'_>) -> PyResult<Table> {
+        Table::made(self.look(py, |run| profile_table(run)))
+    }
+
+    /// The flow of each wave over each period.
+    fn waves(&self, py: Python<'_>) -> PyResult<Table> {
+        Table::made(self.look(py, |run| waves_table(run)))
+    }
+
+    /// The outcome so far.
+    fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let summary = self.look(py, |run| {
+            let status = if run.is_complete() {
+                Status::Complete
+            } else {
+                Status::Interrupted
+            };
+            Summary::of(run, status, None)
+        });
+        Ok(pythonize(py, &summary)?)
+    }
+}

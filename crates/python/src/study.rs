@@ -1,0 +1,187 @@
+//! Studies: many runs, kept in a store.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use peristalsis_study::{Effort, Ending, Plan, SettingValue, Specification, Store, work_on};
+use pyo3::exceptions::PyFileNotFoundError;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+
+use crate::configuration::Configuration;
+use crate::error::{of_configuration, of_study};
+use crate::table::Table;
+
+/// Time between two checkpoints of a run.
+const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
+
+/// A study file that has been read and checked.
+#[pyclass(frozen, module = "peristalsis._core")]
+pub(crate) struct Study {
+    specification: Specification,
+}
+
+#[pymethods]
+impl Study {
+    /// Reads a study from the text of its file; other files that it names are sought beside `name`.
+    #[new]
+    fn new(name: &str, text: &str) -> PyResult<Self> {
+        let folder = Path::new(name).parent().unwrap_or(Path::new(""));
+        Specification::from_toml(name, text, |file| {
+            let path = folder.join(file);
+            match std::fs::read_to_string(&path) {
+                Ok(text) => Ok((path.display().to_string(), text)),
+                Err(source) => Err(peristalsis_study::StudyError::Read { path, source }),
+            }
+        })
+        .map(|specification| Self { specification })
+        .map_err(of_study)
+    }
+
+    /// The study of a store.
+    #[staticmethod]
+    fn of_store(path: PathBuf) -> PyResult<Self> {
+        let store = Store::open(&path).map_err(of_study)?;
+        let specification = store.specification().map_err(of_study)?;
+        Ok(Self { specification })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.specification.name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.specification.title
+    }
+
+    /// The planned runs: (identity, replicate, settings of the point, configuration).
+    #[allow(clippy::type_complexity, reason = "a row, as Python unpacks it")]
+    fn plan<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Vec<(String, u32, Bound<'py, PyDict>, Configuration)>> {
+        let plan = Plan::of(&self.specification).map_err(of_configuration)?;
+        plan.sorted_runs()
+            .iter()
+            .map(|run| {
+                let settings = PyDict::new(py);
+                for setting in &plan.point(run).settings {
+                    match (&setting.value, setting.value.number()) {
+                        (_, Some(number)) => settings.set_item(&setting.key, number)?,
+                        (value, None) => settings.set_item(&setting.key, in_words(value))?,
+                    }
+                }
+                let configuration = Configuration {
+                    inner: plan.configuration(run),
+                };
+                Ok((
+                    run.identity.to_string(),
+                    run.replicate,
+                    settings,
+                    configuration,
+                ))
+            })
+            .collect()
+    }
+
+    /// Works on the study in a store; `watch` is called with (done, failed, total, part of the work, seconds left).
+    ///
+    /// Answers "complete", "stopped" or "time_up". What `watch` raises stops the work, every run saved.
+    #[pyo3(signature = (store, workers, limit=None, watch=None))]
+    fn work(
+        &self,
+        py: Python<'_>,
+        store: PathBuf,
+        workers: usize,
+        limit: Option<f64>,
+        watch: Option<Py<PyAny>>,
+    ) -> PyResult<&'static str> {
+        let effort = Effort {
+            workers,
+            checkpoint_interval: CHECKPOINT_INTERVAL,
+            limit: limit.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok()),
+        };
+        let stopped = AtomicBool::new(false);
+        let mut raised = None;
+        let ending = py.detach(|| {
+            let store = Store::create(&store, &self.specification)?;
+            work_on(
+                &store,
+                &self.specification,
+                effort,
+                &|| stopped.load(Ordering::Relaxed),
+                &mut |board| {
+                    let told = Python::attach(|py| {
+                        py.check_signals()?;
+                        let Some(watch) = &watch else { return Ok(()) };
+                        let left = board.left.map(|left| left.as_secs_f64());
+                        let state = (board.done, board.failed, board.total, board.fraction, left);
+                        watch.call1(py, state).map(drop)
+                    });
+                    if let Err(error) = told {
+                        stopped.store(true, Ordering::Relaxed);
+                        raised.get_or_insert(error);
+                    }
+                },
+            )
+        });
+        match (raised, ending.map_err(of_study)?) {
+            (Some(error), _) => Err(error),
+            (None, Ending::Complete) => Ok("complete"),
+            (None, Ending::Stopped) => Ok("stopped"),
+            (None, Ending::TimeUp) => Ok("time_up"),
+        }
+    }
+}
+
+fn in_words(value: &SettingValue) -> String {
+    value.to_string()
+}
+
+/// The finished runs of a store, one a row.
+#[pyfunction]
+fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
+    let rows = py.detach(|| Store::open(&path)?.rows()).map_err(of_study)?;
+    Table::new(&rows)
+}
+
+/// How many runs of a store are in which state.
+#[pyfunction]
+fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+    let survey = py
+        .detach(|| Store::open(&path)?.survey())
+        .map_err(of_study)?;
+    let counts = PyDict::new(py);
+    for (state, number) in survey.counts() {
+        counts.set_item(state, number)?;
+    }
+    Ok(counts)
+}
+
+/// Writes the tables of a store as Parquet and CSV; answers the files.
+#[pyfunction]
+fn store_export<'py>(
+    py: Python<'py>,
+    path: PathBuf,
+    folder: PathBuf,
+    series: bool,
+) -> PyResult<Bound<'py, PyList>> {
+    if !path.is_dir() {
+        let text = format!("there is no store {}", path.display());
+        return Err(PyFileNotFoundError::new_err(text));
+    }
+    let exported = py
+        .detach(|| Store::open(&path)?.export(&folder, series))
+        .map_err(of_study)?;
+    PyList::new(py, exported.files)
+}
+
+/// Adds the functions to the module.
+pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(store_rows, module)?)?;
+    module.add_function(wrap_pyfunction!(store_counts, module)?)?;
+    module.add_function(wrap_pyfunction!(store_export, module)?)
+}

@@ -1,0 +1,155 @@
+"""Estimators from Python: known answers, any data, and errors that say why."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from peristalsis import AnalysisError, analysis, newtonian, plot
+
+
+def ising_like(sizes: list[float], seed: int = 1) -> list[tuple[float, np.ndarray, np.ndarray, np.ndarray]]:
+    """y = L^-1/8 f((x - 2.27) L) with noise of one per cent: not our data."""
+    randomness = np.random.default_rng(seed)
+    curves = []
+    for size in sizes:
+        x = np.linspace(2.27 - 3 / size, 2.27 + 3 / size, 25)
+        clean = size**-0.125 / (1 + np.exp((x - 2.27) * size))
+        error = np.full_like(x, 0.01 * size**-0.125)
+        curves.append((size, x, clean + error * randomness.normal(size=len(x)), error))
+    return curves
+
+
+def test_collapse_of_data_that_are_not_ours() -> None:
+    collapse = analysis.Collapse(ising_like([8, 16, 32, 64]), "finite_size")
+    fit = collapse.fit([0.2, 0.8, 2.3], [0.1, 0.2, 0.05], resamples=40, leave_one_out=True)
+    for found, error, true in zip(fit.parameters, fit.errors, (0.125, 1.0, 2.27), strict=True):
+        assert abs(found - true) < 4 * error and 0 < error < 0.1
+    assert 0.5 < fit.quality < 2.0 and fit.overlap > 0.5
+    assert fit.leave_one_out.shape == (4, 3)
+    assert all(interval.lower <= found <= interval.upper for interval, found in zip(fit.contour, fit.parameters, strict=True))
+    assert collapse.quality([0.125, 2.0, 2.27]).quality > 10 * fit.quality
+    axes = plot.collapse(collapse, fit)
+    assert axes.get_title().startswith("S = ")
+
+
+def test_a_function_of_python_gives_what_ours_gives() -> None:
+    curves = ising_like([8, 16, 32])
+
+    def scaling(parameters: list[float], size: float, x: float, y: float, error: float) -> tuple[float, float, float]:
+        a, b, critical = parameters
+        return (x - critical) * size**b, y * size**a, error * size**a
+
+    ours, theirs = analysis.Collapse(curves, "finite_size"), analysis.Collapse(curves, scaling)
+    at = [0.13, 0.9, 2.26]
+    assert ours.quality(at).quality == pytest.approx(theirs.quality(at).quality, rel=1e-9)
+    fits = [each.fit([0.2, 0.8, 2.3], [0.1, 0.2, 0.05], starts=2, resamples=0) for each in (ours, theirs)]
+    assert fits[0].parameters == pytest.approx(fits[1].parameters, abs=1e-4)
+    assert np.isnan(fits[0].errors).all()
+
+    def broken(*_: object) -> tuple[float, float, float]:
+        raise LookupError("mine")
+
+    with pytest.raises(LookupError, match="mine"):
+        analysis.Collapse(curves, broken).quality(at)
+
+
+def test_a_law_of_divergence_by_hand() -> None:
+    width = np.linspace(2.4, 2.7, 8)
+    time = 3.0 * (2.8 - width) ** -1.5
+    fit = analysis.fit_law("power", width, time, 0.01 * time)
+    assert fit.critical_width is not None
+    assert fit.critical_width.value == pytest.approx(2.8, abs=1e-3)
+    assert fit.exponent.value == pytest.approx(1.5, abs=1e-2)
+    assert fit.exponent.interval_95.lower < 1.5 < fit.exponent.interval_95.upper
+    known = analysis.fit_law("power", width, time, 0.01 * time, critical_width=(2.8, 0.0))
+    assert known.exponent.value == pytest.approx(1.5, abs=1e-6)
+    assert str(known.exponent).startswith("1.5")
+    with pytest.raises(AnalysisError):
+        analysis.fit_law("power", width[:2], time[:2], time[:2])
+    with pytest.raises(AnalysisError, match="unknown variant"):
+        analysis.fit_law("parabolic", width, time, time)
+    with pytest.raises(ValueError, match="unequal length: 8, 7"):
+        analysis.fit_line(width, time[1:], time)
+
+
+def test_laws_from_runs_with_censored_ones() -> None:
+    randomness = np.random.default_rng(5)
+    width = np.repeat(np.linspace(2.4, 2.7, 6), 30)
+    time = randomness.exponential(2.0 / (2.8 - width))
+    observed = time < 60.0
+    fit = analysis.fit_law_to_runs("power", width, np.minimum(time, 60.0), observed, family="exponential")
+    assert fit.observed == observed.sum() and fit.censored == (~observed).sum() > 0
+    assert fit.exponent.interval_95.lower < 1.0 < fit.exponent.interval_95.upper
+    evidence = analysis.compare_laws(["power", "exponential"], width, np.minimum(time, 60.0), observed, family="exponential")
+    assert sum(each.weight for each in evidence) == pytest.approx(1.0)
+
+
+def test_survival_by_hand() -> None:
+    curve = analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True, True])
+    # 3/4, then 1 of 2 at risk, then 0.
+    assert list(curve.at([0.5, 1.0, 2.5, 3.0, 4.0])) == pytest.approx([1.0, 0.75, 0.75, 0.375, 0.0])
+    assert (curve.runs, curve.observed, curve.watched) == (4, 3, 4.0)
+    # 1 up to 1, 3/4 up to 3, 3/8 up to 4
+    assert curve.restricted_moments(4.0).mean.value == pytest.approx(1 + 1.5 + 0.375)
+    assert plot.survival(curve).get_ylabel() == "runs without a transition"
+    with pytest.raises(ValueError, match="4 times, but 3 observed"):
+        analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True])
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(st.tuples(st.floats(0.1, 100.0), st.booleans()), min_size=3, max_size=40))
+def test_survival_never_rises(runs: list[tuple[float, bool]]) -> None:
+    time, observed = (list(column) for column in zip(*runs, strict=True))
+    try:
+        curve = analysis.Survival(time, observed)
+    except AnalysisError:
+        assert not any(observed)
+        return
+    levels = curve.at(np.linspace(0, 101, 50))
+    assert (np.diff(levels) <= 0).all() and levels[0] == 1.0 and (levels >= 0).all()
+
+
+def test_order_of_the_transition() -> None:
+    width = np.repeat(np.linspace(2.5, 2.9, 9), 4)
+    found = analysis.hysteresis(width, width < 2.66, width, width < 2.81)
+    assert found.loop_width.value == pytest.approx(0.15, abs=0.03) and found.probability < 0.01
+    randomness = np.random.default_rng(2)
+    one, two = randomness.normal(size=200), np.append(randomness.normal(size=100), 8 + randomness.normal(size=100))
+    assert analysis.dip_test(one, resamples=200).probability > 0.05 > analysis.dip_test(two, resamples=200).probability
+    peaks = analysis.two_peaks(two)
+    assert peaks.upper.mean - peaks.lower.mean == pytest.approx(8.0, abs=0.5)
+    jump = analysis.jump_height(([2.6, 2.7], [1.0, 0.9], [0.01, 0.01]), ([2.9], [0.2], [0.03]), 2.8)
+    assert jump.height.value == pytest.approx(0.6)
+
+
+def test_series() -> None:
+    randomness = np.random.default_rng(3)
+    noise = randomness.normal(size=4096)
+    estimate = analysis.mean_with_error(noise)
+    assert estimate.error == pytest.approx(1 / 64, rel=0.3) and estimate.mean == pytest.approx(noise.mean())
+    assert analysis.autocorrelation_time(noise).time == pytest.approx(0.5, abs=0.2)
+    found = analysis.transition_time([0.1, 0.1, 0.9, 0.9, 0.9, 0.9], period_duration=10.0)
+    assert found.observed and found.time == pytest.approx(20.0)
+    assert not analysis.transition_time([0.1] * 6).observed
+    with pytest.raises(AnalysisError):
+        analysis.mean_with_error([1.0, np.nan, 2.0, 3.0])
+
+
+@given(st.floats(0.0, 0.95), st.floats(-3.0, 3.0))
+def test_newtonian_flow_and_pressure_invert_each_other(ratio: float, pressure: float) -> None:
+    flow = newtonian.Newtonian(ratio, pressure)
+    back = newtonian.Newtonian.from_flow_rate(ratio, flow.flow_rate)
+    assert back.pressure == pytest.approx(pressure, abs=1e-9 * (1 - ratio**2) ** -4)
+
+
+def test_newtonian_by_hand() -> None:
+    phi = 0.5
+    assert newtonian.Newtonian(phi).flow_rate == pytest.approx(phi**2 * (16 - phi**2) / (2 * (2 + 3 * phi**2)))
+    assert newtonian.flow_rate_ratio([[0.0, 3.0]]) == pytest.approx(np.array([[1.0, 0.0]]))
+    assert newtonian.trapping_threshold() == pytest.approx(4 - 14**0.5)
+    flow = newtonian.Newtonian(phi)
+    axial, _, _ = newtonian.field(flow, [[0.0], [0.5]], [0.25, 0.75])
+    assert axial.shape == (2, 2) and axial[0, 0] > axial[1, 0]
+    with pytest.raises(ValueError, match="from 0 to 1"):
+        newtonian.Newtonian(1.5)

@@ -1,0 +1,64 @@
+"""Studies from Python: planned, worked on, stopped, gone on with, read."""
+
+import os
+import signal
+import threading
+from pathlib import Path
+
+import polars
+import pytest
+
+import peristalsis
+
+WIDTHS = {
+    "name": "widths",
+    "preset": "frictionless",
+    "replicates": 2,
+    "base": {"tube.waves": 2, "run.periods": 3},
+    "axes": [{"key": "drive.width", "values": [2.6, 2.8]}],
+}
+
+
+def test_a_study_from_its_plan_to_its_rows(tmp_path: Path) -> None:
+    study = peristalsis.study(WIDTHS, store=tmp_path / "store")
+    plan = study.plan()
+    assert [run.settings["drive.width"] for run in plan] == [2.6, 2.6, 2.8, 2.8]
+    assert study.run(workers=2) == "complete" and study.counts() == {"done": 4}
+    rows = polars.DataFrame(study.rows())
+    assert len(rows) == 4
+    # A run of the study is the run of its configuration.
+    simulation = peristalsis.Simulation.from_configuration(plan[0].configuration)
+    simulation.run()
+    row = dict(zip(rows.columns, rows.rows()[0], strict=True))
+    assert row["flow_rate_ratio"] == simulation.summary()["flow_rate_ratio"]
+    assert study.run(workers=1) == "complete"
+    again = peristalsis.Study.open(tmp_path / "store")
+    assert again.name == "widths" and polars.DataFrame(again.rows()).equals(rows, null_equal=True)
+    files = study.export(tmp_path / "tables")
+    assert files and all(Path(file).exists() for file in files)
+    assert "4 runs planned" in repr(study)
+
+
+def test_from_a_file(tmp_path: Path) -> None:
+    path = tmp_path / "study.toml"
+    path.write_text('name = "one"\npreset = "frictionless"\nreplicates = 3\n')
+    assert len(peristalsis.study(path).plan()) == 3
+    assert peristalsis.study(path).store == Path("stores", "one")
+
+
+def test_what_is_wrong_is_said_with_its_key(tmp_path: Path) -> None:
+    with pytest.raises(peristalsis.ConfigurationError, match="drive.widht"):
+        peristalsis.study({**WIDTHS, "axes": [{"key": "drive.widht", "values": [2.6]}]}).plan()
+    with pytest.raises(peristalsis.StudyFailure):
+        peristalsis.Study.open(tmp_path)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_saves_every_run_and_the_next_call_goes_on(tmp_path: Path) -> None:
+    long = {**WIDTHS, "base": {"tube.waves": 2, "run.periods": 3000}}
+    study = peristalsis.study(long, store=tmp_path / "store")
+    timer = threading.Timer(1.0, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        study.run(workers=2)
+    assert study.run(workers=2, limit=0.5) == "time_up"

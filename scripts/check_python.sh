@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# The Python package: its tests, its types, and its wheel in an environment with nothing else, all below target/.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+step() { printf '\n== %s\n' "$*"; }
+
+environment=$PWD/target/python
+[ -x "$environment/bin/python" ] || python3 -m venv "$environment"
+"$environment/bin/pip" install --quiet maturin --requirement crates/python/tests/requirements.txt
+
+step "the wheel"
+wheels=target/wheels
+rm -f "$wheels"/peristalsis-*.whl
+"$environment/bin/maturin" build --release --locked --manifest-path crates/python/Cargo.toml --out "$wheels"
+wheel=$(ls "$wheels"/peristalsis-*.whl)
+"$environment/bin/pip" install --quiet --force-reinstall --no-deps "$wheel"
+
+step "tests"
+cargo build --locked --package peristalsis
+PERISTALSIS_PROGRAM=$PWD/target/debug/peristalsis "$environment/bin/python" -m pytest crates/python
+"$environment/bin/python" -m pytest -c crates/python/pyproject.toml --doctest-modules --pyargs peristalsis
+
+step "the same replicas through four pools"
+for pool in futures joblib dask ray; do
+    "$environment/bin/python" "examples/python/with_$pool.py" | grep "J/Jmax" | sed "s/^/$pool: /"
+done | tee target/python-pools.txt
+[ "$(cut -d: -f2- target/python-pools.txt | sort -u | wc -l)" -eq 1 ] || { echo "the pools disagree"; exit 1; }
+[ "$(wc -l < target/python-pools.txt)" -eq 4 ] || { echo "a pool said nothing"; exit 1; }
+
+step "the notebooks"
+"$environment/bin/python" scripts/run_notebooks.py examples/notebooks/*.ipynb
+
+step "types"
+"$environment/bin/mypy" --config-file crates/python/pyproject.toml crates/python/python
+
+step "the wheel in an empty environment, with the snippets of the README and the tutorial"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+python3 -m venv "$scratch/venv"
+"$scratch/venv/bin/pip" install --quiet "$wheel"
+(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/README.md" "$OLDPWD/crates/python/README.md" "$OLDPWD/docs/python/collapse.md")
+
+step "the Python package is well"
