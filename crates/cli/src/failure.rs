@@ -28,6 +28,12 @@ pub(crate) enum Failure {
         path: PathBuf,
         source: std::io::Error,
     },
+    /// A file cannot be written.
+    #[error("cannot write {}: {source}", path.display())]
+    Write {
+        path: PathBuf,
+        source: std::io::Error,
+    },
     /// The command line asks for something that does not exist.
     #[error("{message}")]
     Usage {
@@ -112,7 +118,8 @@ impl Failure {
                 _ => FAILED,
             },
             Self::Claim(ClaimError::NoSuchClaim { .. } | ClaimError::Folder { .. }) => BAD_INPUT,
-            Self::Trajectory { .. }
+            Self::Write { .. }
+            | Self::Trajectory { .. }
             | Self::Claim(_)
             | Self::Report(_)
             | Self::Viewer(_)

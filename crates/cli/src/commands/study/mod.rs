@@ -5,6 +5,7 @@ mod plan;
 pub(crate) mod progress;
 mod run;
 mod status;
+mod submit;
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,6 +23,8 @@ pub(crate) enum StudyCommand {
     Plan(PlanArguments),
     /// Compute what is missing; may be stopped, called again, and called several times at once.
     Run(RunArguments),
+    /// Write a job script for a cluster, whose tasks work on one store.
+    Submit(SubmitArguments),
     /// Say how far a study is.
     Status(StatusArguments),
     /// Say all that is known of a run: what has become of it, and why.
@@ -78,6 +81,55 @@ pub(crate) struct RunArguments {
     /// No progress on standard error.
     #[arg(long, short)]
     quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SubmitArguments {
+    /// Study file in TOML.
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Write an array job for Slurm, the only kind of cluster so far.
+    #[arg(long, required = true)]
+    slurm: bool,
+    /// Folder that keeps the runs, which all tasks see; the default is stores/NAME, after the study's name.
+    #[arg(long, value_name = "DIR")]
+    store: Option<PathBuf>,
+    /// Tasks of the array.
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u16).range(1..=10000))]
+    tasks: u16,
+    /// Processors of a task, and runs at a time within it.
+    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    processors: u16,
+    /// Time of a task, such as 90m, 8h, 2d; it ends by itself two minutes earlier, every run saved.
+    #[arg(long, value_name = "TIME", default_value = "4h", value_parser = time_span)]
+    time: Duration,
+    /// Partition of the cluster.
+    #[arg(long, value_name = "NAME")]
+    partition: Option<String>,
+    /// Account that pays.
+    #[arg(long, value_name = "NAME")]
+    account: Option<String>,
+    /// A further option of sbatch, such as --option=--mem-per-cpu=1G; may be given several times.
+    #[arg(long = "option", value_name = "OPTION", allow_hyphen_values = true)]
+    options: Vec<String>,
+    /// Script to write, - for standard output; the default is NAME.sbatch.
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl SubmitArguments {
+    /// What would be more than a line of the script, or none of its options.
+    fn further_lines(&self) -> Option<&String> {
+        let plain = |text: &&String| text.contains(char::is_control) || text.is_empty();
+        let options = self.options.iter();
+        let wrong = options.clone().find(|option| !option.starts_with('-'));
+        wrong.or_else(|| {
+            options
+                .chain(&self.partition)
+                .chain(&self.account)
+                .find(plain)
+        })
+    }
 }
 
 #[derive(Debug, Args)]
@@ -155,6 +207,7 @@ pub(crate) fn study(command: &StudyCommand) -> Result<ExitCode, Failure> {
     match command {
         StudyCommand::Plan(arguments) => plan::plan(arguments),
         StudyCommand::Run(arguments) => run::run(arguments),
+        StudyCommand::Submit(arguments) => submit::submit(arguments),
         StudyCommand::Status(arguments) => status::status(arguments),
         StudyCommand::Why(arguments) => status::why(arguments),
         StudyCommand::Retry(arguments) => keep::retry(arguments),

@@ -381,3 +381,85 @@ fn time_that_is_up_stops_it_as_well() {
         .says(&["time is up, every run is saved"])
         .shows(&["1 checkpointed", "11 pending"]);
 }
+
+#[test]
+fn a_script_for_slurm_goes_to_the_cluster_and_runs_the_study() {
+    let place = place_of(&quick());
+    let outcome = place
+        .call([
+            "study",
+            "submit",
+            "study.toml",
+            "--slurm",
+            "--store",
+            "my store",
+            "--tasks",
+            "3",
+            "--processors",
+            "2",
+            "--time",
+            "90m",
+            "--partition",
+            "long",
+            "--option=--mem=1G",
+        ])
+        .expect_code(0);
+    let name = outcome.stdout.split_whitespace().next().unwrap().to_owned();
+    let script = std::fs::read_to_string(place.path(&name)).unwrap();
+    for line in [
+        "#!/bin/bash",
+        "#SBATCH --array=1-3",
+        "#SBATCH --cpus-per-task=2",
+        "#SBATCH --time=0-01:30:00",
+        "#SBATCH --signal=B:USR1@60",
+        "#SBATCH --partition=long",
+        "#SBATCH --mem=1G",
+    ] {
+        assert!(
+            script.lines().any(|known| known == line),
+            "{line}: {script}"
+        );
+    }
+    // A shell is what a task is: the store is done, wherever it runs.
+    let task = std::process::Command::new("bash")
+        .arg(place.path(&name))
+        .current_dir("/")
+        .env("SLURM_CPUS_PER_TASK", "2")
+        .output()
+        .unwrap();
+    let words = String::from_utf8_lossy(&task.stderr);
+    assert!(
+        task.status.success() && words.contains("all runs are done"),
+        "{words}"
+    );
+    place.call(["study", "status", "my store"]).expect_code(0);
+}
+
+#[test]
+fn a_script_that_could_not_work_is_not_written() {
+    let place = place_of(&quick());
+    for (options, message) in [
+        (&["--time", "1m"][..], "too short to save"),
+        (&["--time", "3m"], "give 240 s or more"),
+        (&["--option=--mem=1G\nrm -rf /"], "not one option"),
+        (&["--option=mem"], "not one option"),
+        (&["--tasks", "0"], "1..=10000"),
+    ] {
+        let mut call = vec![
+            "study",
+            "submit",
+            "study.toml",
+            "--slurm",
+            "--store",
+            "store",
+        ];
+        call.extend(options);
+        place.call(call).expect_code(2).says(&[message]);
+    }
+    place
+        .call(["study", "submit", "study.toml"])
+        .expect_code(2)
+        .says(&["--slurm"]);
+    let left = place.inventory();
+    assert_eq!(left.len(), 1, "the study alone: {:?}", left.keys());
+}

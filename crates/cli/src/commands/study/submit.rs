@@ -1,0 +1,188 @@
+//! `peristalsis study submit`
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use peristalsis_study::{Specification, Store};
+
+use super::{SubmitArguments, usual_store};
+use crate::commands::print;
+use crate::failure::Failure;
+
+/// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
+const WARNING: Duration = Duration::from_secs(60);
+/// Shortest time of a task: twice what is kept for saving at its end.
+const SHORTEST: Duration = Duration::from_secs(240);
+
+/// Makes the store of a study and writes a script for Slurm, an array of tasks that share it.
+pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
+    if arguments.time < SHORTEST {
+        return Err(Failure::Usage {
+            message: format!(
+                "--time is {} s, too short to save and end within it",
+                arguments.time.as_secs()
+            ),
+            help: Some(format!("give {} s or more", SHORTEST.as_secs())),
+        });
+    }
+    if let Some(option) = arguments.further_lines() {
+        return Err(Failure::Usage {
+            message: format!("{option:?} is not one option of sbatch"),
+            help: Some("give one option at a time, such as --option=--mem-per-cpu=1G".to_owned()),
+        });
+    }
+    let study = Specification::read(&arguments.file)?;
+    let store = arguments
+        .store
+        .clone()
+        .unwrap_or_else(|| usual_store(&study.name));
+    // So that a study that cannot run is refused here, and no two tasks make it.
+    drop(Store::create(&store, &study)?);
+    let program = std::env::current_exe().map_err(unreadable(Path::new("this program")))?;
+    let job = Job {
+        name: &study.name,
+        program: absolute(&program)?,
+        study: absolute(&arguments.file)?,
+        store: absolute(&store)?,
+        arguments,
+    };
+    let script = job.script();
+    let path = match &arguments.out {
+        Some(path) if path.as_os_str() == "-" => {
+            print(&script)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        Some(path) => path.clone(),
+        None => PathBuf::from(format!("{}.sbatch", study.name)),
+    };
+    std::fs::write(&path, script).map_err(|source| Failure::Write {
+        path: path.clone(),
+        source,
+    })?;
+    print(&format!(
+        "{} asks for {} tasks of {} processors for {}\n\
+         submit it with: sbatch {}\n\
+         see how far it is: peristalsis study status {}\n",
+        path.display(),
+        arguments.tasks,
+        arguments.processors,
+        slurm_time(arguments.time),
+        quoted(&path),
+        quoted(&store),
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+struct Job<'a> {
+    name: &'a str,
+    program: PathBuf,
+    study: PathBuf,
+    store: PathBuf,
+    arguments: &'a SubmitArguments,
+}
+
+impl Job<'_> {
+    fn script(&self) -> String {
+        let arguments = self.arguments;
+        let mut options = vec![
+            format!("--job-name={}", self.name),
+            format!("--array=1-{}", arguments.tasks),
+            "--ntasks=1".to_owned(),
+            format!("--cpus-per-task={}", arguments.processors),
+            format!("--time={}", slurm_time(arguments.time)),
+            // To the program, which takes the shell's place below: it saves every run and ends.
+            format!("--signal=B:USR1@{}", WARNING.as_secs()),
+            "--requeue".to_owned(),
+            format!("--output={}-%A-%a.log", self.name),
+        ];
+        let named = [
+            ("partition", &arguments.partition),
+            ("account", &arguments.account),
+        ];
+        options.extend(
+            named
+                .iter()
+                .filter_map(|(name, value)| Some(format!("--{name}={}", value.as_ref()?))),
+        );
+        options.extend(arguments.options.iter().cloned());
+        let options: String = options
+            .iter()
+            .map(|option| format!("#SBATCH {option}\n"))
+            .collect();
+        // Twice the warning is kept for the last checkpoints.
+        let limit = (arguments.time - 2 * WARNING).as_secs();
+        format!(
+            "#!/bin/bash\n{options}\n\
+             # Each task takes runs that no other has, until none is left or its time is up.\n\
+             # Submitted again, it goes on where this ended.\n\
+             exec {} study run {} \\\n    --store {} \\\n    \
+             --workers \"${{SLURM_CPUS_PER_TASK:-1}}\" --for {limit}s\n",
+            quoted(&self.program),
+            quoted(&self.study),
+            quoted(&self.store),
+        )
+    }
+}
+
+/// Days, hours, minutes and seconds, whole ones, as Slurm reads them.
+fn slurm_time(time: Duration) -> String {
+    let seconds = time.as_secs();
+    let (days, hours) = (seconds / 86_400, seconds / 3_600 % 24);
+    format!(
+        "{days}-{hours:02}:{:02}:{:02}",
+        seconds / 60 % 60,
+        seconds % 60
+    )
+}
+
+/// A path as one word of a POSIX shell.
+fn quoted(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "/._-+=:@%".contains(letter);
+    if !text.is_empty() && text.chars().all(plain) {
+        text
+    } else {
+        format!("'{}'", text.replace('\'', r"'\''"))
+    }
+}
+
+/// The path from the root on, which the script can hold.
+fn absolute(path: &Path) -> Result<PathBuf, Failure> {
+    let path = std::path::absolute(path).map_err(unreadable(path))?;
+    if path.to_str().is_none() {
+        return Err(Failure::Usage {
+            message: format!("{} is no text, which a script is", path.display()),
+            help: Some("give files and folders names in UTF-8".to_owned()),
+        });
+    }
+    Ok(path)
+}
+
+fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Failure {
+    let path = path.to_owned();
+    move |source| Failure::Read { path, source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn times_and_paths_are_written_as_slurm_and_the_shell_read_them() {
+        for (seconds, text) in [
+            (240, "0-00:04:00"),
+            (5400, "0-01:30:00"),
+            (180_061, "2-02:01:01"),
+        ] {
+            assert_eq!(slurm_time(Duration::from_secs(seconds)), text);
+        }
+        for (path, text) in [
+            ("/home/me/a.toml", "/home/me/a.toml"),
+            ("/home/my study", "'/home/my study'"),
+            ("it's $HOME", r"'it'\''s $HOME'"),
+        ] {
+            assert_eq!(quoted(Path::new(path)), text);
+        }
+    }
+}
