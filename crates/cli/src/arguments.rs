@@ -37,7 +37,7 @@ pub(crate) enum Command {
     /// List the presets, or print one.
     Presets(PresetsArguments),
     /// Print the JSON schema of the configuration.
-    Schema,
+    Schema(SchemaArguments),
     /// What a Newtonian fluid would do in such a tube (Shapiro, Jaffrin & Weinberg 1969).
     Newtonian(NewtonianArguments),
     /// Ensembles of runs over grids of parameters, in a store that keeps them safe.
@@ -47,6 +47,14 @@ pub(crate) enum Command {
     Reproduce(ReproduceArguments),
     /// Print completions for a shell.
     Completions(CompletionsArguments),
+}
+
+/// How a schema is printed.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// Print all keys as tables in Markdown, for people.
+    #[arg(long)]
+    pub(crate) markdown: bool,
 }
 
 /// Where a configuration comes from.

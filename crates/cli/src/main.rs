@@ -25,7 +25,7 @@ fn main() -> ExitCode {
         Command::Render(arguments) => commands::render::render(&arguments),
         Command::View(arguments) => commands::view::view(&arguments),
         Command::Presets(arguments) => commands::presets::presets(&arguments),
-        Command::Schema => commands::schema::schema(),
+        Command::Schema(arguments) => commands::schema::schema(arguments),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::reproduce(&arguments),
         Command::Study(command) => commands::study::study(&command),

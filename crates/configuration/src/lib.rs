@@ -32,6 +32,7 @@ mod keys;
 mod layers;
 mod options;
 mod presets;
+mod reference;
 mod resolve;
 mod schedule;
 mod schema;
@@ -51,6 +52,7 @@ pub use options::{
     WaveDirection, Waveform,
 };
 pub use presets::{PRESETS, Preset, preset};
+pub use reference::reference;
 pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
 pub use schema::schema;
 pub use source::{Origin, SourceFile, Sources};

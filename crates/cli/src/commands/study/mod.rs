@@ -13,7 +13,8 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use crate::commands::print;
+use crate::arguments::SchemaArguments;
+use crate::commands::schema::study_schema;
 use crate::failure::Failure;
 
 /// What to do with a study.
@@ -42,7 +43,7 @@ pub(crate) enum StudyCommand {
     /// Take finished runs from tables or archives, by their identity.
     Import(ImportArguments),
     /// Print the JSON schema of a study file.
-    Schema,
+    Schema(SchemaArguments),
 }
 
 #[derive(Debug, Args)]
@@ -216,10 +217,7 @@ pub(crate) fn study(command: &StudyCommand) -> Result<ExitCode, Failure> {
         StudyCommand::Export(arguments) => keep::export(arguments),
         StudyCommand::Pack(arguments) => keep::pack(arguments),
         StudyCommand::Import(arguments) => keep::import(arguments),
-        StudyCommand::Schema => {
-            print(&format!("{:#}\n", peristalsis_study::schema()))?;
-            Ok(ExitCode::SUCCESS)
-        }
+        StudyCommand::Schema(arguments) => study_schema(*arguments),
     }
 }
 
