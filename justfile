@@ -8,7 +8,7 @@ test:
 
 # The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
 # an hour on two cores).
-full-check: check audit clients check-viewer python slurm
+full-check: check audit clients check-viewer python slurm book
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
@@ -19,6 +19,10 @@ audit:
 # Trajectories as gsd, PyVista and OVITO from PyPI read them.
 clients:
     bash scripts/check_clients.sh
+
+# The documentation book, its blocks executed; pages in target/book.
+book:
+    bash scripts/book.sh
 
 # Studies as arrays of tasks of a real Slurm on loopback, where it is installed.
 slurm:
