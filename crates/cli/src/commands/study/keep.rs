@@ -1,5 +1,6 @@
 //! `peristalsis study retry`, `verify`, `scan`, `export`, `pack` and `import`
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use peristalsis_study::{Identity, Specification, State, Store, Verification};
@@ -104,6 +105,12 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
 
 /// Writes the archive.
 pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
+    if !is_archive(&arguments.archive) {
+        return Err(Failure::Usage {
+            message: format!("{} is no name of an archive", arguments.archive.display()),
+            help: Some("let it end in .tar, by which study import knows archives".to_owned()),
+        });
+    }
     let packed = Store::open(&arguments.store.store)?.pack(&arguments.archive)?;
     print(&format!(
         "{} finished runs in {}\n",
@@ -121,8 +128,7 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
         None => Store::open(path)?,
     };
     for file in &arguments.files {
-        let is_archive = file.extension().is_some_and(|extension| extension == "tar");
-        if is_archive {
+        if is_archive(file) {
             let packed = store.import_archive(file)?;
             print(&format!(
                 "{} of {} runs taken from {}\n",
@@ -136,4 +142,9 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
         }
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Whether a file is an archive of [`Store::pack`], by its name.
+fn is_archive(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "tar")
 }

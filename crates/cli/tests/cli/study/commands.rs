@@ -274,6 +274,10 @@ fn finished_runs_travel_by_table_and_by_archive() {
     let place = finished();
     let before = tables(&place, "store");
     place
+        .call(["study", "pack", "store", "study.toml"])
+        .expect_code(2)
+        .says(&["study.toml is no name of an archive", ".tar"]);
+    place
         .call(["study", "pack", "store", "runs.tar"])
         .expect_code(0)
         .shows(&["4 finished runs in runs.tar"]);
