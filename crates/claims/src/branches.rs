@@ -13,6 +13,8 @@ const CLEAR: f64 = 4.0;
 const LEAST_JUMP: f64 = 0.1;
 /// A fall between two widths counts from this height on, and from so many of its errors on.
 const LEAST_FALL: f64 = 0.05;
+/// Replicates whose flow rates leave a gap of this height between them have ended in both flows.
+const SPLIT: f64 = 0.2;
 /// Grains are looked for outside the tube at widths within this distance of the fall \[d\].
 const NEAR: f64 = 0.1;
 
@@ -80,9 +82,17 @@ pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (mean, (squares / (number * (number - 1.0))).sqrt())
 }
 
+/// Whether replicates ended in two flows.
+fn is_split(ratios: &[f64]) -> bool {
+    let mut ratios = ratios.to_vec();
+    ratios.sort_by(f64::total_cmp);
+    ratios.windows(2).any(|pair| pair[1] - pair[0] > SPLIT)
+}
+
 impl Branch {
     /// The branch that some runs of one tube at one strain rate show; those that still drift are left out, and with them
-    /// widths at which most do.
+    /// widths at which most do. A width at which chance leads some replicates to each of the two flows is on neither
+    /// branch, but between them.
     pub(crate) fn of<'a>(runs: impl Iterator<Item = &'a Run>, start: Start) -> Self {
         let mut runs: Vec<&Run> = runs
             .filter(|run| run.start == start && run.flow_rate_ratio.is_finite())
@@ -96,6 +106,9 @@ impl Branch {
                     return None;
                 }
                 let ratios: Vec<f64> = group.iter().map(|run| run.flow_rate_ratio).collect();
+                if is_split(&ratios) {
+                    return None;
+                }
                 let (mean, mut error) = mean_and_error(&ratios);
                 if !error.is_finite() {
                     error = group[0].flow_rate_ratio_error;
@@ -250,6 +263,13 @@ mod tests {
             .map(|k| (2.4 + 0.05 * f64::from(k), 1.0 - 0.09 * f64::from(k)))
             .collect();
         assert!(!branch(&slope).jumps());
+    }
+
+    #[test]
+    fn replicates_of_both_flows_are_told_from_those_of_one() {
+        assert!(is_split(&[0.60, 0.0, 0.01, 0.61]));
+        assert!(!is_split(&[0.3, 0.0, 0.15, 0.45, 0.6]), "one that scatters");
+        assert!(!is_split(&[0.9]) && !is_split(&[]));
     }
 
     #[test]
