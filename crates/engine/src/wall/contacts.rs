@@ -21,6 +21,10 @@ pub struct WallContact {
     pub tangential_force: DVec3,
 }
 
+/// Contacts with a prescribed wall that are found before any of them is worked out: many at a time, so that the branches
+/// of the search do not hold up the forces, and few enough to stay near the processor.
+const AT_A_TIME: usize = 64;
+
 /// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
 pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
@@ -37,6 +41,7 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     match wall {
         Wall::Prescribed(wall) => {
             let diameter = wall.lattice().sphere_diameter;
+            let mut found = Vec::new();
             for grain in 0..bodies.grains {
                 let (centre, of_grain) = (bodies.position[grain], bodies.diameter[grain]);
                 wall.for_each_touching(centre, of_grain, |sphere, separation, velocity| {
@@ -45,8 +50,13 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
                         velocity,
                         diameter,
                     };
-                    touch(grain, side, contacts.wall.history(grain, sphere));
+                    found.push((grain, side, contacts.wall.history(grain, sphere)));
                 });
+                if found.len() >= AT_A_TIME || grain + 1 == bodies.grains {
+                    for (grain, side, history) in found.drain(..) {
+                        touch(grain, side, history);
+                    }
+                }
             }
         }
         Wall::Elastic(wall) => {
