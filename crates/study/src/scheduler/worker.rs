@@ -25,7 +25,7 @@ enum Outcome {
 pub(super) fn work(shared: &Shared<'_>, slot: usize) {
     let outcome = take_turns(shared, slot);
     let mut common = shared.common();
-    common.workers[slot] = None;
+    shared.working()[slot] = None;
     common.active -= 1;
     if let Err(error) = outcome {
         shared.stop.store(true, Ordering::Relaxed);
@@ -38,7 +38,7 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
         match shared.claim()? {
             Claim::Taken(identity) => attend(shared, slot, identity)?,
             Claim::Wait { .. } => {
-                shared.common().workers[slot] = None;
+                shared.working()[slot] = None;
                 std::thread::sleep(IDLE);
             }
             Claim::Nothing => break,
@@ -50,7 +50,7 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
 /// Works on a run that this process has the lease of, and gives the lease back.
 fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<(), StudyError> {
     let (assignment, point) = shared.assignment(identity);
-    shared.common().workers[slot] = Some(Working {
+    shared.working()[slot] = Some(Working {
         identity,
         point,
         progress: None,
@@ -163,7 +163,7 @@ fn advance(
             }
             return give_up(shared, files, identity, &error.to_string());
         }
-        if let Some(working) = &mut shared.common().workers[slot] {
+        if let Some(working) = &mut shared.working()[slot] {
             working.progress = Some(run.progress());
         }
     }
