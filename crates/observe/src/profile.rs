@@ -219,11 +219,15 @@ impl WaveFrameProfile {
             }
         }
         let bodies = view.simulation.bodies();
-        for (grain, &inside) in view.inside.iter().enumerate() {
+        let grains = bodies
+            .position
+            .iter()
+            .zip(&bodies.velocity)
+            .zip(&bodies.mass);
+        for (((place, &velocity), &mass), &inside) in grains.zip(&view.inside) {
             if inside {
-                let (mass, mut velocity) = (bodies.mass[grain], bodies.velocity[grain]);
-                velocity.z *= heading;
-                let position = heading * bodies.position[grain].z / lattice.wavelength - cycles;
+                let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
+                let position = heading * place.z / lattice.wavelength - cycles;
                 last[bin_of(position, bins)].add_grain(mass, velocity);
             }
         }

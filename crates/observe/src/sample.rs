@@ -233,18 +233,24 @@ impl GrainSums {
     fn of(before: &Observer, after: &Observer, view: &View<'_>) -> Self {
         let bodies = view.simulation.bodies();
         let heading = view.simulation.wall().heading();
+        // Of equal lengths, which is looked at here and not for every grain.
+        let grains = view.inside.len();
+        let (positions, velocities) = (&bodies.position[..grains], &bodies.velocity[..grains]);
+        let (masses, inertias) = (&bodies.mass[..grains], &bodies.inertia[..grains]);
+        let spins = &bodies.angular_velocity[..grains];
+        let starts = &after.start[..grains];
+        let (from, to) = (&before.unfolded[..grains], &after.unfolded[..grains]);
         let mut sums = Self::default();
         for (grain, &inside) in view.inside.iter().enumerate() {
-            let (position, velocity) = (bodies.position[grain], bodies.velocity[grain]);
-            let (mass, inertia) = (bodies.mass[grain], bodies.inertia[grain]);
-            let spin = bodies.angular_velocity[grain];
-            let moved = after.unfolded[grain] - before.unfolded[grain];
+            let (position, velocity) = (positions[grain], velocities[grain]);
+            let (mass, inertia, spin) = (masses[grain], inertias[grain], spins[grain]);
+            let moved = to[grain] - from[grain];
             sums.moved_raw += moved;
             if inside {
                 sums.inside += 1.0;
                 sums.moved += moved;
                 sums.axial_velocity += velocity.z;
-                let since_start = heading * (after.unfolded[grain] - after.start[grain]);
+                let since_start = heading * (to[grain] - starts[grain]);
                 sums.displaced += since_start;
                 sums.displaced_squared += since_start * since_start;
             }

@@ -8,7 +8,7 @@ mod worker;
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::error::StudyError;
@@ -59,6 +59,8 @@ struct Shared<'a> {
     owner: Owner,
     stop: AtomicBool,
     common: Mutex<Common>,
+    /// A run or a worker has ended.
+    ended: Condvar,
     /// What each worker is doing; apart, so that a run goes on while another is written into the index.
     working: Mutex<Vec<Option<Working>>>,
 }
@@ -144,7 +146,14 @@ impl Shared<'_> {
     /// Gives a lease back with what has become of the run.
     fn release(&self, identity: Identity, entry: Option<&Entry>) -> Result<bool, StudyError> {
         let mut common = self.common();
-        common.index.release(identity, &self.owner, entry)
+        let outcome = common.index.release(identity, &self.owner, entry);
+        self.ended.notify_all();
+        outcome
+    }
+
+    /// Waits until a run or a worker of this process has ended, but no longer than so.
+    fn wait(&self, longest: Duration) {
+        drop(self.ended.wait_timeout(self.common(), longest));
     }
 
     fn tell(&self, news: String) {
@@ -195,6 +204,7 @@ pub fn work_on(
         owner: Owner::new(),
         stop: AtomicBool::new(false),
         common: Mutex::new(common),
+        ended: Condvar::new(),
         working: Mutex::new(vec![None; workers]),
     };
     let mut ending = Ending::Complete;
@@ -265,7 +275,7 @@ fn coordinate(
         if is_last {
             return ending;
         }
-        std::thread::sleep(TICK);
+        shared.wait(TICK);
     }
 }
 

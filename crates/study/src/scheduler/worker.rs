@@ -27,6 +27,7 @@ pub(super) fn work(shared: &Shared<'_>, slot: usize) {
     let mut common = shared.common();
     shared.working()[slot] = None;
     common.active -= 1;
+    shared.ended.notify_all();
     if let Err(error) = outcome {
         shared.stop.store(true, Ordering::Relaxed);
         common.error.get_or_insert(error);
@@ -39,7 +40,7 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
             Claim::Taken(identity) => attend(shared, slot, identity)?,
             Claim::Wait { .. } => {
                 shared.working()[slot] = None;
-                std::thread::sleep(IDLE);
+                shared.wait(IDLE);
             }
             Claim::Nothing => break,
         }
