@@ -16,7 +16,16 @@ import time
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-SMALL = ["--preset", "frictionless", "--set", "drive.width=2.8", "--set", "run.periods=60"]
+STUDY = """
+name = "ensemble"
+title = "Small runs"
+preset = "frictionless"
+replicates = {replicates}
+
+[base]
+drive.width = 2.8
+run.periods = 150
+"""
 
 
 def options():
@@ -72,20 +81,23 @@ def report(name, ratios, more=""):
     print(f"| {name} | {statistics.median(ratios):.2f} ({spread}) | {more} |", flush=True)
 
 
-def ensemble(program, runs, _quick):
-    """Four small runs on one core after another, and on two cores at a time."""
-    seeds = [[*SMALL, "--set", f"run.seed={seed}"] for seed in range(1, 5)]
+def ensemble(program, runs, quick):
+    """A study of small runs with one worker and with two, each into a store of its own."""
+    study = STUDY.format(replicates=4 if quick else 16)
 
-    def wall_clock(at_a_time):
-        begin = time.perf_counter()
-        for first in range(0, len(seeds), at_a_time):
-            started = [program.start(seed) for seed in seeds[first : first + at_a_time]]
-            for each in started:
-                program.finish(each)
-        return time.perf_counter() - begin
+    def wall_clock(workers):
+        with tempfile.TemporaryDirectory() as folder:
+            (file := Path(folder) / "ensemble.toml").write_text(study, encoding="utf-8")
+            command = [program.path, "study", "run", file, "--store", Path(folder) / "store", "--quiet"]
+            begin = time.perf_counter()
+            answer = subprocess.run([*command, "--workers", str(workers)], capture_output=True, text=True)
+            took = time.perf_counter() - begin
+        if answer.returncode != 0:
+            sys.exit(answer.stderr)
+        return took
 
     ratios = [wall_clock(1) / wall_clock(2) for _ in range(runs)]
-    report("four small runs, two at a time against one", ratios, "whole processes")
+    report("a study of small runs, two workers against one", ratios, "whole processes, every run sealed")
 
 
 def threads(program, runs, quick):

@@ -17,7 +17,7 @@ use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;
-use crate::wall::contacts::{WallContact, for_each_contact};
+use crate::wall::contacts::{WallContact, for_each_contact, for_each_smooth_contact};
 use crate::wall::memory::WallMemory;
 
 /// How a simulation is computed.
@@ -294,7 +294,16 @@ impl Simulation {
     /// The forces are those of the last step but for the velocities, which the integrator has corrected since.
     pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
         let System { bodies, wall, .. } = &self.system;
-        match self.system.parameters.contact.normal {
+        let normal = self.system.parameters.contact.normal;
+        let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
+        if let (Some(pool), Wall::Prescribed(wall)) = (pool, wall) {
+            match normal {
+                Normal::Linear(law) => for_each_smooth_contact(law, bodies, wall, pool, visit),
+                Normal::Hertz(law) => for_each_smooth_contact(law, bodies, wall, pool, visit),
+            }
+            return;
+        }
+        match normal {
             Normal::Linear(normal) => self.memory.visit(normal, bodies, wall, visit),
             Normal::Hertz(normal) => self.memory.visit(normal, bodies, wall, visit),
         }

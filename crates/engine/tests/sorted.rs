@@ -275,6 +275,52 @@ fn threads_instructions_and_restarts_do_not_change_a_bit() {
     }
 }
 
+/// So many grains that threads note and sort pieces of the one row, and so fast that many go through the seam.
+#[test]
+fn threads_that_share_the_sorting_of_a_long_tube_do_not_change_a_bit() {
+    let wall = Wall::Prescribed(PrescribedWall::new(
+        common::coarse(400),
+        1.5,
+        Waveform::Sine,
+        1.0,
+        Schedule::constant(0.2),
+        Schedule::constant(0.05),
+    ));
+    let number = 10_000_u32;
+    let along = wall.lattice().length() / f64::from(number);
+    let places = (0..number).map(|grain| {
+        let angle = 2.4 * f64::from(grain);
+        DVec3::new(
+            0.5 * angle.cos(),
+            0.5 * angle.sin(),
+            along * f64::from(grain),
+        )
+    });
+    let mut bodies = Bodies::grains_at_rest(places.collect(), vec![1.0; number as usize]);
+    for (velocity, grain) in bodies.velocity.iter_mut().zip(0_u32..) {
+        let chance = grain.wrapping_mul(2_654_435_761) % 1000;
+        velocity.z = 0.004 * f64::from(chance) - 2.0;
+    }
+    let end_with = |threads| {
+        let mut simulation = begin(&bodies, &wall, Kernel::Fast);
+        simulation
+            .compute_with(Instructions::widest(), threads)
+            .unwrap();
+        simulation.advance(60).unwrap();
+        let mut contacts = Vec::new();
+        simulation.for_each_wall_contact(|contact| contacts.push(contact));
+        (simulation.snapshot(), contacts)
+    };
+    let expected = end_with(1);
+    let (snapshot, contacts) = &expected;
+    assert_eq!(contacts.len() as u64, snapshot.tally.wall_contacts);
+    let through_the_seam = snapshot.bodies.turns.iter().filter(|&&turns| turns != 0);
+    assert!(through_the_seam.count() > 3);
+    for threads in [2, 3] {
+        assert!(end_with(threads) == expected, "{threads}");
+    }
+}
+
 #[test]
 fn an_order_that_cannot_be_is_refused() {
     let (bodies, wall) = mixed().pop().unwrap();

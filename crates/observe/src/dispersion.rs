@@ -1,9 +1,7 @@
 //! Axial dispersion: how fast grains that began together drift apart along the tube.
 
-use peristalsis_engine::Simulation;
-
-use crate::sample::{Observer, has_escaped};
-use crate::shape::TubeShape;
+use crate::sample::Observer;
+use crate::view::View;
 
 /// Origins kept at most, an even number; when there are more, every other one goes.
 const MOST_ORIGINS: usize = 16;
@@ -46,10 +44,9 @@ impl AxialDispersion {
     }
 
     /// Ends a period now, with an observer that has just taken its sample.
-    pub fn end_period(&mut self, observer: &Observer, simulation: &Simulation) {
-        let shape = TubeShape::of(simulation);
+    pub fn end_period(&mut self, observer: &Observer, view: &View<'_>) {
         let inside: Vec<usize> = (0..observer.unfolded.len())
-            .filter(|&grain| !has_escaped(simulation.bodies(), grain, &shape))
+            .filter(|&grain| view.inside[grain])
             .collect();
         for origin in &mut self.origins {
             let moved = |&grain: &usize| observer.unfolded[grain] - origin.place[grain];

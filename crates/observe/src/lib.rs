@@ -1,6 +1,6 @@
 //! Observables: numbers read off a simulation without touching it.
 //!
-//! [`Observer`] turns a simulation into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
+//! A [`View`] is a simulation as it is, looked at once; [`Observer`] turns views into one [`Sample`] an interval; [`columns::COLUMNS`] is the table of what a sample
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
 //! the frame of the wave, [`WaveByWave`] the flow of each wave over each period,
 //! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
@@ -13,6 +13,7 @@ pub mod orientation;
 pub mod profile;
 pub mod sample;
 pub mod shape;
+pub mod view;
 pub mod waves;
 
 pub use columns::{COLUMNS, Column};
@@ -20,6 +21,7 @@ pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use orientation::Orientations;
 pub use profile::{ProfileBin, WallForce, WaveFrameProfile};
-pub use sample::{Observer, Sample, instantaneous_flow_rate};
+pub use sample::{Observer, Sample};
 pub use shape::TubeShape;
+pub use view::View;
 pub use waves::{WaveByWave, WaveFlow};

@@ -5,9 +5,10 @@ use core::f64::consts::TAU;
 
 use glam::DVec3;
 use peristalsis_engine::Simulation;
+use peristalsis_physics::wall::Waveform;
 
-use crate::sample::has_escaped;
-use crate::shape::TubeShape;
+use crate::shape::{Slice, TubeShape};
+use crate::view::{View, floor};
 
 /// Blocks kept at most; when there are more, neighbours are merged.
 const MOST_BLOCKS: usize = 64;
@@ -41,36 +42,50 @@ struct WallSums {
 
 impl Sums {
     fn add(&mut self, other: &Self) {
-        let seen = self.looks > 0.0;
         self.number += other.number;
         self.mass += other.mass;
         self.momentum += other.momentum;
         self.twice_energy += other.twice_energy;
-        self.radius += other.radius;
-        if other.looks > 0.0 {
-            self.least_radius = if seen {
-                self.least_radius.min(other.least_radius)
-            } else {
-                other.least_radius
-            };
-            self.largest_radius = self.largest_radius.max(other.largest_radius);
-        }
-        self.looks += other.looks;
+        self.see(
+            other.radius,
+            (other.least_radius, other.largest_radius),
+            other.looks,
+        );
         self.wall.normal += other.wall.normal;
         self.wall.tangential += other.wall.tangential;
         self.wall.outward += other.wall.outward;
         self.wall.looks += other.wall.looks;
     }
 
+    /// Adds a grain whose velocity is `velocity`, z along the wave.
+    #[inline]
+    fn add_grain(&mut self, mass: f64, velocity: DVec3) {
+        self.number += 1.0;
+        self.mass += mass;
+        self.momentum += mass * velocity;
+        self.twice_energy += mass * velocity.length_squared();
+    }
+
     /// Adds what is seen of the tube at `places` places that are alike.
-    fn look_at(&mut self, slice: crate::shape::Slice, places: f64) {
-        self.add(&Self {
-            radius: places * slice.mean,
-            least_radius: slice.least,
-            largest_radius: slice.largest,
-            looks: places,
-            ..Self::default()
-        });
+    #[inline]
+    fn look_at(&mut self, slice: Slice, places: f64) {
+        self.see(places * slice.mean, (slice.least, slice.largest), places);
+    }
+
+    /// Adds radii seen at so many places, of which the sum, the least and the largest are known.
+    #[inline]
+    fn see(&mut self, sum: f64, (least, largest): (f64, f64), places: f64) {
+        self.radius += sum;
+        if places > 0.0 {
+            let first = self.looks == 0.0;
+            self.least_radius = if first {
+                least
+            } else {
+                self.least_radius.min(least)
+            };
+            self.largest_radius = self.largest_radius.max(largest);
+        }
+        self.looks += places;
     }
 
     fn velocity(&self) -> f64 {
@@ -94,6 +109,31 @@ pub struct WaveFrameProfile {
     /// Samples in the last block.
     in_last: u64,
     blocks: Vec<Vec<Sums>>,
+    #[serde(skip)]
+    outline: Outline,
+}
+
+/// The waveform of a prescribed wall at the middles of the bins, where it stands still: worked out at the first look.
+#[derive(Clone, Debug, Default)]
+struct Outline(Vec<f64>);
+
+impl PartialEq for Outline {
+    /// It follows from the wall, and says nothing of what was seen.
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Outline {
+    /// The waveform's values in so many bins.
+    fn of(&mut self, waveform: Waveform, bins: usize) -> &[f64] {
+        if self.0.is_empty() {
+            // The phase runs against the position in the wave's frame.
+            let value = |bin: usize| waveform.value(1.0 - (bin as f64 + 0.5) / bins as f64);
+            self.0.extend((0..bins).map(value));
+        }
+        &self.0
+    }
 }
 
 /// One bin of a profile; values are NaN where no grain was seen.
@@ -142,11 +182,12 @@ impl WaveFrameProfile {
             block: samples_per_block.max(1),
             in_last: 0,
             blocks: Vec::new(),
+            outline: Outline::default(),
         }
     }
 
-    /// Adds the grains inside the tube as they are now.
-    pub fn add(&mut self, simulation: &Simulation) {
+    /// Adds the grains inside the tube, and its shape.
+    pub fn add(&mut self, view: &View<'_>) {
         if self.blocks.is_empty() || self.in_last == self.block {
             self.begin_block();
         }
@@ -155,37 +196,40 @@ impl WaveFrameProfile {
         let Some(last) = self.blocks.last_mut() else {
             return;
         };
-        let wall = simulation.wall();
+        let wall = view.simulation.wall();
         let lattice = wall.lattice();
         let (heading, cycles) = (wall.heading(), wall.cycles());
-        let shape = TubeShape::of(simulation);
-        let bin_of = |z: f64| bin_of(heading * z / lattice.wavelength - cycles, bins);
-        let (different_waves, alike) = if shape.is_periodic() {
-            (1, lattice.waves)
-        } else {
-            (lattice.waves, 1)
-        };
-        for wave in 0..different_waves {
-            for (bin, sums) in last.iter_mut().enumerate() {
-                let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;
-                let z = (heading * position * lattice.wavelength).rem_euclid(lattice.length());
-                sums.look_at(shape.slice(z), f64::from(alike));
+        match &view.shape {
+            TubeShape::Wave(wave, _) => {
+                let outline = self.outline.of(wave.waveform, bins);
+                for (sums, &value) in last.iter_mut().zip(outline) {
+                    let radius = wave.mean_radius + wave.amplitude * value;
+                    sums.look_at(Slice::round(radius), f64::from(lattice.waves));
+                }
+            }
+            shape @ TubeShape::Slices(..) => {
+                for wave in 0..lattice.waves {
+                    for (bin, sums) in last.iter_mut().enumerate() {
+                        let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;
+                        let z =
+                            (heading * position * lattice.wavelength).rem_euclid(lattice.length());
+                        sums.look_at(shape.slice(z), 1.0);
+                    }
+                }
             }
         }
-        let bodies = simulation.bodies();
-        for grain in 0..bodies.grains {
-            if has_escaped(bodies, grain, &shape) {
-                continue;
+        let bodies = view.simulation.bodies();
+        let grains = bodies
+            .position
+            .iter()
+            .zip(&bodies.velocity)
+            .zip(&bodies.mass);
+        for (((place, &velocity), &mass), &inside) in grains.zip(&view.inside) {
+            if inside {
+                let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
+                let position = heading * place.z / lattice.wavelength - cycles;
+                last[bin_of(position, bins)].add_grain(mass, velocity);
             }
-            let (mass, mut velocity) = (bodies.mass[grain], bodies.velocity[grain]);
-            velocity.z *= heading;
-            last[bin_of(bodies.position[grain].z)].add(&Sums {
-                number: 1.0,
-                mass,
-                momentum: mass * velocity,
-                twice_energy: mass * velocity.length_squared(),
-                ..Sums::default()
-            });
         }
     }
 
@@ -319,8 +363,9 @@ impl WaveFrameProfile {
 }
 
 /// The bin of a position in the wave's frame.
+#[inline]
 fn bin_of(position: f64, bins: usize) -> usize {
-    let folded = position - position.floor();
+    let folded = position - floor(position);
     ((folded * bins as f64) as usize).min(bins - 1)
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Ledger, Simulation};
 
-use crate::shape::TubeShape;
+use crate::view::View;
 
 /// Observables of one interval of time, in units of d, m, t; flow is positive along the wave.
 ///
@@ -121,35 +121,38 @@ impl Observer {
     }
 
     /// Ends the interval, begins the next, and answers what happened between.
-    pub fn sample(&mut self, simulation: &Simulation) -> Sample {
-        let now = Self::at(simulation, core::mem::take(&mut self.start));
-        let before = core::mem::replace(self, now);
+    pub fn sample(&mut self, view: &View<'_>) -> Sample {
+        let before = self.end_interval(view);
+        Sample::of(&before, self, view)
+    }
+
+    /// Ends the interval and begins the next; answers the observer as it stood when the one that ends began.
+    pub fn end_interval(&mut self, view: &View<'_>) -> Self {
+        let now = Self::at(view.simulation, core::mem::take(&mut self.start));
+        core::mem::replace(self, now)
+    }
+}
+
+impl Sample {
+    /// The interval between two states of an observer, seen from its end.
+    #[must_use]
+    pub fn of(before: &Observer, after: &Observer, view: &View<'_>) -> Self {
+        let View {
+            simulation, shape, ..
+        } = view;
         let wall = simulation.wall();
         let bodies = simulation.bodies();
         let (tally, ledger) = (simulation.tally(), simulation.ledger());
         let heading = wall.heading();
         let length = wall.lattice().length();
-        let interval = self.time - before.time;
+        let interval = after.time - before.time;
         let grains = bodies.grains as f64;
 
-        let shape = TubeShape::of(simulation);
-        let (mut inside, mut flux, mut flux_raw, mut flux_now) = (0.0, 0.0, 0.0, 0.0);
-        let (mut displaced, mut displaced_squared) = (0.0, 0.0);
-        for grain in 0..bodies.grains {
-            let moved = self.unfolded[grain] - before.unfolded[grain];
-            flux_raw += moved;
-            if !has_escaped(bodies, grain, &shape) {
-                inside += 1.0;
-                flux += moved;
-                flux_now += bodies.velocity[grain].z;
-                let since_start = heading * (self.unfolded[grain] - self.start[grain]);
-                displaced += since_start;
-                displaced_squared += since_start * since_start;
-            }
-        }
+        let sums = GrainSums::of(before, after, view);
+        let inside = sums.inside;
         let rate = |flux: f64| heading * flux / (length * interval);
         // Jmax = N c/L with the mean wave speed of the interval.
-        let wave_run = (self.cycles - before.cycles) * wall.lattice().wavelength;
+        let wave_run = (after.cycles - before.cycles) * wall.lattice().wavelength;
         let ratio = |flux: f64, number: f64| {
             if wave_run > 0.0 && number > 0.0 {
                 heading * flux / (number * wave_run)
@@ -159,22 +162,28 @@ impl Observer {
         };
         let contacts = (2 * tally.grain_contacts + tally.wall_contacts) as f64;
         let distinct_contacts = (tally.grain_contacts + tally.wall_contacts) as f64;
+        let (kinetic_energy, rotational_energy) = (sums.kinetic_energy, sums.rotational_energy);
+        let of_wall = bodies.grains..bodies.number();
+        let all_kinetic_energy = of_wall.clone().fold(kinetic_energy, |sum, sphere| {
+            sum + bodies.kinetic_energy(sphere..sphere + 1)
+        });
+        let energy = all_kinetic_energy + rotational_energy + tally.potential_energy();
         let wall_motion = WallMotion::of(simulation);
-        Sample {
-            time: self.time,
-            period: self.cycles,
-            flow_rate: rate(flux),
-            flow_rate_ratio: ratio(flux, inside),
-            flow_rate_raw: rate(flux_raw),
-            flow_rate_ratio_raw: ratio(flux_raw, grains),
-            flow_rate_instantaneous: heading * flux_now / length,
-            kinetic_energy: bodies.kinetic_energy(0..bodies.grains),
-            rotational_energy: bodies.rotational_energy(),
-            granular_temperature: granular_temperature(bodies),
+        Self {
+            time: after.time,
+            period: after.cycles,
+            flow_rate: rate(sums.moved),
+            flow_rate_ratio: ratio(sums.moved, inside),
+            flow_rate_raw: rate(sums.moved_raw),
+            flow_rate_ratio_raw: ratio(sums.moved_raw, grains),
+            flow_rate_instantaneous: heading * sums.axial_velocity / length,
+            kinetic_energy,
+            rotational_energy,
+            granular_temperature: granular_temperature(bodies, sums.velocity / grains),
             contacts: if grains > 0.0 { contacts / grains } else { 0.0 },
             sliding_fraction: tally.sliding_contacts as f64 / distinct_contacts,
-            axial_displacement: displaced / inside,
-            axial_displacement_variance: variance(inside, displaced, displaced_squared),
+            axial_displacement: sums.displaced / inside,
+            axial_displacement_variance: variance(inside, sums.displaced, sums.displaced_squared),
             largest_overlap: tally.largest_overlap,
             escaped: grains - inside,
             inside,
@@ -184,10 +193,10 @@ impl Observer {
             dissipated_power: (ledger.dissipated() - before.ledger.dissipated()) / interval,
             potential_energy: tally.potential_energy(),
             contact_energy: tally.contact_energy,
-            energy_residual: simulation.energy_residual(),
-            axial_momentum: heading * axial_momentum(bodies),
-            angular_momentum: angular_momentum(bodies),
-            wall_kinetic_energy: bodies.kinetic_energy(bodies.grains..bodies.number()),
+            energy_residual: ledger.relative_residual(energy),
+            axial_momentum: heading * sums.axial_momentum,
+            angular_momentum: sums.angular_momentum,
+            wall_kinetic_energy: bodies.kinetic_energy(of_wall),
             network_energy: tally.network_energy,
             keep_energy: tally.keep_energy,
             bottleneck: 2.0 * shape.narrowest(),
@@ -199,26 +208,61 @@ impl Observer {
     }
 }
 
-/// J from the velocities of the grains inside the tube as they are, along the wave \[1/t\].
-#[must_use]
-pub fn instantaneous_flow_rate(simulation: &Simulation, shape: &TubeShape) -> f64 {
-    let (bodies, wall) = (simulation.bodies(), simulation.wall());
-    let flux: f64 = (0..bodies.grains)
-        .filter(|&grain| !has_escaped(bodies, grain, shape))
-        .map(|grain| bodies.velocity[grain].z)
-        .sum();
-    wall.heading() * flux / wall.lattice().length()
+/// Sums over the grains, in one pass: each waits for its own last addition only, so that all take hardly longer than one.
+///
+/// The first ones are of the grains inside; along +z unless said otherwise.
+#[derive(Default)]
+struct GrainSums {
+    inside: f64,
+    /// Displacements in the interval.
+    moved: f64,
+    axial_velocity: f64,
+    /// Displacements since the start along the wave, and their squares.
+    displaced: f64,
+    displaced_squared: f64,
+    /// From here on of all grains.
+    moved_raw: f64,
+    kinetic_energy: f64,
+    rotational_energy: f64,
+    velocity: DVec3,
+    axial_momentum: f64,
+    angular_momentum: f64,
 }
 
-/// Whether a grain's centre lies outside R + d/2, R the wall's radius at its z and d its diameter.
-#[must_use]
-pub fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
-    let position = bodies.position[grain];
-    let from_axis_squared = position.x * position.x + position.y * position.y;
-    let beyond = |limit: f64| from_axis_squared > limit * limit;
-    let half = 0.5 * bodies.diameter[grain];
-    // Nearly all grains are within the throat's radius, and need no look at the wall where they are.
-    beyond(shape.least_radius() + half) && beyond(shape.radius(position.z) + half)
+impl GrainSums {
+    fn of(before: &Observer, after: &Observer, view: &View<'_>) -> Self {
+        let bodies = view.simulation.bodies();
+        let heading = view.simulation.wall().heading();
+        // Of equal lengths, which is looked at here and not for every grain.
+        let grains = view.inside.len();
+        let (positions, velocities) = (&bodies.position[..grains], &bodies.velocity[..grains]);
+        let (masses, inertias) = (&bodies.mass[..grains], &bodies.inertia[..grains]);
+        let spins = &bodies.angular_velocity[..grains];
+        let starts = &after.start[..grains];
+        let (from, to) = (&before.unfolded[..grains], &after.unfolded[..grains]);
+        let mut sums = Self::default();
+        for (grain, &inside) in view.inside.iter().enumerate() {
+            let (position, velocity) = (positions[grain], velocities[grain]);
+            let (mass, inertia, spin) = (masses[grain], inertias[grain], spins[grain]);
+            let moved = to[grain] - from[grain];
+            sums.moved_raw += moved;
+            if inside {
+                sums.inside += 1.0;
+                sums.moved += moved;
+                sums.axial_velocity += velocity.z;
+                let since_start = heading * (to[grain] - starts[grain]);
+                sums.displaced += since_start;
+                sums.displaced_squared += since_start * since_start;
+            }
+            sums.kinetic_energy += 0.5 * mass * velocity.length_squared();
+            sums.rotational_energy += 0.5 * inertia * spin.length_squared();
+            sums.velocity += velocity;
+            sums.axial_momentum += mass * velocity.z;
+            sums.angular_momentum +=
+                mass * (position.x * velocity.y - position.y * velocity.x) + inertia * spin.z;
+        }
+        sums
+    }
 }
 
 /// Variance of so many numbers of which sum and sum of squares are known; NaN of none.
@@ -229,35 +273,18 @@ fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
     if variance < 0.0 { 0.0 } else { variance }
 }
 
-fn granular_temperature(bodies: &Bodies) -> f64 {
+/// `sum m |v - <v>|^2/(3 N)` for the mean velocity `<v>`; 0 without grains.
+fn granular_temperature(bodies: &Bodies, mean: DVec3) -> f64 {
     let number = bodies.grains as f64;
     if bodies.grains == 0 {
         return 0.0;
     }
-    let velocities = &bodies.velocity[..bodies.grains];
-    let mean = velocities.iter().copied().sum::<DVec3>() / number;
-    let sum: f64 = velocities
+    let sum: f64 = bodies.velocity[..bodies.grains]
         .iter()
         .zip(&bodies.mass)
         .map(|(velocity, mass)| mass * (*velocity - mean).length_squared())
         .sum();
     sum / (3.0 * number)
-}
-
-fn axial_momentum(bodies: &Bodies) -> f64 {
-    (0..bodies.grains)
-        .map(|i| bodies.mass[i] * bodies.velocity[i].z)
-        .sum()
-}
-
-fn angular_momentum(bodies: &Bodies) -> f64 {
-    (0..bodies.grains)
-        .map(|i| {
-            let (position, velocity) = (bodies.position[i], bodies.velocity[i]);
-            bodies.mass[i] * (position.x * velocity.y - position.y * velocity.x)
-                + bodies.inertia[i] * bodies.angular_velocity[i].z
-        })
-        .sum()
 }
 
 /// How an elastic wall is displaced; zero for a prescribed one.

@@ -24,6 +24,17 @@ pub struct Slice {
     pub largest: f64,
 }
 
+impl Slice {
+    /// One radius all round.
+    pub(crate) fn round(radius: f64) -> Self {
+        Self {
+            mean: radius,
+            least: radius,
+            largest: radius,
+        }
+    }
+}
+
 impl TubeShape {
     /// The shape now.
     #[must_use]
@@ -40,14 +51,7 @@ impl TubeShape {
     #[must_use]
     pub fn slice(&self, z: f64) -> Slice {
         match self {
-            Self::Wave(wave, cycles) => {
-                let radius = wave.radius(z, *cycles);
-                Slice {
-                    mean: radius,
-                    least: radius,
-                    largest: radius,
-                }
-            }
+            Self::Wave(wave, cycles) => Slice::round(wave.radius(z, *cycles)),
             Self::Slices(slices, length) => {
                 let index = (z / length * slices.len() as f64) as usize;
                 slices[index.min(slices.len() - 1)]
@@ -68,11 +72,6 @@ impl TubeShape {
             Self::Wave(wave, _) => (wave.mean_radius - wave.amplitude.abs()).max(0.0),
             Self::Slices(..) => 0.0,
         }
-    }
-
-    /// Whether every wave of the tube has the same shape.
-    pub(crate) fn is_periodic(&self) -> bool {
-        matches!(self, Self::Wave(..))
     }
 
     /// Least radius anywhere \[d\]: twice it is the smallest bottleneck.
@@ -105,11 +104,7 @@ fn slices(bodies: &Bodies, wall: &ElasticWall) -> Vec<Slice> {
     let reference = wall.parameters().mean_radius;
     sums.into_iter()
         .map(|(count, sum, least, largest)| match count {
-            0 => Slice {
-                mean: reference,
-                least: reference,
-                largest: reference,
-            },
+            0 => Slice::round(reference),
             _ => Slice {
                 mean: sum / f64::from(count),
                 least,

@@ -2,8 +2,8 @@
 
 use peristalsis_engine::{Simulation, Wall};
 
-use crate::sample::{Observer, has_escaped};
-use crate::shape::TubeShape;
+use crate::sample::Observer;
+use crate::view::{View, floor};
 
 /// Where a wave ends and the next begins in the wave's frame \[lambda\]: at the throat, so that a wave is one belly.
 ///
@@ -70,23 +70,22 @@ impl WaveByWave {
         }
     }
 
-    /// Adds the interval between two states of the observer, of which `simulation` is at the end.
-    pub fn add(&mut self, before: &Observer, after: &Observer, simulation: &Simulation) {
-        let wall = simulation.wall();
+    /// Adds the interval between two states of the observer, seen from its end.
+    pub fn add(&mut self, before: &Observer, after: &Observer, view: &View<'_>) {
+        let wall = view.simulation.wall();
         let (heading, throat) = (wall.heading(), throat(wall));
         let wavelength = wall.lattice().wavelength;
         let waves = self.sums.len();
         let half_way = 0.5 * (before.cycles + after.cycles) + throat;
         let wave_run = (after.cycles - before.cycles) * wavelength;
-        let shape = TubeShape::of(simulation);
-        for (grain, (start, end)) in before.unfolded.iter().zip(&after.unfolded).enumerate() {
-            if has_escaped(simulation.bodies(), grain, &shape) {
+        let grains = before.unfolded.iter().zip(&after.unfolded);
+        for ((start, end), &inside) in grains.zip(&view.inside) {
+            if !inside {
                 continue;
             }
             let along = 0.5 * heading * (start + end) / wavelength - half_way;
-            // Rounding may lift a tiny negative remainder to the number of waves itself.
-            let wave = (along.floor().rem_euclid(waves as f64) as usize).min(waves - 1);
-            let sums = &mut self.sums[wave];
+            let wave = (floor(along) as i64).rem_euclid(waves as i64);
+            let sums = &mut self.sums[wave as usize];
             sums.grains += 1.0;
             sums.moved += heading * (end - start);
             sums.carried += wave_run;

@@ -7,7 +7,7 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile,
+    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, View, WaveByWave, WaveFrameProfile,
     note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
@@ -70,7 +70,7 @@ fn the_flow_of_free_flight_is_that_of_the_velocities() {
         let mut observer = Observer::new(&simulation);
         // The last grain goes backward through the seam.
         simulation.advance(40).unwrap();
-        let sample = observer.sample(&simulation);
+        let sample = observer.sample(&View::of(&simulation));
         let sum = heading * 1.4;
         assert!((sample.flow_rate - sum / 20.0).abs() < 1e-12);
         assert!((sample.flow_rate_instantaneous - sum / 20.0).abs() < 1e-12);
@@ -96,7 +96,7 @@ fn a_grain_outside_counts_in_the_raw_columns_only() {
     simulation = Simulation::new(bodies, wall(1.0, 0.5), parameters());
     let mut observer = Observer::new(&simulation);
     simulation.advance(20).unwrap();
-    let sample = observer.sample(&simulation);
+    let sample = observer.sample(&View::of(&simulation));
     assert_eq!((sample.escaped, sample.inside), (1.0, 3.0));
     assert!((sample.flow_rate_ratio - 0.5).abs() < 1e-12);
     assert!((sample.flow_rate_ratio_raw - 0.35).abs() < 1e-12);
@@ -112,7 +112,7 @@ fn the_profile_holds_each_grain_once_and_its_velocity_along_the_wave() {
         let mut profile = WaveFrameProfile::new(20, 2);
         for _ in 0..300 {
             simulation.advance(1).unwrap();
-            profile.add(&simulation);
+            profile.add(&View::of(&simulation));
         }
         let bins = profile.late(1.0, 10.0);
         let grains: f64 = bins.iter().map(|bin| bin.density.0 * 0.5 * 2.0).sum();
@@ -145,9 +145,9 @@ fn a_wave_keeps_the_grains_that_travel_with_it_and_passes_those_at_rest() {
         let mut waves = WaveByWave::new(&simulation, 20);
         for _ in 0..59 {
             simulation.advance(10).unwrap();
-            let before = observer.clone();
-            observer.sample(&simulation);
-            waves.add(&before, &observer, &simulation);
+            let view = View::of(&simulation);
+            let before = observer.end_interval(&view);
+            waves.add(&before, &observer, &view);
         }
         // The third period is not whole.
         let flows = waves.flows();
@@ -194,7 +194,7 @@ fn what_the_wall_does_is_what_the_grains_feel() {
         }
         assert!(axial.abs() > 1e-3 && outward > 0.1, "{axial} {outward}");
         let mut profile = WaveFrameProfile::new(10, 1);
-        profile.add(&simulation);
+        profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
         let force = profile.late_wall_force(1.0);
         assert!(
@@ -230,8 +230,9 @@ fn dispersion_counts_from_an_origin_of_the_late_part() {
     // More periods, of a time unit each, than origins are kept.
     for _ in 0..100 {
         simulation.advance(20).unwrap();
-        observer.sample(&simulation);
-        dispersion.end_period(&observer, &simulation);
+        let view = View::of(&simulation);
+        observer.sample(&view);
+        dispersion.end_period(&observer, &view);
     }
     let ballistic = |origin: f64, from: f64| -> Vec<f64> {
         (from as u32..100)
@@ -262,10 +263,10 @@ fn displacements_count_from_the_start() {
     for heading in [1.0, -1.0] {
         let mut simulation = free_flight(heading);
         let mut observer = Observer::new(&simulation);
-        let mut sample = observer.sample(&simulation);
+        let mut sample = observer.sample(&View::of(&simulation));
         for _ in 0..3 {
             simulation.advance(40).unwrap();
-            sample = observer.sample(&simulation);
+            sample = observer.sample(&View::of(&simulation));
         }
         // v_z = 0.5, 0.5, 0.5, -0.1: mean 0.35, variance 0.0675, for 6 t and through the seam.
         assert!((sample.axial_displacement - heading * 0.35 * 6.0).abs() < 1e-12);

@@ -4,7 +4,7 @@ use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_engine::Simulation;
 use peristalsis_observe::{
-    AxialDispersion, Observer, Sample, WallFault, WaveByWave, WaveFlow, WaveFrameProfile,
+    AxialDispersion, Observer, Sample, View, WallFault, WaveByWave, WaveFlow, WaveFrameProfile,
     note_wall_faults,
 };
 
@@ -70,10 +70,12 @@ impl Recorder {
 
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
-        let before = self.observer.clone();
-        self.samples.push(self.observer.sample(simulation));
-        self.waves.add(&before, &self.observer, simulation);
-        self.profile.add(simulation);
+        let view = View::of(simulation);
+        let before = self.observer.end_interval(&view);
+        self.samples
+            .push(Sample::of(&before, &self.observer, &view));
+        self.waves.add(&before, &self.observer, &view);
+        self.profile.add(&view);
         if (self.samples.len() as u64).is_multiple_of(self.wall_interval) {
             self.profile.add_wall_forces(simulation);
         }
@@ -87,7 +89,7 @@ impl Recorder {
                 .sum::<f64>()
                 / period.len() as f64;
             self.averages.push(average);
-            self.dispersion.end_period(&self.observer, simulation);
+            self.dispersion.end_period(&self.observer, &view);
             // Without grains inside there is no ratio, and the search ends.
             if !average.is_finite() || self.push(average).is_none() {
                 self.detector = None;

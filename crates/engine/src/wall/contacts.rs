@@ -1,9 +1,13 @@
 //! The contacts of grains with the wall, one by one: what momentum passes between them, and where.
 
-use glam::DVec3;
-use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
+use core::ops::Range;
 
-use super::Wall;
+use glam::DVec3;
+use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw, TangentialLaw};
+use rayon::ThreadPool;
+use rayon::prelude::*;
+
+use super::{PrescribedWall, Wall};
 use crate::bodies::Bodies;
 use crate::forces::Contacts;
 use crate::neighbours::periodic;
@@ -21,6 +25,10 @@ pub struct WallContact {
     pub tangential_force: DVec3,
 }
 
+/// Contacts with a prescribed wall that are found before any of them is worked out: many at a time, so that the branches
+/// of the search do not hold up the forces, and few enough to stay near the processor.
+const AT_A_TIME: usize = 64;
+
 /// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
 pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
@@ -29,25 +37,10 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     contacts: &Contacts<T::History<f64>>,
     mut visit: impl FnMut(WallContact),
 ) {
-    let mut touch = |grain: usize, wall: WallSide, mut history: T::History<f64>| {
-        if let Some(contact) = contact_of(law, bodies, grain, &wall, &mut history) {
-            visit(contact);
-        }
-    };
     match wall {
         Wall::Prescribed(wall) => {
-            let diameter = wall.lattice().sphere_diameter;
-            for grain in 0..bodies.grains {
-                let (centre, of_grain) = (bodies.position[grain], bodies.diameter[grain]);
-                wall.for_each_touching(centre, of_grain, |sphere, separation, velocity| {
-                    let side = WallSide {
-                        separation,
-                        velocity,
-                        diameter,
-                    };
-                    touch(grain, side, contacts.wall.history(grain, sphere));
-                });
-            }
+            let history = |grain, sphere| contacts.wall.history(grain, sphere);
+            touch_prescribed(law, bodies, wall, 0..bodies.grains, history, visit);
         }
         Wall::Elastic(wall) => {
             let length = wall.lattice().length();
@@ -59,7 +52,78 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
                         velocity: bodies.velocity[j],
                         diameter: bodies.diameter[j],
                     };
-                    touch(i, side, *history);
+                    let mut history = *history;
+                    if let Some(contact) = contact_of(law, bodies, i, &side, &mut history) {
+                        visit(contact);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Grains whose contacts a thread works out at a time.
+const PIECE: usize = 1024;
+/// Grains whose contacts are kept until they are visited.
+const AT_ONCE: usize = 16 * PIECE;
+
+/// The same for smooth grains in a prescribed tube: worked out by threads, visited by this one in the same order.
+pub(crate) fn for_each_smooth_contact<N: NormalLaw>(
+    normal: N,
+    bodies: &Bodies,
+    wall: &PrescribedWall,
+    pool: &ThreadPool,
+    mut visit: impl FnMut(WallContact),
+) {
+    let tangential = Frictionless;
+    let law = ContactLaw { normal, tangential };
+    let of_piece = |first: usize| {
+        let grains = first..(first + PIECE).min(bodies.grains);
+        let mut found = Vec::new();
+        touch_prescribed(
+            &law,
+            bodies,
+            wall,
+            grains,
+            |_, _| (),
+            |contact| found.push(contact),
+        );
+        found
+    };
+    for first in (0..bodies.grains).step_by(AT_ONCE) {
+        let pieces = (first..(first + AT_ONCE).min(bodies.grains)).into_par_iter();
+        let found: Vec<_> = pool.install(|| pieces.step_by(PIECE).map(of_piece).collect());
+        found.into_iter().flatten().for_each(&mut visit);
+    }
+}
+
+/// Calls `visit` for each contact of some grains with a prescribed wall; `history` knows what a contact of a grain with a
+/// wall sphere remembers.
+fn touch_prescribed<N: NormalLaw, T: TangentialLaw>(
+    law: &ContactLaw<N, T>,
+    bodies: &Bodies,
+    wall: &PrescribedWall,
+    grains: Range<usize>,
+    history: impl Fn(usize, u32) -> T::History<f64>,
+    mut visit: impl FnMut(WallContact),
+) {
+    let diameter = wall.lattice().sphere_diameter;
+    let mut found = Vec::new();
+    let last = grains.end.saturating_sub(1);
+    for grain in grains {
+        let (centre, of_grain) = (bodies.position[grain], bodies.diameter[grain]);
+        wall.for_each_touching(centre, of_grain, |sphere, separation, velocity| {
+            let side = WallSide {
+                separation,
+                velocity,
+                diameter,
+            };
+            found.push((grain, side, history(grain, sphere)));
+        });
+        if found.len() >= AT_A_TIME || grain == last {
+            for (grain, side, mut history) in found.drain(..) {
+                if let Some(contact) = contact_of(law, bodies, grain, &side, &mut history) {
+                    visit(contact);
                 }
             }
         }

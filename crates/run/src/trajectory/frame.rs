@@ -2,7 +2,7 @@
 
 use peristalsis_engine::{Simulation, Wall};
 use peristalsis_formats::trajectory::{Frame, FrameContact, Rotation};
-use peristalsis_observe::{TubeShape, instantaneous_flow_rate};
+use peristalsis_observe::View;
 
 use crate::run::Run;
 
@@ -72,7 +72,7 @@ fn values(run: &Run) -> Vec<(&'static str, f64)> {
         ),
         (
             "flow_rate_instantaneous",
-            instantaneous_flow_rate(simulation, &TubeShape::of(simulation)),
+            View::of(simulation).instantaneous_flow_rate(),
         ),
     ]
 }

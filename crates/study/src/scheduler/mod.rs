@@ -8,7 +8,7 @@ mod worker;
 
 use std::collections::HashMap;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use crate::error::StudyError;
@@ -59,6 +59,10 @@ struct Shared<'a> {
     owner: Owner,
     stop: AtomicBool,
     common: Mutex<Common>,
+    /// A run or a worker has ended.
+    ended: Condvar,
+    /// What each worker is doing; apart, so that a run goes on while another is written into the index.
+    working: Mutex<Vec<Option<Working>>>,
 }
 
 /// What one thread at a time may look at or change.
@@ -69,7 +73,6 @@ struct Common {
     places: HashMap<Identity, usize>,
     /// What the index said last, rows apart.
     entries: HashMap<Identity, Entry>,
-    workers: Vec<Option<Working>>,
     news: Vec<String>,
     /// The first error that ended a thread.
     error: Option<StudyError>,
@@ -110,6 +113,11 @@ impl Shared<'_> {
         self.common.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// What each worker is doing.
+    fn working(&self) -> MutexGuard<'_, Vec<Option<Working>>> {
+        self.working.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
@@ -138,7 +146,14 @@ impl Shared<'_> {
     /// Gives a lease back with what has become of the run.
     fn release(&self, identity: Identity, entry: Option<&Entry>) -> Result<bool, StudyError> {
         let mut common = self.common();
-        common.index.release(identity, &self.owner, entry)
+        let outcome = common.index.release(identity, &self.owner, entry);
+        self.ended.notify_all();
+        outcome
+    }
+
+    /// Waits until a run or a worker of this process has ended, but no longer than so.
+    fn wait(&self, longest: Duration) {
+        drop(self.ended.wait_timeout(self.common(), longest));
     }
 
     fn tell(&self, news: String) {
@@ -177,7 +192,6 @@ pub fn work_on(
         places: places(&plan),
         plan,
         entries: HashMap::new(),
-        workers: vec![None; workers],
         news,
         error: None,
         active: workers,
@@ -190,6 +204,8 @@ pub fn work_on(
         owner: Owner::new(),
         stop: AtomicBool::new(false),
         common: Mutex::new(common),
+        ended: Condvar::new(),
+        working: Mutex::new(vec![None; workers]),
     };
     let mut ending = Ending::Complete;
     std::thread::scope(|scope| {
@@ -252,13 +268,14 @@ fn coordinate(
                 common.error.get_or_insert(error);
             }
         }
-        gauge.look(shared.study, &mut common, is_last);
+        let working = shared.working().clone();
+        gauge.look(shared.study, &mut common, working, is_last);
         drop(common);
         watch(&gauge.board);
         if is_last {
             return ending;
         }
-        std::thread::sleep(TICK);
+        shared.wait(TICK);
     }
 }
 
@@ -277,7 +294,7 @@ impl Gauge {
     fn new(common: &Common) -> Self {
         Self {
             begin: Instant::now(),
-            before: fraction(common),
+            before: fraction(common, &[]),
             brackets: (usize::MAX, Vec::new()),
             measured: None,
             board: Board::default(),
@@ -285,8 +302,14 @@ impl Gauge {
     }
 
     /// Brings the board up to date: the workers always, the rest now and then.
-    fn look(&mut self, study: &Specification, common: &mut Common, is_last: bool) {
-        self.board.workers.clone_from(&common.workers);
+    fn look(
+        &mut self,
+        study: &Specification,
+        common: &mut Common,
+        working: Vec<Option<Working>>,
+        is_last: bool,
+    ) {
+        self.board.workers = working;
         self.board.news = std::mem::take(&mut common.news);
         if is_last
             || self
@@ -315,7 +338,7 @@ impl Gauge {
             let found = |identity: &Identity| finding(&common.entries, identity);
             self.brackets = (done + failed, brackets(study, &common.plan, &found));
         }
-        let fraction = fraction(common);
+        let fraction = fraction(common, &self.board.workers);
         let gained = fraction - self.before;
         let left = (gained > 0.0).then(|| self.begin.elapsed().mul_f64((1.0 - fraction) / gained));
         self.board = Board {
@@ -331,9 +354,8 @@ impl Gauge {
 }
 
 /// Part of the work of a study that is done.
-fn fraction(common: &Common) -> f64 {
-    let working: HashMap<Identity, f64> = common
-        .workers
+fn fraction(common: &Common, working: &[Option<Working>]) -> f64 {
+    let working: HashMap<Identity, f64> = working
         .iter()
         .flatten()
         .filter_map(|working| {

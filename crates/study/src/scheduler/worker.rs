@@ -25,8 +25,9 @@ enum Outcome {
 pub(super) fn work(shared: &Shared<'_>, slot: usize) {
     let outcome = take_turns(shared, slot);
     let mut common = shared.common();
-    common.workers[slot] = None;
+    shared.working()[slot] = None;
     common.active -= 1;
+    shared.ended.notify_all();
     if let Err(error) = outcome {
         shared.stop.store(true, Ordering::Relaxed);
         common.error.get_or_insert(error);
@@ -38,8 +39,8 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
         match shared.claim()? {
             Claim::Taken(identity) => attend(shared, slot, identity)?,
             Claim::Wait { .. } => {
-                shared.common().workers[slot] = None;
-                std::thread::sleep(IDLE);
+                shared.working()[slot] = None;
+                shared.wait(IDLE);
             }
             Claim::Nothing => break,
         }
@@ -50,7 +51,7 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
 /// Works on a run that this process has the lease of, and gives the lease back.
 fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<(), StudyError> {
     let (assignment, point) = shared.assignment(identity);
-    shared.common().workers[slot] = Some(Working {
+    shared.working()[slot] = Some(Working {
         identity,
         point,
         progress: None,
@@ -163,7 +164,7 @@ fn advance(
             }
             return give_up(shared, files, identity, &error.to_string());
         }
-        if let Some(working) = &mut shared.common().workers[slot] {
+        if let Some(working) = &mut shared.working()[slot] {
             working.progress = Some(run.progress());
         }
     }

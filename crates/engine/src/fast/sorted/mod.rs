@@ -9,6 +9,7 @@
 //! instructions changes a bit.
 
 mod columns;
+mod keys;
 mod listing;
 mod meetings;
 mod motion;
@@ -196,6 +197,11 @@ impl Sorted {
         self.instructions = instructions;
         self.pool = pool;
         self.share_out();
+    }
+
+    /// The threads, where there is to be more than one.
+    pub(crate) fn pool(&self) -> Option<&ThreadPool> {
+        self.pool.as_deref()
     }
 
     /// Forces of contacts at rest: takes the positions of `bodies` as they are and answers with their accelerations.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::columns::Columns;
+use super::keys::{Key, put_strips_in_order};
 use super::{Sorted, TILE};
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
@@ -93,11 +93,13 @@ impl Row {
 
 #[derive(Clone, Debug, Default)]
 pub(super) struct Scratch {
-    /// (z, place before) in the order that is being made.
-    keys: Vec<(f64, u32)>,
+    /// The order that is being made.
+    pub(super) keys: Vec<Key>,
     /// How many grains of each strip come from beyond the end of the tube, from within, from before its beginning; then
     /// where the next of them goes.
-    counts: Vec<[u32; 3]>,
+    pub(super) counts: Vec<[u32; 3]>,
+    /// The first of these for each piece of the one row of a narrow tube, where there are threads.
+    pub(super) of_pieces: Vec<[u32; 3]>,
     column: Vec<f64>,
     order: Vec<u32>,
     turns: Vec<i32>,
@@ -228,52 +230,18 @@ impl Sorted {
 
     /// Makes the order anew.
     pub(super) fn sort(&mut self) {
-        let Self {
-            strips,
-            length,
-            rows,
-            turns,
-            position,
-            scratch: Scratch { keys, counts, .. },
-            ..
-        } = self;
-        // In each strip those come first that left the tube at its end, and those last that left it at its beginning:
-        // what then remains to be done is little.
-        let side = |z: f64| match z {
-            z if z >= *length => 0,
-            z if z < 0.0 => 2,
-            _ => 1,
-        };
-        let Columns { x, y, z } = position;
-        let strip = |place: usize| strips.at(x[place], y[place]);
-        counts.clear();
-        counts.resize(strips.number(), [0; 3]);
-        for place in rows.iter().flat_map(Row::own) {
-            counts[strip(place)][side(z[place])] += 1;
+        let parallel = self.pool.is_some();
+        if parallel && !self.strips.several() {
+            self.note_row_in_pieces();
+        } else {
+            self.note_strips();
         }
-        let mut end = 0;
-        for count in counts.iter_mut().flatten() {
-            (*count, end) = (end, end + *count);
-        }
-        keys.clear();
-        keys.resize(end as usize, (0.0, 0));
-        for place in rows.iter().flat_map(Row::own) {
-            let next = &mut counts[strip(place)][side(z[place])];
-            let (folded, more) = fold(z[place], *length);
-            z[place] = folded;
-            turns[place] += more;
-            keys[*next as usize] = (folded, place as u32);
-            *next += 1;
-        }
-        // By now each count stands where the next begins.
-        let mut begin = 0;
-        for count in counts.iter_mut() {
-            let end = count[2] as usize;
-            put_in_order(&mut keys[begin..end]);
-            (count[0], begin) = ((end - begin) as u32, end);
-        }
+        let Scratch { keys, counts, .. } = &mut self.scratch;
+        put_strips_in_order(keys, 0, counts, parallel);
         let counts = core::mem::take(counts);
-        self.arrange(counts.iter().map(|count| count[0] as usize));
+        let ends = counts.iter().map(|count| count[2] as usize);
+        let begins = core::iter::once(0).chain(ends.clone());
+        self.arrange(ends.zip(begins).map(|(end, begin)| end - begin));
         self.scratch.counts = counts;
     }
 
@@ -372,7 +340,7 @@ impl Sorted {
 }
 
 /// Grains that a thread brings into order at a time.
-const PIECE: usize = 32 * TILE;
+pub(super) const PIECE: usize = 32 * TILE;
 
 /// The stretches of places between the grains of the rows, and before and behind them.
 fn gaps(rows: &[Row], places: usize) -> impl Iterator<Item = core::ops::Range<usize>> {
@@ -385,7 +353,7 @@ fn gaps(rows: &[Row], places: usize) -> impl Iterator<Item = core::ops::Range<us
 /// Brings values into the order of the keys, row by row; `filler` stands where there is no grain.
 fn gather<T: Copy + Send + Sync>(
     rows: &[Row],
-    keys: &[(f64, u32)],
+    keys: &[Key],
     values: &mut Vec<T>,
     filler: T,
     scratch: &mut Vec<T>,
@@ -397,7 +365,7 @@ fn gather<T: Copy + Send + Sync>(
         scratch[gap].fill(filler);
     }
     let from = &values[..];
-    let one = |(gathered, keys): (&mut [T], &[(f64, u32)])| {
+    let one = |(gathered, keys): (&mut [T], &[Key])| {
         for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
             *gathered = from[place as usize];
         }
@@ -415,23 +383,4 @@ fn gather<T: Copy + Send + Sync>(
         }
     }
     core::mem::swap(values, scratch);
-}
-
-/// Sorts what is nearly sorted, or else as one does.
-fn put_in_order(keys: &mut [(f64, u32)]) {
-    let mut steps_left = 64 * keys.len();
-    for unsorted in 1..keys.len() {
-        let key = keys[unsorted];
-        let mut hole = unsorted;
-        while hole > 0 && key.0 < keys[hole - 1].0 {
-            keys[hole] = keys[hole - 1];
-            hole -= 1;
-        }
-        keys[hole] = key;
-        steps_left = steps_left.saturating_sub(unsorted - hole);
-        if steps_left == 0 {
-            keys.sort_by(|one, other| one.0.total_cmp(&other.0));
-            return;
-        }
-    }
 }

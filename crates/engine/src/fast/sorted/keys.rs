@@ -1,0 +1,276 @@
+//! By what the grains are sorted: noted down, and put in order.
+
+use rayon::prelude::*;
+
+use super::Sorted;
+use super::columns::Columns;
+use super::order::{PIECE, Row, Scratch};
+use crate::bodies::fold;
+
+/// z of a grain, and the place where it stood before.
+pub(super) type Key = (f64, u32);
+
+impl Sorted {
+    /// Notes the keys of all grains strip by strip, folding them back into the tube; in each strip those come first that
+    /// left the tube at its end, and those last that left it at its beginning: what then remains to be done is little.
+    pub(super) fn note_strips(&mut self) {
+        let Self {
+            strips,
+            length,
+            rows,
+            turns,
+            position: Columns { x, y, z },
+            scratch: Scratch { keys, counts, .. },
+            ..
+        } = self;
+        let strip = |place: usize| strips.at(x[place], y[place]);
+        counts.clear();
+        counts.resize(strips.number(), [0; 3]);
+        for place in rows.iter().flat_map(Row::own) {
+            counts[strip(place)][side(z[place], *length)] += 1;
+        }
+        let mut end = 0;
+        for count in counts.iter_mut().flatten() {
+            (*count, end) = (end, end + *count);
+        }
+        keys.clear();
+        keys.resize(end as usize, (0.0, 0));
+        for place in rows.iter().flat_map(Row::own) {
+            let next = &mut counts[strip(place)][side(z[place], *length)];
+            let (folded, more) = fold(z[place], *length);
+            z[place] = folded;
+            turns[place] += more;
+            keys[*next as usize] = (folded, place as u32);
+            *next += 1;
+        }
+        // By now each count stands where the next begins.
+    }
+
+    /// Does the same in a narrow tube, several threads at a time.
+    pub(super) fn note_row_in_pieces(&mut self) {
+        let Self {
+            length,
+            rows,
+            turns,
+            position: Columns { z, .. },
+            scratch:
+                Scratch {
+                    keys,
+                    counts,
+                    of_pieces,
+                    ..
+                },
+            ..
+        } = self;
+        let row = rows.first().map_or(0..0, Row::own);
+        keys.resize(row.len(), (0.0, 0));
+        of_pieces.clear();
+        of_pieces.resize(row.len().div_ceil(PIECE), [0; 3]);
+        let pieces = z[row.clone()].par_chunks(PIECE);
+        pieces.zip(&mut *of_pieces).for_each(|(piece, count)| {
+            for &z in piece {
+                count[side(z, *length)] += 1;
+            }
+        });
+        let [left_at_end, within, _] = sum(of_pieces);
+        let (to_end, rest) = keys.split_at_mut(left_at_end);
+        let (to_within, to_beginning) = rest.split_at_mut(within);
+        let pieces = Pieces {
+            length: *length,
+            first: row.start,
+            z: &mut z[row.clone()],
+            turns: &mut turns[row.clone()],
+            counts: of_pieces,
+            keys: [to_end, to_within, to_beginning],
+        };
+        pieces.note();
+        counts.clear();
+        counts.push([row.len() as u32; 3]);
+    }
+}
+
+/// Whether a grain comes from beyond the end of the tube (0), from within (1) or from before its beginning (2).
+fn side(z: f64, length: f64) -> usize {
+    match z {
+        z if z >= length => 0,
+        z if z < 0.0 => 2,
+        _ => 1,
+    }
+}
+
+/// Consecutive pieces of a row whose keys are to be noted, and the room for those of each side.
+struct Pieces<'a> {
+    length: f64,
+    /// Place of the first grain.
+    first: usize,
+    z: &'a mut [f64],
+    turns: &'a mut [i32],
+    /// How many grains of each side the pieces hold.
+    counts: &'a [[u32; 3]],
+    keys: [&'a mut [Key]; 3],
+}
+
+impl Pieces<'_> {
+    /// Notes the keys; halves of many pieces at the same time.
+    fn note(self) {
+        let Self {
+            length,
+            first,
+            z,
+            turns,
+            counts,
+            keys,
+        } = self;
+        if counts.len() <= 1 {
+            let mut keys = keys.map(|keys| keys.iter_mut());
+            for (place, (z, turns)) in (first as u32..).zip(z.iter_mut().zip(turns)) {
+                let key = keys[side(*z, length)].next();
+                let more;
+                (*z, more) = fold(*z, length);
+                *turns += more;
+                *key.expect("room for as many as were counted") = (*z, place);
+            }
+            return;
+        }
+        let (front, back) = counts.split_at(counts.len() / 2);
+        let middle = front.len() * PIECE;
+        let (front_z, back_z) = z.split_at_mut(middle);
+        let (front_turns, back_turns) = turns.split_at_mut(middle);
+        let [(a, d), (b, e), (c, f)] = {
+            let [at_end, within, at_beginning] = keys;
+            let [i, j, k] = sum(front);
+            [
+                at_end.split_at_mut(i),
+                within.split_at_mut(j),
+                at_beginning.split_at_mut(k),
+            ]
+        };
+        let front = Pieces {
+            length,
+            first,
+            z: front_z,
+            turns: front_turns,
+            counts: front,
+            keys: [a, b, c],
+        };
+        let back = Pieces {
+            length,
+            first: first + middle,
+            z: back_z,
+            turns: back_turns,
+            counts: back,
+            keys: [d, e, f],
+        };
+        rayon::join(|| front.note(), || back.note());
+    }
+}
+
+fn sum(counts: &[[u32; 3]]) -> [usize; 3] {
+    core::array::from_fn(|side| counts.iter().map(|count| count[side] as usize).sum())
+}
+
+/// Sorts the keys of strips, which begin at `begin` and end where the last of their counts says.
+pub(super) fn put_strips_in_order(
+    keys: &mut [Key],
+    begin: usize,
+    counts: &[[u32; 3]],
+    parallel: bool,
+) {
+    if parallel && counts.len() > 1 && keys.len() > PIECE {
+        let (front, back) = counts.split_at(counts.len() / 2);
+        let middle = front.last().map_or(begin, |count| count[2] as usize);
+        let (front_keys, back_keys) = keys.split_at_mut(middle - begin);
+        rayon::join(
+            || put_strips_in_order(front_keys, begin, front, parallel),
+            || put_strips_in_order(back_keys, middle, back, parallel),
+        );
+        return;
+    }
+    let mut from = 0;
+    for count in counts {
+        let to = count[2] as usize - begin;
+        put_in_order(&mut keys[from..to], parallel);
+        from = to;
+    }
+}
+
+/// Sorts what is nearly sorted. There is one such order, equal ones staying as they are, whoever makes it.
+fn put_in_order(keys: &mut [Key], parallel: bool) {
+    if parallel && keys.len() > PIECE {
+        let middle = keys.len() / 2;
+        let (front, back) = keys.split_at_mut(middle);
+        rayon::join(|| put_in_order(front, true), || put_in_order(back, true));
+        // Once one is in place, so are those behind it.
+        insert(keys, middle, Until::OneStays);
+    } else {
+        insert(keys, 1, Until::End);
+    }
+}
+
+/// How far to insert.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Until {
+    OneStays,
+    End,
+}
+
+/// Inserts the keys from the `first` on into those before, which are in order; where that takes long, sorts as one does.
+fn insert(keys: &mut [Key], first: usize, until: Until) {
+    let mut steps_left = 64 * keys.len();
+    for unsorted in first..keys.len() {
+        let key = keys[unsorted];
+        let mut hole = unsorted;
+        while hole > 0 && key.0 < keys[hole - 1].0 {
+            keys[hole] = keys[hole - 1];
+            hole -= 1;
+        }
+        keys[hole] = key;
+        if hole == unsorted && until == Until::OneStays {
+            return;
+        }
+        steps_left = steps_left.saturating_sub(unsorted - hole);
+        if steps_left == 0 {
+            keys.sort_by(|one, other| one.0.total_cmp(&other.0));
+            return;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers that jump about, and some of which are equal.
+    fn keys(number: u32, disorder: f64) -> Vec<Key> {
+        let jump = |place: u32| f64::from(place.wrapping_mul(2_654_435_761) % 1000) / 1000.0;
+        (0..number)
+            .map(|place| (f64::from(place / 2) + disorder * jump(place), place))
+            .collect()
+    }
+
+    #[test]
+    fn halves_put_in_order_and_joined_are_the_one_stable_order() {
+        let number = 3 * PIECE as u32 + 17;
+        for disorder in [0.0, 0.5, 40.0, 1e9] {
+            let mut expected = keys(number, disorder);
+            expected.sort_by(|one, other| one.0.total_cmp(&other.0));
+            for parallel in [false, true] {
+                let mut keys = keys(number, disorder);
+                put_in_order(&mut keys, parallel);
+                assert!(keys == expected, "{disorder} {parallel}");
+                // Strips of many lengths, none among them.
+                let ends = [0, 5, 5, PIECE as u32 + 1, 2 * PIECE as u32, number];
+                let counts = ends.map(|end| [0, 0, end]);
+                let mut of_strips = self::keys(number, disorder);
+                put_strips_in_order(&mut of_strips, 0, &counts, parallel);
+                let mut begin = 0;
+                for end in ends.map(|end| end as usize) {
+                    let mut expected = self::keys(number, disorder)[begin..end].to_vec();
+                    expected.sort_by(|one, other| one.0.total_cmp(&other.0));
+                    assert!(of_strips[begin..end] == expected, "{disorder} {parallel}");
+                    begin = end;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! A simulation as it is, looked at once for all observables.
+
+use peristalsis_engine::{Bodies, Simulation};
+
+use crate::shape::TubeShape;
+
+/// A simulation between two steps, with the tube's shape and who is inside it.
+#[derive(Clone, Debug)]
+pub struct View<'a> {
+    pub(crate) simulation: &'a Simulation,
+    pub(crate) shape: TubeShape,
+    /// Of each grain whether it is inside.
+    pub(crate) inside: Vec<bool>,
+}
+
+impl<'a> View<'a> {
+    /// The simulation now.
+    #[must_use]
+    pub fn of(simulation: &'a Simulation) -> Self {
+        let shape = TubeShape::of(simulation);
+        let bodies = simulation.bodies();
+        let inside = (0..bodies.grains).map(|grain| !has_escaped(bodies, grain, &shape));
+        Self {
+            simulation,
+            inside: inside.collect(),
+            shape,
+        }
+    }
+
+    /// J from the velocities of the grains inside the tube, along the wave \[1/t\].
+    #[must_use]
+    pub fn instantaneous_flow_rate(&self) -> f64 {
+        let (bodies, wall) = (self.simulation.bodies(), self.simulation.wall());
+        let grains = bodies.velocity.iter().zip(&self.inside);
+        let flux: f64 = grains
+            .filter(|&(_, &inside)| inside)
+            .map(|(velocity, _)| velocity.z)
+            .sum();
+        wall.heading() * flux / wall.lattice().length()
+    }
+}
+
+/// Whether a grain's centre lies outside R + d/2, R the wall's radius at its z and d its diameter.
+#[inline]
+fn has_escaped(bodies: &Bodies, grain: usize, shape: &TubeShape) -> bool {
+    let position = bodies.position[grain];
+    let from_axis_squared = position.x * position.x + position.y * position.y;
+    let beyond = |limit: f64| from_axis_squared > limit * limit;
+    let half = 0.5 * bodies.diameter[grain];
+    // Nearly all grains are within the throat's radius, and need no look at the wall where they are.
+    beyond(shape.least_radius() + half) && beyond(shape.radius(position.z) + half)
+}
+
+/// The greatest whole number that is not above x, for what is below 2^63 in size: by truncation, for rounding is a call of
+/// the library on the plainest processors.
+#[inline]
+pub(crate) fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    whole - f64::from(u8::from(whole > x))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn truncation_rounds_down_as_the_library_does() {
+        for x in [
+            0.0, 0.25, 1.0, -0.25, -1.0, -1.75, 1e-300, -1e-300, 2.5e15, -2.5e15, 4e18,
+        ] {
+            assert_eq!(floor(x), x.floor(), "{x}");
+        }
+    }
+}
