@@ -35,34 +35,6 @@ impl Colour {
         };
         self.0.to_array().map(channel)
     }
-
-    fn mix(self, other: Self, part: f32) -> Self {
-        Self(self.0.lerp(other.0, part))
-    }
-}
-
-/// Blue at -1, white at 0, red at 1, with equal steps of lightness on both sides.
-///
-/// Values beyond are drawn as the ends; what is not a number is grey.
-#[must_use]
-pub fn diverging(value: f64) -> Colour {
-    // Ends and middles of either side in sRGB, of falling lightness.
-    const SIDES: [[[u8; 3]; 2]; 2] = [
-        [[110, 165, 215], [20, 70, 160]],
-        [[240, 140, 105], [165, 15, 30]],
-    ];
-    if value.is_nan() {
-        return Colour::srgb(150, 150, 150);
-    }
-    let [middle, end] =
-        SIDES[usize::from(value > 0.0)].map(|[red, green, blue]| Colour::srgb(red, green, blue));
-    let size = value.abs().min(1.0) as f32;
-    let white = Colour::srgb(246, 244, 240);
-    if size < 0.5 {
-        white.mix(middle, 2.0 * size)
-    } else {
-        middle.mix(end, 2.0 * size - 1.0)
-    }
 }
 
 #[cfg(test)]
@@ -75,20 +47,5 @@ mod tests {
             let colour = Colour::srgb(byte, 255 - byte, 7);
             assert_eq!(colour.to_srgb(), [byte, 255 - byte, 7]);
         }
-    }
-
-    #[test]
-    fn blue_is_against_and_red_along_and_both_darken_outwards() {
-        let [blue, white, red] = [-1.0, 0.0, 1.0].map(|value| diverging(value).to_srgb());
-        assert!(blue[2] > 2 * blue[0] && red[0] > 4 * red[2] && white.iter().all(|&it| it > 235));
-        let lightness = |value: f64| diverging(value).0.dot(Vec3::new(0.2126, 0.7152, 0.0722));
-        for side in [-1.0, 1.0] {
-            for step in 0..10 {
-                let (one, next) = (f64::from(step) * 0.1, f64::from(step + 1) * 0.1);
-                assert!(lightness(side * next) < lightness(side * one));
-            }
-        }
-        assert_eq!(diverging(7.0), diverging(1.0));
-        assert_eq!(diverging(f64::NAN).to_srgb(), [150; 3]);
     }
 }

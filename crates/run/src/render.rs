@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Wall};
+use peristalsis_figures::{ColourScale, Palette};
 use peristalsis_render::{
-    Colour, Finish, Picture, RenderError, Scene, Sphere, View, diverging, render,
+    Colour, Finish, Picture, RenderError, Scene, Sphere, View, render,
 };
 
 use crate::run::Run;
