@@ -51,6 +51,14 @@ pub enum RunError {
         /// What to ask for instead.
         help: &'static str,
     },
+    /// A picture or film that cannot be.
+    #[error("no such picture: {reason}")]
+    Picture {
+        /// Why.
+        reason: String,
+        /// What to ask for instead.
+        help: String,
+    },
     /// There is no run to go on with.
     #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {
