@@ -28,7 +28,7 @@ pub use late::Pumping;
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};
 pub use peristalsis_formats::{Frame, TrajectoryFormat};
-pub use peristalsis_render::Picture;
+pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
 pub use pictures::{snapshot_stack, space_time};
 pub use portrait::{Aspect, Eye, Field, Look, Place, Portrait, WallLook, Writing};
 pub use recorder::{Recorder, THRESHOLDS};

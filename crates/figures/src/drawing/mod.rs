@@ -292,6 +292,12 @@ impl Drawing {
         png::picture(self)
     }
 
+    /// Pixels across and down of [`Drawing::png`].
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height].map(|length| (length * self.pixels_per_point).round() as u32)
+    }
+
     /// The pixels of [`Drawing::png`].
     ///
     /// # Errors

@@ -37,8 +37,7 @@ pub(super) fn picture(drawing: &Drawing) -> Result<Vec<u8>, FigureError> {
 pub(super) fn raster(drawing: &Drawing) -> Result<Raster, FigureError> {
     let scale = drawing.pixels_per_point;
     // Non-negative by construction; a page too large saturates and is refused below.
-    let [width, height] =
-        [drawing.width, drawing.height].map(|length| (length * scale).round() as u32);
+    let [width, height] = drawing.size();
     let mut pixels =
         Pixmap::new(width, height).ok_or(FigureError::PictureTooLarge { width, height })?;
     pixels.fill(colour_of(drawing.paper));

@@ -1,5 +1,6 @@
 //! What the grains of a picture are coloured by.
 
+use peristalsis_configuration::NormalLaw;
 use peristalsis_engine::Wall;
 use peristalsis_figures::{ColourScale, Palette};
 use peristalsis_formats::Frame;
@@ -40,10 +41,14 @@ pub(super) struct Coloured {
     /// Whether the wave moves, so that speeds are told in its speed.
     is_moving: bool,
     label: String,
+    /// Pressure of grains that are packed, for pictures that begin with grains apart.
+    usual_pressure: f64,
 }
 
 /// Contacts that most grains have fewer than.
 const MOST_CONTACTS: f64 = 12.0;
+/// Pressures of packed grains in units of k/d and of Y.
+const USUAL_PRESSURES: [f64; 2] = [0.2, 0.01];
 /// Part of the grains whose pressure lies within the colours.
 const COVERED: f64 = 0.98;
 
@@ -62,11 +67,14 @@ impl Coloured {
                 "take another field",
             );
         }
-        if field == Field::Pressure && samples.iter().all(|frame| frame.contacts.is_empty()) {
+        let touch = |frame: &Frame| coordination(frame).iter().any(|contacts| *contacts > 0.0);
+        if field == Field::Pressure
+            && samples.iter().all(|frame| frame.contacts.is_empty())
+            && samples.iter().any(touch)
+        {
             return refused(
-                "there are no forces of contacts to make a pressure of",
-                "a GSD trajectory holds none: draw from the saved state or from the start, \
-                 and where no grains touch take another field",
+                "the frames hold no forces of contacts, of which pressure is made",
+                "a GSD trajectory has none: draw from the saved state or from the start",
             );
         }
         let wall = run.simulation().wall();
@@ -94,8 +102,8 @@ impl Coloured {
             Field::Pressure => format!(
                 "pressure [{}]",
                 match run.configuration().contact.normal {
-                    peristalsis_configuration::NormalLaw::Linear { .. } => "*k*/*d*",
-                    peristalsis_configuration::NormalLaw::Hertz { .. } => "*Y*",
+                    NormalLaw::Linear { .. } => "*k*/*d*",
+                    NormalLaw::Hertz { .. } => "*Y*",
                 }
             ),
         };
@@ -108,6 +116,10 @@ impl Coloured {
             range: (0.0, 1.0),
             is_moving,
             label,
+            usual_pressure: match run.configuration().contact.normal {
+                NormalLaw::Linear { .. } => USUAL_PRESSURES[0],
+                NormalLaw::Hertz { .. } => USUAL_PRESSURES[1],
+            },
         };
         let mut found = Vec::new();
         for sample in samples {
@@ -148,7 +160,8 @@ impl Coloured {
             }
             Field::Phase => (0.0, 1.0),
             Field::Coordination => (0.0, MOST_CONTACTS),
-            Field::Pressure => (0.0, at(COVERED).max(1e-12)),
+            Field::Pressure if at(COVERED) > 0.0 => (0.0, at(COVERED)),
+            Field::Pressure => (0.0, self.usual_pressure),
         }
     }
 

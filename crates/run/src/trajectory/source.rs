@@ -131,6 +131,30 @@ impl FrameSource {
         }
     }
 
+    /// The frame of a GSD trajectory nearest to an instant, or the last where none is asked for; and the first.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where it cannot be read.
+    pub fn nearest(path: &Path, at: Option<Span>) -> Result<[Frame; 2], RunError> {
+        let mut reader = GsdReader::open(path)?;
+        let mut found = (reader.frames() - 1, f64::INFINITY);
+        if let Some(at) = at {
+            let (name, at) = match at {
+                Span::Periods(periods) => ("period", periods),
+                Span::Time(time) => ("time", time),
+            };
+            for number in 0..reader.frames() {
+                let away = reader
+                    .value(number, name)?
+                    .map_or(f64::INFINITY, |it| (it - at).abs());
+                if away < found.1 {
+                    found = (number, away);
+                }
+            }
+        }
+        Ok([reader.frame(0)?, reader.frame(found.0)?])
+    }
+
     /// The present state of a run, as a frame.
     #[must_use]
     pub fn now(run: &Run, with_contacts: bool) -> Frame {
