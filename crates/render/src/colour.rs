@@ -1,5 +1,7 @@
 //! Colours in linear light.
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 
 /// A colour in linear light, red, green and blue in \[0, 1\].
@@ -24,18 +26,28 @@ impl Colour {
     /// The bytes of the colour in sRGB (IEC 61966-2-1).
     #[must_use]
     pub fn to_srgb(self) -> [u8; 3] {
-        let channel = |value: f32| {
-            let value = value.clamp(0.0, 1.0);
-            let encoded = if value <= 0.003_130_8 {
-                12.92 * value
-            } else {
-                1.055 * libm::powf(value, 1.0 / 2.4) - 0.055
-            };
-            libm::roundf(255.0 * encoded) as u8
-        };
-        self.0.to_array().map(channel)
+        // A NaN becomes 0 by the conversion to a whole number.
+        let place = |value: f32| (value.clamp(0.0, 1.0) * (STEPS - 1) as f32 + 0.5) as usize;
+        self.0.to_array().map(|value| ENCODED[place(value)])
     }
 }
+
+/// Steps of linear light that are told apart: more than bytes of sRGB where these are densest.
+const STEPS: usize = 1 << 14;
+
+/// The byte of each step.
+static ENCODED: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let byte = |step: usize| {
+        let value = step as f32 / (STEPS - 1) as f32;
+        let encoded = if value <= 0.003_130_8 {
+            12.92 * value
+        } else {
+            1.055 * libm::powf(value, 1.0 / 2.4) - 0.055
+        };
+        libm::roundf(255.0 * encoded) as u8
+    };
+    (0..STEPS).map(byte).collect()
+});
 
 #[cfg(test)]
 mod tests {

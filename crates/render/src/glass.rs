@@ -8,8 +8,8 @@ use crate::colour::Colour;
 const VEIL: f32 = 0.10;
 const RIM: f32 = 0.42;
 /// The mirrored lamp.
-const GLOSS: f32 = 0.35;
-const GLOSS_EXPONENT: f32 = 60.0;
+const GLOSS: f32 = 0.10;
+const GLOSS_EXPONENT: i32 = 24;
 /// Half way between lamp and eye.
 const HALF_WAY: Vec3 = Vec3::new(-0.22, 0.35, 0.91);
 
@@ -20,7 +20,10 @@ pub(crate) fn before(behind: Vec3, normal: Vec3, colour: Colour) -> Vec3 {
     let slope = 1.0 - normal.z.clamp(0.0, 1.0);
     let hides = VEIL + RIM * slope * slope;
     let shaded = colour.0 * (0.62 + 0.38 * normal.y.max(0.0));
-    let mirrored = libm::powf(normal.dot(HALF_WAY.normalize()).max(0.0), GLOSS_EXPONENT);
+    let mirrored = normal
+        .dot(HALF_WAY.normalize())
+        .max(0.0)
+        .powi(GLOSS_EXPONENT);
     (behind.lerp(shaded, hides) + GLOSS * mirrored).min(Vec3::ONE)
 }
 

@@ -11,23 +11,23 @@ use crate::colour::Colour;
 use crate::depth_map::{DepthMap, Disc};
 
 /// Directions of the sky over the whole sphere.
-const SKY_DIRECTIONS: u32 = 120;
+const SKY_DIRECTIONS: u32 = 84;
 /// Light from further behind what is seen reaches no surface that faces the eye.
 const FURTHEST_BEHIND: f32 = -0.5;
 /// Light of the whole sky on an open surface.
-const SKY: f32 = 0.66;
+const SKY: f32 = 0.74;
 /// How much brighter the sky is above than at the horizon.
 const SKY_GRADIENT: f32 = 0.28;
 /// Directions of the lamp, and the sine of its angular radius.
-const LAMP_DIRECTIONS: u32 = 20;
+const LAMP_DIRECTIONS: u32 = 14;
 const LAMP_RADIUS: f32 = 0.26;
 /// Light of the lamp at right angles.
-const LAMP: f32 = 0.50;
+const LAMP: f32 = 0.54;
 /// Light mirrored by a surface, and how narrowly.
 const GLOSS: f32 = 0.11;
-const GLOSS_EXPONENT: f32 = 42.0;
+const GLOSS_EXPONENT: i32 = 40;
 /// Share of the light that bright neighbours give back to what they hide.
-const BOUNCE: f32 = 0.22;
+const BOUNCE: f32 = 0.25;
 /// Light above which the brightest colours are bent so as not to be cut off.
 const SHOULDER: f32 = 0.86;
 /// Angle between successive points of a spiral that fills a disc or a sphere evenly.
@@ -72,31 +72,47 @@ impl Light {
         }
     }
 
-    /// The light from a point of a surface to the eye.
-    pub(crate) fn shade(&self, point: Vec3, normal: Vec3, colour: Colour) -> Vec3 {
-        let sum = |sources: &[Source]| -> f32 {
-            sources
-                .iter()
-                .map(|source| {
-                    let facing = normal.dot(source.towards);
-                    if facing <= 0.0 {
-                        return 0.0;
-                    }
-                    source.weight * facing * source.map.visible(point, normal)
-                })
-                .sum()
+    /// How much of the light that an open surface would have reaches a point.
+    pub(crate) fn reaching(&self, point: Vec3, normal: Vec3) -> Reach {
+        let part = |sources: &[Source]| {
+            let (mut open, mut seen) = (0.0_f32, 0.0_f32);
+            for source in sources {
+                let facing = normal.dot(source.towards);
+                if facing > 0.0 {
+                    let light = source.weight * facing;
+                    open += light;
+                    seen += light * source.map.visible(point, normal);
+                }
+            }
+            if open > 0.0 { seen / open } else { 0.0 }
         };
-        let (sky, lamp) = (sum(&self.sky), sum(&self.lamp));
-        let bounced = sky + BOUNCE * (SKY - sky).max(0.0) * SKY;
-        let half_way = (self::lamp() + Vec3::Z).normalize();
-        let mirrored = libm::powf(normal.dot(half_way).max(0.0), GLOSS_EXPONENT);
-        // A soft dark rim keeps spheres of one colour apart.
-        let rim = (normal.z / 0.30).clamp(0.0, 1.0);
-        let outline = 0.50 + 0.50 * rim * rim * (3.0 - 2.0 * rim);
-        let lit =
-            (colour.0 * (bounced + lamp)) * outline + Vec3::splat(GLOSS * mirrored * lamp / LAMP);
-        Vec3::from_array(lit.to_array().map(bent))
+        Reach {
+            sky: part(&self.sky),
+            lamp: part(&self.lamp),
+        }
     }
+}
+
+/// Parts of the light, 0 to 1, that reach a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reach {
+    sky: f32,
+    lamp: f32,
+}
+
+/// The light from a surface to the eye.
+pub(crate) fn shaded(normal: Vec3, reach: Reach, colour: Colour) -> Vec3 {
+    // The mean of 1 + g y over the hemisphere about a normal, weighted by the cosine, is 1 + 2/3 g n_y.
+    let open_sky = SKY * (1.0 + 2.0 / 3.0 * SKY_GRADIENT * normal.y);
+    let sky = open_sky * (reach.sky + BOUNCE * (1.0 - reach.sky) * reach.sky);
+    let lit = LAMP * normal.dot(lamp()).max(0.0) * reach.lamp;
+    let half_way = (lamp() + Vec3::Z).normalize();
+    let mirrored = GLOSS * normal.dot(half_way).max(0.0).powi(GLOSS_EXPONENT) * reach.lamp;
+    // A soft dark rim keeps spheres of one colour apart.
+    let rim = (normal.z / 0.30).clamp(0.0, 1.0);
+    let outline = 0.50 + 0.50 * rim * rim * (3.0 - 2.0 * rim);
+    let light = colour.0 * ((sky + lit) * outline) + Vec3::splat(mirrored);
+    Vec3::from_array(light.to_array().map(bent))
 }
 
 /// Brightness without a hard end: as it is up to the shoulder, then ever less, and never above 1.
@@ -173,9 +189,8 @@ mod tests {
     #[test]
     fn what_is_hidden_is_darker_and_the_nearer_the_darker() {
         let brightness = |discs: &[Disc]| {
-            Light::among(discs, 0.02)
-                .shade(Vec3::new(0.0, 0.0, 0.5), Vec3::Z, WHITE)
-                .x
+            let reach = Light::among(discs, 0.02).reaching(Vec3::new(0.0, 0.0, 0.5), Vec3::Z);
+            shaded(Vec3::Z, reach, WHITE).x
         };
         let own = disc(Vec3::ZERO);
         let free = brightness(&[own]);
