@@ -7,17 +7,14 @@ use crate::colour::Colour;
 use crate::depth_map::Disc;
 use crate::error::RenderError;
 use crate::glass;
-use crate::light::{Light, shaded};
+use crate::light::Light;
 use crate::picture::Picture;
 use crate::scene::{Finish, Scene, Sphere, View};
 
 /// Rays across and down in a pixel.
 const RAYS: usize = 3;
-/// Pixels across and down in a block: how much light reaches a sphere is worked out once for each block of pixels.
-const BLOCK: usize = 2;
-/// Rays across and down in a block, and in all of it.
-const SIDE: usize = BLOCK * RAYS;
-const RAYS_A_BLOCK: usize = SIDE * SIDE;
+/// Rays in a pixel.
+const RAYS_A_PIXEL: usize = RAYS * RAYS;
 /// Most pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 28;
 /// Fineness of shadows: a part of the smallest sphere's radius, but not less than so many pixels.
@@ -51,16 +48,14 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
     let opaque = seen(scene, view, Finish::Opaque);
     let glass = seen(scene, view, Finish::Glass);
     let light = Light::among(&discs(&opaque), fineness(&opaque, view));
-    let bands: Vec<Vec<u8>> = (0..height.div_ceil(BLOCK as u32))
+    let rows: Vec<Vec<u8>> = (0..height)
         .into_par_iter()
-        .map(|band| {
-            let band = Band::new(view, band, &opaque, &glass);
-            draw_band(&band, &opaque, &glass, &light, scene.background)
+        .map(|row| {
+            let row = Row::new(view, row, &opaque, &glass);
+            draw_row(&row, &opaque, &glass, &light, scene.background)
         })
         .collect();
-    let mut pixels = bands.concat();
-    pixels.truncate(3 * width as usize * height as usize);
-    Ok(Picture::new(width, height, pixels))
+    Ok(Picture::new(width, height, rows.concat()))
 }
 
 /// The spheres of a finish that are in the picture or hide light from what is.
@@ -100,34 +95,30 @@ fn fineness(spheres: &[Seen], view: &View) -> f32 {
     by_pixels.max(FINENESS.0 * if smallest.is_finite() { smallest } else { 1.0 })
 }
 
-/// The rays of some rows of pixels, and the spheres that they can meet.
-struct Band {
-    /// Pixels across.
-    columns: usize,
-    /// Rays across, those of whole blocks.
+/// The rays of a row of pixels, and the spheres that they can meet.
+struct Row {
+    /// Rays across.
     across: usize,
     /// Distance of rays \[d\], and the leftmost.
     pitch: f32,
     left: f32,
-    heights: [f32; SIDE],
+    heights: [f32; RAYS],
     opaque: Vec<usize>,
     glass: Vec<usize>,
 }
 
-impl Band {
-    fn new(view: &View, band: u32, opaque: &[Seen], glass: &[Seen]) -> Self {
+impl Row {
+    fn new(view: &View, row: u32, opaque: &[Seen], glass: &[Seen]) -> Self {
         let pitch = 1.0 / (view.scale * RAYS as f64);
-        let columns = view.width as usize;
-        let (across, down) = (
-            f64::from(view.width) * RAYS as f64,
-            f64::from(view.height) * RAYS as f64,
-        );
-        let first = f64::from(band) * SIDE as f64;
-        let height = |ray: usize| ((0.5 * down - (first + ray as f64 + 0.5)) * pitch) as f32;
-        let heights: [f32; SIDE] = std::array::from_fn(height);
+        let across = view.width as usize * RAYS;
+        let down = f64::from(view.height) * RAYS as f64;
+        let height = |ray: usize| {
+            ((0.5 * down - (f64::from(row) * RAYS as f64 + ray as f64 + 0.5)) * pitch) as f32
+        };
+        let heights: [f32; RAYS] = std::array::from_fn(height);
         let meets = |sphere: &Seen| {
             sphere.centre.y - sphere.radius <= heights[0]
-                && sphere.centre.y + sphere.radius >= heights[SIDE - 1]
+                && sphere.centre.y + sphere.radius >= heights[RAYS - 1]
         };
         let of = |spheres: &[Seen]| {
             (0..spheres.len())
@@ -135,10 +126,9 @@ impl Band {
                 .collect()
         };
         Self {
-            columns,
-            across: columns.div_ceil(BLOCK) * SIDE,
+            across,
             pitch: pitch as f32,
-            left: ((0.5 - 0.5 * across) * pitch) as f32,
+            left: ((0.5 - 0.5 * across as f64) * pitch) as f32,
             heights,
             opaque: of(opaque),
             glass: of(glass),
@@ -167,74 +157,58 @@ impl Band {
     }
 }
 
-/// The pixels of a band, row by row, as bytes.
-fn draw_band(
-    band: &Band,
+/// The pixels of a row as bytes.
+fn draw_row(
+    row: &Row,
     opaque: &[Seen],
     glass: &[Seen],
     light: &Light,
     background: Colour,
 ) -> Vec<u8> {
-    let mut nearest: Vec<Meeting> = vec![None; band.across * SIDE];
-    let mut before: Vec<Meeting> = vec![None; band.across * SIDE];
-    for (ray, height) in band.heights.iter().enumerate() {
-        let row = ray * band.across..(ray + 1) * band.across;
-        for &index in &band.opaque {
+    let mut nearest: Vec<Meeting> = vec![None; row.across * RAYS];
+    let mut before: Vec<Meeting> = vec![None; row.across * RAYS];
+    for (line, height) in row.heights.iter().enumerate() {
+        let rays = line * row.across..(line + 1) * row.across;
+        for &index in &row.opaque {
             meet(
-                band,
+                row,
                 &opaque[index],
                 index,
                 *height,
-                &mut nearest[row.clone()],
+                &mut nearest[rays.clone()],
             );
         }
-        for &index in &band.glass {
+        for &index in &row.glass {
             meet(
-                band,
+                row,
                 &glass[index],
                 index,
                 *height,
-                &mut before[row.clone()],
+                &mut before[rays.clone()],
             );
         }
     }
-    let mut bytes = vec![0; 3 * band.columns * BLOCK];
-    for block in 0..band.across / SIDE {
-        let rays = |it: usize| it / SIDE * band.across + block * SIDE + it % SIDE;
-        let met: [Meeting; RAYS_A_BLOCK] = std::array::from_fn(|it| nearest[rays(it)]);
+    let pixel = |pixel: usize| {
+        let ray = |it: usize| it / RAYS * row.across + pixel * RAYS + it % RAYS;
+        let met: [Meeting; RAYS_A_PIXEL] = std::array::from_fn(|it| nearest[ray(it)]);
         let mut colours = behind(&met, opaque, light, background);
         for (it, colour) in colours.iter_mut().enumerate() {
             let depth = met[it].map_or(f32::NEG_INFINITY, |(_, depth, _)| depth);
-            if let Some((index, near, beside)) = before[rays(it)]
+            if let Some((index, near, beside)) = before[ray(it)]
                 && near > depth
             {
                 let sphere = &glass[index];
                 *colour = glass::before(*colour, beside / sphere.radius, sphere.colour);
             }
         }
-        for pixel in 0..BLOCK * BLOCK {
-            let (row, column) = (pixel / BLOCK, block * BLOCK + pixel % BLOCK);
-            if column >= band.columns {
-                continue;
-            }
-            let of_pixel = (0..RAYS_A_BLOCK).filter(|&it| pixel_of(it) == pixel);
-            let sum: Vec3 = of_pixel.map(|it| colours[it]).sum();
-            let place = 3 * (row * band.columns + column);
-            let colour = Colour(sum / (RAYS * RAYS) as f32);
-            bytes[place..place + 3].copy_from_slice(&colour.to_srgb());
-        }
-    }
-    bytes
-}
-
-/// The pixel of a block that a ray belongs to.
-fn pixel_of(ray: usize) -> usize {
-    ray / SIDE / RAYS * BLOCK + ray % SIDE / RAYS
+        Colour(colours.iter().sum::<Vec3>() / RAYS_A_PIXEL as f32).to_srgb()
+    };
+    (0..row.across / RAYS).flat_map(pixel).collect()
 }
 
 /// Keeps the sphere where it is nearer than what the rays have met.
-fn meet(band: &Band, sphere: &Seen, index: usize, height: f32, nearest: &mut [Meeting]) {
-    band.for_each_meeting(sphere, height, |ray, beside| {
+fn meet(row: &Row, sphere: &Seen, index: usize, height: f32, nearest: &mut [Meeting]) {
+    row.for_each_meeting(sphere, height, |ray, beside| {
         let depth = sphere.centre.z + beside.z;
         if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
             nearest[ray] = Some((index, depth, beside));
@@ -242,41 +216,36 @@ fn meet(band: &Band, sphere: &Seen, index: usize, height: f32, nearest: &mut [Me
     });
 }
 
-/// What each ray of a block sees: the light that reaches a sphere is worked out once for all its rays, and its shading
-/// once for those of each pixel.
+/// What each ray of a pixel sees; the light on a sphere is worked out once for all its rays.
 fn behind(
-    met: &[Meeting; RAYS_A_BLOCK],
+    met: &[Meeting; RAYS_A_PIXEL],
     opaque: &[Seen],
     light: &Light,
     background: Colour,
-) -> [Vec3; RAYS_A_BLOCK] {
-    let mut colours = [background.0; RAYS_A_BLOCK];
-    let mut done = [false; RAYS_A_BLOCK];
-    for first in 0..RAYS_A_BLOCK {
+) -> [Vec3; RAYS_A_PIXEL] {
+    let mut colours = [background.0; RAYS_A_PIXEL];
+    let mut done = [false; RAYS_A_PIXEL];
+    for first in 0..RAYS_A_PIXEL {
         let Some((index, ..)) = met[first] else {
             continue;
         };
         if done[first] {
             continue;
         }
-        // Where the rays meet the sphere, pixel by pixel, from its centre.
-        let mut sums = [Vec3::ZERO; BLOCK * BLOCK];
-        for it in first..RAYS_A_BLOCK {
-            if let Some((other, _, beside)) = met[it]
-                && other == index
-            {
-                sums[pixel_of(it)] += beside;
-                done[it] = true;
-            }
-        }
+        let is_same = |it: usize| met[it].is_some_and(|(other, ..)| other == index);
+        let sum: Vec3 = (first..RAYS_A_PIXEL)
+            .filter(|&it| is_same(it))
+            .filter_map(|it| met[it].map(|(_, _, beside)| beside))
+            .sum();
         let sphere = &opaque[index];
-        let normal = sums.iter().sum::<Vec3>().normalize_or(Vec3::Z);
-        let reach = light.reaching(sphere.centre + normal * sphere.radius, normal);
-        let seen = sums.map(|sum| shaded(sum.normalize_or(normal), reach, sphere.colour));
-        for it in first..RAYS_A_BLOCK {
-            if met[it].is_some_and(|(other, ..)| other == index) {
-                colours[it] = seen[pixel_of(it)];
-            }
+        let normal = sum.normalize_or(Vec3::Z);
+        let seen = light.shade(
+            sphere.centre + normal * sphere.radius,
+            normal,
+            sphere.colour,
+        );
+        for it in (first..RAYS_A_PIXEL).filter(|&it| is_same(it)) {
+            (colours[it], done[it]) = (seen, true);
         }
     }
     colours

@@ -27,7 +27,7 @@ const LAMP: f32 = 0.54;
 const GLOSS: f32 = 0.11;
 const GLOSS_EXPONENT: i32 = 40;
 /// Share of the light that bright neighbours give back to what they hide.
-const BOUNCE: f32 = 0.25;
+const BOUNCE: f32 = 0.15;
 /// Light above which the brightest colours are bent so as not to be cut off.
 const SHOULDER: f32 = 0.86;
 /// Angle between successive points of a spiral that fills a disc or a sphere evenly.
@@ -72,47 +72,25 @@ impl Light {
         }
     }
 
-    /// How much of the light that an open surface would have reaches a point.
-    pub(crate) fn reaching(&self, point: Vec3, normal: Vec3) -> Reach {
-        let part = |sources: &[Source]| {
-            let (mut open, mut seen) = (0.0_f32, 0.0_f32);
-            for source in sources {
+    /// The light from a point of a surface to the eye.
+    pub(crate) fn shade(&self, point: Vec3, normal: Vec3, colour: Colour) -> Vec3 {
+        let sum = |sources: &[Source]| -> f32 {
+            let facing = |source: &Source| {
                 let facing = normal.dot(source.towards);
-                if facing > 0.0 {
-                    let light = source.weight * facing;
-                    open += light;
-                    seen += light * source.map.visible(point, normal);
-                }
-            }
-            if open > 0.0 { seen / open } else { 0.0 }
+                (facing > 0.0).then(|| source.weight * facing * source.map.visible(point, normal))
+            };
+            sources.iter().filter_map(facing).sum()
         };
-        Reach {
-            sky: part(&self.sky),
-            lamp: part(&self.lamp),
-        }
+        let (sky, lit) = (sum(&self.sky), sum(&self.lamp));
+        let bounced = sky + BOUNCE * (SKY - sky).max(0.0);
+        let half_way = (lamp() + Vec3::Z).normalize();
+        let mirrored = GLOSS * normal.dot(half_way).max(0.0).powi(GLOSS_EXPONENT) * lit / LAMP;
+        // A soft dark rim keeps spheres of one colour apart.
+        let rim = (normal.z / 0.30).clamp(0.0, 1.0);
+        let outline = 0.50 + 0.50 * rim * rim * (3.0 - 2.0 * rim);
+        let light = colour.0 * ((bounced + lit) * outline) + Vec3::splat(mirrored);
+        Vec3::from_array(light.to_array().map(bent))
     }
-}
-
-/// Parts of the light, 0 to 1, that reach a point.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reach {
-    sky: f32,
-    lamp: f32,
-}
-
-/// The light from a surface to the eye.
-pub(crate) fn shaded(normal: Vec3, reach: Reach, colour: Colour) -> Vec3 {
-    // The mean of 1 + g y over the hemisphere about a normal, weighted by the cosine, is 1 + 2/3 g n_y.
-    let open_sky = SKY * (1.0 + 2.0 / 3.0 * SKY_GRADIENT * normal.y);
-    let sky = open_sky * (reach.sky + BOUNCE * (1.0 - reach.sky) * reach.sky);
-    let lit = LAMP * normal.dot(lamp()).max(0.0) * reach.lamp;
-    let half_way = (lamp() + Vec3::Z).normalize();
-    let mirrored = GLOSS * normal.dot(half_way).max(0.0).powi(GLOSS_EXPONENT) * reach.lamp;
-    // A soft dark rim keeps spheres of one colour apart.
-    let rim = (normal.z / 0.30).clamp(0.0, 1.0);
-    let outline = 0.50 + 0.50 * rim * rim * (3.0 - 2.0 * rim);
-    let light = colour.0 * ((sky + lit) * outline) + Vec3::splat(mirrored);
-    Vec3::from_array(light.to_array().map(bent))
 }
 
 /// Brightness without a hard end: as it is up to the shoulder, then ever less, and never above 1.
@@ -189,8 +167,8 @@ mod tests {
     #[test]
     fn what_is_hidden_is_darker_and_the_nearer_the_darker() {
         let brightness = |discs: &[Disc]| {
-            let reach = Light::among(discs, 0.02).reaching(Vec3::new(0.0, 0.0, 0.5), Vec3::Z);
-            shaded(Vec3::Z, reach, WHITE).x
+            let light = Light::among(discs, 0.02);
+            light.shade(Vec3::new(0.0, 0.0, 0.5), Vec3::Z, WHITE).x
         };
         let own = disc(Vec3::ZERO);
         let free = brightness(&[own]);
