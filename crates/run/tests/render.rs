@@ -69,9 +69,14 @@ fn jammed_grains_are_red_whichever_way_the_wave_runs() {
             // White beside the tube, and the wall at the middle of its upper edge.
             assert_eq!(side.pixel(0, 0), [255; 3]);
             let column = (0..side.height()).map(|row| side.pixel(200, row));
-            let first = column.into_iter().find(|pixel| pixel[0] < 230).unwrap();
-            let is_grey = first.iter().max().unwrap() - first.iter().min().unwrap() < 40;
-            assert_eq!(is_grey, wall != WallLook::Hidden, "{first:?}");
+            let edge = column.into_iter().find(|pixel| pixel[0] < 230);
+            let is_grey =
+                |pixel: [u8; 3]| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() < 40;
+            assert_eq!(
+                edge.is_some_and(is_grey),
+                wall != WallLook::Hidden,
+                "{edge:?}"
+            );
         }
     }
 }
@@ -244,12 +249,9 @@ fn what_cannot_be_drawn_is_refused_in_words() {
         ..look(100)
     };
     assert!(refusal(&run, range).contains("from 1 to 1"));
-    for waves in [0.0, f64::NAN, 1e-6] {
+    for waves in [0.0, f64::NAN] {
         let words = refusal(&run, Look { waves, ..look(100) });
-        assert!(
-            words.contains("waves") || words.contains("pixels high"),
-            "{words}"
-        );
+        assert!(words.contains("waves"), "{words}");
     }
 }
 
