@@ -149,8 +149,15 @@ impl ColourScale {
         BAR_GAP + BAR_WIDTH + TICK_GAP + self.numbers_width(height) + label + 3.0
     }
 
-    /// Draws the bar across, its label before it and its numbers below.
-    pub(crate) fn draw_bar_across(&self, drawing: &mut Drawing, area: Rectangle, ink: Colour) {
+    /// Draws the bar across, its label before it, smaller where it would reach further left than `from`, and its numbers
+    /// below.
+    pub(crate) fn draw_bar_across(
+        &self,
+        drawing: &mut Drawing,
+        area: Rectangle,
+        from: f64,
+        ink: Colour,
+    ) {
         let layer = drawing.layer("colour bar", None);
         let colours =
             (0..BAR_STEPS).map(|step| self.colour_at((step as f64 + 0.5) / BAR_STEPS as f64));
@@ -181,7 +188,7 @@ impl ColourScale {
         layer.text(
             (area.left - BAR_GAP, middle),
             Anchor::End,
-            Text::new(&self.label, LABEL_SIZE),
+            Text::fitted(&self.label, LABEL_SIZE, area.left - BAR_GAP - from),
             ink,
         );
     }

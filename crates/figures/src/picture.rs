@@ -117,6 +117,8 @@ const BAR_WIDTH: f64 = 120.0;
 const BAR_PART: f64 = 0.3;
 /// Gap between the picture and what is below.
 const GAP_BELOW: f64 = 6.0;
+/// Space between the scale and what is beside it.
+const ROOM_BESIDE_SCALE: f64 = 12.0;
 /// Half the width of a mark, and its height.
 const MARK: (f64, f64) = (2.2, 3.4);
 
@@ -156,7 +158,7 @@ impl PictureFigure<'_> {
             .picture(area, columns, self.pixels);
         self.draw_notes(drawing.layer("notes", None), area.width);
         self.draw_marks(drawing.layer("marks", None), area);
-        self.draw_scale_bar(drawing.layer("scale", None), area);
+        let free_from = self.draw_scale_bar(drawing.layer("scale", None), area);
         if let Some(colours) = self.colours {
             let width = BAR_WIDTH.min(BAR_PART * area.width);
             let bar = Rectangle {
@@ -165,7 +167,7 @@ impl PictureFigure<'_> {
                 width,
                 height: BAR_HEIGHT,
             };
-            colours.draw_bar_across(&mut drawing, bar, self.paper.ink());
+            colours.draw_bar_across(&mut drawing, bar, free_from, self.paper.ink());
         }
         Ok(drawing)
     }
@@ -233,8 +235,11 @@ impl PictureFigure<'_> {
         }
     }
 
-    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle) {
-        let Some(bar) = self.scale_bar else { return };
+    /// Draws the scale, and answers where there is room at its right.
+    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle) -> f64 {
+        let Some(bar) = self.scale_bar else {
+            return EDGE;
+        };
         let ink = self.paper.ink();
         let (left, middle) = (EDGE, area.bottom() + GAP_BELOW + 0.5 * BAR_HEIGHT);
         let right = left + bar.length * area.width;
@@ -250,12 +255,11 @@ impl PictureFigure<'_> {
             pen,
         );
         let baseline = middle + 0.5 * DIGIT_HEIGHT * LABEL_SIZE;
-        layer.text(
-            (right + 4.0, baseline),
-            Anchor::Start,
-            Text::new(bar.label, LABEL_SIZE),
-            ink,
-        );
+        let text = Text::new(bar.label, LABEL_SIZE);
+        let start = right + 4.0;
+        let end = start + text.width + ROOM_BESIDE_SCALE;
+        layer.text((start, baseline), Anchor::Start, text, ink);
+        end
     }
 }
 

@@ -113,8 +113,8 @@ fn a_grain_is_where_it_is_and_in_its_colour() {
         let portrait = Portrait::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
         let picture = portrait.picture(&frame).unwrap();
         // The wave runs to the right, towards -z, so that z = L/4 is at three quarters of the picture.
-        let scale = 500.0 / (length + 0.7);
-        let column = (0.35 + 0.75 * length) * scale;
+        let scale = 500.0 / (length + 1.2);
+        let column = (0.6 + 0.75 * length) * scale;
         let row = 0.5 * f64::from(picture.height()) - 0.4 * scale;
         let seen = picture.pixel(column as u32, row as u32);
         assert!(is(seen), "v/c = {ratio}: {seen:?}");

@@ -12,10 +12,13 @@ use crate::picture::Picture;
 /// Colours of a picture; one more stands for what stays as it was.
 const COLOURS: usize = 255;
 const UNCHANGED: u8 = 255;
+/// Colours of few pixels among them, and every how many pixels these are looked for.
+const OUTLIERS: usize = 32;
+const OUTLIERS_SAMPLED: usize = 7;
 /// Every so many pixels the search for a picture's colours looks at one.
 const SAMPLED: i32 = 8;
 /// Difference of red, green and blue in all up to which a pixel counts as what it was.
-const TOLERANCE: i32 = 9;
+const TOLERANCE: i32 = 14;
 /// Longest side of a GIF.
 const LONGEST: u32 = u16::MAX as u32;
 /// Bits of each channel that colours are told apart by while they are looked up.
@@ -160,12 +163,13 @@ impl Palette {
             .collect();
         // Fewer pixels than it learns from would leave the search without any.
         let sampled = SAMPLED.min((opaque.len() / (4 * COLOURS)).max(1) as i32);
-        let mut colours = NeuQuant::new(sampled, COLOURS, &opaque).color_map_rgb();
+        let mut colours = NeuQuant::new(sampled, COLOURS - OUTLIERS, &opaque).color_map_rgb();
         // Paper, the commonest colour, as it is: the search finds it within rounding only.
         if let Some(corner) = pixels.first_chunk::<3>() {
             let place = nearest(&colours, corner);
             colours[3 * place..3 * place + 3].copy_from_slice(corner);
         }
+        add_outliers(&mut colours, pixels);
         colours.resize(3 * (COLOURS + 1), 0);
         Self { colours }
     }
@@ -189,13 +193,36 @@ impl Palette {
     }
 }
 
+/// Adds the colours that the palette is furthest from: few pixels have them, such as those of a bar of colours, and the
+/// search by frequency does not find them.
+fn add_outliers(colours: &mut Vec<u8>, pixels: &[u8]) {
+    let mut left: Vec<(&[u8], i32)> = pixels
+        .chunks_exact(3)
+        .step_by(OUTLIERS_SAMPLED)
+        .map(|pixel| (pixel, apart(pixel, &colours[3 * nearest(colours, pixel)..])))
+        .collect();
+    for _ in 0..OUTLIERS {
+        let furthest = left.iter().max_by_key(|(_, away)| *away);
+        let Some(found) = furthest.map(|(pixel, _)| pixel.to_vec()) else {
+            return;
+        };
+        for (pixel, away) in &mut left {
+            *away = (*away).min(apart(pixel, &found));
+        }
+        colours.extend(found);
+    }
+}
+
+/// Square of the distance of two colours, by their first three channels.
+fn apart(one: &[u8], other: &[u8]) -> i32 {
+    let channels = one.iter().zip(other).take(3);
+    channels
+        .map(|(one, other)| (i32::from(*one) - i32::from(*other)).pow(2))
+        .sum()
+}
+
 fn nearest(colours: &[u8], pixel: &[u8]) -> usize {
-    let apart = |colour: &[u8]| -> i32 {
-        let channels = colour.iter().zip(pixel);
-        channels
-            .map(|(one, other)| (i32::from(*one) - i32::from(*other)).pow(2))
-            .sum()
-    };
+    let apart = |colour: &[u8]| apart(colour, pixel);
     let found = colours
         .chunks_exact(3)
         .enumerate()

@@ -106,7 +106,7 @@ impl Default for Look {
 }
 
 /// White round the tube \[d\].
-const MARGIN: f64 = 0.35;
+const MARGIN: f64 = 0.6;
 /// Thickness of a section, in diameters of wall spheres.
 const SECTION: f64 = 2.5;
 /// How far an elastic wall is expected to open, in radii of the tube at rest.

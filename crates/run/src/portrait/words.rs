@@ -23,7 +23,7 @@ pub(super) fn cycles(frame: &Frame) -> f64 {
 /// Lengths that a scale shows \[d\]: the largest that is a modest part of the picture.
 const SCALES: [f64; 9] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
 /// Largest part of the picture that a scale takes.
-const SCALE_PART: f64 = 0.27;
+const SCALE_PART: f64 = 0.26;
 
 /// The words around the picture of an instant.
 pub(super) struct Words {
