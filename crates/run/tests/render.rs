@@ -68,15 +68,13 @@ fn jammed_grains_are_red_whichever_way_the_wave_runs() {
             assert!(red > 2_000 && blue == 0, "{red} red and {blue} blue pixels");
             // White beside the tube, and the wall at the middle of its upper edge.
             assert_eq!(side.pixel(0, 0), [255; 3]);
+            if wall == WallLook::Hidden {
+                continue;
+            }
             let column = (0..side.height()).map(|row| side.pixel(200, row));
-            let edge = column.into_iter().find(|pixel| pixel[0] < 230);
-            let is_grey =
-                |pixel: [u8; 3]| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() < 40;
-            assert_eq!(
-                edge.is_some_and(is_grey),
-                wall != WallLook::Hidden,
-                "{edge:?}"
-            );
+            let edge = column.into_iter().find(|pixel| pixel[0] < 230).unwrap();
+            let apart = edge.iter().max().unwrap() - edge.iter().min().unwrap();
+            assert!(apart < 40, "{edge:?}");
         }
     }
 }
