@@ -199,7 +199,7 @@ fn a_film_goes_through_the_ffmpeg_that_is_named_and_leaves_nothing_where_that_fa
 fn a_film_that_is_stopped_leaves_no_file() {
     let place = place();
     let mut child = place
-        .command("render results --from start --every 0.001 --width 400 --out film.gif".split(' '))
+        .command("render results --from start --every 0.0025 --width 400 --out film.gif".split(' '))
         .stderr(std::process::Stdio::piped())
         .stdout(std::process::Stdio::piped())
         .spawn()
