@@ -15,7 +15,7 @@ use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 7;
+const STATE_LAYOUT: u32 = 8;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 
