@@ -154,32 +154,45 @@ impl<'a> Samples<'a> {
     }
 }
 
-/// The part of a wavelength in which grains hardly touch the wall, and how fast they fly there, over c; `None` without a
-/// profile.
-fn free_flight(
-    results: &StudyResults,
-    one: &Sampled<'_>,
-) -> Result<Option<(f64, f64)>, ClaimError> {
-    for row in &one.rows {
-        let Some(profile) = results.profile(row.text("identity"))? else {
-            continue;
-        };
-        let pressure = profile.reals("wall_pressure")?;
-        let velocity = profile.reals("axial_velocity")?;
-        let largest = pressure.iter().copied().fold(0.0, f64::max);
-        let free: Vec<f64> = pressure
-            .iter()
-            .zip(velocity)
-            .filter(|(pressure, velocity)| **pressure < FREE * largest && velocity.is_finite())
-            .map(|(_, velocity)| *velocity)
-            .collect();
-        let number = free.len() as f64;
-        return Ok(Some((
-            number / pressure.len() as f64,
-            free.iter().sum::<f64>() / number / row.wave_speed(),
-        )));
+/// What grains do where they hardly touch the wall.
+#[derive(Clone, Copy)]
+struct FreeFlight {
+    /// Part of the wavelength.
+    part: f64,
+    /// Their mean axial velocity over c.
+    velocity: f64,
+    /// What they contribute to J/Jmax: the rest comes from where the wall touches them.
+    share: f64,
+}
+
+impl FreeFlight {
+    /// Of the first run with a profile; `None` where there is none.
+    fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>, ClaimError> {
+        for row in &one.rows {
+            let Some(profile) = results.profile(row.text("identity"))? else {
+                continue;
+            };
+            let [pressure, density, velocity] =
+                ["wall_pressure", "density", "axial_velocity"].map(|name| profile.reals(name));
+            let (pressure, density, velocity) = (pressure?, density?, velocity?);
+            let largest = pressure.iter().copied().fold(0.0, f64::max);
+            let (mut bins, mut free, mut flux, mut all) = (0.0, 0.0, 0.0, 0.0);
+            for ((pressure, density), velocity) in pressure.iter().zip(density).zip(velocity) {
+                all += density;
+                if *pressure < FREE * largest && velocity.is_finite() {
+                    bins += 1.0;
+                    free += density;
+                    flux += density * velocity / row.wave_speed();
+                }
+            }
+            return Ok((bins > 0.0).then(|| Self {
+                part: bins / pressure.len() as f64,
+                velocity: flux / free,
+                share: flux / all,
+            }));
+        }
+        Ok(None)
     }
-    Ok(None)
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
@@ -197,7 +210,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         tether: PINNED,
         ..PRESET
     });
-    let flight = free_flight(results, preset)?;
+    let flight = FreeFlight::of(results, preset)?;
     let mut finding = Finding::new(
         Verdict::Answered,
         summary(preset, without, pinned),
@@ -273,24 +286,26 @@ fn summary(
 }
 
 /// The momentum balance of the preset in words.
-fn balance(preset: &Sampled<'_>, flight: Option<(f64, f64)>) -> Option<String> {
+fn balance(preset: &Sampled<'_>, flight: Option<FreeFlight>) -> Option<String> {
     let thousandths = |mean: Mean| with_error(1e3 * mean.value, 1e3 * mean.error);
     let normal = preset.force("wall_normal_force")?;
     let tangential = preset.force("wall_tangential_force")?;
     let front = preset.force("front_tangential_force")?;
     let rear = preset.rest("wall_tangential_force", "front_tangential_force")?;
-    let flight = flight.map_or(String::new(), |(part, velocity)| {
+    let flight = flight.map_or(String::new(), |flight| {
         format!(
-            " Over {} of the wavelength grains hardly touch the wall: thrown back by the opening rear, they fly at {} *c* until the \
-             next front meets them, and nothing holds them.",
-            number(part, 2),
-            number(velocity, 3)
+            " Over {} of the wavelength, behind the narrowest place, grains hardly touch the wall: there they fly at *v_z* = {} *c*, \
+             which alone makes *J*/*J*_{{max}} = {}; where the wall touches them the other {} is made.",
+            number(flight.part, 2),
+            number(flight.velocity, 3),
+            number(flight.share, 3),
+            number(preset.flow.value - flight.share, 3),
         )
     });
     Some(format!(
-        "At the preset (forces on the grains of a wavelength in 10^{{−3}} *Y d*^2, positive along the wave) normal forces give {}, \
-         friction {}: {} in the front, where the closing wall pushes grains along the wave and they slide along it, and {} in the \
-         rear, where they go back. Friction thus takes what the front gives, and less of what the rear gives back.{flight}",
+        "At the preset (axial forces on the grains of a wavelength in 10^{{−3}} *Y d*^2, positive along the wave) normal forces give \
+         {}, friction {}: {} in the front, where the wave closes the tube and pushes grains on, and {} in the rear, where they leave \
+         it.{flight}",
         thousandths(normal),
         thousandths(tangential),
         thousandths(front),

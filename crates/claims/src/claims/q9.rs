@@ -41,8 +41,9 @@ struct Model {
     study: &'static str,
     name: &'static str,
     units: Units,
-    /// The unit of pressure in markup.
+    /// The unit of pressure in markup, and what makes a number of a pressure.
     pressure_unit: &'static str,
+    per_unit: &'static str,
 }
 
 const MODELS: [Model; 2] = [
@@ -51,12 +52,14 @@ const MODELS: [Model; 2] = [
         name: "frictionless grains, prescribed wall",
         units: Units::Linear,
         pressure_unit: "*k*/*d*",
+        per_unit: " *d*/*k*",
     },
     Model {
         study: "pumping-frictional",
         name: "frictional grains, elastic wall",
         units: Units::Hertz,
         pressure_unit: "*Y*",
+        per_unit: "/*Y*",
     },
 ];
 

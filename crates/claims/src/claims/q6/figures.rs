@@ -1,7 +1,7 @@
 //! Figures of Q6: the flow against what might cause its turning back, and the momentum balance against the phase.
 
 use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, LegendPlace, Line, Note, Pattern, Points, Reference,
+    ChartFigure, ChartPanel, Corner, LegendPlace, Line, Note, Pattern, Points, Reference,
 };
 use peristalsis_figures::{Quantity as Axis, Scale, Units, Width};
 
@@ -207,7 +207,9 @@ fn balance(
         }
         rows[2].push(forces);
     }
-    rows[0][0] = rows[0][0].clone().with(Note::at(0.02, 0.0, "wave →"));
+    rows[0][0] = rows[0][0]
+        .clone()
+        .with(Note::corner(Corner::BottomLeft, "wave →"));
     Ok(Some(ReportFigure {
         name: "back-flow-balance".to_owned(),
         caption: "Radius of the tube, axial velocities of grains and wall, and axial force of the wall on the grains per length of \

@@ -55,12 +55,16 @@ fn characteristic(pumps: &[Pump<'_>]) -> Result<ReportFigure, ClaimError> {
         panels.push(with_fluid(
             with_series(panel, pump, pumps_along),
             pump,
-            |load| pump.newtonian(load)?.efficiency(),
+            |load| match load {
+                // Nothing is done against no pressure.
+                0.0 => Some(0.0),
+                load => pump.newtonian(load)?.efficiency(),
+            },
         ));
     }
     for pump in pumps {
         let panel = ChartPanel::new(
-            &format!("pressure rise, Δ*p* / ({})", pump.model.pressure_unit),
+            &format!("pressure rise, Δ*p*{}", pump.model.per_unit),
             "dispersion, *D*/*cλ*",
         )
         .y_scale(Scale::Logarithmic);
@@ -177,10 +181,10 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
     let quantities: [(&str, fn(&Pump<'_>) -> String); 3] = [
         ("radius", |_| "radius, *R*/*d*".to_owned()),
         ("wall_pressure", |pump| {
-            format!("pressure, *p* / ({})", pump.model.pressure_unit)
+            format!("pressure, *p*{}", pump.model.per_unit)
         }),
         ("wall_shear", |pump| {
-            format!("shear, *τ* / ({})", pump.model.pressure_unit)
+            format!("shear, *τ*{}", pump.model.per_unit)
         }),
     ];
     let mut panels = Vec::new();
