@@ -92,12 +92,16 @@ impl StudyResults {
         self.table.as_ref().map(rows_of).unwrap_or_default()
     }
 
-    /// The late profile of a run in the wave's frame; `None` where it was not kept, or only its row was imported.
+    /// The late profile of the run of a row; `None` where it was not kept, or only its row was imported.
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn profile(&self, identity: &str) -> Result<Option<Table>, ClaimError> {
-        self.product(identity, "profile.parquet")
+    pub(crate) fn profile_of(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        let identity = row.text("identity");
+        match self.runs.iter().find(|run| run.identity == identity) {
+            Some(run) => self.product(run, "profile.parquet"),
+            None => Ok(None),
+        }
     }
 
     /// The time series of a run; `None` where only its row was imported.
@@ -105,7 +109,7 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn series(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
-        self.product(&run.identity, "timeseries.parquet")
+        self.product(run, "timeseries.parquet")
     }
 
     /// The flow of each wave over each period of a run; `None` where it was not kept, or only its row was imported.
@@ -113,11 +117,11 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn waves(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
-        self.product(&run.identity, "waves.parquet")
+        self.product(run, "waves.parquet")
     }
 
-    fn product(&self, identity: &str, name: &str) -> Result<Option<Table>, ClaimError> {
-        let (Some(store), Ok(identity)) = (&self.store, identity.parse()) else {
+    fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
+        let (Some(store), Ok(identity)) = (&self.store, run.identity.parse()) else {
             return Ok(None);
         };
         let path = store.run_folder(identity).join(name);

@@ -157,8 +157,8 @@ fn back_flow(flow: impl Fn(f64, f64, f64) -> f64, replicates: i32) -> Rows {
                     ("wall_tangential_force_error", 1e-4),
                     ("front_tangential_force", -3.9e-3 * pull),
                     ("front_tangential_force_error", 1e-4),
-                    ("throat_axial_velocity", 0.1 * 20.0 * rate),
-                    ("throat_axial_velocity_error", 0.0),
+                    ("narrow_axial_velocity", 0.1 * 20.0 * rate),
+                    ("narrow_axial_velocity_error", 0.0),
                 ],
             );
         }
@@ -268,28 +268,12 @@ fn each_corner_is_told_by_what_it_does() {
         "{:?}",
         finding.statistics
     );
-    let parts: Vec<&str> = finding.summary.trim_end_matches('.').split("; ").collect();
-    let expected = [
-        ("frictional grains, prescribed", "one flow", ", back flow"),
-        (
-            "frictionless grains, prescribed",
-            "one flow",
-            "no back flow",
-        ),
-        ("frictional grains, elastic", "two flows", "no back flow"),
-        ("frictionless grains, elastic", "two flows", "no back flow"),
-    ];
-    assert_eq!(parts.len(), expected.len(), "{}", finding.summary);
-    for (part, (name, flows, back)) in parts.iter().zip(expected) {
-        assert!(
-            part.starts_with(name) && part.contains(flows) && part.ends_with(back),
-            "{part}"
-        );
-        assert_eq!(
-            part.contains(", no back flow"),
-            back == "no back flow",
-            "{part}"
-        );
+    for part in [
+        "A fast flow is seen everywhere",
+        "by the start, are seen in the elastic wall only, whatever the grains",
+        "Back flow is seen in 1 of 4 corners: frictional grains, prescribed wall",
+    ] {
+        assert!(finding.summary.contains(part), "{}", finding.summary);
     }
     let gap = value(&finding, "two starts, frictional grains, elastic");
     assert!((gap - 0.8).abs() < 1e-9, "{gap}");
@@ -444,10 +428,8 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
         .unwrap()
         .ours
         .unwrap();
-    assert_eq!(
-        (stop.interval_95.lower, stop.interval_95.upper),
-        (0.06, 0.07)
-    );
+    let ends = stop.interval_95;
+    assert!((ends.lower - 0.06).abs() < 1e-9 && (ends.upper - 0.07).abs() < 1e-9);
     // At 0.03 of 0.062: 0.6 * 4 * 0.484 * 0.516.
     let best = value(&finding, "largest efficiency, sine, frictionless");
     assert!((best - 0.5994).abs() < 1e-3, "{best}");

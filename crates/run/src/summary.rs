@@ -95,22 +95,22 @@ pub struct Summary {
     pub wall_tangential_force: f64,
     /// Its standard error.
     pub wall_tangential_force_error: f64,
-    /// The part of wall_normal_force that acts in the throat, where the tube is narrower than on its mean.
-    pub throat_normal_force: f64,
+    /// The part of wall_normal_force that acts where the tube is narrower than on its mean.
+    pub narrow_normal_force: f64,
     /// Its standard error.
-    pub throat_normal_force_error: f64,
-    /// The part of wall_tangential_force that acts in the throat.
-    pub throat_tangential_force: f64,
+    pub narrow_normal_force_error: f64,
+    /// The part of wall_tangential_force that acts there.
+    pub narrow_tangential_force: f64,
     /// Its standard error.
-    pub throat_tangential_force_error: f64,
-    /// Late mean axial velocity of the grains in the throat, laboratory frame, along the wave \[d/t\].
-    pub throat_axial_velocity: f64,
+    pub narrow_tangential_force_error: f64,
+    /// Late mean axial velocity of the grains there, laboratory frame, along the wave \[d/t\].
+    pub narrow_axial_velocity: f64,
     /// Its standard error.
-    pub throat_axial_velocity_error: f64,
-    /// Late mean axial velocity of the wall's spheres in the throat; 0 for a prescribed wall \[d/t\].
-    pub throat_wall_velocity: f64,
+    pub narrow_axial_velocity_error: f64,
+    /// Late mean axial velocity of the wall's spheres there; 0 for a prescribed wall \[d/t\].
+    pub narrow_wall_velocity: f64,
     /// Its standard error.
-    pub throat_wall_velocity_error: f64,
+    pub narrow_wall_velocity_error: f64,
     /// The part of wall_normal_force that acts in the front of the wave, from its narrowest place to the widest one ahead.
     pub front_normal_force: f64,
     /// Its standard error.
@@ -187,7 +187,7 @@ impl Summary {
             .late(run.late_fraction(), configuration.tube.wavelength);
         let wall_force = recorder.profile().late_wall_force(run.late_fraction());
         let part = |part| recorder.profile().late_part(run.late_fraction(), part);
-        let (throat, front) = (part(WavePart::Throat), part(WavePart::Front));
+        let (narrow, front) = (part(WavePart::Narrow), part(WavePart::Front));
         let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
         let residence = Residence::of(late);
         let (axial_dispersion, axial_dispersion_error) =
@@ -240,14 +240,14 @@ impl Summary {
             wall_normal_force_error: wall_force.normal.1,
             wall_tangential_force: wall_force.tangential.0,
             wall_tangential_force_error: wall_force.tangential.1,
-            throat_normal_force: throat.normal_force.0,
-            throat_normal_force_error: throat.normal_force.1,
-            throat_tangential_force: throat.tangential_force.0,
-            throat_tangential_force_error: throat.tangential_force.1,
-            throat_axial_velocity: throat.axial_velocity.0,
-            throat_axial_velocity_error: throat.axial_velocity.1,
-            throat_wall_velocity: throat.wall_velocity.0,
-            throat_wall_velocity_error: throat.wall_velocity.1,
+            narrow_normal_force: narrow.normal_force.0,
+            narrow_normal_force_error: narrow.normal_force.1,
+            narrow_tangential_force: narrow.tangential_force.0,
+            narrow_tangential_force_error: narrow.tangential_force.1,
+            narrow_axial_velocity: narrow.axial_velocity.0,
+            narrow_axial_velocity_error: narrow.axial_velocity.1,
+            narrow_wall_velocity: narrow.wall_velocity.0,
+            narrow_wall_velocity_error: narrow.wall_velocity.1,
             front_normal_force: front.normal_force.0,
             front_normal_force_error: front.normal_force.1,
             front_tangential_force: front.tangential_force.0,

@@ -169,7 +169,7 @@ impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>, ClaimError> {
         for row in &one.rows {
-            let Some(profile) = results.profile(row.text("identity"))? else {
+            let Some(profile) = results.profile_of(row)? else {
                 continue;
             };
             let [pressure, density, velocity] =
@@ -217,6 +217,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         statistics,
         &NEEDED,
     );
+    finding.varied = "friction";
     finding.paragraphs.extend(balance(preset, flight));
     finding.paragraphs.push(
         "In a steady state the forces of the wall on the grains add up to nothing over a wavelength: what the inclined wall gives by \
@@ -225,7 +226,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .to_owned(),
     );
     finding.weaknesses.push(
-        "Statistics count values of the friction where they say widths. One force, 0.002 *Y d*^2, from rest, two waves; the wall's \
+        "One force, 0.002 *Y d*^2, from rest, two waves; the wall's \
          springs and tethers are not those of the source, which gives none."
             .to_owned(),
     );
@@ -352,14 +353,14 @@ fn table(samples: &Samples<'_>) -> ReportTable {
         .iter()
         .map(|one| {
             let parts = |whole: &str, part: &str| {
-                [one.force(part), one.rest(whole, part)].map(|mean| force(mean))
+                [one.force(part), one.rest(whole, part)].map(&force)
             };
             let [normal_front, normal_rear] = parts("wall_normal_force", "front_normal_force");
             let [friction_front, friction_rear] =
                 parts("wall_tangential_force", "front_tangential_force");
-            let [normal_throat, normal_bulge] = parts("wall_normal_force", "throat_normal_force");
+            let [normal_throat, normal_bulge] = parts("wall_normal_force", "narrow_normal_force");
             let [friction_throat, friction_bulge] =
-                parts("wall_tangential_force", "throat_tangential_force");
+                parts("wall_tangential_force", "narrow_tangential_force");
             vec![
                 number(one.point.friction, 2),
                 number(one.point.tether, 3),
@@ -369,8 +370,8 @@ fn table(samples: &Samples<'_>) -> ReportTable {
                 format!("{friction_front}, {friction_rear}"),
                 format!("{normal_throat}, {normal_bulge}"),
                 format!("{friction_throat}, {friction_bulge}"),
-                said(one.velocity("throat_axial_velocity")),
-                said(one.velocity("throat_wall_velocity")),
+                said(one.velocity("narrow_axial_velocity")),
+                said(one.velocity("narrow_wall_velocity")),
             ]
         })
         .collect();

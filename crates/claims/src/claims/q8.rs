@@ -242,6 +242,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         statistics,
         &NEEDED,
     );
+    finding.varied = "force";
     finding.quantities = quantities(&rates, &ladders, &loops);
     finding.tables.push(ladder_table(&ladders));
     if !loops.is_empty() {
@@ -259,7 +260,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
          half of what the force changes in a period."
     ));
     finding.weaknesses.push(
-        "Statistics count forces where they say widths. One run a force and length; the flow of slow waves takes many periods to \
+        "One run a force and length; the flow of slow waves takes many periods to \
          settle, and the late half of the run is what is averaged."
             .to_owned(),
     );

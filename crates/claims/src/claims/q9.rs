@@ -270,6 +270,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         finding.quantities.extend(quantities(pump));
     }
     finding.tables.push(table(&pumps));
+    finding.varied = "back pressure";
     finding.paragraphs.push(
         "A body force *g* on the grains, against the wave, stands for the pressure rise Δ*p* = −*N* *m* *g* *λ*/(*L*π*a*^2) over a \
          wavelength. The flow of a Newtonian fluid falls along a straight line from that without pressure to nothing, whatever its \
@@ -284,7 +285,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .to_owned(),
     );
     finding.weaknesses.push(
-        "Statistics count back pressures where they say widths. Each model at one bottleneck or force and one strain rate, begun \
+        "Each model at one bottleneck or force and one strain rate, begun \
          with the jammed flow: an interrupted pump may not begin again at these pressures."
             .to_owned(),
     );

@@ -1,12 +1,12 @@
-//! What happens in a part of the wave, its throat or its front, taken by itself.
+//! What happens in a part of the wave, its narrow half or its front, taken by itself.
 
 use super::{Sums, WaveFrameProfile, standard_error, total};
 
-/// A part of the wavelength; what it leaves is the bulge, or the rear.
+/// A part of the wavelength; what it leaves is the wide half, or the rear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavePart {
     /// Where the tube is narrower than on its mean.
-    Throat,
+    Narrow,
     /// From the narrowest place to the widest one ahead: where the wave closes the tube.
     Front,
 }
@@ -29,7 +29,8 @@ pub struct PartOfWave {
 impl WaveFrameProfile {
     /// A part of the wave over the last part of what was added, at least one block.
     ///
-    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one.
+    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. A straight tube has
+    /// no such parts: all is NaN.
     #[must_use]
     pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
         let groups = self.late_groups(fraction);
@@ -60,7 +61,7 @@ impl WaveFrameProfile {
 fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
     let number = radii.len();
     match part {
-        WavePart::Throat => {
+        WavePart::Narrow => {
             let mean = radii.iter().sum::<f64>() / number as f64;
             (0..number).filter(|&bin| radii[bin] < mean).collect()
         }
@@ -93,6 +94,6 @@ mod tests {
         // Narrowest at 5, widest at 1 of the next wavelength.
         let radii = [3.5, 4.0, 3.8, 3.2, 3.0, 2.5, 3.0, 3.2];
         assert_eq!(bins_of(WavePart::Front, &radii), [5, 6, 7, 0]);
-        assert_eq!(bins_of(WavePart::Throat, &radii), [3, 4, 5, 6, 7]);
+        assert_eq!(bins_of(WavePart::Narrow, &radii), [3, 4, 5, 6, 7]);
     }
 }

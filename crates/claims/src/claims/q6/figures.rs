@@ -142,7 +142,7 @@ fn balance(
             continue;
         };
         for row in &one.rows {
-            if let Some(profile) = results.profile(row.text("identity"))? {
+            if let Some(profile) = results.profile_of(row)? {
                 columns.push((row.number(FRICTION), row.wave_speed(), profile));
                 break;
             }

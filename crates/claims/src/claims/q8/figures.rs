@@ -46,6 +46,7 @@ pub(super) fn figure(
             "length of the sweep, periods",
             "*J*/*J*_{max} = 1/2 at 10^{3}*f*^{P}/*Yd*^{2}",
         )
+        .title(&title(*rate))
         .x_scale(Scale::Logarithmic);
         for (series, (name, value)) in [
             (

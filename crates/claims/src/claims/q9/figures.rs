@@ -160,7 +160,7 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
         let last = sine.last().filter(|point| point.pressure > 0.0);
         for point in sine.points.first().into_iter().chain(last) {
             for row in &point.rows {
-                if let Some(profile) = pump.results.profile(row.text("identity"))? {
+                if let Some(profile) = pump.results.profile_of(row)? {
                     let name = if point.pressure == 0.0 {
                         "Δ*p* = 0".to_owned()
                     } else {
