@@ -7,8 +7,8 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile, WavePart,
-    note_wall_faults,
+    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, WaveByWave, WaveFrameProfile,
+    WavePart, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};

@@ -352,9 +352,8 @@ fn table(samples: &Samples<'_>) -> ReportTable {
         .all
         .iter()
         .map(|one| {
-            let parts = |whole: &str, part: &str| {
-                [one.force(part), one.rest(whole, part)].map(&force)
-            };
+            let parts =
+                |whole: &str, part: &str| [one.force(part), one.rest(whole, part)].map(&force);
             let [normal_front, normal_rear] = parts("wall_normal_force", "front_normal_force");
             let [friction_front, friction_rear] =
                 parts("wall_tangential_force", "front_tangential_force");

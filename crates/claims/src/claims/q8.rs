@@ -1,13 +1,14 @@
 //! Q8: is the transition of slow waves continuous?
 
 mod figures;
+mod tables;
 
 use peristalsis_analysis::{Uncertain, power_exponent};
 
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportTable, Statistics, Verdict};
+use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::rows::{Mean, Row, behind, by, mean, mean_of};
 use crate::text::{number, with_error};
 
@@ -244,9 +245,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding.varied = "force";
     finding.quantities = quantities(&rates, &ladders, &loops);
-    finding.tables.push(ladder_table(&ladders));
+    finding.tables.push(tables::of_ladders(&ladders));
     if !loops.is_empty() {
-        finding.tables.push(loop_table(&loops));
+        finding.tables.push(tables::of_loops(&loops));
     }
     finding.paragraphs.push(
         "A discontinuous rise between two forces stays as high however long the tube is, and where both flows live side by side the \
@@ -365,73 +366,4 @@ fn quantities(rates: &[f64], ladders: &[Ladder<'_>], loops: &[Loop]) -> Vec<Quan
         }));
     }
     quantities
-}
-
-fn ladder_table(ladders: &[Ladder<'_>]) -> ReportTable {
-    let rows = ladders
-        .iter()
-        .map(|one| {
-            let rise = one.rise();
-            let fluctuation = one.largest_fluctuation();
-            vec![
-                number(1e3 * one.rate, 2),
-                one.waves.to_string(),
-                one.points.len().to_string(),
-                rise.as_ref().map_or("–".to_owned(), |rise| {
-                    with_error(rise.height.value, rise.height.error)
-                }),
-                rise.as_ref()
-                    .map_or("–".to_owned(), |rise| number(1e3 * rise.force, 2)),
-                fluctuation.map_or("–".to_owned(), |(_, mean)| {
-                    with_error(mean.value, mean.error)
-                }),
-                fluctuation.map_or("–".to_owned(), |(force, _)| number(1e3 * force, 2)),
-            ]
-        })
-        .collect();
-    ReportTable {
-        caption: "By strain rate (10^{−3}/*t*^{\\*}) and length: the largest rise of the flow between two neighbouring forces and \
-                  where (10^{−3} *Y d*^2), and the largest product of the variance of the period averages of *J*/*J*_{max} and the \
-                  number of waves, and where."
-            .to_owned(),
-        head: [
-            "*ε̇*",
-            "waves",
-            "forces",
-            "rise",
-            "at *f*^{P}",
-            "variance × waves",
-            "at *f*^{P}",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
-}
-
-fn loop_table(loops: &[Loop]) -> ReportTable {
-    let cell = |mean: Option<Mean>| {
-        mean.map_or("–".to_owned(), |mean| {
-            with_error(1e3 * mean.value, 1e3 * mean.error)
-        })
-    };
-    ReportTable {
-        caption: "Sweeps of the force: where the flow passes to fast on the way up and to slow on the way down, and the width of the \
-                  loop (10^{−3} *Y d*^2); sweeps that did not pass, up and down."
-            .to_owned(),
-        head: ["*ε̇*", "periods", "up", "down", "loop", "not passed"].map(str::to_owned).to_vec(),
-        rows: loops
-            .iter()
-            .map(|one| {
-                vec![
-                    number(1e3 * one.rate, 2),
-                    number(one.periods, 0),
-                    cell(one.up),
-                    cell(one.down),
-                    cell(one.width()),
-                    format!("{}, {}", one.censored[0], one.censored[1]),
-                ]
-            })
-            .collect(),
-    }
 }
