@@ -215,9 +215,9 @@ fn is_steady(rows: &[Row<'_>]) -> bool {
 }
 
 /// In which corners something is seen, in words.
-fn where_seen(corners: &[Corner<'_>], seen: fn(&Corner<'_>) -> bool) -> String {
-    let holds: Vec<&Corner<'_>> = corners.iter().filter(|corner| seen(corner)).collect();
-    let all = |belongs: &dyn Fn(&Corner<'_>) -> bool| {
+fn where_seen<'a>(corners: &[Corner<'a>], seen: impl Fn(&Corner<'a>) -> bool) -> String {
+    let holds: Vec<&Corner<'a>> = corners.iter().filter(|corner| seen(corner)).collect();
+    let all = |belongs: &dyn Fn(&Corner<'a>) -> bool| {
         holds.iter().all(|corner| belongs(corner))
             && corners.iter().filter(|corner| belongs(corner)).count() == holds.len()
     };

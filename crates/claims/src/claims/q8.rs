@@ -10,6 +10,7 @@ use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::rows::{Mean, Row, behind, by, mean, mean_of};
+use crate::runs::MOST_DRIFT;
 use crate::text::{number, with_error};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -51,7 +52,8 @@ struct Ladder<'a> {
 struct Rung {
     force: f64,
     flow: Mean,
-    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves.
+    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves. Of runs
+    /// that no longer drift.
     fluctuation: Option<Mean>,
 }
 
@@ -70,6 +72,11 @@ impl<'a> Ladder<'a> {
                     force,
                     flow: mean(&rows, "flow_rate_ratio")?,
                     fluctuation: mean_of(&rows, |row| {
+                        let drift = row.number("flow_rate_ratio_drift");
+                        if drift.abs() > MOST_DRIFT {
+                            // What drifts does not fluctuate.
+                            return (f64::NAN, f64::NAN);
+                        }
                         let variance = row.number("flow_rate_ratio_variance");
                         // As of normal numbers, one for each late period.
                         let periods = row.number("periods") * LATE - 1.0;

@@ -106,7 +106,13 @@ fn with_lengths(
             .collect();
         if !known.is_empty() {
             let name = format!("{} waves", ladder.waves);
-            panel = panel.with(points(&name, &known, 1.0).series(series));
+            let points = points(&name, &known, 1.0).series(series);
+            // Curves that fall on one another are told apart by open marks.
+            panel = panel.with(if series % 2 == 1 {
+                points.open()
+            } else {
+                points
+            });
         }
     }
     panel
