@@ -18,6 +18,9 @@ const FLUID: &str = "Newtonian fluid";
 /// Lowest flow that is drawn: grains that fall back go beyond.
 const LEAST_FLOW: f64 = -0.5;
 
+/// Label of an axis for a pump, in its units.
+type Label = fn(&Pump<'_>) -> String;
+
 /// All figures, the most important first.
 pub(super) fn all(pumps: &[Pump<'_>]) -> Result<Vec<ReportFigure>, ClaimError> {
     let mut figures = vec![characteristic(pumps)?];
@@ -178,7 +181,7 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
     if columns.is_empty() {
         return Ok(None);
     }
-    let quantities: [(&str, fn(&Pump<'_>) -> String); 3] = [
+    let quantities: [(&str, Label); 3] = [
         ("radius", |_| "radius, *R*/*d*".to_owned()),
         ("wall_pressure", |pump| {
             format!("pressure, *p*{}", pump.model.per_unit)
