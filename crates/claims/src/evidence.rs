@@ -6,6 +6,7 @@ use peristalsis_formats::{Table, parquet};
 use peristalsis_study::Store;
 
 use crate::error::ClaimError;
+use crate::rows::{Row, rows_of};
 use crate::runs::Run;
 
 /// The results of one study.
@@ -15,6 +16,8 @@ pub struct StudyResults {
     store: Option<Store>,
     /// Finished runs in the order of the axes.
     pub runs: Vec<Run>,
+    /// The same with every column; `None` where only the runs were given.
+    table: Option<Table>,
     /// Runs of the study that are not finished.
     pub missing: usize,
 }
@@ -32,13 +35,15 @@ impl Evidence {
     /// Errors of reading the store.
     pub fn add(&mut self, store: Store) -> Result<(), ClaimError> {
         let survey = store.survey()?;
-        let runs = Run::all_of(&store.rows()?)?;
+        let table = store.rows()?;
+        let runs = Run::all_of(&table)?;
         let missing = survey.plan.runs().len().saturating_sub(runs.len());
         self.studies.insert(
             survey.study.name,
             StudyResults {
                 store: Some(store),
                 runs,
+                table: Some(table),
                 missing,
             },
         );
@@ -47,9 +52,24 @@ impl Evidence {
 
     /// Adds runs as the results of a study, without their time series.
     pub fn add_runs(&mut self, name: &str, runs: Vec<Run>) {
+        self.insert(name, runs, None);
+    }
+
+    /// Adds a table of runs as the results of a study, without their time series.
+    ///
+    /// # Errors
+    /// A column that every row has is missing or of another kind.
+    pub fn add_table(&mut self, name: &str, table: Table) -> Result<(), ClaimError> {
+        let runs = Run::all_of(&table)?;
+        self.insert(name, runs, Some(table));
+        Ok(())
+    }
+
+    fn insert(&mut self, name: &str, runs: Vec<Run>, table: Option<Table>) {
         let results = StudyResults {
             store: None,
             runs,
+            table,
             missing: 0,
         };
         self.studies.insert(name.to_owned(), results);
@@ -67,6 +87,23 @@ impl Evidence {
 }
 
 impl StudyResults {
+    /// The finished runs with every column of their rows.
+    pub(crate) fn rows(&self) -> Vec<Row<'_>> {
+        self.table.as_ref().map(rows_of).unwrap_or_default()
+    }
+
+    /// The late profile of the run of a row; `None` where it was not kept, or only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub(crate) fn profile_of(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        let identity = row.text("identity");
+        match self.runs.iter().find(|run| run.identity == identity) {
+            Some(run) => self.product(run, "profile.parquet"),
+            None => Ok(None),
+        }
+    }
+
     /// The time series of a run; `None` where only its row was imported.
     ///
     /// # Errors

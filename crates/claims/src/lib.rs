@@ -14,6 +14,7 @@ mod error;
 mod evidence;
 mod finding;
 mod reproduction;
+mod rows;
 mod runs;
 mod studies;
 mod text;

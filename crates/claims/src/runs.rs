@@ -5,7 +5,7 @@ use peristalsis_formats::{FormatError, Table};
 use peristalsis_run::THRESHOLDS;
 
 /// Drift of J/Jmax between the halves of the late part beyond which a flow is in its transient.
-const MOST_DRIFT: f64 = 0.05;
+pub(crate) const MOST_DRIFT: f64 = 0.05;
 
 /// How the grains stood at t = 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -95,4 +95,12 @@ pub const STUDIES: &[StudyFile] = &[
     study!("wavelength"),
     study!("radius"),
     study!("length"),
+    study!("back-flow"),
+    study!("two-by-two-stress"),
+    study!("two-by-two-strain"),
+    study!("small-speed-size"),
+    study!("sweep-up"),
+    study!("sweep-down"),
+    study!("pumping-frictionless"),
+    study!("pumping-frictional"),
 ];

@@ -20,7 +20,7 @@ pub use columns::{COLUMNS, Column};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use orientation::Orientations;
-pub use profile::{ProfileBin, WallForce, WaveFrameProfile};
+pub use profile::{PartOfWave, ProfileBin, WallForce, WaveFrameProfile, WavePart};
 pub use sample::{Observer, Sample};
 pub use shape::TubeShape;
 pub use view::View;

@@ -1,11 +1,15 @@
 //! Profiles in the frame of the wave: density, axial velocity, temperature and the forces of the wall against
 //! (z - c t)/lambda.
 
+mod part;
+
 use core::f64::consts::TAU;
 
 use glam::DVec3;
-use peristalsis_engine::Simulation;
+use peristalsis_engine::{Simulation, Wall};
 use peristalsis_physics::wall::Waveform;
+
+pub use part::{PartOfWave, WavePart};
 
 use crate::shape::{Slice, TubeShape};
 use crate::view::{View, floor};
@@ -36,8 +40,23 @@ struct WallSums {
     tangential: f64,
     /// Radial force of the grains on the wall, outward.
     outward: f64,
+    /// Axial velocity of the spheres of an elastic wall, along the wave.
+    axial_velocity: f64,
+    /// Such spheres.
+    spheres: f64,
     /// Places looked at, samples times waves.
     looks: f64,
+}
+
+impl WallSums {
+    /// Mean axial velocity of the wall's spheres; a prescribed wall has none.
+    fn velocity(&self) -> f64 {
+        if self.spheres > 0.0 {
+            self.axial_velocity / self.spheres
+        } else {
+            0.0
+        }
+    }
 }
 
 impl Sums {
@@ -54,6 +73,8 @@ impl Sums {
         self.wall.normal += other.wall.normal;
         self.wall.tangential += other.wall.tangential;
         self.wall.outward += other.wall.outward;
+        self.wall.axial_velocity += other.wall.axial_velocity;
+        self.wall.spheres += other.wall.spheres;
         self.wall.looks += other.wall.looks;
     }
 
@@ -162,6 +183,8 @@ pub struct ProfileBin {
     /// Shear on the wall along the wave, with its error \[m/(d t^2)\]: the axial force on the wall per area 2 pi R dz
     /// without that of the pressure on the inclined wall, tau = f_z/(2 pi R) + R' p with R' = dR/dz, z along the wave.
     pub wall_shear: (f64, f64),
+    /// Mean axial velocity of the spheres of the wall, along the wave, with its error \[d/t\]; 0 for a prescribed wall.
+    pub wall_axial_velocity: (f64, f64),
 }
 
 /// Axial force of the wall on the grains of one wavelength, along the wave \[m d/t^2\], each with its error.
@@ -233,7 +256,8 @@ impl WaveFrameProfile {
         }
     }
 
-    /// Adds the forces between grains and wall as they are now, to the block of the last [`WaveFrameProfile::add`].
+    /// Adds the forces between grains and wall and the axial motion of the wall as they are now, to the block of the last
+    /// [`WaveFrameProfile::add`].
     ///
     /// Every contact has to be found again: do it at some samples only.
     pub fn add_wall_forces(&mut self, simulation: &Simulation) {
@@ -259,6 +283,18 @@ impl WaveFrameProfile {
                 sums.outward -= (force.x * point.x + force.y * point.y) / from_axis;
             }
         });
+        if matches!(wall, Wall::Elastic(_)) {
+            let bodies = simulation.bodies();
+            let spheres = bodies.grains..bodies.number();
+            for (position, velocity) in bodies.position[spheres.clone()]
+                .iter()
+                .zip(&bodies.velocity[spheres])
+            {
+                let bin = bin_of(heading * position.z / lattice.wavelength - cycles, bins);
+                last[bin].wall.axial_velocity += heading * velocity.z;
+                last[bin].wall.spheres += 1.0;
+            }
+        }
     }
 
     fn begin_block(&mut self) {
@@ -325,6 +361,7 @@ impl WaveFrameProfile {
                     }),
                     wall_pressure: with_error(&|sums| sums.wall.outward * per_area(&sums.wall)),
                     wall_shear: with_error(&|sums| shear(&sums.wall)),
+                    wall_axial_velocity: with_error(&|sums| sums.wall.velocity()),
                 }
             })
             .collect()

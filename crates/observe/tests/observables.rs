@@ -8,7 +8,7 @@ use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
     AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, View, WaveByWave, WaveFrameProfile,
-    note_wall_faults,
+    WavePart, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
@@ -213,6 +213,37 @@ fn what_the_wall_does_is_what_the_grains_feel() {
         );
         let shear: f64 = bins.iter().map(|bin| bin.wall_shear.0).sum();
         assert!((shear + 0.5 * axial / (core::f64::consts::TAU * 6.0)).abs() < 1e-9);
+    }
+}
+
+/// One grain presses where the wave closes the narrow half of the tube, one where it opens the wide half.
+#[test]
+fn the_parts_of_a_wave_have_their_own_forces() {
+    for heading in [1.0, -1.0] {
+        // R = 6 - sin(2 pi position)/2 in the wave's frame.
+        let place = |position: f64| (heading * 10.0 * position).rem_euclid(20.0);
+        let bodies = Bodies::grains_at_rest(
+            vec![
+                DVec3::new(4.9, 0.0, place(0.33)),
+                DVec3::new(0.0, -5.7, place(0.92)),
+            ],
+            vec![1.0; 2],
+        );
+        let simulation = Simulation::new(bodies, wall(heading, 0.5), parameters());
+        let axial = |grain: usize| 0.5 * heading * simulation.bodies().acceleration[grain].z;
+        assert!(axial(0).abs() > 1e-3 && axial(1).abs() > 1e-3);
+        let mut profile = WaveFrameProfile::new(50, 1);
+        profile.add(&simulation);
+        profile.add_wall_forces(&simulation);
+        for part in [WavePart::Narrow, WavePart::Front] {
+            let found = profile.late_part(1.0, part);
+            assert!((found.normal_force.0 - axial(0)).abs() < 1e-9, "{found:?}");
+            assert_eq!(found.tangential_force.0, 0.0);
+            // A prescribed wall moves in and out only.
+            assert_eq!(found.wall_velocity.0, 0.0);
+        }
+        let all = profile.late_wall_force(1.0).normal.0;
+        assert!((all - axial(0) - axial(1)).abs() < 1e-9);
     }
 }
 

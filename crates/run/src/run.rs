@@ -15,7 +15,7 @@ use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 7;
+const STATE_LAYOUT: u32 = 8;
 /// What a snapshot is: its configuration is inside, so that it belongs to any physics.
 const SNAPSHOT: CheckpointIdentity = CheckpointIdentity {
     kind: *b"snapshot",

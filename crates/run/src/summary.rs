@@ -1,7 +1,7 @@
 //! The outcome of a run in numbers.
 
 use peristalsis_analysis::mean_with_error;
-use peristalsis_observe::{Sample, WallFault};
+use peristalsis_observe::{Sample, WallFault, WavePart};
 
 use crate::assemble::newtonian_reference;
 use crate::late::{Pumping, Residence, axial_dispersion, error_of};
@@ -51,6 +51,8 @@ pub struct Summary {
     pub flow_rate_ratio_error: f64,
     /// Mean of J/Jmax in the second half of the late part less that in the first: a run that is not yet stationary drifts.
     pub flow_rate_ratio_drift: f64,
+    /// Variance of the late averages of J/Jmax over a period each; NaN below two whole late periods.
+    pub flow_rate_ratio_variance: f64,
     /// Late mean of J/Jmax of all grains.
     pub flow_rate_ratio_raw: f64,
     /// Late mean of J \[1/t\].
@@ -93,6 +95,30 @@ pub struct Summary {
     pub wall_tangential_force: f64,
     /// Its standard error.
     pub wall_tangential_force_error: f64,
+    /// The part of wall_normal_force that acts where the tube is narrower than on its mean.
+    pub narrow_normal_force: f64,
+    /// Its standard error.
+    pub narrow_normal_force_error: f64,
+    /// The part of wall_tangential_force that acts there.
+    pub narrow_tangential_force: f64,
+    /// Its standard error.
+    pub narrow_tangential_force_error: f64,
+    /// Late mean axial velocity of the grains there, laboratory frame, along the wave \[d/t\].
+    pub narrow_axial_velocity: f64,
+    /// Its standard error.
+    pub narrow_axial_velocity_error: f64,
+    /// Late mean axial velocity of the wall's spheres there; 0 for a prescribed wall \[d/t\].
+    pub narrow_wall_velocity: f64,
+    /// Its standard error.
+    pub narrow_wall_velocity_error: f64,
+    /// The part of wall_normal_force that acts in the front of the wave, from its narrowest place to the widest one ahead.
+    pub front_normal_force: f64,
+    /// Its standard error.
+    pub front_normal_force_error: f64,
+    /// The part of wall_tangential_force that acts in the front of the wave.
+    pub front_tangential_force: f64,
+    /// Its standard error.
+    pub front_tangential_force_error: f64,
     /// Late mean of the pressure on the wall \[m/(d t^2)\].
     pub wall_pressure: f64,
     /// Largest late mean of it over the phases of the wave.
@@ -160,6 +186,8 @@ impl Summary {
             .profile()
             .late(run.late_fraction(), configuration.tube.wavelength);
         let wall_force = recorder.profile().late_wall_force(run.late_fraction());
+        let part = |part| recorder.profile().late_part(run.late_fraction(), part);
+        let (narrow, front) = (part(WavePart::Narrow), part(WavePart::Front));
         let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
         let residence = Residence::of(late);
         let (axial_dispersion, axial_dispersion_error) =
@@ -179,6 +207,10 @@ impl Summary {
             ),
             flow_rate_ratio_error: estimate.map_or(f64::NAN, |estimate| estimate.error),
             flow_rate_ratio_drift: drift(&ratios),
+            flow_rate_ratio_variance: variance_of_periods(
+                &ratios,
+                configuration.observe.samples_per_period as usize,
+            ),
             flow_rate_ratio_raw: mean(|sample| sample.flow_rate_ratio_raw),
             flow_rate: mean(|sample| sample.flow_rate),
             transition_time,
@@ -208,6 +240,18 @@ impl Summary {
             wall_normal_force_error: wall_force.normal.1,
             wall_tangential_force: wall_force.tangential.0,
             wall_tangential_force_error: wall_force.tangential.1,
+            narrow_normal_force: narrow.normal_force.0,
+            narrow_normal_force_error: narrow.normal_force.1,
+            narrow_tangential_force: narrow.tangential_force.0,
+            narrow_tangential_force_error: narrow.tangential_force.1,
+            narrow_axial_velocity: narrow.axial_velocity.0,
+            narrow_axial_velocity_error: narrow.axial_velocity.1,
+            narrow_wall_velocity: narrow.wall_velocity.0,
+            narrow_wall_velocity_error: narrow.wall_velocity.1,
+            front_normal_force: front.normal_force.0,
+            front_normal_force_error: front.normal_force.1,
+            front_tangential_force: front.tangential_force.0,
+            front_tangential_force_error: front.tangential_force.1,
             wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
             wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
             residence_time: residence.map(|residence| residence.time),
@@ -257,6 +301,21 @@ fn drift(series: &[f64]) -> f64 {
     mean(second) - mean(first)
 }
 
+/// Variance of the averages over each whole period, counted from the end; NaN below two.
+fn variance_of_periods(series: &[f64], samples_per_period: usize) -> f64 {
+    let averages: Vec<f64> = series
+        .rchunks_exact(samples_per_period.max(1))
+        .map(|period| period.iter().sum::<f64>() / period.len() as f64)
+        .collect();
+    let number = averages.len() as f64;
+    if averages.len() < 2 {
+        return f64::NAN;
+    }
+    let mean = averages.iter().sum::<f64>() / number;
+    let squares: f64 = averages.iter().map(|one| (one - mean) * (one - mean)).sum();
+    squares / (number - 1.0)
+}
+
 impl Summary {
     /// As JSON, indented.
     #[must_use]
@@ -265,5 +324,18 @@ impl Summary {
             .expect("a summary is plain numbers and text, which always serialise");
         text.push('\n');
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_differs_from_period_to_period_counts_as_fluctuation() {
+        // Half a period, then three whole ones of means 1, 2, 3, whatever goes on within them.
+        let series = [9.0, 0.5, 1.5, 0.0, 4.0, 3.0, 3.0];
+        assert!((variance_of_periods(&series, 2) - 1.0).abs() < 1e-12);
+        assert!(variance_of_periods(&series[..3], 2).is_nan());
     }
 }

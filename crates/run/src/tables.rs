@@ -147,6 +147,18 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
             "m/(d t^2)",
             "its standard error",
             column(|bin| bin.wall_shear.1),
+        )
+        .column(
+            "wall_axial_velocity",
+            "d/t",
+            "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall",
+            column(|bin| bin.wall_axial_velocity.0),
+        )
+        .column(
+            "wall_axial_velocity_error",
+            "d/t",
+            "its standard error",
+            column(|bin| bin.wall_axial_velocity.1),
         );
     with_origin(table, configuration).build()
 }

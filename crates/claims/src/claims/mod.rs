@@ -14,6 +14,10 @@ mod q2;
 mod q3;
 mod q4;
 mod q5;
+mod q6;
+mod q7;
+mod q8;
+mod q9;
 
 use peristalsis_analysis::Uncertain;
 use peristalsis_figures::chart::{Line as Curve, Tint};
@@ -42,6 +46,10 @@ pub const CLAIMS: &[Claim] = &[
     q3::CLAIM,
     q4::CLAIM,
     q5::CLAIM,
+    q6::CLAIM,
+    q7::CLAIM,
+    q8::CLAIM,
+    q9::CLAIM,
 ];
 
 /// Fraction of grains outside the tube beyond which a strain rate is left out of fits: another system flows then.

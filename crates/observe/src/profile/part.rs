@@ -1,0 +1,99 @@
+//! What happens in a part of the wave, its narrow half or its front, taken by itself.
+
+use super::{Sums, WaveFrameProfile, standard_error, total};
+
+/// A part of the wavelength; what it leaves is the wide half, or the rear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WavePart {
+    /// Where the tube is narrower than on its mean.
+    Narrow,
+    /// From the narrowest place to the widest one ahead: where the wave closes the tube.
+    Front,
+}
+
+/// What happens in a part of the wave: along the wave, late means, each with its error.
+///
+/// Of the force on the grains of a wavelength what is not here acts in the rest of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PartOfWave {
+    /// Axial force of the wall on the grains of the part along the normals of contacts \[m d/t^2\].
+    pub normal_force: (f64, f64),
+    /// The same by friction \[m d/t^2\].
+    pub tangential_force: (f64, f64),
+    /// Mean axial velocity of its grains, laboratory frame \[d/t\].
+    pub axial_velocity: (f64, f64),
+    /// Mean axial velocity of the wall's spheres there \[d/t\]; 0 for a prescribed wall.
+    pub wall_velocity: (f64, f64),
+}
+
+impl WaveFrameProfile {
+    /// A part of the wave over the last part of what was added, at least one block.
+    ///
+    /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. A straight tube has
+    /// no such parts: all is NaN.
+    #[must_use]
+    pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
+        let groups = self.late_groups(fraction);
+        let radius = |bin: usize| {
+            let all = total(groups.iter().map(|group| &group[bin]));
+            all.radius / all.looks
+        };
+        let bins = bins_of(part, &(0..self.bins).map(radius).collect::<Vec<f64>>());
+        let inside: Vec<Sums> = groups
+            .iter()
+            .map(|group| total(bins.iter().map(|&bin| &group[bin])))
+            .collect();
+        let all = total(&inside);
+        let with_error =
+            |value: &dyn Fn(&Sums) -> f64| (value(&all), standard_error(inside.iter().map(value)));
+        // Every bin was looked at as often.
+        let looks = |sums: &Sums| sums.wall.looks / bins.len() as f64;
+        PartOfWave {
+            normal_force: with_error(&|sums| sums.wall.normal / looks(sums)),
+            tangential_force: with_error(&|sums| sums.wall.tangential / looks(sums)),
+            axial_velocity: with_error(&Sums::velocity),
+            wall_velocity: with_error(&|sums| sums.wall.velocity()),
+        }
+    }
+}
+
+/// The bins of a part of a wave of these radii.
+fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
+    let number = radii.len();
+    match part {
+        WavePart::Narrow => {
+            let mean = radii.iter().sum::<f64>() / number as f64;
+            (0..number).filter(|&bin| radii[bin] < mean).collect()
+        }
+        WavePart::Front => {
+            let place = |better: fn(f64, f64) -> bool| {
+                (1..number).fold(0, |best, bin| {
+                    if better(radii[bin], radii[best]) {
+                        bin
+                    } else {
+                        best
+                    }
+                })
+            };
+            let narrowest = place(|one, best| one < best);
+            let widest = place(|one, best| one > best);
+            let length = (widest + number - narrowest) % number;
+            (0..length)
+                .map(|step| (narrowest + step) % number)
+                .collect()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_front_leads_from_the_narrowest_place_to_the_widest_ahead() {
+        // Narrowest at 5, widest at 1 of the next wavelength.
+        let radii = [3.5, 4.0, 3.8, 3.2, 3.0, 2.5, 3.0, 3.2];
+        assert_eq!(bins_of(WavePart::Front, &radii), [5, 6, 7, 0]);
+        assert_eq!(bins_of(WavePart::Narrow, &radii), [3, 4, 5, 6, 7]);
+    }
+}
