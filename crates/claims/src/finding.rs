@@ -36,7 +36,7 @@ impl Verdict {
 pub struct Statistics {
     /// Strain rates.
     pub strain_rates: usize,
-    /// Widths at each.
+    /// Widths at each; forces under stress control.
     pub widths: usize,
     /// Replicates of each point.
     pub replicates: usize,
@@ -127,6 +127,8 @@ pub struct Finding {
     pub statistics: Statistics,
     /// What a verdict would take.
     pub needed: Statistics,
+    /// What is varied at each strain rate, one word: "width" or "force".
+    pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,
     /// Paragraphs about method and outcome, in markup.
@@ -179,6 +181,7 @@ impl Finding {
             summary,
             statistics,
             needed: *needed,
+            varied: "width",
             quantities: Vec::new(),
             paragraphs: Vec::new(),
             weaknesses: Vec::new(),

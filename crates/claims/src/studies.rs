@@ -95,4 +95,11 @@ pub const STUDIES: &[StudyFile] = &[
     study!("wavelength"),
     study!("radius"),
     study!("length"),
+    study!("elastic-flow"),
+    study!("elastic-branches"),
+    study!("elastic-extremes"),
+    study!("elastic-yielding"),
+    study!("elastic-frictionless"),
+    study!("elastic-sensitivity"),
+    study!("unjammed-frictionless"),
 ];

@@ -10,11 +10,13 @@ mod estimate;
 mod folder;
 mod late;
 mod pictures;
+mod place;
 mod recorder;
 mod render;
 mod run;
 mod si;
 mod softness;
+mod spheres;
 mod stopping;
 mod summary;
 mod tables;
@@ -29,13 +31,14 @@ pub use peristalsis_configuration::Configuration;
 pub use peristalsis_formats::TrajectoryFormat;
 pub use peristalsis_render::Picture;
 pub use pictures::snapshot_stack;
+pub use place::Place;
 pub use recorder::{Recorder, THRESHOLDS};
 pub use render::{Aspect, picture};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use si::{SiEstimate, SiSummary};
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
-pub use tables::{profile_table, timeseries_table, waves_table};
+pub use tables::{profile_table, snapshot_table, timeseries_table, waves_table};
 pub use trajectory::{
     Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport, TrajectoryRequest,
     Window,

@@ -1,5 +1,6 @@
 //! One claim a file, and what they share.
 
+mod elastic;
 mod f1;
 mod f2;
 mod f3;
@@ -10,10 +11,17 @@ mod f7;
 mod f8;
 mod f9;
 mod q1;
+mod q10;
 mod q2;
 mod q3;
 mod q4;
 mod q5;
+mod s1;
+mod s2;
+mod s3;
+mod s4;
+mod s5;
+mod s6;
 
 use peristalsis_analysis::Uncertain;
 use peristalsis_figures::chart::{Line as Curve, Tint};
@@ -37,11 +45,18 @@ pub const CLAIMS: &[Claim] = &[
     f7::CLAIM,
     f8::CLAIM,
     f9::CLAIM,
+    s1::CLAIM,
+    s2::CLAIM,
+    s3::CLAIM,
+    s4::CLAIM,
+    s5::CLAIM,
+    s6::CLAIM,
     q1::CLAIM,
     q2::CLAIM,
     q3::CLAIM,
     q4::CLAIM,
     q5::CLAIM,
+    q10::CLAIM,
 ];
 
 /// Fraction of grains outside the tube beyond which a strain rate is left out of fits: another system flows then.

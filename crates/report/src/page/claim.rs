@@ -72,7 +72,7 @@ fn statistics(examination: &Examination) -> Markup {
             p.statistics { "No finished runs yet." }
         } @else {
             p.statistics {
-                (number_of(found.strain_rates, "strain rate")) " × " (number_of(found.widths, "width")) " × "
+                (number_of(found.strain_rates, "strain rate")) " × " (number_of(found.widths, examination.finding.varied)) " × "
                 (number_of(found.replicates, "replicate")) ", " (number_of(found.runs, "run")) " in all: "
                 @if examination.is_sufficient() { "enough for a verdict." }
                 @else {
