@@ -232,6 +232,11 @@ impl ForceLine {
             .fold(0.0, f64::max)
     }
 
+    /// Whether no flow on it is stationary.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.rest.points.is_empty() && self.jammed.points.is_empty()
+    }
+
     /// Whether the tube holds its grains.
     pub(crate) fn is_tight(&self) -> bool {
         self.escaped() <= MOST_ESCAPED

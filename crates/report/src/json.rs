@@ -26,6 +26,8 @@ struct Claim<'a> {
     verdict: Verdict,
     summary: &'a str,
     statistics: Statistics,
+    /// What `widths` counts.
+    varied: &'a str,
     /// What a verdict takes.
     needed: Statistics,
     sufficient: bool,
@@ -101,6 +103,7 @@ fn claim<'a>(
         verdict: finding.verdict,
         summary: &finding.summary,
         statistics: finding.statistics,
+        varied: finding.varied,
         needed: finding.needed,
         sufficient: examination.is_sufficient(),
         failure: failure.as_deref(),

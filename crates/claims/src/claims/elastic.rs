@@ -24,6 +24,14 @@ pub(super) fn branch_runs(evidence: &Evidence) -> Result<Vec<Run>, ClaimError> {
     Ok(runs)
 }
 
+/// The lines that are judged: those of tubes that hold their grains, with points on them.
+pub(super) fn judged(lines: &[ForceLine]) -> Vec<&ForceLine> {
+    lines
+        .iter()
+        .filter(|line| line.is_tight() && !line.is_empty())
+        .collect()
+}
+
 /// Label of an axis, in the units of Hertz contacts.
 pub(super) fn label(quantity: Axis) -> String {
     quantity.label(Units::Hertz)

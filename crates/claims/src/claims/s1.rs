@@ -6,7 +6,7 @@ use peristalsis_figures::{
 };
 use peristalsis_formats::Table;
 
-use super::elastic::{finding, is_frictionless, nothing};
+use super::elastic::{finding, is_frictionless, judged, nothing};
 use crate::branches::mean_and_error;
 use crate::claim::Claim;
 use crate::error::ClaimError;
@@ -111,7 +111,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut found = finding(
         verdict,
         format!("*J*/*J*_{{max}} is {}.", words.join(", ")),
-        together(lines.iter().filter(|line| line.is_tight())),
+        together(judged(&lines).into_iter()),
     );
     for scene in &scenes {
         found.quantities.push(Quantity {

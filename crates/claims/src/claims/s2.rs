@@ -4,7 +4,7 @@ use peristalsis_analysis::{Family, Survival, Transition, Uncertain, fit_lifetime
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
-use super::elastic::{finding, label, nothing, rate_text};
+use super::elastic::{finding, judged, label, nothing, rate_text};
 use crate::claim::Claim;
 use crate::critical::longest;
 use crate::error::ClaimError;
@@ -122,7 +122,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 rung.force
             )),
         ),
-        together(lines.iter().filter(|line| line.is_tight())),
+        together(judged(&lines).into_iter()),
     );
     for rung in &ladder {
         if let Some(mean) = rung.mean() {

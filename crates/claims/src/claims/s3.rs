@@ -7,7 +7,7 @@ use peristalsis_figures::chart::{
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
 use super::elastic::{
-    branch_points, branch_runs, finding, label, nothing, rate_colours, rate_text,
+    branch_points, branch_runs, finding, judged, label, nothing, rate_colours, rate_text,
 };
 use crate::branches::bracket;
 use crate::claim::Claim;
@@ -30,7 +30,7 @@ pub(super) const CLAIM: Claim = Claim {
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let runs = branch_runs(evidence)?;
     let lines = ForceLine::all_of(&runs);
-    let tight: Vec<&ForceLine> = lines.iter().filter(|line| line.is_tight()).collect();
+    let tight = judged(&lines);
     if tight.is_empty() {
         return Ok(nothing("No runs yet."));
     }
@@ -74,7 +74,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         found.quantities.push(Quantity {
             name: "strain rate below which the jump vanishes".to_owned(),
             symbol: "*ε̇*".to_owned(),
-            unit: "1/t*".replace('*', "\\*"),
+            unit: "1/*t*^{\\*}".to_owned(),
             source: None,
             ours: Some(rate),
             method: "between the largest strain rate without a jump and the smallest with one"
@@ -208,16 +208,8 @@ fn branches(lines: &[ForceLine], tight: &[&ForceLine]) -> Result<ReportFigure, C
             flow = flow.with(Window::new("", first, last));
         }
     }
-    let (mut rate, mut height, mut error) = (vec![], vec![], vec![]);
-    for line in tight {
-        if let Some(found) = line.height() {
-            rate.push(line.strain_rate);
-            height.push(found.value);
-            error.push(found.error);
-        }
-    }
     let mut panels = vec![flow.title("filled: from rest, open: from jammed")];
-    if !rate.is_empty() {
+    if tight.iter().any(|line| line.height().is_some()) {
         let mut heights = ChartPanel::new(
             &label(Axis::StrainRate),
             "height of the rise, Δ*J*/*J*_{max}",

@@ -5,7 +5,7 @@ use peristalsis_figures::Quantity as Axis;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Reference};
 
 use super::elastic::{
-    branch_points, branch_runs, finding, label, nothing, rate_colours, rate_text,
+    branch_points, branch_runs, finding, judged, label, nothing, rate_colours, rate_text,
 };
 use crate::claim::Claim;
 use crate::error::ClaimError;
@@ -53,7 +53,7 @@ pub(super) fn lowest(line: &ForceLine) -> Option<ForcePoint> {
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let lines = ForceLine::all_of(&branch_runs(evidence)?);
-    let tight: Vec<&ForceLine> = lines.iter().filter(|line| line.is_tight()).collect();
+    let tight = judged(&lines);
     if tight.is_empty() {
         return Ok(nothing("No runs yet."));
     }

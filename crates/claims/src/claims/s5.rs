@@ -5,7 +5,8 @@ use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Points, R
 use peristalsis_figures::{Quantity as Axis, Width};
 
 use super::elastic::{
-    SOURCE_RATE, branch_points, branch_runs, finding, label, nothing, rate_colours, rate_text,
+    SOURCE_RATE, branch_points, branch_runs, finding, judged, label, nothing, rate_colours,
+    rate_text,
 };
 use super::s4::{lowest, negative};
 use crate::claim::Claim;
@@ -37,7 +38,7 @@ const NOT_BACK: f64 = 0.01;
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let runs = &evidence.study("elastic-frictionless")?.runs;
     let lines = ForceLine::all_of(runs);
-    let tight: Vec<&ForceLine> = lines.iter().filter(|line| line.is_tight()).collect();
+    let tight = judged(&lines);
     if tight.is_empty() {
         return Ok(nothing("No runs of frictionless grains yet."));
     }

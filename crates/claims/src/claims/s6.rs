@@ -6,7 +6,7 @@ use peristalsis_figures::chart::{
 };
 use peristalsis_figures::{Quantity as Axis, Width};
 
-use super::elastic::{finding, is_frictionless, label, nothing, rate_text};
+use super::elastic::{finding, is_frictionless, judged, label, nothing, rate_text};
 use crate::branches::mean_and_error;
 use crate::claim::Claim;
 use crate::error::ClaimError;
@@ -169,7 +169,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             outcomes.len(),
             number_of(Some(false)),
         ),
-        together(lines.iter().filter(|line| line.is_tight())),
+        together(judged(&lines).into_iter()),
     );
     // At the smallest force of the source's rate where there is one, else at the first.
     let shown = frictional
