@@ -29,6 +29,10 @@ pub(crate) const MOST_ESCAPED: f64 = 0.05;
 const CONTINUED: usize = 3;
 /// A jump counts from this height of J/Jmax on: a smooth rise between two forces continues to less.
 pub(crate) const LEAST_JUMP: f64 = 0.25;
+/// Distance of two forces beyond which a rise between them is not judged by its height: a smooth one may be as high.
+const FINEST: f64 = 6e-4;
+/// J/Jmax that a line must reach, and below which it must begin, to be called smooth: else the transition lies beyond it.
+const SPAN: (f64, f64) = (0.3, 0.5);
 /// Differences count from this many of their errors on.
 pub(crate) const CLEAR: f64 = 4.0;
 /// Least error of a mean of J/Jmax: replicates that agree by chance to many digits still have one.
@@ -286,14 +290,38 @@ impl ForceLine {
             .min_by(|one, other| one.value.total_cmp(&other.value))
     }
 
+    /// Distance of the forces of the longer of the largest rises from either start.
+    fn bracket(&self) -> f64 {
+        [&self.rest, &self.jammed]
+            .into_iter()
+            .filter_map(|branch| branch.rise())
+            .map(|rise| rise.after - rise.before)
+            .fold(0.0, f64::max)
+    }
+
+    /// Whether it reaches from unjammed to jammed flow.
+    fn spans(&self) -> bool {
+        let means = || {
+            let points = self.rest.points.iter().chain(&self.jammed.points);
+            points.map(|point| point.mean)
+        };
+        means().any(|mean| mean < SPAN.0) && means().any(|mean| mean > SPAN.1)
+    }
+
     /// Whether it jumps.
     pub(crate) fn kind(&self) -> Kind {
         if !self.both().is_empty() {
             return Kind::Jump;
         }
         match self.height() {
-            Some(height) if height.value - CLEAR * height.error > LEAST_JUMP => Kind::Jump,
-            Some(height) if height.value + 2.0 * height.error < LEAST_JUMP => Kind::Smooth,
+            Some(height)
+                if height.value - CLEAR * height.error > LEAST_JUMP && self.bracket() <= FINEST =>
+            {
+                Kind::Jump
+            }
+            Some(height) if height.value + 2.0 * height.error < LEAST_JUMP && self.spans() => {
+                Kind::Smooth
+            }
             _ => Kind::Unclear,
         }
     }

@@ -391,6 +391,29 @@ fn the_jump_and_the_rate_at_which_it_vanishes_are_found() {
 }
 
 #[test]
+fn neither_a_coarse_grid_nor_one_beside_the_transition_decides() {
+    let kinds = |forces: &[f64]| -> Vec<String> {
+        let tube = Tube {
+            window: 0.0,
+            ..SOURCE
+        };
+        let runs = tube.branches(&RATES).into_iter();
+        let mut evidence = empty();
+        evidence.add_runs(
+            "elastic-branches",
+            runs.filter(|run| forces.contains(&run.force())).collect(),
+        );
+        let rows = &examine("S3", &evidence).tables[0].rows;
+        rows.iter().map(|row| row[8].clone()).collect()
+    };
+    assert_eq!(kinds(&FORCES), ["smooth", "smooth", "jump", "jump"]);
+    let coarse = [0.002, 0.003, 0.004, 0.0055, 0.0065];
+    assert_eq!(kinds(&coarse), ["smooth", "smooth", "unclear", "unclear"]);
+    let below = [0.002, 0.003, 0.0035, 0.004];
+    assert_eq!(kinds(&below)[2..], ["unclear", "unclear"]);
+}
+
+#[test]
 fn strain_rates_at_which_grains_leave_are_not_judged() {
     let mut evidence = SOURCE.evidence(FRICTIONLESS);
     let leaky = Tube {

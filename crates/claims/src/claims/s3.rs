@@ -99,7 +99,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     found.tables.push(table(&runs, &lines));
     found.paragraphs.push(format!(
-        "A jump is a rise between neighbouring forces by more than {LEAST_JUMP} when both sides are continued to its middle by straight \
+        "A jump is a rise between forces 0.0005 apart by more than {LEAST_JUMP} when both sides are continued to its middle by straight \
          lines, or a force at which grains that began jammed flow faster by more than that than those that began at rest; both by four \
          of their errors. Strain rates at which more than {} per cent of the grains leave the tube are listed and not judged.",
         number(100.0 * MOST_ESCAPED, 0)
