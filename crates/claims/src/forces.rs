@@ -281,8 +281,25 @@ impl ForceLine {
         Some(bracket(last - first, after - before))
     }
 
-    /// Height of the jump, the smaller of those from either start where both are known.
+    /// Height of the jump: the distance of the two flows, mean over the forces that have both; where none has, that of the
+    /// largest rise, the smaller of both starts.
     pub(crate) fn height(&self) -> Option<Uncertain> {
+        let both = self.both();
+        let pairs: Vec<(&ForcePoint, &ForcePoint)> = both
+            .iter()
+            .filter_map(|force| Some((self.rest.at(*force)?, self.jammed.at(*force)?)))
+            .collect();
+        if !pairs.is_empty() {
+            let number = pairs.len() as f64;
+            let distance = pairs.iter().map(|(rest, jammed)| jammed.mean - rest.mean);
+            let variance = pairs
+                .iter()
+                .map(|(rest, jammed)| rest.error.powi(2) + jammed.error.powi(2));
+            return Some(Uncertain::normal(
+                distance.sum::<f64>() / number,
+                variance.sum::<f64>().sqrt() / number,
+            ));
+        }
         let heights = [&self.rest, &self.jammed].map(|branch| Some(branch.jump()?.height));
         heights
             .into_iter()

@@ -55,6 +55,16 @@ const TEXTS: [(&str, &str); 4] = [
     ("contact.sliding=literal", "sliding as printed"),
 ];
 
+/// The setting of the preset.
+const PRESET: &str = "the preset";
+/// All that keeps the wall, taken away.
+const NOTHING_KEEPS: [&str; 4] = [
+    "no azimuthal tether",
+    "no axial tether",
+    "springs not balanced",
+    "mean force not removed",
+];
+
 /// How a run departs from the preset, in words.
 fn setting(run: &Run) -> String {
     let numbers = KEYS.iter().filter_map(|(key, preset, name)| {
@@ -72,10 +82,11 @@ fn setting(run: &Run) -> String {
         .filter(|(key, _)| run.axis(key).is_some())
         .map(|(_, name)| (*name).to_owned());
     let words: Vec<String> = numbers.chain(texts).collect();
-    if words.is_empty() {
-        "the preset".to_owned()
-    } else {
-        words.join(", ")
+    match words.len() {
+        0 => PRESET.to_owned(),
+        1 => words.join(""),
+        _ if words == NOTHING_KEEPS => "nothing keeps the wall".to_owned(),
+        _ => words.join(", "),
     }
 }
 
@@ -190,6 +201,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             None => groups.push((name, vec![run])),
         }
     }
+    // The preset first, whatever the order of the rows.
+    groups.sort_by_key(|(name, _)| name != PRESET);
     let outcomes: Vec<Outcome<'_>> = groups
         .into_iter()
         .map(|(name, runs)| Outcome::of(name, runs))

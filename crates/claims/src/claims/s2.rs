@@ -5,6 +5,7 @@ use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points,
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
 use super::elastic::{finding, judged, label, nothing, rate_text};
+use crate::branches::mean_and_error;
 use crate::claim::Claim;
 use crate::critical::longest;
 use crate::error::ClaimError;
@@ -51,9 +52,19 @@ impl Rung<'_> {
     /// Mean time until the jam gives way, those that did not counted as censored; `None` where none did.
     fn mean(&self) -> Option<Uncertain> {
         let transitions = self.transitions();
-        let fit = fit_lifetime(Family::Gamma, &transitions)
-            .or_else(|_| fit_lifetime(Family::Exponential, &transitions))
-            .ok()?;
+        if let Ok(fit) = fit_lifetime(Family::Gamma, &transitions) {
+            return Some(fit.mean);
+        }
+        // Too few for two parameters: their scatter where all were seen, else one parameter.
+        let times: Vec<f64> = transitions
+            .iter()
+            .filter_map(Transition::observed)
+            .collect();
+        if times.len() > 1 && times.len() == transitions.len() {
+            let (mean, error) = mean_and_error(&times);
+            return Some(Uncertain::normal(mean, error));
+        }
+        let fit = fit_lifetime(Family::Exponential, &transitions).ok()?;
         Some(fit.mean)
     }
 
@@ -112,13 +123,13 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut found = finding(
         verdict,
         format!(
-            "Within {periods} periods most jams give way {}, and none {}.",
+            "Within {periods} periods most jams give way {}; {}.",
             gives_way.map_or("at no force".to_owned(), |rung| format!(
                 "up to *f*^{{P}} = {} *Yd*^{{2}}",
                 rung.force
             )),
-            lasts.map_or("outlasts them at any".to_owned(), |rung| format!(
-                "does from {} on",
+            lasts.map_or("some do at every force".to_owned(), |rung| format!(
+                "from {} on none does",
                 rung.force
             )),
         ),
@@ -271,8 +282,9 @@ fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Option<ReportFigu
     }
     if !limits[0].is_empty() {
         times = times.with(
-            Points::new("most outlast the run", &limits[0], &limits[1])
+            Points::new("", &limits[0], &limits[1])
                 .lower_limits(&vec![true; limits[0].len()])
+                .limit_name("most outlast the run")
                 .series(1),
         );
     }

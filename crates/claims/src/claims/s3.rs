@@ -92,8 +92,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 unit: String::new(),
                 source: None,
                 ours: Some(height),
-                method: "both sides continued to it by straight lines; the smaller of both starts"
-                    .to_owned(),
+                method: "distance of both flows at the forces that have both, else both sides of the rise continued to it by straight lines, the smaller of both starts".to_owned(),
             });
         }
     }
@@ -120,16 +119,10 @@ fn vanishing(jumping: &[f64], smooth: &[f64]) -> Option<Uncertain> {
     (fastest < slowest).then(|| bracket(fastest, slowest))
 }
 
-/// J/Jmax of the runs between and next to the forces of the largest rises from either start.
-fn near(runs: &[Run], line: &ForceLine) -> Vec<f64> {
-    let rises = [line.rest.rise(), line.jammed.rise()];
-    let ends = rises.iter().flatten();
-    let (from, to) = ends.fold((f64::INFINITY, f64::NEG_INFINITY), |(from, to), rise| {
-        (from.min(rise.before), to.max(rise.after))
-    });
+/// J/Jmax of all stationary runs of a line.
+fn flows(runs: &[Run], line: &ForceLine) -> Vec<f64> {
     runs.iter()
-        .filter(|run| run.strain_rate == line.strain_rate)
-        .filter(|run| run.force() >= from && run.force() <= to)
+        .filter(|run| run.strain_rate == line.strain_rate && run.is_stationary())
         .map(|run| run.flow_rate_ratio)
         .filter(|ratio| ratio.is_finite())
         .collect()
@@ -140,7 +133,7 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
     let rows = lines
         .iter()
         .map(|line| {
-            let near = near(runs, line);
+            let flows = flows(runs, line);
             let bootstrap = Bootstrap {
                 resamples: 500,
                 seed: 7,
@@ -161,11 +154,11 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                         number(window.interval_95.upper, 4)
                     )
                 }),
-                two_peaks(&near).map_or_else(
+                two_peaks(&flows).map_or_else(
                     |_| none(),
                     |peaks| if peaks.is_double() { "two" } else { "one" }.to_owned(),
                 ),
-                dip_test(&near, bootstrap)
+                dip_test(&flows, bootstrap)
                     .map_or_else(|_| none(), |test| number(test.probability, 3)),
                 number(line.escaped(), 2),
                 match line.kind() {
@@ -180,7 +173,7 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
         .collect();
     ReportTable {
         caption: "Where the stationary flow rises most, from rest and from jammed (bracket in *f*^{P}); height of that rise; width of the \
-                  window of forces with both flows; peaks of *J*/*J*_{max} over the runs there (two normal peaks against one) and the \
+                  window of forces with both flows; peaks of *J*/*J*_{max} over all forces and both starts (two normal peaks against one) and the \
                   probability of so deep a dip with one peak (Hartigan); largest part of the grains outside."
             .to_owned(),
         head: ["*ε̇*", "rise, from rest", "from jammed", "height", "window", "peaks", "dip", "outside", ""]
@@ -212,28 +205,31 @@ fn branches(lines: &[ForceLine], tight: &[&ForceLine]) -> Result<ReportFigure, C
     if tight.iter().any(|line| line.height().is_some()) {
         let mut heights = ChartPanel::new(
             &label(Axis::StrainRate),
-            "height of the rise, Δ*J*/*J*_{max}",
+            "height of the jump, Δ*J*/*J*_{max}",
         )
         .x_scale(Scale::Logarithmic)
         .y_range(0.0..=1.05)
         .with(Reference::horizontal(LEAST_JUMP).label("counts as a jump"));
         for (place, line) in tight.iter().enumerate() {
             if let Some(found) = line.height() {
-                heights = heights.with(
-                    Points::new("", &[line.strain_rate], &[found.value.max(0.0)])
-                        .y_errors(&[found.error])
-                        .series(place)
-                        .tint(Tint::Value(line.strain_rate)),
-                );
+                let point = Points::new("", &[line.strain_rate], &[found.value.max(0.0)])
+                    .y_errors(&[found.error])
+                    .series(place)
+                    .tint(Tint::Value(line.strain_rate));
+                heights = heights.with(if line.kind() == Kind::Unclear {
+                    point.open()
+                } else {
+                    point
+                });
             }
         }
-        panels.push(heights.title("largest rise"));
+        panels.push(heights.title("open: forces too far apart to tell"));
     }
     Ok(ReportFigure {
         name: "branches".to_owned(),
         caption: "Stationary *J*/*J*_{max} against the force from rest (filled) and from jammed (open) at several strain rates; shaded: \
-                  both flows exist at the largest of them that has such forces. Right: how high the flow rises between two neighbouring \
-                  forces at once."
+                  both flows exist at the largest of them that has such forces. Right: distance of both flows where both exist, else how high the \
+                  flow rises at once between two forces, both sides continued."
             .to_owned(),
         drawing: ChartFigure::grid(2, panels)
             .legend(LegendPlace::Hidden)
@@ -244,14 +240,25 @@ fn branches(lines: &[ForceLine], tight: &[&ForceLine]) -> Result<ReportFigure, C
     })
 }
 
-/// Histograms of J/Jmax about the rise, for the slowest and the fastest wave.
+/// Histograms of J/Jmax, for the slowest and the fastest wave of those with most runs.
 fn peaks(runs: &[Run], tight: &[&ForceLine]) -> Result<Option<ReportFigure>, ClaimError> {
-    let mut chosen: Vec<&ForceLine> = Vec::new();
-    chosen.extend(tight.first());
-    chosen.extend(tight.last().filter(|_| tight.len() > 1));
+    let most = tight
+        .iter()
+        .map(|line| line.statistics.runs)
+        .max()
+        .unwrap_or(0);
+    let many: Vec<&ForceLine> = tight
+        .iter()
+        .copied()
+        .filter(|line| 2 * line.statistics.runs >= most)
+        .collect();
+    let chosen = many
+        .first()
+        .into_iter()
+        .chain(many.last().filter(|_| many.len() > 1));
     let mut panels = Vec::new();
     for line in chosen {
-        let Ok(counts) = histogram(&near(runs, line), -0.2, 1.0, 24) else {
+        let Ok(counts) = histogram(&flows(runs, line), -0.2, 1.0, 24) else {
             continue;
         };
         let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
@@ -268,8 +275,8 @@ fn peaks(runs: &[Run], tight: &[&ForceLine]) -> Result<Option<ReportFigure>, Cla
     }
     Ok(Some(ReportFigure {
         name: "two-peaks".to_owned(),
-        caption: "Stationary *J*/*J*_{max} of the runs from both starts at the forces next to the largest rise, at the smallest and the \
-                  largest strain rate."
+        caption: "Stationary *J*/*J*_{max} of all runs from both starts and at all forces, at the smallest and the largest strain rate of \
+                  those with most runs: a jump leaves a gap, a smooth rise none but those between its forces."
             .to_owned(),
         drawing: ChartFigure::grid(2, panels)
             .width(Width::DoubleColumn)

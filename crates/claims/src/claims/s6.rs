@@ -4,7 +4,7 @@ use peristalsis_analysis::Uncertain;
 use peristalsis_figures::chart::{
     Band, ChartFigure, ChartPanel, LegendPlace, Line as Curve, Reference,
 };
-use peristalsis_figures::{Quantity as Axis, Width};
+use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
 use super::elastic::{finding, is_frictionless, judged, label, nothing, rate_text};
 use crate::branches::mean_and_error;
@@ -332,15 +332,17 @@ fn profiles(
         return Ok(None);
     }
     let labels = [
-        "density over its mean, *n*_{1}/⟨*n*_{1}⟩".to_owned(),
+        "density, *n*_{1}*L*/*N*".to_owned(),
         label(Axis::AxialVelocity),
         "temperature, *T*_{g}/*mc*^{2}".to_owned(),
     ];
     let panels = labels.iter().enumerate().map(|(quantity, y_label)| {
         let mut panel =
             ChartPanel::new("distance from the throat, *ζ*/*λ*", y_label).x_range(-0.5..=0.5);
-        if quantity == 1 {
-            panel = panel.with(Reference::horizontal(0.0));
+        match quantity {
+            1 => panel = panel.with(Reference::horizontal(0.0)),
+            2 => panel = panel.y_scale(Scale::Logarithmic),
+            _ => {}
         }
         for (series, curve) in curves.iter().enumerate() {
             let (value, error) = (&curve.values[quantity], &curve.errors[quantity]);
