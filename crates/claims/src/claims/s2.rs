@@ -58,7 +58,7 @@ impl Rung<'_> {
         // Too few for two parameters: their scatter where all were seen, else one parameter.
         let times: Vec<f64> = transitions
             .iter()
-            .filter_map(Transition::observed)
+            .filter_map(|one| one.observed())
             .collect();
         if times.len() > 1 && times.len() == transitions.len() {
             let (mean, error) = mean_and_error(&times);
