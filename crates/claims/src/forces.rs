@@ -261,24 +261,22 @@ impl ForceLine {
             .collect()
     }
 
-    /// Bistable window of forces: from the middle of the distance to the force before the first with both flows to that
-    /// after the last; `None` where no force has both.
-    pub(crate) fn window(&self) -> Option<Uncertain> {
+    /// Least and largest width of the window of forces with both flows: from the first to the last of them, and between the
+    /// forces on either side, infinite where there is none; `None` where no force has both.
+    pub(crate) fn window(&self) -> Option<(f64, f64)> {
         let both = self.both();
         let (first, last) = (*both.first()?, *both.last()?);
-        let mut forces: Vec<f64> = self
-            .rest
-            .points
-            .iter()
-            .chain(&self.jammed.points)
-            .map(|point| point.force)
-            .collect();
-        forces.sort_by(f64::total_cmp);
-        forces.dedup();
-        let before = forces.iter().copied().rfind(|force| *force < first)?;
-        let after = forces.iter().copied().find(|force| *force > last)?;
-        // Each end is somewhere between two neighbouring forces.
-        Some(bracket(last - first, after - before))
+        let forces = || {
+            let points = self.rest.points.iter().chain(&self.jammed.points);
+            points.map(|point| point.force)
+        };
+        let before = forces()
+            .filter(|force| *force < first)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let after = forces()
+            .filter(|force| *force > last)
+            .fold(f64::INFINITY, f64::min);
+        Some((last - first, after - before))
     }
 
     /// Height of the jump: the distance of the two flows, mean over the forces that have both; where none has, that of the

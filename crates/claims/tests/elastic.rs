@@ -377,6 +377,18 @@ fn the_jump_and_the_rate_at_which_it_vanishes_are_found() {
         .unwrap();
     assert_eq!(row[4], "0.0005 … 0.0015");
     assert_eq!(row[8], "jump");
+    // Without a force beyond the window its width has no upper end.
+    let mut evidence = empty();
+    let runs = SOURCE.branches(&RATES).into_iter();
+    evidence.add_runs(
+        "elastic-branches",
+        runs.filter(|run| run.force() < 0.0052).collect(),
+    );
+    let open = &examine("S3", &evidence).tables[0].rows[2];
+    assert_eq!(
+        (open[0].as_str(), open[4].as_str()),
+        ("0.00401", "> 0.0005")
+    );
     assert_eq!(finding.figures.len(), 2);
     for jumps_from in [0.0, 1.0] {
         let finding = find(

@@ -241,7 +241,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             Verdict::Open
         },
         format!(
-            "Of {} settings of wall and density, {} hold their grains; among these holds {}.",
+            "Of {} settings of wall and density, {} hold their grains; of these, as far as they say, hold {}.",
             outcomes.len(),
             tight.len(),
             words.join(", ")

@@ -169,7 +169,7 @@ fn against_the_wave(
         caption: "Grains of the pictures: part that moves against the wave, part that moves along it faster than half its speed, \
                   time in periods, part outside the tube."
             .to_owned(),
-        head: ["", "*v_z* < 0", "*v_z* > *c*/2", "*t*/*T*", "outside"]
+        head: ["picture", "*v_z* < 0", "*v_z* > *c*/2", "*t*/*T*", "outside"]
             .map(str::to_owned)
             .to_vec(),
         rows,

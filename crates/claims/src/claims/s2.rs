@@ -55,7 +55,7 @@ impl Rung<'_> {
         if let Ok(fit) = fit_lifetime(Family::Gamma, &transitions) {
             return Some(fit.mean);
         }
-        // Too few for two parameters: their scatter where all were seen, else one parameter.
+        // Too few for two parameters: their scatter where all were seen, no error of a single one, else one parameter.
         let times: Vec<f64> = transitions
             .iter()
             .filter_map(|one| one.observed())
@@ -63,6 +63,9 @@ impl Rung<'_> {
         if times.len() > 1 && times.len() == transitions.len() {
             let (mean, error) = mean_and_error(&times);
             return Some(Uncertain::normal(mean, error));
+        }
+        if let ([time], 1) = (times.as_slice(), transitions.len()) {
+            return Some(Uncertain::normal(*time, f64::NAN));
         }
         let fit = fit_lifetime(Family::Exponential, &transitions).ok()?;
         Some(fit.mean)
@@ -145,7 +148,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 source: None,
                 ours: Some(scaled(&mean, 1.0 / period)),
                 method: format!(
-                    "likelihood of {} runs, {} of them censored; gamma distribution",
+                    "mean over {} runs, {} of them censored",
                     rung.runs.len(),
                     rung.runs.len() - rung.yielded()
                 ),
@@ -203,7 +206,13 @@ fn times(rungs: &[Rung<'_>], caption: &str) -> ReportTable {
                 format!("{} of {}", rung.yielded(), rung.runs.len()),
                 rung.mean().map_or_else(
                     || format!("> {}", number(rung.watched() * rate, 0)),
-                    |mean| with_error(mean.value * rate, mean.error * rate),
+                    |mean| {
+                        if mean.error.is_finite() {
+                            with_error(mean.value * rate, mean.error * rate)
+                        } else {
+                            number(mean.value * rate, 1)
+                        }
+                    },
                 ),
                 median.map_or("–".to_owned(), |median| number(median.value * rate, 1)),
             ]

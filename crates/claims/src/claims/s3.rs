@@ -147,12 +147,12 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                     .rise()
                     .map_or_else(none, |rise| format!("{} … {}", rise.before, rise.after)),
                 line.height().map_or_else(none, |height| estimate(&height)),
-                line.window().map_or_else(none, |window| {
-                    format!(
-                        "{} … {}",
-                        number(window.interval_95.lower, 4),
-                        number(window.interval_95.upper, 4)
-                    )
+                line.window().map_or_else(none, |(least, largest)| {
+                    if largest.is_finite() {
+                        format!("{} … {}", number(least, 4), number(largest, 4))
+                    } else {
+                        format!("> {}", number(least, 4))
+                    }
                 }),
                 two_peaks(&flows).map_or_else(
                     |_| none(),
@@ -176,7 +176,7 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                   window of forces with both flows; peaks of *J*/*J*_{max} over all forces and both starts (two normal peaks against one) and the \
                   probability of so deep a dip with one peak (Hartigan); largest part of the grains outside."
             .to_owned(),
-        head: ["*ε̇*", "rise, from rest", "from jammed", "height", "window", "peaks", "dip", "outside", ""]
+        head: ["*ε̇*", "rise, from rest", "from jammed", "height", "window", "peaks", "dip", "outside", "kind"]
             .map(str::to_owned)
             .to_vec(),
         rows,

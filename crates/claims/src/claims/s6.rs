@@ -31,8 +31,11 @@ const UNJAMMED: f64 = 0.2;
 /// Differences of velocities, in parts of c, and of densities, in parts of the mean, count from here on.
 const LEAST_DIFFERENCE: f64 = 0.05;
 
+/// Name and symbol of a number, and its value in a run.
+type Number = (&'static str, &'static str, fn(&Run) -> f64);
+
 /// The numbers that are compared, each of one run, free of units.
-const NUMBERS: [(&str, &str, fn(&Run) -> f64); 6] = [
+const NUMBERS: [Number; 6] = [
     (
         "density in the throat over that in the belly",
         "*n*_{throat}/*n*_{belly}",
@@ -90,14 +93,15 @@ impl<'a> Flow<'a> {
         Uncertain::normal(mean, error)
     }
 
-    /// Whether density or velocities differ from those of another flow; `None` where the errors do not allow to say.
+    /// Whether density or velocities differ from those of another flow; `None` where the errors do not allow to say, or are not
+    /// known.
     fn differs(&self, other: &Self) -> Option<bool> {
         let mut known = true;
         for (_, _, value) in &NUMBERS[..DECIDING] {
             let (one, two) = (self.mean(*value), other.mean(*value));
             let difference = (one.value - two.value).abs();
             let error = one.error.hypot(two.error);
-            if difference > LEAST_DIFFERENCE.max(CLEAR * error) {
+            if error.is_finite() && difference > LEAST_DIFFERENCE.max(CLEAR * error) {
                 return Some(true);
             }
             known &= error.is_finite() && error < LEAST_DIFFERENCE;
@@ -224,7 +228,7 @@ fn frictional_name(rate: f64, force: f64) -> String {
 }
 
 fn table<'a>(flows: impl Iterator<Item = &'a Flow<'a>>) -> ReportTable {
-    let head = ["", "runs"]
+    let head = ["flow", "runs"]
         .into_iter()
         .chain(NUMBERS.iter().map(|(_, symbol, _)| *symbol))
         .map(str::to_owned)
@@ -237,7 +241,7 @@ fn table<'a>(flows: impl Iterator<Item = &'a Flow<'a>>) -> ReportTable {
                 if mean.error.is_finite() {
                     estimate(&mean)
                 } else {
-                    number(mean.value, 3)
+                    number(mean.value, 4)
                 }
             }));
             row
