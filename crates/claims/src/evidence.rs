@@ -120,6 +120,22 @@ impl StudyResults {
         self.product(run, "waves.parquet")
     }
 
+    /// The profile in the wave's frame of a run, late means; `None` where it was not kept, or only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub fn profile(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+        self.product(run, "profile.parquet")
+    }
+
+    /// The spheres at the end of a run; `None` where they were not kept, or only its row was imported.
+    ///
+    /// # Errors
+    /// Errors of reading.
+    pub fn snapshot(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+        self.product(run, "snapshot.parquet")
+    }
+
     fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
         let (Some(store), Ok(identity)) = (&self.store, run.identity.parse()) else {
             return Ok(None);

@@ -13,6 +13,7 @@ mod crossing;
 mod error;
 mod evidence;
 mod finding;
+mod forces;
 mod reproduction;
 mod rows;
 mod runs;

@@ -1,8 +1,21 @@
 //! Finished runs as analyses see them: one typed row each.
 
 use peristalsis_analysis::Transition;
-use peristalsis_formats::{FormatError, Table};
+use peristalsis_formats::{Column, FormatError, Table, Values};
 use peristalsis_run::THRESHOLDS;
+
+/// Columns of numbers, besides the axes of the study, that are kept by their names.
+const KEPT: [&str; 9] = [
+    "force_amplitude",
+    "number_density",
+    "late_periods",
+    "throat_density",
+    "throat_axial_velocity",
+    "throat_granular_temperature",
+    "belly_density",
+    "belly_axial_velocity",
+    "belly_granular_temperature",
+];
 
 /// Drift of J/Jmax between the halves of the late part beyond which a flow is in its transient.
 pub(crate) const MOST_DRIFT: f64 = 0.05;
@@ -92,7 +105,8 @@ pub struct Run {
     pub transition_times: [f64; THRESHOLDS.len()],
     /// Number of the replicate.
     pub replicate: i64,
-    /// Values of the axes of the study that are not among the fields above, by key.
+    /// Other numbers of the row by the names of their columns: the axes of the study by key, and what only some claims need.
+    /// Of an axis of texts the entry is 1 under `key=text`, as in `drive.angle=current`.
     pub axes: Vec<(String, f64)>,
 }
 
@@ -134,7 +148,21 @@ impl Run {
         1.0 / self.strain_rate
     }
 
-    /// Value of an axis of the study by its key.
+    /// f^P; NaN under strain control.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        self.axis("force_amplitude").unwrap_or(f64::NAN)
+    }
+
+    /// Periods that its late mean is over; 0 where the table does not say.
+    #[must_use]
+    pub fn late_periods(&self) -> f64 {
+        self.axis("late_periods")
+            .filter(|periods| periods.is_finite())
+            .unwrap_or(0.0)
+    }
+
+    /// Value of an axis of the study by its key, or of a column by its name.
     #[must_use]
     pub fn axis(&self, key: &str) -> Option<f64> {
         self.axes
@@ -182,19 +210,10 @@ impl Run {
         let ladder: Vec<&[f64]> = (1..=THRESHOLDS.len())
             .map(|place| table.reals(&format!("transition_time_{}", 10 * place)))
             .collect::<Result<_, _>>()?;
-        let axes: Vec<(&str, Vec<f64>)> = table
+        let columns: Vec<&Column> = table
             .columns()
             .iter()
-            .filter(|column| column.name.contains('.'))
-            .filter_map(|column| {
-                let name = column.name.as_str();
-                let values = match (table.reals(name), table.integers(name)) {
-                    (Ok(reals), _) => reals.to_vec(),
-                    (_, Ok(integers)) => integers.iter().map(|value| *value as f64).collect(),
-                    _ => return None,
-                };
-                Some((name, values))
-            })
+            .filter(|column| column.name.contains('.') || KEPT.contains(&column.name.as_str()))
             .collect();
         Ok((0..table.rows())
             .map(|row| Self {
@@ -224,11 +243,22 @@ impl Run {
                 transition_threshold: own_threshold[row],
                 replicate: replicate[row],
                 transition_times: core::array::from_fn(|place| ladder[place][row]),
-                axes: axes
+                axes: columns
                     .iter()
-                    .map(|(name, values)| ((*name).to_owned(), values[row]))
+                    .filter_map(|column| numbered(column, row))
                     .collect(),
             })
             .collect())
+    }
+}
+
+/// Name and number of a value of a column.
+fn numbered(column: &Column, row: usize) -> Option<(String, f64)> {
+    let name = column.name.clone();
+    match &column.values {
+        Values::Real(values) => Some((name, values[row])),
+        Values::Integer(values) => Some((name, values[row] as f64)),
+        Values::Text(values) => Some((format!("{name}={}", values[row]), 1.0)),
+        Values::Boolean(_) => None,
     }
 }

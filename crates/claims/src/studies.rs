@@ -103,4 +103,11 @@ pub const STUDIES: &[StudyFile] = &[
     study!("sweep-down"),
     study!("pumping-frictionless"),
     study!("pumping-frictional"),
+    study!("elastic-flow"),
+    study!("elastic-branches"),
+    study!("elastic-extremes"),
+    study!("elastic-yielding"),
+    study!("elastic-frictionless"),
+    study!("elastic-sensitivity"),
+    study!("unjammed-frictionless"),
 ];

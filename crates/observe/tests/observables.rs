@@ -233,7 +233,7 @@ fn the_parts_of_a_wave_have_their_own_forces() {
         let axial = |grain: usize| 0.5 * heading * simulation.bodies().acceleration[grain].z;
         assert!(axial(0).abs() > 1e-3 && axial(1).abs() > 1e-3);
         let mut profile = WaveFrameProfile::new(50, 1);
-        profile.add(&simulation);
+        profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
         for part in [WavePart::Narrow, WavePart::Front] {
             let found = profile.late_part(1.0, part);

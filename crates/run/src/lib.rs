@@ -9,12 +9,14 @@ mod error;
 mod estimate;
 mod folder;
 mod late;
+mod local_flow;
 mod pictures;
 mod portrait;
 mod recorder;
 mod run;
 mod si;
 mod softness;
+mod spheres;
 mod steering;
 mod stopping;
 mod summary;
@@ -26,6 +28,7 @@ pub use error::RunError;
 pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use late::Pumping;
+pub use local_flow::LocalFlow;
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};
 pub use peristalsis_formats::{Frame, TrajectoryFormat};
@@ -37,7 +40,7 @@ pub use run::{Progress, Run, RunState, RunStateView};
 pub use si::{SiEstimate, SiSummary};
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
-pub use tables::{profile_table, timeseries_table, waves_table};
+pub use tables::{profile_table, snapshot_table, timeseries_table, waves_table};
 pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
     TrajectoryRequest, Window,

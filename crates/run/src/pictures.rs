@@ -1,7 +1,6 @@
 //! The figures of a run.
 
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
-use peristalsis_engine::Wall;
 use peristalsis_figures::{
     Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Palette, Profile,
     ProfileFigure, Scale, Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack,
@@ -12,6 +11,7 @@ use peristalsis_observe::TubeShape;
 use crate::error::RunError;
 use crate::portrait::time_unit;
 use crate::run::Run;
+use crate::spheres::{SeenSphere, seen_spheres};
 use crate::summary::Summary;
 use crate::tables::late_profile;
 
@@ -342,7 +342,6 @@ impl Scene {
     fn of(run: &Run) -> Self {
         let configuration = run.configuration();
         let simulation = run.simulation();
-        let bodies = simulation.bodies();
         let tube = simulation.wall().lattice().length();
         let heading = simulation.wall().heading();
         let speed = configuration.wave_speed();
@@ -351,28 +350,28 @@ impl Scene {
         let length =
             configuration.tube.wavelength * f64::from(configuration.tube.waves.min(SNAPSHOT_WAVES));
         // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
-        let shows = |body: &usize| {
-            let position = bodies.position[*body];
-            let (place, margin) = (along(position.z), bodies.diameter[*body]);
-            position.x.hypot(position.y) < SNAPSHOT_RADII * configuration.tube.radius
+        let shows = |seen: &SeenSphere| {
+            let sphere = seen.sphere;
+            let (place, margin) = (sphere.along, sphere.diameter);
+            sphere.across.hypot(sphere.depth) < SNAPSHOT_RADII * configuration.tube.radius
                 && (place < length + margin || place > tube - margin)
         };
-        let grains: Vec<SnapshotGrain> = (0..bodies.grains)
+        let (grains, wall): (Vec<SeenSphere>, Vec<SeenSphere>) = seen_spheres(run)
+            .into_iter()
             .filter(shows)
-            .map(|grain| SnapshotGrain {
-                sphere: SnapshotSphere {
-                    along: along(bodies.position[grain].z),
-                    across: bodies.position[grain].y,
-                    depth: bodies.position[grain].x,
-                    diameter: bodies.diameter[grain],
-                },
+            .partition(|seen| seen.is_grain);
+        let grains = grains
+            .into_iter()
+            .map(|seen| SnapshotGrain {
+                sphere: seen.sphere,
                 axial_velocity: if speed > 0.0 {
-                    heading * bodies.velocity[grain].z / speed
+                    seen.axial_velocity / speed
                 } else {
                     0.0
                 },
             })
             .collect();
+        let spheres = wall.into_iter().map(|seen| seen.sphere).collect();
         let points = 400;
         let shape = TubeShape::of(simulation);
         let outline: (Vec<f64>, Vec<f64>) = (0..=points)
@@ -381,18 +380,6 @@ impl Scene {
                 (place, shape.radius(along(place).rem_euclid(tube)))
             })
             .unzip();
-        let spheres: Vec<SnapshotSphere> = match simulation.wall() {
-            Wall::Prescribed(_) => Vec::new(),
-            Wall::Elastic(_) => (bodies.grains..bodies.number())
-                .filter(shows)
-                .map(|sphere| SnapshotSphere {
-                    along: along(bodies.position[sphere].z),
-                    across: bodies.position[sphere].y,
-                    depth: bodies.position[sphere].x,
-                    diameter: bodies.diameter[sphere],
-                })
-                .collect(),
-        };
         let title = format!(
             "{},  *t*/*T* = {:.2}",
             title(configuration),

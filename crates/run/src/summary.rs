@@ -5,6 +5,7 @@ use peristalsis_observe::{Sample, WallFault, WavePart};
 
 use crate::assemble::newtonian_reference;
 use crate::late::{Pumping, Residence, axial_dispersion, error_of};
+use crate::local_flow::LocalFlow;
 use crate::recorder::THRESHOLDS;
 use crate::run::Run;
 use crate::si::SiSummary;
@@ -137,6 +138,12 @@ pub struct Summary {
     pub dissipated_power: f64,
     /// Late mean of the smallest bottleneck, between centres of wall spheres \[d\].
     pub bottleneck: f64,
+    /// The flow where the tube is narrowest.
+    pub throat: LocalFlow,
+    /// The flow where it is widest.
+    pub belly: LocalFlow,
+    /// Periods that late means are over.
+    pub late_periods: f64,
     /// Steps done.
     pub steps: u64,
     /// Length of a step \[t\].
@@ -260,6 +267,9 @@ impl Summary {
             axial_dispersion_error,
             dissipated_power: mean(|sample| sample.dissipated_power),
             bottleneck: mean(|sample| sample.bottleneck),
+            throat: LocalFlow::throat(&profile),
+            belly: LocalFlow::belly(&profile),
+            late_periods: late.len() as f64 / f64::from(configuration.observe.samples_per_period),
             steps: simulation.step(),
             time_step: configuration.run.time_step,
             time: simulation.time(),

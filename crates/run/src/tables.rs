@@ -6,6 +6,7 @@ use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{COLUMNS, ProfileBin, WaveFlow};
 
 use crate::run::Run;
+use crate::spheres::{SeenSphere, seen_spheres};
 use crate::{REVISION, VERSION};
 
 /// The time series: one row a sample, one column for each row of [`COLUMNS`] that applies.
@@ -201,6 +202,53 @@ pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
             "1",
             "J/Jmax of these grains",
             column(|flow| flow.flow_rate_ratio),
+        );
+    with_origin(table, run.configuration()).build()
+}
+
+/// The spheres as they stand: one row each, grains first, then those of an elastic wall.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn snapshot_table(run: &Run) -> Result<Table, FormatError> {
+    let spheres = seen_spheres(run);
+    let column = |value: fn(&SeenSphere) -> f64| Values::Real(spheres.iter().map(value).collect());
+    let table = Table::builder()
+        .column(
+            "grain",
+            "",
+            "whether it is a grain; otherwise a sphere of the wall",
+            Values::Boolean(spheres.iter().map(|seen| seen.is_grain).collect()),
+        )
+        .column(
+            "along",
+            "d",
+            "place along the tube, the wave running towards larger ones",
+            column(|seen| seen.sphere.along),
+        )
+        .column(
+            "across",
+            "d",
+            "place across the tube, from its axis",
+            column(|seen| seen.sphere.across),
+        )
+        .column(
+            "depth",
+            "d",
+            "place across the tube and across that",
+            column(|seen| seen.sphere.depth),
+        )
+        .column(
+            "diameter",
+            "d",
+            "diameter",
+            column(|seen| seen.sphere.diameter),
+        )
+        .column(
+            "axial_velocity",
+            "d/t",
+            "axial velocity along the wave, laboratory frame",
+            column(|seen| seen.axial_velocity),
         );
     with_origin(table, run.configuration()).build()
 }

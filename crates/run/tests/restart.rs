@@ -3,8 +3,8 @@
 mod common;
 
 use peristalsis_run::{
-    Run, RunFolder, RunState, Status, Summary, Written, profile_table, timeseries_table,
-    waves_table,
+    Run, RunFolder, RunState, Status, Summary, Written, profile_table, snapshot_table,
+    timeseries_table, waves_table,
 };
 
 const STRAIN: &[&str] = &[
@@ -77,7 +77,8 @@ fn a_state_goes_on_to_the_same_bits() {
         }
         let parts = finish(parts);
         let tables = |run: &Run| {
-            [timeseries_table, profile_table, waves_table].map(|table| table(run).unwrap())
+            [timeseries_table, profile_table, waves_table, snapshot_table]
+                .map(|table| table(run).unwrap())
         };
         // Tables compare by bits, so that one NaN equals another.
         assert!(tables(&whole) == tables(&parts), "{preset} {settings:?}");

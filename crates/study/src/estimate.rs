@@ -18,6 +18,8 @@ const BYTES_A_RUN: f64 = 36_000.0;
 const PROFILE_COLUMNS: f64 = 18.0;
 /// Columns of the flow wave by wave.
 const WAVES_COLUMNS: f64 = 6.0;
+/// Numbers of a sphere of the snapshot.
+const SNAPSHOT_COLUMNS: f64 = 6.0;
 
 /// What a study would take.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -102,7 +104,13 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
             } else {
                 0.0
             };
-            BYTES_A_RUN + BYTES_A_NUMBER * (columns * samples + profile + waves)
+            let snapshot = if study.record.snapshot {
+                let spheres = configuration.grains.number + configuration.tube.wall_spheres();
+                SNAPSHOT_COLUMNS * spheres as f64
+            } else {
+                0.0
+            };
+            BYTES_A_RUN + BYTES_A_NUMBER * (columns * samples + profile + waves + snapshot)
         })
         .sum();
     Ok(StudyEstimate {

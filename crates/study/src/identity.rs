@@ -20,6 +20,8 @@ pub struct Record {
     pub profile: bool,
     /// Whether the flow of each wave over each period is kept.
     pub waves: bool,
+    /// Whether the spheres as they stand at the end are kept.
+    pub snapshot: bool,
 }
 
 /// Identity of a run: the first 128 bits of a SHA-256 of all that determines its products.
@@ -57,6 +59,9 @@ impl Identity {
         // Said only where it is so: runs from before it could be asked for keep their identity.
         if record.waves {
             text.push_str("waves\n");
+        }
+        if record.snapshot {
+            text.push_str("snapshot\n");
         }
         text.push_str(&format!("replicate {replicate}\n"));
         Self(leading(&Sha256::digest(text.as_bytes())))

@@ -158,6 +158,13 @@ const COLUMNS: &[RowColumn] = &[
     later("residence_time_error", "t", "its standard error", |o| Cell::optional(o.summary.residence_time_error)),
     later("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", |o| Cell::Real(o.summary.axial_dispersion)),
     later("axial_dispersion_error", "d^2/t", "its standard error", |o| Cell::Real(o.summary.axial_dispersion_error)),
+    later("late_periods", "1", "periods that late means are over", |o| Cell::Real(o.summary.late_periods)),
+    later("throat_density", "1/d", "late mean of the grains per length of tube in the fifth of the wavelength where it is narrowest", |o| Cell::Real(o.summary.throat.density)),
+    later("throat_axial_velocity", "d/t", "mean axial velocity along the wave there", |o| Cell::Real(o.summary.throat.axial_velocity)),
+    later("throat_granular_temperature", "m d^2/t^2", "granular temperature there", |o| Cell::Real(o.summary.throat.granular_temperature)),
+    later("belly_density", "1/d", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.density)),
+    later("belly_axial_velocity", "d/t", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.axial_velocity)),
+    later("belly_granular_temperature", "m d^2/t^2", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.granular_temperature)),
     column("version", "", Text, "version of the program", |o| Cell::Text(o.summary.version.into())),
     column("revision", "", Text, "revision of its source", |o| Cell::Text(o.summary.revision.into())),
 ];

@@ -1,5 +1,6 @@
 //! One claim a file, and what they share.
 
+mod elastic;
 mod f1;
 mod f2;
 mod f3;
@@ -10,6 +11,7 @@ mod f7;
 mod f8;
 mod f9;
 mod q1;
+mod q10;
 mod q2;
 mod q3;
 mod q4;
@@ -18,6 +20,12 @@ mod q6;
 mod q7;
 mod q8;
 mod q9;
+mod s1;
+mod s2;
+mod s3;
+mod s4;
+mod s5;
+mod s6;
 
 use peristalsis_analysis::Uncertain;
 use peristalsis_figures::chart::{Line as Curve, Tint};
@@ -41,6 +49,12 @@ pub const CLAIMS: &[Claim] = &[
     f7::CLAIM,
     f8::CLAIM,
     f9::CLAIM,
+    s1::CLAIM,
+    s2::CLAIM,
+    s3::CLAIM,
+    s4::CLAIM,
+    s5::CLAIM,
+    s6::CLAIM,
     q1::CLAIM,
     q2::CLAIM,
     q3::CLAIM,
@@ -50,6 +64,7 @@ pub const CLAIMS: &[Claim] = &[
     q7::CLAIM,
     q8::CLAIM,
     q9::CLAIM,
+    q10::CLAIM,
 ];
 
 /// Fraction of grains outside the tube beyond which a strain rate is left out of fits: another system flows then.

@@ -7,12 +7,15 @@ use super::{Film, FilmPlan, of_one_size};
 use crate::error::RenderError;
 use crate::picture::Picture;
 
+/// Width and height in pixels.
+type Size = (u32, u32);
+
 /// An animated PNG that is being written.
 pub(super) struct ApngFilm {
     /// Until the first picture tells the size.
     file: Option<File>,
     plan: FilmPlan,
-    begun: Option<((u32, u32), png::Writer<BufWriter<File>>)>,
+    begun: Option<(Size, png::Writer<BufWriter<File>>)>,
 }
 
 impl ApngFilm {

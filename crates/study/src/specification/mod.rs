@@ -147,6 +147,7 @@ impl Specification {
                 columns: columns(&table),
                 profile: boolean(&table, "record.profile").unwrap_or(true),
                 waves: boolean(&table, "record.waves").unwrap_or(false),
+                snapshot: boolean(&table, "record.snapshot").unwrap_or(false),
             },
             refinement,
             axes,

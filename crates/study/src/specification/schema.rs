@@ -138,6 +138,12 @@ fn build() -> Value {
                         "description": "Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and \
                                         number of the grains between two throats, a row for each wave of each period.",
                     },
+                    "snapshot": {
+                        "type": "boolean",
+                        "default": false,
+                        "description": "Whether the spheres as they stand at the end are kept, snapshot.parquet: places along \
+                                        the wave and across it, diameters, axial velocities, a row a sphere.",
+                    },
                 },
             },
         },

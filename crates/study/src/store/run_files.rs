@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Table, atomic, parquet};
 use peristalsis_run::{
-    Run, RunError, Stopping, Summary, profile_table, timeseries_table, waves_table,
+    Run, RunError, Stopping, Summary, profile_table, snapshot_table, timeseries_table, waves_table,
 };
 use serde_json::Value;
 
@@ -25,6 +25,7 @@ const CHECKPOINTS: [&str; 2] = ["state.checkpoint", "state.checkpoint.1"];
 pub(crate) const TIMESERIES: &str = "timeseries.parquet";
 const PROFILE: &str = "profile.parquet";
 const WAVES: &str = "waves.parquet";
+const SNAPSHOT: &str = "snapshot.parquet";
 const SUMMARY: &str = "summary.json";
 const ROW: &str = "row.csv";
 /// What the run took: the one file of a finished run that is not sealed, since it differs from one time to another.
@@ -243,6 +244,9 @@ impl RunFiles {
         if assignment.record.waves {
             products.push((WAVES, parquet::encode(&waves_table(run)?)?));
         }
+        if assignment.record.snapshot {
+            products.push((SNAPSHOT, parquet::encode(&snapshot_table(run)?)?));
+        }
         products.push((SUMMARY, science.into_bytes()));
         products.push((ROW, row.to_csv().into_bytes()));
         for (name, bytes) in &products[1..] {
@@ -343,6 +347,9 @@ pub(crate) fn statepoint(assignment: &Assignment) -> Value {
     // Said only where it is so, as in the identity.
     if assignment.record.waves {
         statepoint["record"]["waves"] = true.into();
+    }
+    if assignment.record.snapshot {
+        statepoint["record"]["snapshot"] = true.into();
     }
     statepoint
 }

@@ -48,6 +48,23 @@ fn a_bit_that_flipped_in_any_product_is_found_and_computed_again() {
 }
 
 #[test]
+fn a_snapshot_is_kept_where_it_is_asked_for_and_guarded_like_the_rest() {
+    let place = Place::new(&SMALL.replace("[[axes]]", "[record]\nsnapshot = true\n[[axes]]"));
+    place.complete();
+    for folder in place.run_folders() {
+        let table = peristalsis_formats::parquet::read(&folder.join("snapshot.parquet")).unwrap();
+        // The wall is prescribed: grains only.
+        assert_eq!(table.rows(), 20);
+        assert!(table.booleans("grain").unwrap().iter().all(|grain| *grain));
+    }
+    flip(&place.run_folders()[0].join("snapshot.parquet"), 0.5);
+    assert_eq!(place.store().verify().unwrap().quarantined.len(), 1);
+    let without = Place::new(SMALL);
+    without.complete();
+    assert!(!without.run_folders()[0].join("snapshot.parquet").exists());
+}
+
+#[test]
 fn damage_is_found_when_work_goes_on_and_when_tables_are_written() {
     let place = Place::new(SMALL);
     place.complete();

@@ -75,6 +75,7 @@ fn whatever_determines_the_products_makes_another_run() {
         ("[[axes]]", "[stop]\nsettled_periods = 5\n[[axes]]", true),
         ("[[axes]]", "[record]\nprofile = false\n[[axes]]", true),
         ("[[axes]]", "[record]\nwaves = true\n[[axes]]", true),
+        ("[[axes]]", "[record]\nsnapshot = true\n[[axes]]", true),
         ("[[axes]]", "[record]\ncolumns = [\"time\"]\n[[axes]]", true),
     ];
     for (from, to, same_seed) in changes {
@@ -86,7 +87,7 @@ fn whatever_determines_the_products_makes_another_run() {
         }
     }
     // What is not kept unless asked for makes no other run by being said not to be.
-    let without = "[record]\nwaves = false\nprofile = true\n[[axes]]";
+    let without = "[record]\nwaves = false\nsnapshot = false\nprofile = true\n[[axes]]";
     assert_eq!(runs(&plan(&SMALL.replace("[[axes]]", without))), base);
     // All columns by name, in any order, are all columns.
     let all: Vec<String> = peristalsis_observe::COLUMNS

@@ -261,7 +261,7 @@ fn the_schema_takes_what_the_reader_takes() {
     };
     let all = format!(
         "{}\n[refine]\nkey = \"drive.width\"\ntolerance = 0.1\n[stop]\nsettled_periods = 10\n\
-         [record]\ncolumns = [\"time\"]\nprofile = false\nwaves = true\n",
+         [record]\ncolumns = [\"time\"]\nprofile = false\nwaves = true\nsnapshot = true\n",
         SMALL.replace("replicates = 3", "states = [\"rest\"]\ntitle = \"x\"")
     );
     for text in [SMALL, &all] {

@@ -1,0 +1,48 @@
+//! The spheres of a run as one sees them from the side.
+
+use peristalsis_engine::Wall;
+use peristalsis_figures::SnapshotSphere;
+
+use crate::run::Run;
+
+/// A sphere with the wave running to the right.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct SeenSphere {
+    /// Whether it is a grain; otherwise it is one of an elastic wall.
+    pub(crate) is_grain: bool,
+    /// Place and size \[d\].
+    pub(crate) sphere: SnapshotSphere,
+    /// Along the wave \[d/t\].
+    pub(crate) axial_velocity: f64,
+}
+
+/// All grains, and the spheres of an elastic wall, as they stand.
+pub(crate) fn seen_spheres(run: &Run) -> Vec<SeenSphere> {
+    let simulation = run.simulation();
+    let bodies = simulation.bodies();
+    let tube = simulation.wall().lattice().length();
+    let heading = simulation.wall().heading();
+    let number = match simulation.wall() {
+        Wall::Prescribed(_) => bodies.grains,
+        Wall::Elastic(_) => bodies.number(),
+    };
+    (0..number)
+        .map(|body| {
+            let position = bodies.position[body];
+            SeenSphere {
+                is_grain: body < bodies.grains,
+                sphere: SnapshotSphere {
+                    along: if heading > 0.0 {
+                        position.z
+                    } else {
+                        tube - position.z
+                    },
+                    across: position.y,
+                    depth: position.x,
+                    diameter: bodies.diameter[body],
+                },
+                axial_velocity: heading * bodies.velocity[body].z,
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,66 @@
+//! The spheres as a table: with the wave running towards larger places, whichever way it runs in the engine.
+
+mod common;
+
+use peristalsis_run::{Run, snapshot_table};
+
+#[test]
+fn spheres_are_turned_along_the_wave() {
+    for (preset, settings) in [
+        ("frictionless", &["grains.number=30", "run.periods=0.5"][..]),
+        ("frictional", &["grains.number=100", "run.periods=0.1"]),
+        (
+            "frictional",
+            &[
+                "grains.number=100",
+                "run.periods=0.1",
+                "drive.direction=backward",
+            ],
+        ),
+    ] {
+        let mut run = Run::new(common::configuration(preset, settings)).unwrap();
+        while !run.is_complete() {
+            run.advance().unwrap();
+        }
+        let table = snapshot_table(&run).unwrap();
+        let simulation = run.simulation();
+        let bodies = simulation.bodies();
+        let (heading, length) = (
+            simulation.wall().heading(),
+            simulation.wall().lattice().length(),
+        );
+        let is_elastic = preset == "frictional";
+        assert_eq!(
+            heading > 0.0,
+            is_elastic && settings.len() == 2,
+            "{settings:?}"
+        );
+        let spheres = if is_elastic {
+            bodies.number()
+        } else {
+            bodies.grains
+        };
+        assert_eq!(table.rows(), spheres);
+        let column = |name: &str| table.reals(name).unwrap();
+        let grain = table.booleans("grain").unwrap();
+        for sphere in 0..spheres {
+            assert_eq!(grain[sphere], sphere < bodies.grains);
+            let position = bodies.position[sphere];
+            let along = if heading > 0.0 {
+                position.z
+            } else {
+                length - position.z
+            };
+            assert_eq!(column("along")[sphere], along);
+            assert_eq!(
+                column("across")[sphere].hypot(column("depth")[sphere]),
+                position.y.hypot(position.x)
+            );
+            assert_eq!(column("diameter")[sphere], bodies.diameter[sphere]);
+            assert_eq!(
+                column("axial_velocity")[sphere],
+                heading * bodies.velocity[sphere].z
+            );
+        }
+    }
+}
