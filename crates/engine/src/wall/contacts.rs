@@ -63,9 +63,9 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
 }
 
 /// Grains whose contacts a thread works out at a time.
-const PIECE: usize = 1024;
-/// Grains whose contacts are kept until they are visited.
-const AT_ONCE: usize = 16 * PIECE;
+const PIECE: usize = 256;
+/// Pieces whose contacts are kept until they are visited.
+const PIECES: usize = 16;
 
 /// The same for smooth grains in a prescribed tube: worked out by threads, visited by this one in the same order.
 pub(crate) fn for_each_smooth_contact<N: NormalLaw>(
@@ -77,23 +77,18 @@ pub(crate) fn for_each_smooth_contact<N: NormalLaw>(
 ) {
     let tangential = Frictionless;
     let law = ContactLaw { normal, tangential };
-    let of_piece = |first: usize| {
-        let grains = first..(first + PIECE).min(bodies.grains);
-        let mut found = Vec::new();
-        touch_prescribed(
-            &law,
-            bodies,
-            wall,
-            grains,
-            |_, _| (),
-            |contact| found.push(contact),
-        );
-        found
-    };
-    for first in (0..bodies.grains).step_by(AT_ONCE) {
-        let pieces = (first..(first + AT_ONCE).min(bodies.grains)).into_par_iter();
-        let found: Vec<_> = pool.install(|| pieces.step_by(PIECE).map(of_piece).collect());
-        found.into_iter().flatten().for_each(&mut visit);
+    // Room that is used again and again: to ask for it takes longer than to fill it.
+    let mut of_pieces = vec![Vec::new(); PIECES];
+    for first in (0..bodies.grains).step_by(PIECES * PIECE) {
+        let find = |(piece, found): (usize, &mut Vec<WallContact>)| {
+            let begin = (first + piece * PIECE).min(bodies.grains);
+            let grains = begin..(begin + PIECE).min(bodies.grains);
+            found.clear();
+            let note = |contact| found.push(contact);
+            touch_prescribed(&law, bodies, wall, grains, |_, _| (), note);
+        };
+        pool.install(|| of_pieces.par_iter_mut().enumerate().for_each(find));
+        of_pieces.iter().flatten().copied().for_each(&mut visit);
     }
 }
 
