@@ -43,8 +43,9 @@ fn spheres_are_turned_along_the_wave() {
         assert_eq!(table.rows(), spheres);
         let column = |name: &str| table.reals(name).unwrap();
         let grain = table.booleans("grain").unwrap();
-        for sphere in 0..spheres {
-            assert_eq!(grain[sphere], sphere < bodies.grains);
+        assert_eq!(grain.len(), spheres);
+        for (sphere, &is_grain) in grain.iter().enumerate() {
+            assert_eq!(is_grain, sphere < bodies.grains);
             let position = bodies.position[sphere];
             let along = if heading > 0.0 {
                 position.z
