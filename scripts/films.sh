@@ -14,4 +14,4 @@ peristalsis render "$scratch/jamming" --film --width 440 --window 0:6 --fps 15 -
 
 peristalsis run --preset frictional --set run.periods=14 \
     --trajectory gsd --trajectory-every 0.05 --trajectory-window 12:14 --out "$scratch/back-flow"
-peristalsis render "$scratch/back-flow" --film --width 440 --window 12:13.96 --fps 15 --out docs/images/back-flow.gif
+peristalsis render "$scratch/back-flow" --film --width 420 --window 12:13.96 --fps 15 --out docs/images/back-flow.gif

@@ -7,15 +7,14 @@ use super::{Film, FilmPlan, of_one_size};
 use crate::error::RenderError;
 use crate::picture::Picture;
 
-/// Width and height in pixels.
-type Size = (u32, u32);
+type Writer = png::Writer<BufWriter<File>>;
 
 /// An animated PNG that is being written.
 pub(super) struct ApngFilm {
     /// Until the first picture tells the size.
     file: Option<File>,
     plan: FilmPlan,
-    begun: Option<(Size, png::Writer<BufWriter<File>>)>,
+    begun: Option<((u32, u32), Writer)>,
 }
 
 impl ApngFilm {
@@ -27,11 +26,7 @@ impl ApngFilm {
         }
     }
 
-    fn begin(
-        &self,
-        file: File,
-        (width, height): (u32, u32),
-    ) -> Result<png::Writer<BufWriter<File>>, RenderError> {
+    fn begin(&self, file: File, (width, height): (u32, u32)) -> Result<Writer, RenderError> {
         let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
