@@ -46,6 +46,10 @@ wheel:
 python:
     bash scripts/check_python.sh
 
+# The films of the README, docs/images/*.gif.
+films:
+    bash scripts/films.sh
+
 # The fast kernels' instructions against those on record (see benchmarks/instructions/README.md); --record
 count-instructions *options:
     python3 scripts/instruction_counts.py {{options}}

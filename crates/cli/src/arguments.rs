@@ -6,6 +6,7 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 use peristalsis_run::{Span, Window};
 
+use crate::commands::render::RenderArguments;
 use crate::commands::study::{StudyCommand, time_span};
 
 /// Grains in a peristaltic tube, by the discrete element method.
@@ -30,7 +31,7 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
     Trajectory(TrajectoryArguments),
-    /// Draw the tube of a run as it looks in its saved state, as PNG.
+    /// Draw pictures and films of the tube of a run: from the side, cut across, or wave by wave in time.
     Render(RenderArguments),
     /// Watch and drive a tube in the browser, while the engine runs it.
     View(ViewArguments),
@@ -169,31 +170,6 @@ pub(crate) struct TrajectoryArguments {
     /// Print what was written as JSON.
     #[arg(long)]
     pub(crate) json: bool,
-}
-
-/// From where a tube is looked at.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(crate) enum AspectName {
-    /// from the side, cut open
-    Side,
-    /// along the axis, a slice of the middle
-    Section,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct RenderArguments {
-    /// Folder of a run, finished or stopped.
-    #[arg(value_name = "DIR")]
-    pub(crate) folder: PathBuf,
-    /// From where the tube is looked at.
-    #[arg(long, value_name = "VIEW", value_enum, default_value = "side")]
-    pub(crate) view: AspectName,
-    /// Pixels across.
-    #[arg(long, value_name = "PIXELS", default_value_t = 2400, value_parser = clap::value_parser!(u32).range(16..=16384))]
-    pub(crate) width: u32,
-    /// File for the picture; the default is DIR/tube-VIEW.png.
-    #[arg(long, value_name = "FILE")]
-    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -10,7 +10,7 @@ use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
 use peristalsis_report::ReportError;
-use peristalsis_run::RunError;
+use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
 use peristalsis_viewer::ViewerError;
 
@@ -100,6 +100,9 @@ impl Failure {
                 | RunError::Folder { .. }
                 | RunError::NothingToResume { .. }
                 | RunError::Trajectory { .. }
+                | RunError::Picture { .. }
+                | RunError::Render(RenderError::NoFfmpeg { .. } | RenderError::Speed { .. })
+                | RunError::Format(FormatError::UnreadableTrajectory { .. })
                 | RunError::TooManyGrains { .. }
                 | RunError::Configuration(_)
                 | RunError::Engine(
@@ -135,6 +138,15 @@ impl Failure {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }
             Self::Run(RunError::Trajectory { help, .. }) => Some((*help).to_owned()),
+            Self::Run(RunError::Picture { help, .. }) => Some(help.clone()),
+            Self::Run(RunError::Render(RenderError::NoFfmpeg { .. })) => Some(
+                "install ffmpeg or name it in the variable FFMPEG, or take a film that needs none: --format gif, --format apng"
+                    .to_owned(),
+            ),
+            Self::Run(RunError::Format(FormatError::UnreadableTrajectory { .. })) => Some(
+                "name a GSD trajectory that this program wrote, or let the frames be computed: --from state, --from start"
+                    .to_owned(),
+            ),
             Self::Trajectory {
                 source: RunError::Format(FormatError::NotATrajectory { .. }),
                 ..

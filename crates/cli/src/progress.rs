@@ -50,18 +50,39 @@ impl Display {
 
     /// Shows how far the run is.
     pub(crate) fn update(&mut self, progress: &Progress) {
+        self.show(
+            [progress.samples, progress.samples_total],
+            progress.elapsed,
+            || found(progress),
+        );
+    }
+
+    /// Shows how many pieces of work are done of how many, with a few words.
+    pub(crate) fn show(
+        &mut self,
+        [done, of]: [u64; 2],
+        elapsed: Duration,
+        words: impl FnOnce() -> String,
+    ) {
         match self {
             Self::Silent => {}
             Self::Bar(bar) => {
-                bar.set_position(progress.samples);
-                bar.set_message(found(progress));
+                bar.set_position(done);
+                bar.set_message(words());
             }
             Self::Lines { last, tenth } => {
-                let now = 10 * progress.samples / progress.samples_total.max(1);
+                let now = 10 * done / of.max(1);
                 if now > *tenth || last.elapsed() > LINE_INTERVAL {
                     *tenth = now;
                     *last = Instant::now();
-                    print_line(progress);
+                    let part = done as f64 / of.max(1) as f64;
+                    let left = elapsed.as_secs_f64() * (1.0 - part) / part;
+                    say(&format!(
+                        "{:3.0} %  {}  {} left",
+                        100.0 * part,
+                        words(),
+                        seconds(left)
+                    ));
                 }
             }
         }
@@ -90,17 +111,6 @@ fn found(progress: &Progress) -> String {
         text.push_str(&format!("  transition at t = {time:.1}"));
     }
     text
-}
-
-fn print_line(progress: &Progress) {
-    let done = progress.samples as f64 / progress.samples_total.max(1) as f64;
-    let left = progress.elapsed.as_secs_f64() * (1.0 - done) / done;
-    say(&format!(
-        "{:3.0} %  {}  {} left",
-        100.0 * done,
-        found(progress),
-        seconds(left)
-    ));
 }
 
 /// A time span in words: "12 s", "3 min 20 s", "2 h 05 min".

@@ -62,6 +62,20 @@ const SEQUENTIAL: [Colour; 11] = [
     Colour::new(253, 231, 37),
 ];
 
+/// Light, blue, dark, red and light again in equal steps of the argument, as light at 1 as at 0 (after twilight, Bechtold
+/// 2018, dedicated to the public domain).
+const CYCLIC: [Colour; 9] = [
+    Colour::new(226, 217, 226),
+    Colour::new(154, 186, 201),
+    Colour::new(97, 119, 186),
+    Colour::new(93, 60, 156),
+    Colour::new(47, 20, 54),
+    Colour::new(118, 34, 79),
+    Colour::new(178, 86, 82),
+    Colour::new(207, 166, 143),
+    Colour::new(226, 217, 226),
+];
+
 /// Steps of the diverging map on either side of 0: few enough that the spheres of a snapshot share their shadings.
 const DIVERGING_STEPS: f64 = 24.0;
 
@@ -110,9 +124,19 @@ pub(crate) fn diverging(value: f64) -> Colour {
 
 /// Colour of an amount scaled to 0..1: darkest at 0, lightest at 1; values beyond are clamped.
 pub(crate) fn sequential(value: f64) -> Colour {
-    let position = value.clamp(0.0, 1.0) * (SEQUENTIAL.len() - 1) as f64;
-    let below = (position.floor() as usize).min(SEQUENTIAL.len() - 2);
-    SEQUENTIAL[below].towards(SEQUENTIAL[below + 1], position - below as f64)
+    between(&SEQUENTIAL, value)
+}
+
+/// Colour of a phase, 0..1, of which 0 and 1 are the same; values beyond are clamped.
+pub(crate) fn cyclic(value: f64) -> Colour {
+    between(&CYCLIC, value)
+}
+
+/// Colour at a fraction of the way through colours in equal steps.
+fn between(colours: &[Colour], fraction: f64) -> Colour {
+    let position = fraction.clamp(0.0, 1.0) * (colours.len() - 1) as f64;
+    let below = (position.floor() as usize).min(colours.len() - 2);
+    colours[below].towards(colours[below + 1], position - below as f64)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Colours that mean values, and the bar that says which.
 
 use crate::axis::{Axis, Scale, Tick};
-use crate::colour::{BLACK, Colour, diverging, sequential};
+use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, sequential};
 use crate::drawing::{Anchor, Drawing, Point, Rectangle, Stroke};
 use crate::error::FigureError;
 use crate::panel::TICK_GAP;
@@ -16,6 +16,8 @@ pub enum Palette {
     Sequential,
     /// Blue through white to red, for values on both sides of the middle of the scale.
     Diverging,
+    /// Light through blue, dark and red to light again, for what begins anew where it ends.
+    Cyclic,
 }
 
 /// Which value has which colour; values beyond the ends have the colours of the ends.
@@ -36,6 +38,8 @@ const BAR_STEPS: usize = 128;
 const BAR_GAP: f64 = 7.0;
 const ROOM_PER_LABEL: f64 = 13.5;
 const MOST_LABELS: usize = 6;
+/// Gap between the numbers of a bar across.
+const ROOM_BETWEEN_LABELS: f64 = 8.0;
 const REACH_ON_WHITE: f64 = 0.9;
 
 impl ColourScale {
@@ -74,6 +78,17 @@ impl ColourScale {
         }
     }
 
+    /// Red, green and blue of a value as bytes of sRGB; grey where it is not a number.
+    #[must_use]
+    pub fn srgb(&self, value: f64) -> [u8; 3] {
+        let colour = if value.is_nan() {
+            GREY
+        } else {
+            self.colour(value)
+        };
+        [colour.red, colour.green, colour.blue]
+    }
+
     pub(crate) fn check(&self) -> Result<(), FigureError> {
         let lowest = match self.scale {
             Scale::Linear => f64::MIN,
@@ -103,6 +118,7 @@ impl ColourScale {
         match self.palette {
             Palette::Sequential => sequential(self.reach * fraction.clamp(0.0, 1.0)),
             Palette::Diverging => diverging(2.0 * fraction - 1.0),
+            Palette::Cyclic => cyclic(fraction),
         }
     }
 
@@ -131,6 +147,43 @@ impl ColourScale {
             LABEL_SIZE + 3.0
         };
         BAR_GAP + BAR_WIDTH + TICK_GAP + self.numbers_width(height) + label + 3.0
+    }
+
+    /// Draws the bar across, its label before it and its numbers below.
+    pub(crate) fn draw_bar_across(&self, drawing: &mut Drawing, area: Rectangle, ink: Colour) {
+        let layer = drawing.layer("colour bar", None);
+        let colours =
+            (0..BAR_STEPS).map(|step| self.colour_at((step as f64 + 0.5) / BAR_STEPS as f64));
+        layer.cells(area, BAR_STEPS, colours.collect());
+        let pen = Stroke::solid(ink, FRAME_WEIGHT);
+        let axis = self.axis();
+        let ticks = axis.fitting_ticks(area.width, MOST_LABELS, |label| {
+            Text::new(label, TICK_SIZE).width + ROOM_BETWEEN_LABELS
+        });
+        let mut segments = Vec::new();
+        for tick in ticks {
+            let x = area.left + area.width * axis.fraction(tick.value);
+            let length = if tick.length < MAJOR_TICK { 1.0 } else { 2.0 };
+            segments.push([area.bottom(), area.bottom() + length].map(|y| Point { x, y }));
+            if let Some(label) = &tick.label {
+                let baseline = area.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
+                layer.text(
+                    (x, baseline),
+                    Anchor::Middle,
+                    Text::new(label, TICK_SIZE),
+                    ink,
+                );
+            }
+        }
+        layer.segments(segments, pen);
+        layer.outline(area, pen);
+        let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
+        layer.text(
+            (area.left - BAR_GAP, middle),
+            Anchor::End,
+            Text::new(&self.label, LABEL_SIZE),
+            ink,
+        );
     }
 
     /// Draws the bar at the right of a frame.

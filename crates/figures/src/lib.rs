@@ -6,7 +6,8 @@
 //! machine, and the same input gives the same bytes.
 //!
 //! Single runs have figures of their own ([`FlowFigure`], [`ProfileFigure`], [`WallFigure`], [`SnapshotFigure`] and
-//! [`SnapshotStack`], [`SpaceTimeFigure`]); everything else is a [`chart`]. [`Quantity`] names the axes.
+//! [`SnapshotStack`], [`SpaceTimeFigure`]); [`PictureFigure`] frames a picture of pixels with scale, colours and notes;
+//! everything else is a [`chart`]. [`Quantity`] names the axes.
 //!
 //! An SVG can stand in a web page among others: [`Drawing::with_prefix`] keeps their names apart,
 //! [`Drawing::with_title`] and [`Drawing::with_description`] tell what is to be seen. Its letters are drawn once and
@@ -43,6 +44,7 @@ mod error;
 mod flow;
 mod legend;
 mod panel;
+mod picture;
 mod profile;
 mod quantity;
 mod series;
@@ -54,9 +56,10 @@ mod wall;
 
 pub use axis::Scale;
 pub use colour_scale::{ColourScale, Palette};
-pub use drawing::Drawing;
+pub use drawing::{Drawing, Raster};
 pub use error::FigureError;
 pub use flow::{FlowFigure, LateMean, NewtonianReference, Transition};
+pub use picture::{Paper, PictureFigure, PlaceMark, ScaleBar};
 pub use profile::ProfileFigure;
 pub use quantity::{Quantity, Units};
 pub use series::{Profile, Series};

@@ -143,7 +143,7 @@ impl SpaceTimeFigure<'_> {
                     });
                 }
                 let found = match self.palette {
-                    Palette::Sequential => found,
+                    Palette::Sequential | Palette::Cyclic => found,
                     Palette::Diverging => {
                         let reach = found.0.abs().max(found.1.abs());
                         (-reach, reach)

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
@@ -32,16 +32,57 @@ pub fn write_with(
     path: &Path,
     produce: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), FormatError> {
-    let folder = folder_of(path).map_err(FormatError::io("write", path))?;
-    let partial = partial_with(folder, path, produce)?;
-    partial
-        .as_file()
-        .sync_all()
-        .map_err(FormatError::io("synchronize", path))?;
-    partial
-        .persist(path)
-        .map_err(|refused| FormatError::io("replace", path)(refused.error))?;
-    synchronize_folder(folder).map_err(FormatError::io("synchronize the folder of", path))
+    let mut pending = Pending::create(path)?;
+    produce(pending.partial.as_file_mut()).map_err(FormatError::io("write", path))?;
+    pending.commit()
+}
+
+/// A file that is being made under another name, by this program or by one that is given that name.
+///
+/// Dropped without [`Pending::commit`] it leaves nothing behind.
+#[derive(Debug)]
+pub struct Pending {
+    partial: NamedTempFile,
+    path: PathBuf,
+}
+
+impl Pending {
+    /// An empty file beside `path`.
+    ///
+    /// # Errors
+    /// [`FormatError::Io`] where it cannot be made.
+    pub fn create(path: &Path) -> Result<Self, FormatError> {
+        let folder = folder_of(path).map_err(FormatError::io("write", path))?;
+        let partial =
+            create_partial(folder).map_err(FormatError::io("create a file beside", path))?;
+        Ok(Self {
+            partial,
+            path: path.to_owned(),
+        })
+    }
+
+    /// Where it is meanwhile.
+    #[must_use]
+    pub fn partial_path(&self) -> &Path {
+        self.partial.path()
+    }
+
+    /// Gives the file its name, over an older one, once all of it is on the disk.
+    ///
+    /// # Errors
+    /// As [`write`](fn@write).
+    pub fn commit(self) -> Result<(), FormatError> {
+        let path = &self.path;
+        let folder = folder_of(path).map_err(FormatError::io("write", path))?;
+        self.partial
+            .as_file()
+            .sync_all()
+            .map_err(FormatError::io("synchronize", path))?;
+        self.partial
+            .persist(path)
+            .map_err(|refused| FormatError::io("replace", path)(refused.error))?;
+        synchronize_folder(folder).map_err(FormatError::io("synchronize the folder of", path))
+    }
 }
 
 /// Like [`write`](fn@write), but without waiting for the disk: whole or not at all after a kill or a full disk, though
@@ -172,6 +213,23 @@ mod tests {
         assert_eq!(kind_of(outcome, &path), ErrorKind::StorageFull);
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(entries(folder.path()), ["table.csv"]);
+    }
+
+    #[test]
+    fn a_pending_file_has_its_name_only_when_it_is_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("film.gif");
+        let pending = Pending::create(&path).unwrap();
+        // As another program would: under the name that it is told.
+        fs::write(pending.partial_path(), b"half").unwrap();
+        drop(pending);
+        assert!(entries(folder.path()).is_empty());
+        let pending = Pending::create(&path).unwrap();
+        fs::write(pending.partial_path(), b"whole").unwrap();
+        assert!(!path.exists());
+        pending.commit().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"whole");
+        assert_eq!(entries(folder.path()), ["film.gif"]);
     }
 
     #[test]

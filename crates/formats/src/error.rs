@@ -113,6 +113,15 @@ pub enum FormatError {
         reason: String,
     },
 
+    /// A file is no trajectory that can be read.
+    #[error("{} cannot be read as a trajectory: {reason}", path.display())]
+    UnreadableTrajectory {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
+
     /// The bytes do not begin like a checkpoint.
     #[error("not a checkpoint of this project: the first bytes differ from its signature")]
     NotACheckpoint,

@@ -4,17 +4,21 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use crate::colour::Colour;
+use crate::depth_map::Disc;
 use crate::error::RenderError;
-use crate::light::{Occluder, REACH, shade};
+use crate::glass;
+use crate::light::Light;
 use crate::picture::Picture;
 use crate::scene::{Finish, Scene, Sphere, View};
 
 /// Rays across and down in a pixel.
 const RAYS: usize = 3;
+/// Rays in a pixel.
+const RAYS_A_PIXEL: usize = RAYS * RAYS;
 /// Most pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 28;
-/// How much of what is behind glass it hides where it faces the eye, and at its rim.
-const GLASS: (f32, f32) = (0.012, 0.5);
+/// Fineness of shadows: a part of the smallest sphere's radius, but not less than so many pixels.
+const FINENESS: (f32, f32) = (0.13, 1.2);
 
 /// A sphere as the eye sees it.
 #[derive(Clone, Copy, Debug)]
@@ -23,6 +27,9 @@ struct Seen {
     radius: f32,
     colour: Colour,
 }
+
+/// Where a ray meets a sphere: its number, how near to the eye, and the place from the sphere's centre.
+type Meeting = Option<(usize, f32, Vec3)>;
 
 /// Draws a scene.
 ///
@@ -40,26 +47,21 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
     }
     let opaque = seen(scene, view, Finish::Opaque);
     let glass = seen(scene, view, Finish::Glass);
-    let around = neighbours(&opaque);
+    let light = Light::among(&discs(&opaque), fineness(&opaque, view));
     let rows: Vec<Vec<u8>> = (0..height)
         .into_par_iter()
         .map(|row| {
-            draw_row(
-                &Row::new(view, row, &opaque, &glass),
-                &opaque,
-                &glass,
-                &around,
-                scene.background,
-            )
+            let row = Row::new(view, row, &opaque, &glass);
+            draw_row(&row, &opaque, &glass, &light, scene.background)
         })
         .collect();
     Ok(Picture::new(width, height, rows.concat()))
 }
 
-/// The spheres of a finish that are in the picture or hide light from what is, from left to right.
+/// The spheres of a finish that are in the picture or hide light from what is.
 fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
     let half = 0.5 / view.scale as f32 * Vec3::new(view.width as f32, view.height as f32, 0.0);
-    let mut seen: Vec<Seen> = scene
+    scene
         .spheres
         .iter()
         .filter(|sphere| {
@@ -74,40 +76,28 @@ fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
             let margin = 4.0 * sphere.radius;
             sphere.centre.x.abs() < half.x + margin && sphere.centre.y.abs() < half.y + margin
         })
-        .collect();
-    seen.sort_by(|one, other| one.centre.x.total_cmp(&other.centre.x));
-    seen
+        .collect()
 }
 
-/// For each sphere those near enough to hide light from it.
-fn neighbours(spheres: &[Seen]) -> Vec<Vec<Occluder>> {
-    let largest = spheres
+fn discs(spheres: &[Seen]) -> Vec<Disc> {
+    let disc = |sphere: &Seen| Disc {
+        centre: sphere.centre,
+        radius: sphere.radius,
+    };
+    spheres.iter().map(disc).collect()
+}
+
+fn fineness(spheres: &[Seen], view: &View) -> f32 {
+    let smallest = spheres
         .iter()
-        .fold(0.0_f32, |most, sphere| most.max(sphere.radius));
-    spheres
-        .par_iter()
-        .enumerate()
-        .map(|(index, sphere)| {
-            let reach = |other: &Seen| REACH * (sphere.radius + other.radius);
-            let window = REACH * (sphere.radius + largest);
-            let first = spheres.partition_point(|it| it.centre.x < sphere.centre.x - window);
-            let last = spheres.partition_point(|it| it.centre.x <= sphere.centre.x + window);
-            (first..last)
-                .filter(|&other| other != index)
-                .map(|other| spheres[other])
-                .filter(|other| other.centre.distance(sphere.centre) < reach(other))
-                .map(|other| Occluder {
-                    centre: other.centre,
-                    radius: other.radius,
-                })
-                .collect()
-        })
-        .collect()
+        .fold(f32::INFINITY, |least, sphere| least.min(sphere.radius));
+    let by_pixels = FINENESS.1 / view.scale as f32;
+    by_pixels.max(FINENESS.0 * if smallest.is_finite() { smallest } else { 1.0 })
 }
 
 /// The rays of a row of pixels, and the spheres that they can meet.
 struct Row {
-    /// Rays a pixel row, times rows of rays.
+    /// Rays across.
     across: usize,
     /// Distance of rays \[d\], and the leftmost.
     pitch: f32,
@@ -138,7 +128,7 @@ impl Row {
         Self {
             across,
             pitch: pitch as f32,
-            left: (-0.5 * across as f64 * pitch + 0.5 * pitch) as f32,
+            left: ((0.5 - 0.5 * across as f64) * pitch) as f32,
             heights,
             opaque: of(opaque),
             glass: of(glass),
@@ -167,62 +157,98 @@ impl Row {
     }
 }
 
+/// The pixels of a row as bytes.
 fn draw_row(
     row: &Row,
     opaque: &[Seen],
     glass: &[Seen],
-    around: &[Vec<Occluder>],
+    light: &Light,
     background: Colour,
 ) -> Vec<u8> {
-    let mut sums = vec![Vec3::ZERO; row.across / RAYS];
-    let mut nearest: Vec<Option<(usize, f32, Vec3)>> = vec![None; row.across];
-    // What glass lets through, and what it adds.
-    let mut veil = vec![(1.0_f32, Vec3::ZERO); row.across];
-    for height in row.heights {
-        nearest.fill(None);
-        veil.fill((1.0, Vec3::ZERO));
+    let mut nearest: Vec<Meeting> = vec![None; row.across * RAYS];
+    let mut before: Vec<Meeting> = vec![None; row.across * RAYS];
+    for (line, height) in row.heights.iter().enumerate() {
+        let rays = line * row.across..(line + 1) * row.across;
         for &index in &row.opaque {
-            let sphere = &opaque[index];
-            row.for_each_meeting(sphere, height, |ray, beside| {
-                let depth = sphere.centre.z + beside.z;
-                if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
-                    nearest[ray] = Some((index, depth, beside));
-                }
-            });
+            meet(
+                row,
+                &opaque[index],
+                index,
+                *height,
+                &mut nearest[rays.clone()],
+            );
         }
         for &index in &row.glass {
-            let sphere = &glass[index];
-            row.for_each_meeting(sphere, height, |ray, beside| {
-                if nearest[ray].is_some_and(|(_, depth, _)| depth > sphere.centre.z + beside.z) {
-                    return;
-                }
-                let slope = 1.0 - beside.z / sphere.radius;
-                let hides = GLASS.0 + GLASS.1 * slope * slope * slope * slope;
-                let (through, added) = &mut veil[ray];
-                *added += *through * hides * sphere.colour.0;
-                *through *= 1.0 - hides;
-            });
-        }
-        for (ray, (met, (through, added))) in nearest.iter().zip(&veil).enumerate() {
-            let behind = match met {
-                None => background.0,
-                Some((index, _, beside)) => {
-                    let sphere = &opaque[*index];
-                    shade(
-                        sphere.centre + *beside,
-                        *beside / sphere.radius,
-                        sphere.colour,
-                        around[*index].iter(),
-                    )
-                }
-            };
-            sums[ray / RAYS] += *through * behind.min(Vec3::ONE) + *added;
+            meet(
+                row,
+                &glass[index],
+                index,
+                *height,
+                &mut before[rays.clone()],
+            );
         }
     }
-    let part = 1.0 / (RAYS * RAYS) as f32;
-    sums.iter()
-        .flat_map(|sum| Colour(*sum * part).to_srgb())
-        .collect()
+    let pixel = |pixel: usize| {
+        let ray = |it: usize| it / RAYS * row.across + pixel * RAYS + it % RAYS;
+        let met: [Meeting; RAYS_A_PIXEL] = std::array::from_fn(|it| nearest[ray(it)]);
+        let mut colours = behind(&met, opaque, light, background);
+        for (it, colour) in colours.iter_mut().enumerate() {
+            let depth = met[it].map_or(f32::NEG_INFINITY, |(_, depth, _)| depth);
+            if let Some((index, near, beside)) = before[ray(it)]
+                && near > depth
+            {
+                let sphere = &glass[index];
+                *colour = glass::before(*colour, beside / sphere.radius, sphere.colour);
+            }
+        }
+        Colour(colours.iter().sum::<Vec3>() / RAYS_A_PIXEL as f32).to_srgb()
+    };
+    (0..row.across / RAYS).flat_map(pixel).collect()
+}
+
+/// Keeps the sphere where it is nearer than what the rays have met.
+fn meet(row: &Row, sphere: &Seen, index: usize, height: f32, nearest: &mut [Meeting]) {
+    row.for_each_meeting(sphere, height, |ray, beside| {
+        let depth = sphere.centre.z + beside.z;
+        if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
+            nearest[ray] = Some((index, depth, beside));
+        }
+    });
+}
+
+/// What each ray of a pixel sees; the light on a sphere is worked out once for all its rays.
+fn behind(
+    met: &[Meeting; RAYS_A_PIXEL],
+    opaque: &[Seen],
+    light: &Light,
+    background: Colour,
+) -> [Vec3; RAYS_A_PIXEL] {
+    let mut colours = [background.0; RAYS_A_PIXEL];
+    let mut done = [false; RAYS_A_PIXEL];
+    for first in 0..RAYS_A_PIXEL {
+        let Some((index, ..)) = met[first] else {
+            continue;
+        };
+        if done[first] {
+            continue;
+        }
+        let is_same = |it: usize| met[it].is_some_and(|(other, ..)| other == index);
+        let sum: Vec3 = (first..RAYS_A_PIXEL)
+            .filter(|&it| is_same(it))
+            .filter_map(|it| met[it].map(|(_, _, beside)| beside))
+            .sum();
+        let sphere = &opaque[index];
+        let normal = sum.normalize_or(Vec3::Z);
+        let seen = light.shade(
+            sphere.centre + normal * sphere.radius,
+            normal,
+            sphere.colour,
+        );
+        for it in (first..RAYS_A_PIXEL).filter(|&it| is_same(it)) {
+            (colours[it], done[it]) = (seen, true);
+        }
+    }
+    colours
 }
 
 #[cfg(test)]

@@ -1,125 +1,193 @@
-//! Light on a point among spheres: from all sides, less what the spheres around hide, and from a lamp with soft shadows.
+//! Light on spheres: a sky that is bright all around and a wide lamp, both with the shadows of all that is opaque.
+//!
+//! The light comes from many fixed directions. For each a map holds how near the nearest sphere is as seen from there
+//! (Tarini, Cignoni & Montani, IEEE Trans. Vis. Comput. Graph. 12, 1237 (2006)), so that a point's share of the sky and
+//! of the lamp is a sum over the directions: ambient occlusion and soft shadows without noise, the same in every frame.
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use crate::colour::Colour;
+use crate::depth_map::{DepthMap, Disc};
 
-/// Light that comes from all sides.
-const AMBIENT: f32 = 0.60;
+/// Directions of the sky over the whole sphere.
+const SKY_DIRECTIONS: u32 = 84;
+/// Light from further behind what is seen reaches no surface that faces the eye.
+const FURTHEST_BEHIND: f32 = -0.5;
+/// Light of the whole sky on an open surface.
+const SKY: f32 = 0.74;
+/// How much brighter the sky is above than at the horizon.
+const SKY_GRADIENT: f32 = 0.28;
+/// Directions of the lamp, and the sine of its angular radius.
+const LAMP_DIRECTIONS: u32 = 14;
+const LAMP_RADIUS: f32 = 0.26;
 /// Light of the lamp at right angles.
-const LAMP: f32 = 0.52;
-/// Mirrored light of the lamp.
-const GLOSS: f32 = 0.10;
-const GLOSS_EXPONENT: f32 = 40.0;
-/// Inverse of the lamp's angular radius: how sharp its shadows are.
-const SHARPNESS: f32 = 5.0;
-/// How far spheres are looked for that hide light \[radii and gaps of the two\].
-pub(crate) const REACH: f32 = 2.2;
+const LAMP: f32 = 0.54;
+/// Light mirrored by a surface, and how narrowly.
+const GLOSS: f32 = 0.11;
+const GLOSS_EXPONENT: i32 = 40;
+/// Share of the light that bright neighbours give back to what they hide.
+const BOUNCE: f32 = 0.15;
+/// Light above which the brightest colours are bent so as not to be cut off.
+const SHOULDER: f32 = 0.86;
+/// Angle between successive points of a spiral that fills a disc or a sphere evenly.
+const GOLDEN_ANGLE: f32 = 2.399_963_2;
 
 /// Direction to the lamp, for an eye that looks along -z: above, from the left, before the picture.
 fn lamp() -> Vec3 {
-    Vec3::new(-0.42, 0.66, 0.62).normalize()
+    Vec3::new(-0.42, 0.66, 0.70).normalize()
 }
 
-/// A sphere that may hide light, as the eye sees it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Occluder {
-    pub(crate) centre: Vec3,
-    pub(crate) radius: f32,
+/// A direction that light comes from, with what stands in its way.
+#[derive(Debug)]
+struct Source {
+    towards: Vec3,
+    weight: f32,
+    map: DepthMap,
 }
 
-/// Part of a point's hemisphere about `normal` that a sphere hides, weighted by the cosine.
-///
-/// cos(theta) r^2/D^2 while the sphere is wholly above the horizon, for a sphere of radius r whose centre lies in
-/// direction theta from the normal at distance D; through the horizon it falls to 0 smoothly as
-/// ((cos(theta) D/r + 1) r^2/(2 D^2))^(3/2).
-fn hidden_part(towards: Vec3, radius: f32, normal: Vec3) -> f32 {
-    let distance = towards.length().max(radius);
-    let cosine = normal.dot(towards) / distance;
-    let ratio = distance / radius;
-    let inverse_square = 1.0 / (ratio * ratio);
-    if cosine * ratio >= 1.0 {
-        cosine * inverse_square
-    } else {
-        let part = 0.5 * (cosine * ratio + 1.0) * inverse_square;
-        let part = part.max(0.0);
-        part * part.sqrt()
+/// The light on a scene.
+#[derive(Debug)]
+pub(crate) struct Light {
+    sky: Vec<Source>,
+    lamp: Vec<Source>,
+}
+
+impl Light {
+    /// The light among opaque discs, as the eye sees them, with shadows as fine as `fineness` \[d\].
+    pub(crate) fn among(opaque: &[Disc], fineness: f32) -> Self {
+        let with_shadows = |directions: Vec<(Vec3, f32)>| {
+            directions
+                .into_par_iter()
+                .map(|(towards, weight)| Source {
+                    towards,
+                    weight,
+                    map: DepthMap::new(towards, opaque, fineness),
+                })
+                .collect()
+        };
+        Self {
+            sky: with_shadows(sky_directions()),
+            lamp: with_shadows(lamp_directions()),
+        }
+    }
+
+    /// The light from a point of a surface to the eye.
+    pub(crate) fn shade(&self, point: Vec3, normal: Vec3, colour: Colour) -> Vec3 {
+        let sum = |sources: &[Source]| -> f32 {
+            let facing = |source: &Source| {
+                let facing = normal.dot(source.towards);
+                (facing > 0.0).then(|| source.weight * facing * source.map.visible(point, normal))
+            };
+            sources.iter().filter_map(facing).sum()
+        };
+        let (sky, lit) = (sum(&self.sky), sum(&self.lamp));
+        let bounced = sky + BOUNCE * (SKY - sky).max(0.0);
+        let half_way = (lamp() + Vec3::Z).normalize();
+        let mirrored = GLOSS * normal.dot(half_way).max(0.0).powi(GLOSS_EXPONENT) * lit / LAMP;
+        // A soft dark rim keeps spheres of one colour apart.
+        let rim = (normal.z / 0.30).clamp(0.0, 1.0);
+        let outline = 0.50 + 0.50 * rim * rim * (3.0 - 2.0 * rim);
+        let light = colour.0 * ((bounced + lit) * outline) + Vec3::splat(mirrored);
+        Vec3::from_array(light.to_array().map(bent))
     }
 }
 
-/// Part of the lamp that a sphere leaves visible, 0 to 1.
-fn lamp_part(towards: Vec3, radius: f32) -> f32 {
-    let along = towards.dot(lamp());
-    if along <= 0.0 {
-        return 1.0;
+/// Brightness without a hard end: as it is up to the shoulder, then ever less, and never above 1.
+fn bent(value: f32) -> f32 {
+    if value <= SHOULDER {
+        return value;
     }
-    let beside = (towards.length_squared() - along * along).max(0.0).sqrt() - radius;
-    let part = (0.5 + 0.5 * SHARPNESS * beside / along).clamp(0.0, 1.0);
-    part * part * (3.0 - 2.0 * part)
+    let room = 1.0 - SHOULDER;
+    1.0 - room * room / (value - SHOULDER + room)
 }
 
-/// The light from a point of a surface to the eye.
-pub(crate) fn shade<'a>(
-    point: Vec3,
-    normal: Vec3,
-    colour: Colour,
-    around: impl Iterator<Item = &'a Occluder>,
-) -> Vec3 {
-    let (mut open, mut lit) = (1.0_f32, 1.0_f32);
-    for sphere in around {
-        let towards = sphere.centre - point;
-        open *= 1.0 - hidden_part(towards, sphere.radius, normal).min(1.0);
-        lit *= lamp_part(towards, sphere.radius);
-    }
-    let lamp = lamp();
-    let facing = normal.dot(lamp).max(0.0);
-    // Light that bounces between bright surfaces fills their gaps again.
-    let bounced = open * (1.0 + 0.15 * (1.0 - open));
-    let half_way = (lamp + Vec3::Z).normalize();
-    let mirrored = libm::powf(normal.dot(half_way).max(0.0), GLOSS_EXPONENT);
-    let rim = (normal.z / 0.22).clamp(0.0, 1.0);
-    let outline = 0.35 + 0.65 * rim * rim * (3.0 - 2.0 * rim);
-    (colour.0 * (AMBIENT * bounced + LAMP * facing * lit) + Vec3::splat(GLOSS * mirrored * lit))
-        * outline
+/// Directions all around with weights such that an open surface that faces the eye has light [`SKY`].
+fn sky_directions() -> Vec<(Vec3, f32)> {
+    let number = SKY_DIRECTIONS as f32;
+    (0..SKY_DIRECTIONS)
+        .map(|index| {
+            let height = 1.0 - 2.0 * (index as f32 + 0.5) / number;
+            let across = (1.0 - height * height).max(0.0).sqrt();
+            let angle = GOLDEN_ANGLE * index as f32;
+            let towards = Vec3::new(
+                across * libm::cosf(angle),
+                height,
+                across * libm::sinf(angle),
+            );
+            // The mean of the cosine over all directions, those behind a surface as 0, is 1/4.
+            let weight = 4.0 / number * SKY * (1.0 + SKY_GRADIENT * height);
+            (towards, weight)
+        })
+        .filter(|(towards, _)| towards.z > FURTHEST_BEHIND)
+        .collect()
+}
+
+/// Directions to a disc of light.
+fn lamp_directions() -> Vec<(Vec3, f32)> {
+    let middle = lamp();
+    let (right, up) = middle.any_orthonormal_pair();
+    (0..LAMP_DIRECTIONS)
+        .map(|index| {
+            let radius = LAMP_RADIUS * ((index as f32 + 0.5) / LAMP_DIRECTIONS as f32).sqrt();
+            let angle = GOLDEN_ANGLE * index as f32;
+            let beside = right * (radius * libm::cosf(angle)) + up * (radius * libm::sinf(angle));
+            ((middle + beside).normalize(), LAMP / LAMP_DIRECTIONS as f32)
+        })
+        .collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_sphere_overhead_hides_its_solid_angle_and_one_below_nothing() {
-        let above = hidden_part(Vec3::Z * 3.0, 1.0, Vec3::Z);
-        assert!((above - 1.0 / 9.0).abs() < 1e-6);
-        assert_eq!(hidden_part(Vec3::NEG_Z * 3.0, 1.0, Vec3::Z), 0.0);
-        // The two forms meet where the sphere touches the horizon: cos(theta) = r/D.
-        let touching = |cosine: f32| {
-            let towards = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine) * 2.0;
-            hidden_part(towards, 1.0, Vec3::Z)
-        };
-        assert!((touching(0.5001) - touching(0.4999)).abs() < 1e-3);
-    }
+    const WHITE: Colour = Colour(Vec3::splat(0.6));
 
-    #[test]
-    fn the_lamp_is_hidden_behind_a_sphere_only() {
-        let behind = lamp() * 4.0;
-        assert_eq!(lamp_part(behind, 1.0), 0.0);
-        assert_eq!(lamp_part(-behind, 1.0), 1.0);
-        assert_eq!(lamp_part(behind + Vec3::new(0.0, -5.0, 5.0), 1.0), 1.0);
-    }
-
-    #[test]
-    fn what_is_hidden_is_darker() {
-        let white = Colour::srgb(255, 255, 255);
-        let free = shade(Vec3::ZERO, Vec3::Z, white, [].iter());
-        let near = Occluder {
-            centre: Vec3::new(0.9, 0.0, 0.7),
+    fn disc(centre: Vec3) -> Disc {
+        Disc {
+            centre,
             radius: 0.5,
+        }
+    }
+
+    #[test]
+    fn an_open_surface_has_the_light_of_the_whole_sky() {
+        let total: f32 = sky_directions()
+            .iter()
+            .map(|(towards, weight)| weight * towards.z.max(0.0))
+            .sum();
+        assert!((total - SKY).abs() < 0.02 * SKY, "{total}");
+        let facing: f32 = lamp_directions()
+            .iter()
+            .map(|(towards, weight)| weight * towards.dot(lamp()))
+            .sum();
+        assert!((facing - LAMP).abs() < 0.03 * LAMP, "{facing}");
+    }
+
+    #[test]
+    fn what_is_hidden_is_darker_and_the_nearer_the_darker() {
+        let brightness = |discs: &[Disc]| {
+            let light = Light::among(discs, 0.02);
+            light.shade(Vec3::new(0.0, 0.0, 0.5), Vec3::Z, WHITE).x
         };
-        let hidden = shade(Vec3::ZERO, Vec3::Z, white, [near].iter());
+        let own = disc(Vec3::ZERO);
+        let free = brightness(&[own]);
+        let beside = |x: f32| brightness(&[own, disc(Vec3::new(x, 0.0, 0.9))]);
+        let (near, far) = (beside(0.8), beside(1.6));
         assert!(
-            hidden.x < 0.95 * free.x && hidden.x > 0.1 * free.x,
-            "{hidden} {free}"
+            near < 0.95 * far && far < 0.995 * free,
+            "{near} {far} {free}"
         );
+        assert!(near > 0.2 * free);
+        // What stands behind hides nothing.
+        let behind = brightness(&[own, disc(Vec3::new(0.0, 0.0, -3.0))]);
+        assert!((behind - free).abs() < 1e-3);
+    }
+
+    #[test]
+    fn light_is_bent_without_a_step() {
+        assert_eq!(bent(0.5), 0.5);
+        assert!((bent(SHOULDER + 1e-4) - SHOULDER - 1e-4).abs() < 1e-5);
+        assert!(bent(1.0) < 1.0 && bent(50.0) < 1.0 && bent(50.0) > 0.99);
     }
 }

@@ -11,7 +11,16 @@ pub struct Picture {
 }
 
 impl Picture {
-    pub(crate) fn new(width: u32, height: u32, pixels: Vec<u8>) -> Self {
+    /// A picture of such bytes.
+    ///
+    /// # Panics
+    /// Where their number is not three a pixel.
+    #[must_use]
+    pub fn new(width: u32, height: u32, pixels: Vec<u8>) -> Self {
+        assert!(
+            pixels.len() as u64 == 3 * u64::from(width) * u64::from(height),
+            "a picture has three bytes a pixel"
+        );
         Self {
             width,
             height,
@@ -29,6 +38,12 @@ impl Picture {
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
+    }
+
+    /// All bytes, row by row from the top.
+    #[must_use]
+    pub fn pixels(&self) -> &[u8] {
+        &self.pixels
     }
 
     /// The sRGB bytes of a pixel; columns from the left, rows from the top.

@@ -57,6 +57,14 @@ pub enum RunError {
         /// Why.
         reason: String,
     },
+    /// A picture or film that cannot be.
+    #[error("no such picture: {reason}")]
+    Picture {
+        /// Why.
+        reason: String,
+        /// What to ask for instead.
+        help: String,
+    },
     /// There is no run to go on with.
     #[error("{} holds no run that can be continued: {reason}", folder.display())]
     NothingToResume {

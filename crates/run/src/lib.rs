@@ -10,8 +10,8 @@ mod estimate;
 mod folder;
 mod late;
 mod pictures;
+mod portrait;
 mod recorder;
-mod render;
 mod run;
 mod si;
 mod softness;
@@ -27,19 +27,20 @@ pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};
 pub use late::Pumping;
 pub use peristalsis_configuration::Configuration;
-pub use peristalsis_formats::TrajectoryFormat;
-pub use peristalsis_render::Picture;
-pub use pictures::snapshot_stack;
+pub use peristalsis_figures::{Drawing, Paper};
+pub use peristalsis_formats::{Frame, TrajectoryFormat};
+pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
+pub use pictures::{snapshot_stack, space_time};
+pub use portrait::{Aspect, Eye, Field, Look, Place, Portrait, WallLook, Writing};
 pub use recorder::{Recorder, THRESHOLDS};
-pub use render::{Aspect, picture};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use si::{SiEstimate, SiSummary};
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
 pub use tables::{profile_table, timeseries_table, waves_table};
 pub use trajectory::{
-    Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport, TrajectoryRequest,
-    Window,
+    FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
+    TrajectoryRequest, Window,
 };
 
 /// Version of this program.

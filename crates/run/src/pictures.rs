@@ -3,13 +3,14 @@
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_engine::Wall;
 use peristalsis_figures::{
-    Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale,
-    Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall, Transition,
-    WallFigure, Width,
+    Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Palette, Profile,
+    ProfileFigure, Scale, Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack,
+    SnapshotWall, SpaceTimeFigure, Transition, WallFigure, Width,
 };
 use peristalsis_observe::TubeShape;
 
 use crate::error::RunError;
+use crate::portrait::time_unit;
 use crate::run::Run;
 use crate::summary::Summary;
 use crate::tables::late_profile;
@@ -106,14 +107,6 @@ fn scheduled_value(
             format!("{} to {}", schedule.value(0.0), schedule.value(last))
         }
         None => constant.to_string(),
-    }
-}
-
-/// Unit of time in markup.
-fn time_unit(configuration: &Configuration) -> &'static str {
-    match configuration.contact.normal {
-        peristalsis_configuration::NormalLaw::Linear { .. } => "(*m*/*k*)^{1/2}",
-        peristalsis_configuration::NormalLaw::Hertz { .. } => "*t*^{\\*}",
     }
 }
 
@@ -244,6 +237,47 @@ fn wall(run: &Run) -> Result<Drawing, FigureError> {
         width: Width::SingleColumn,
     }
     .draw()
+}
+
+/// The space-time diagram of a run: J/Jmax of the grains of each wave, period by period.
+///
+/// # Errors
+/// [`RunError::Picture`] where no period has been measured whole; [`RunError::Figure`] where there is nothing to draw.
+pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
+    let flows = run.recorder().waves();
+    let waves = run.configuration().tube.waves as usize;
+    let (Some(first), Some(last)) = (flows.first(), flows.last()) else {
+        return Err(RunError::Picture {
+            reason: "the run has measured no whole period of its wave yet".to_owned(),
+            help: "let it run for a period at least, with a wave that moves".to_owned(),
+        });
+    };
+    let value = |(wave, period): (usize, usize)| flows[period * waves + wave].flow_rate_ratio;
+    let periods = flows.len() / waves.max(1);
+    let values: Vec<f64> = (0..waves)
+        .flat_map(|wave| (0..periods).map(move |period| (wave, period)))
+        .map(value)
+        .collect();
+    let step = first
+        .period
+        .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
+    SpaceTimeFigure {
+        title: &title(run.configuration()),
+        values: &values,
+        rows: waves,
+        x_range: ((first.period - step).max(0.0), last.period),
+        y_range: (0.0, waves as f64),
+        value_label: "*J*/*J*_{max}",
+        value_range: Some((-1.0, 1.0)),
+        palette: Palette::Diverging,
+        width: Width::DoubleColumn,
+        ..SpaceTimeFigure::default()
+    }
+    .draw()
+    .map_err(|source| RunError::Figure {
+        figure: "space-time",
+        source,
+    })
 }
 
 fn snapshot(run: &Run) -> Result<Drawing, FigureError> {

@@ -7,44 +7,157 @@
 
 mod common;
 
-use peristalsis_run::{Aspect, Picture, Run, picture};
+use peristalsis_run::{
+    Aspect, Field, Frame, FrameSource, Look, Picture, Place, Portrait, Run, Span, Trajectory,
+    TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, WallLook, Window, space_time,
+};
 
-/// Pixels of the side view that are clearly red, and clearly blue.
+const ALL: Window = Window {
+    from: None,
+    to: None,
+};
+
+fn look(width: u32) -> Look {
+    Look {
+        width,
+        ..Look::default()
+    }
+}
+
+/// The bare picture of a run as it is.
+fn picture(run: &Run, look: Look) -> Picture {
+    let frame = FrameSource::now(run, look.field == Field::Pressure);
+    let portrait = Portrait::new(run, look, std::slice::from_ref(&frame)).unwrap();
+    portrait.picture(&frame).unwrap()
+}
+
+fn refusal(run: &Run, look: Look) -> String {
+    let frame = FrameSource::now(run, true);
+    Portrait::new(run, look, &[frame]).unwrap_err().to_string()
+}
+
+/// Pixels that are clearly red, and clearly blue.
 fn colours(picture: &Picture) -> (usize, usize) {
     let (mut red, mut blue) = (0, 0);
-    for row in 0..picture.height() {
-        for column in 0..picture.width() {
-            let [r, _, b] = picture.pixel(column, row).map(i32::from);
-            red += usize::from(r > b + 60);
-            blue += usize::from(b > r + 60);
-        }
+    for pixel in picture.pixels().chunks_exact(3) {
+        let [r, b] = [0, 2].map(|channel| i32::from(pixel[channel]));
+        red += usize::from(r > b + 60);
+        blue += usize::from(b > r + 60);
     }
     (red, blue)
+}
+
+fn jammed(direction: &str) -> Run {
+    let direction = format!("drive.direction={direction}");
+    let settings = [
+        &*direction,
+        "initial.state=jammed",
+        "tube.waves=2",
+        "grains.number=60",
+    ];
+    Run::new(common::configuration("frictionless", &settings)).unwrap()
 }
 
 #[test]
 fn jammed_grains_are_red_whichever_way_the_wave_runs() {
     for direction in ["forward", "backward"] {
-        let direction = format!("drive.direction={direction}");
-        let settings = [
-            &*direction,
-            "initial.state=jammed",
-            "tube.waves=2",
-            "grains.number=60",
-        ];
-        let run = Run::new(common::configuration("frictionless", &settings)).unwrap();
-        let side = picture(&run, Aspect::Side, 400).unwrap();
-        let (red, blue) = colours(&side);
-        assert!(red > 2_000 && blue == 0, "{red} red and {blue} blue pixels");
-        // White beside the tube, and the wall at the middle of its upper edge.
-        assert_eq!(side.pixel(0, 0), [255; 3]);
-        let wall = (0..side.height()).map(|row| side.pixel(200, row));
-        let first = wall.into_iter().find(|pixel| pixel[0] < 230).unwrap();
+        let run = jammed(direction);
+        for wall in [WallLook::Cut, WallLook::Glass, WallLook::Hidden] {
+            let side = picture(&run, Look { wall, ..look(400) });
+            let (red, blue) = colours(&side);
+            assert!(red > 2_000 && blue == 0, "{red} red and {blue} blue pixels");
+            // White beside the tube, and the wall at the middle of its upper edge.
+            assert_eq!(side.pixel(0, 0), [255; 3]);
+            let column = (0..side.height()).map(|row| side.pixel(200, row));
+            let edge = column.into_iter().find(|pixel| pixel[0] < 230);
+            let is_grey =
+                |pixel: [u8; 3]| pixel.iter().max().unwrap() - pixel.iter().min().unwrap() < 40;
+            assert_eq!(
+                edge.is_some_and(is_grey),
+                wall != WallLook::Hidden,
+                "{edge:?}"
+            );
+        }
+    }
+}
+
+/// A frame of a run with one grain of its own.
+fn one_grain(run: &Run, position: [f64; 3], along: f64) -> Frame {
+    let mut frame = FrameSource::now(run, false);
+    frame.position.splice(..frame.grains, [position]);
+    frame.velocity.splice(..frame.grains, [[0.0, 0.0, along]]);
+    frame.diameter.splice(..frame.grains, [1.0]);
+    frame.turns.splice(..frame.grains, [0]);
+    frame.grains = 1;
+    frame
+}
+
+#[test]
+fn a_grain_is_where_it_is_and_in_its_colour() {
+    let run = jammed("forward");
+    let wall = run.simulation().wall();
+    let (heading, length) = (wall.heading(), wall.lattice().length());
+    let speed = wall.frequency(0.0) * wall.lattice().wavelength;
+    let bare = Look {
+        wall: WallLook::Hidden,
+        ..look(500)
+    };
+    for (ratio, is) in [
+        (1.0, (|[r, _, b]| r > 2 * b) as fn([u8; 3]) -> bool),
+        (-1.0, |[r, _, b]| b > 2 * r),
+        (0.0, |[r, g, b]| {
+            r > 190 && r.abs_diff(b) < 12 && r.abs_diff(g) < 12
+        }),
+    ] {
+        let frame = one_grain(&run, [0.4, 0.0, 0.25 * length], heading * ratio * speed);
+        let portrait = Portrait::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
+        let picture = portrait.picture(&frame).unwrap();
+        // The wave runs to the right, towards -z, so that z = L/4 is at three quarters of the picture.
+        let scale = 500.0 / (length + 0.7);
+        let column = (0.35 + 0.75 * length) * scale;
+        let row = 0.5 * f64::from(picture.height()) - 0.4 * scale;
+        let seen = picture.pixel(column as u32, row as u32);
+        assert!(is(seen), "v/c = {ratio}: {seen:?}");
+        let marked = picture
+            .pixels()
+            .chunks_exact(3)
+            .filter(|pixel| *pixel != [255; 3])
+            .count() as f64;
+        let disc = std::f64::consts::PI * 0.25 * scale * scale;
         assert!(
-            first.iter().max().unwrap() - first.iter().min().unwrap() < 40,
-            "{first:?}"
+            (marked / disc - 1.0).abs() < 0.25,
+            "{marked} pixels for {disc}"
         );
     }
+}
+
+#[test]
+fn a_mirrored_tube_gives_the_mirrored_outline() {
+    let run = jammed("forward");
+    let bare = Look {
+        wall: WallLook::Hidden,
+        ..look(300)
+    };
+    let length = run.simulation().wall().lattice().length();
+    let outline = |z: f64| -> Vec<Vec<bool>> {
+        let frame = one_grain(&run, [0.3, 0.1, z], 0.0);
+        let portrait = Portrait::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
+        let picture = portrait.picture(&frame).unwrap();
+        let rows = picture.pixels().chunks_exact(3 * 300);
+        rows.map(|row| {
+            row.chunks_exact(3)
+                .map(|pixel| *pixel != [255; 3])
+                .collect()
+        })
+        .collect()
+    };
+    let (one, mut other) = (outline(0.3 * length), outline(0.7 * length));
+    other.iter_mut().for_each(|row| row.reverse());
+    let (one, other) = (one.concat(), other.concat());
+    assert!(one.iter().filter(|mark| **mark).count() > 100);
+    // Rounding may move the edge of a disc by a part of a pixel.
+    let differing = one.iter().zip(&other).filter(|(a, b)| a != b).count();
+    assert!(differing <= 4, "{differing} pixels");
 }
 
 #[test]
@@ -55,22 +168,197 @@ fn grains_that_flow_against_the_wave_are_blue() {
         "grains.number=300",
     ];
     let run = Run::new(common::configuration("frictional", &settings)).unwrap();
-    let (red, blue) = colours(&picture(&run, Aspect::Side, 400).unwrap());
+    let (red, blue) = colours(&picture(&run, look(400)));
     assert!(blue > 500 && red == 0, "{red} red and {blue} blue pixels");
-    let section = picture(&run, Aspect::Section, 120).unwrap();
+    let section = Look {
+        aspect: Aspect::Section(Place::Phase(0.25)),
+        ..look(120)
+    };
+    let section = picture(&run, section);
     assert_eq!((section.width(), section.height()), (120, 120));
+}
+
+#[test]
+fn every_field_colours_the_grains_of_a_run_that_has_it() {
+    let settings = ["initial.state=jammed", "grains.number=200"];
+    let mut run = Run::new(common::configuration("frictional", &settings)).unwrap();
+    run.follow_orientations();
+    run.advance().unwrap();
+    let mut seen = Vec::new();
+    for field in [
+        Field::AxialVelocity,
+        Field::Speed,
+        Field::Diameter,
+        Field::AxialDisplacement,
+        Field::AngularVelocity,
+        Field::Phase,
+        Field::Coordination,
+        Field::Pressure,
+    ] {
+        let picture = picture(&run, Look { field, ..look(200) });
+        assert!(
+            !seen.contains(&picture),
+            "{field:?} looks like another field"
+        );
+        seen.push(picture);
+    }
+    let smooth = jammed("forward");
+    let turning = Look {
+        field: Field::AngularVelocity,
+        ..look(200)
+    };
+    assert!(refusal(&smooth, turning).contains("do not rotate"));
 }
 
 #[test]
 fn a_static_wave_has_no_speed_to_compare_with_and_no_grains_are_no_failure() {
     let settings = ["drive.strain_rate=0", "run.duration=5", "grains.number=0"];
     let run = Run::new(common::configuration("frictionless", &settings)).unwrap();
-    let side = picture(&run, Aspect::Side, 200).unwrap();
+    let side = picture(&run, look(200));
     assert_eq!(colours(&side), (0, 0));
     assert!(
-        picture(&run, Aspect::Side, 0)
+        side.pixels().iter().any(|byte| *byte < 200),
+        "there is a wall"
+    );
+    let frame = FrameSource::now(&run, false);
+    Portrait::new(&run, look(200), std::slice::from_ref(&frame))
+        .unwrap()
+        .draw(&frame)
+        .unwrap();
+    assert!(
+        space_time(&run)
             .unwrap_err()
             .to_string()
-            .contains("pixels")
+            .contains("no whole period")
     );
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_in_words() {
+    let run = jammed("forward");
+    for width in [0, 15, 20_000] {
+        assert!(refusal(&run, look(width)).contains("beyond reach"));
+    }
+    let section = |place| Look {
+        aspect: Aspect::Section(Place::At(place)),
+        ..look(100)
+    };
+    assert!(refusal(&run, section(1e3)).contains("no place z = 1000"));
+    let range = Look {
+        range: Some((1.0, 1.0)),
+        ..look(100)
+    };
+    assert!(refusal(&run, range).contains("from 1 to 1"));
+    for waves in [0.0, f64::NAN] {
+        let words = refusal(&run, Look { waves, ..look(100) });
+        assert!(words.contains("waves"), "{words}");
+    }
+}
+
+#[test]
+fn frames_of_a_trajectory_are_those_that_are_computed() {
+    let settings = ["tube.waves=2", "grains.number=40", "run.periods=3"];
+    let configuration = || common::configuration("frictionless", &settings);
+    let request = TrajectoryRequest {
+        formats: vec![TrajectoryFormat::Gsd],
+        every: Some(Span::Periods(0.25)),
+        window: ALL,
+    };
+    let steps = configuration().run.steps();
+    let plan = || TrajectoryPlan::new(&request, &configuration(), 0, steps).unwrap();
+    let place = tempfile::tempdir().unwrap();
+    let mut run = Run::new(configuration()).unwrap();
+    let mut trajectory = Trajectory::begin(place.path(), plan(), &mut run).unwrap();
+    while let Some(steps) = trajectory.steps_to_next(&run) {
+        run.advance_at_most(steps).unwrap();
+        trajectory.observe(&run).unwrap();
+    }
+    trajectory.synchronize().unwrap();
+    let path = FrameSource::in_folder(place.path()).unwrap();
+
+    let all = |source: &mut FrameSource| {
+        let mut frames = Vec::new();
+        while !source.is_over() {
+            frames.extend(source.step().unwrap());
+        }
+        frames
+    };
+    let read = all(&mut FrameSource::of_file(&path, None, ALL).unwrap());
+    let mut computed = FrameSource::of_run(Run::new(configuration()).unwrap(), plan(), false);
+    assert_eq!(computed.frames(), 13);
+    let computed = all(&mut computed);
+    assert_eq!(read.len(), 13);
+    for (one, other) in read.iter().zip(&computed) {
+        assert_eq!(
+            (one.step, one.time, one.grains),
+            (other.step, other.time, other.grains)
+        );
+        assert_eq!(one.value("period"), other.value("period"));
+        for (a, b) in one.position.iter().zip(&other.position) {
+            let apart = a
+                .iter()
+                .zip(b)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
+            assert!(
+                apart < 1e-5 || (apart - one.length).abs() < 1e-5,
+                "{a:?} {b:?}"
+            );
+        }
+    }
+    // A window, every second frame of it, and the frame nearest to an instant.
+    let window = Window {
+        from: Some(Span::Periods(1.0)),
+        to: Some(Span::Periods(2.0)),
+    };
+    let some = all(&mut FrameSource::of_file(&path, Some(Span::Periods(0.5)), window).unwrap());
+    let periods: Vec<f64> = some
+        .iter()
+        .map(|frame| frame.value("period").unwrap())
+        .collect();
+    assert_eq!(
+        periods
+            .iter()
+            .map(|it| (4.0 * it).round())
+            .collect::<Vec<_>>(),
+        [4.0, 6.0, 8.0]
+    );
+    let [first, nearest] = FrameSource::nearest(&path, Some(Span::Periods(1.3))).unwrap();
+    assert_eq!((first.step, nearest.step), (read[0].step, read[5].step));
+    let beyond = Window {
+        from: Some(Span::Periods(7.0)),
+        to: None,
+    };
+    let refused = FrameSource::of_file(&path, None, beyond)
+        .unwrap_err()
+        .to_string();
+    assert!(
+        refused.contains("none of the 13 frames") && refused.contains("3.00"),
+        "{refused}"
+    );
+    // A trajectory of another tube.
+    let other = Run::new(common::configuration(
+        "frictionless",
+        &["tube.waves=3", "grains.number=40"],
+    ))
+    .unwrap();
+    let portrait = Portrait::new(&other, look(64), &[FrameSource::now(&other, false)]).unwrap();
+    let words = portrait.picture(&read[0]).unwrap_err().to_string();
+    assert!(
+        words.contains("20 d long") && words.contains("30 d"),
+        "{words}"
+    );
+}
+
+#[test]
+fn the_space_time_diagram_has_a_row_a_wave_and_a_column_a_period() {
+    let settings = ["tube.waves=3", "grains.number=30", "run.periods=4"];
+    let mut run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+    while !run.is_complete() {
+        run.advance().unwrap();
+    }
+    assert_eq!(run.recorder().waves().len(), 12);
+    let drawing = space_time(&run).unwrap();
+    assert!(drawing.svg().contains("number of the wave"));
+    assert!(drawing.png().unwrap().len() > 5_000);
 }

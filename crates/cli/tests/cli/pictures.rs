@@ -1,47 +1,232 @@
-//! `peristalsis render`: the tube as it looks.
+//! `peristalsis render`: pictures and films of the tube as it looks.
 
 use crate::Place;
 
-#[test]
-fn a_finished_run_is_drawn() {
+/// A finished run with frames every quarter of a period.
+fn place() -> Place {
     let place = Place::new();
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place
+        .run_small(&[
+            "--out",
+            "results",
+            "--trajectory",
+            "gsd",
+            "--trajectory-every",
+            "0.25",
+        ])
+        .expect_code(0);
+    place
+}
+
+fn bytes(place: &Place, file: &str) -> Vec<u8> {
+    std::fs::read(place.path(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
+}
+
+#[test]
+fn a_finished_run_is_drawn_from_every_side() {
+    let place = place();
     let before = place.inventory();
     place
         .call(["render", "results", "--width", "300"])
         .expect_code(0)
         .shows(&["300 x ", "results/tube-side.png"]);
+    let section = "render results --view section --phase 0.25 --width 64 --bare --out section.png";
     place
-        .call([
-            "render",
-            "results",
-            "--view",
-            "section",
-            "--width",
-            "64",
-            "--out",
-            "section.png",
-        ])
+        .call(section.split(' '))
         .expect_code(0)
         .shows(&["64 x 64 pixels: section.png"]);
-    for file in ["results/tube-side.png", "section.png"] {
-        let bytes = std::fs::read(place.path(file)).unwrap();
+    for options in [
+        "--view space-time",
+        "--format svg --colour coordination --wall glass --paper dark",
+        "--at 1.3 --colour axial-displacement --out displaced.png",
+        "--from start --colour pressure --range 0:0.5 --at 0.5 --out pressure.png",
+    ] {
+        let call = format!("render results --width 200 {options}");
+        place.call(call.split(' ')).expect_code(0);
+    }
+    for file in [
+        "results/tube-side.png",
+        "section.png",
+        "results/space-time.png",
+        "displaced.png",
+        "pressure.png",
+    ] {
+        let bytes = bytes(&place, file);
         assert!(
             bytes.starts_with(b"\x89PNG") && bytes.len() > 2_000,
             "{file}"
         );
     }
+    let svg = String::from_utf8(bytes(&place, "results/tube-side.svg")).unwrap();
+    assert!(svg.contains("contacts of a grain") && svg.contains("data:image/png;base64,"));
     for (name, content) in before {
         if content.is_some() {
             assert_eq!(place.inventory()[&name], content, "{}", name.display());
         }
     }
+}
+
+#[test]
+fn films_have_a_frame_for_each_instant_wherever_it_comes_from() {
+    let place = place();
+    for (options, frames) in [
+        ("--format gif", 17),
+        ("--format gif --window 1:2", 5),
+        ("--format gif --from start --window 0:1 --every 0.2", 6),
+        (
+            "--format gif --from state --duration 0.3 --every 0.1 --view section --eye wave",
+            4,
+        ),
+        ("--film --trajectory results/trajectory.gsd --every 1", 5),
+    ] {
+        let call = format!("render results --width 160 --json -q {options} --out film.gif");
+        let made = place.call(call.split(' ')).expect_code(0).json();
+        assert_eq!(made["frames"], frames, "{options}");
+        assert_eq!(made["files"][0], "film.gif");
+        let bytes = bytes(&place, "film.gif");
+        assert!(bytes.starts_with(b"GIF89a"));
+        // A graphic control extension stands before each picture.
+        let controls = bytes.windows(3).filter(|it| **it == *b"\x21\xf9\x04");
+        assert!(controls.count() >= frames, "{options}");
+    }
     place
-        .call(["render", "nowhere"])
-        .expect_code(2)
-        .says(&["nowhere holds no run"]);
+        .call("render results --width 160 --out film.apng --window 0:1".split(' '))
+        .expect_code(0)
+        .says(&["100 %", "frame 5 of 5"])
+        .shows(&["5 frames of 160 x ", "film.apng"]);
+    let film = bytes(&place, "film.apng");
+    assert!(film.starts_with(b"\x89PNG") && film.windows(4).any(|name| name == b"acTL"));
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
+    let place = place();
+    let before = place.inventory();
+    for (call, expected) in [
+        ("render nowhere", "nowhere holds no run"),
+        ("render results --width 3", "take 16 to 16384"),
+        ("render results --width 0 --film", "take 16 to 16384"),
+        ("render results --width 99999", "take 16 to 16384"),
+        (
+            "render results --colour taste",
+            "axial-velocity, speed, diameter",
+        ),
+        ("render results --view inside", "side, section, space-time"),
+        (
+            "render results --view space-time --film",
+            "take --view side",
+        ),
+        (
+            "render results --film --from trajectory --colour pressure",
+            "take --from state or --from start",
+        ),
+        ("render results --colour angular-velocity", "do not rotate"),
+        ("render results --place 3", "add --view section"),
+        (
+            "render results --view section --place 300",
+            "take 0 to 20 d",
+        ),
+        ("render results --range 1:0", "FROM less than TO"),
+        ("render results --out film.avi", ".apng, .mp4"),
+        ("render results --film --format png", "gif, apng"),
+        (
+            "render results --film --window 30:40",
+            "none of the 17 frames",
+        ),
+        ("render results --film --fps 0", "0.1 to 120"),
+        (
+            "render results --film --trajectory results/config.toml",
+            "does not begin like a GSD file",
+        ),
+        ("render results --film --from state --at 2", "--window"),
+        ("render results --window 1:2", "add --film"),
+        ("render results --from state --at 2", "one instant"),
+        ("render results --waves 0", "positive number of waves"),
+    ] {
+        let outcome = place.call(call.split(' ')).expect_code(2);
+        let message = outcome.message();
+        assert!(message.contains(expected), "{call}: {message}");
+    }
+    // Without a trajectory.
+    std::fs::remove_file(place.path("results/trajectory.gsd")).unwrap();
     place
-        .call(["render", "results", "--width", "3"])
+        .call("render results --film --from trajectory".split(' '))
         .expect_code(2)
-        .says(&["16..=16384"]);
+        .says(&["holds no trajectory.gsd", "--from state, --from start"]);
+    let mut after = place.inventory();
+    after.retain(|name, _| before.contains_key(name));
+    assert_eq!(after.len() + 1, before.len());
+    assert_eq!(place.inventory().len() + 1, before.len());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_film_goes_through_the_ffmpeg_that_is_named_and_leaves_nothing_where_that_fails() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = place();
+    let call = "render results --width 160 --window 0:1 -q --out film.mp4";
+    let with = |program: &str| {
+        let mut command = place.command(call.split(' '));
+        command.env("FFMPEG", program);
+        crate::Outcome::of(command.output().unwrap())
+    };
+    with("./not-there")
+        .expect_code(2)
+        .says(&["`./not-there` cannot be started", "--format gif"]);
+    // It keeps what it is given, under the name that comes last.
+    let script = "#!/bin/sh\nfor last; do :; done\ncat > \"$last\"\n";
+    let stand_in = place.write("stand-in", script);
+    std::fs::set_permissions(&stand_in, std::fs::Permissions::from_mode(0o755)).unwrap();
+    with("./stand-in").expect_code(0);
+    let film = bytes(&place, "film.mp4");
+    assert_eq!(
+        film.len() % (3 * 160 * 5),
+        0,
+        "five frames of 160 pixels across"
+    );
+    std::fs::remove_file(place.path("film.mp4")).unwrap();
+    place.write("stand-in", "#!/bin/sh\necho no such codec >&2\nexit 1\n");
+    with("./stand-in").expect_code(1).says(&["no such codec"]);
+    let left = place.inventory().into_keys();
+    let films = left.filter(|name| {
+        name.to_string_lossy().contains("film") || name.to_string_lossy().contains("partial")
+    });
+    assert_eq!(films.count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_film_that_is_stopped_leaves_no_file() {
+    let place = place();
+    let mut child = place
+        .command("render results --from start --every 0.001 --width 400 --out film.gif".split(' '))
+        .stderr(std::process::Stdio::piped())
+        .stdout(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    // Once there is something beside it, frames are being made.
+    let partial = || {
+        let names = place.inventory().into_keys();
+        names
+            .filter(|name| name.to_string_lossy().ends_with(".partial"))
+            .count()
+    };
+    while partial() == 0 {
+        assert!(
+            child.try_wait().unwrap().is_none(),
+            "it ended before it was stopped"
+        );
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(200));
+    let kill = std::process::Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(kill.success());
+    crate::Outcome::of(child.wait_with_output().unwrap())
+        .expect_code(130)
+        .says(&["nothing is left of it"]);
+    assert_eq!(partial(), 0);
+    assert!(!place.path("film.gif").exists());
 }

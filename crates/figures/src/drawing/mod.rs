@@ -3,7 +3,7 @@
 mod png;
 mod svg;
 
-use crate::colour::Colour;
+use crate::colour::{Colour, WHITE};
 use crate::error::FigureError;
 use crate::style::POINTS_PER_MILLIMETRE;
 use crate::text::Text;
@@ -19,7 +19,22 @@ pub struct Drawing {
     description: Option<String>,
     /// What the names of definitions in the SVG begin with.
     prefix: String,
+    /// Colour of the page.
+    paper: Colour,
+    /// How finely the page is painted.
+    pixels_per_point: f64,
     layers: Vec<Layer>,
+}
+
+/// A painted page: three bytes of sRGB a pixel, row by row from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Raster {
+    /// Pixels across.
+    pub width: u32,
+    /// Pixels down.
+    pub height: u32,
+    /// Red, green and blue of each pixel.
+    pub pixels: Vec<u8>,
 }
 
 /// A place on the page in points, from the top left corner, y downwards.
@@ -151,6 +166,12 @@ pub(crate) enum Shape {
         columns: usize,
         colours: Vec<Colour>,
     },
+    /// Bytes of red, green and blue, as many pixels as the area has where it is painted.
+    Picture {
+        area: Rectangle,
+        columns: usize,
+        pixels: Vec<u8>,
+    },
     Text {
         start: Point,
         reading: Reading,
@@ -208,6 +229,8 @@ impl Drawing {
             title,
             description: None,
             prefix: String::new(),
+            paper: WHITE,
+            pixels_per_point: png::PIXELS_PER_POINT,
             layers: Vec::new(),
         }
     }
@@ -261,12 +284,35 @@ impl Drawing {
         svg::document(self)
     }
 
-    /// The figure as a PNG picture at 300 dots per inch on white.
+    /// The figure as a PNG picture, at 300 dots per inch unless it is made of pixels itself.
     ///
     /// # Errors
     /// If the page is too large for memory or the encoder fails.
     pub fn png(&self) -> Result<Vec<u8>, FigureError> {
         png::picture(self)
+    }
+
+    /// Pixels across and down of [`Drawing::png`].
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height].map(|length| (length * self.pixels_per_point).round() as u32)
+    }
+
+    /// The pixels of [`Drawing::png`].
+    ///
+    /// # Errors
+    /// If the page is too large for memory.
+    pub fn raster(&self) -> Result<Raster, FigureError> {
+        png::raster(self)
+    }
+
+    /// The same on paper of another colour, painted with so many pixels a point.
+    pub(crate) fn on_paper(self, paper: Colour, pixels_per_point: f64) -> Self {
+        Self {
+            paper,
+            pixels_per_point,
+            ..self
+        }
     }
 
     /// Makes the page higher or lower.
@@ -397,6 +443,15 @@ impl Layer {
             area,
             columns,
             colours,
+        });
+    }
+
+    /// A picture of red, green and blue bytes.
+    pub(crate) fn picture(&mut self, area: Rectangle, columns: usize, pixels: &[u8]) {
+        self.shapes.push(Shape::Picture {
+            area,
+            columns,
+            pixels: pixels.to_owned(),
         });
     }
 

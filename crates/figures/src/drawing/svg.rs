@@ -13,7 +13,9 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::{Drawing, Fill, Layer, Outline, Point, Reading, Shape, Stroke};
 use crate::colour::Colour;
-use crate::drawing::png::{SPHERE_CENTRE, SPHERE_REACH, cells_picture, sphere_stops};
+use crate::drawing::png::{
+    SPHERE_CENTRE, SPHERE_REACH, cells_picture, pixels_picture, sphere_stops,
+};
 use crate::text::{Face, Glyph};
 
 /// The whole document.
@@ -36,9 +38,10 @@ pub(super) fn document(drawing: &Drawing) -> String {
     push(
         &mut out,
         format_args!(
-            "<rect width=\"{}\" height=\"{}\" fill=\"#ffffff\"/>\n",
+            "<rect width=\"{}\" height=\"{}\" fill=\"#{}\"/>\n",
             number(drawing.width),
-            number(drawing.height)
+            number(drawing.height),
+            drawing.paper.hexadecimal()
         ),
     );
     for layer in &drawing.layers {
@@ -203,6 +206,20 @@ fn push_shape(out: &mut String, shape: &Shape, prefix: &str) {
                 out,
                 format_args!(
                     "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{picture}\"/>\n"
+                ),
+            );
+        }
+        Shape::Picture {
+            area,
+            columns,
+            pixels,
+        } => {
+            let [x, y, width, height] = [area.left, area.top, area.width, area.height].map(number);
+            let picture = STANDARD.encode(pixels_picture(*columns, pixels));
+            push(
+                out,
+                format_args!(
+                    "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" href=\"data:image/png;base64,{picture}\"/>\n"
                 ),
             );
         }

@@ -15,6 +15,7 @@ pub mod gsd;
 pub mod lammps;
 pub mod vtp;
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use crate::error::FormatError;
@@ -47,7 +48,7 @@ pub struct Frame {
     /// Contacts; left empty where no format asks for them.
     pub contacts: Vec<FrameContact>,
     /// Other values of the instant by name; the same names in every frame.
-    pub values: Vec<(&'static str, f64)>,
+    pub values: Vec<(Cow<'static, str>, f64)>,
 }
 
 /// How grains turn: an entry a grain, for the spheres of a wall do not.
@@ -78,6 +79,15 @@ pub struct FrameContact {
 }
 
 impl Frame {
+    /// A value of the instant by its name.
+    #[must_use]
+    pub fn value(&self, name: &str) -> Option<f64> {
+        let mut values = self.values.iter();
+        values
+            .find(|(known, _)| known == name)
+            .map(|(_, value)| *value)
+    }
+
     /// Number of spheres, those of the wall included.
     #[must_use]
     pub fn spheres(&self) -> usize {

@@ -43,9 +43,9 @@ fn frame(number: u64, turning: bool) -> Frame {
             number as usize
         ],
         values: vec![
-            ("period", shift),
+            ("period".into(), shift),
             (
-                "flow_rate_ratio",
+                "flow_rate_ratio".into(),
                 if number == 0 { f64::NAN } else { 0.5 + shift },
             ),
         ],
@@ -227,7 +227,8 @@ fn gsd_holds_what_was_written() {
             spin[8..],
             [(number as f64 * 0.1) as f32, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
         );
-        for (name, value) in [("time", written.time), written.values[0], written.values[1]] {
+        let logged = [("time".into(), written.time)];
+        for (name, value) in logged.iter().chain(&written.values) {
             let (kind, _, logged) = array(&format!("log/{name}"));
             assert_eq!((kind, logged), (10, value.to_le_bytes().to_vec()), "{name}");
         }

@@ -1,5 +1,7 @@
 //! A frame of a run.
 
+use std::borrow::Cow;
+
 use peristalsis_engine::{Simulation, Wall};
 use peristalsis_formats::trajectory::{Frame, FrameContact, Rotation};
 use peristalsis_observe::{TubeShape, instantaneous_flow_rate};
@@ -58,20 +60,20 @@ fn width(frame: &Frame, wall: &Wall) -> f64 {
 
 /// What is logged beside the spheres, named like the columns of the time series; rates over an interval are those of the
 /// last sample.
-fn values(run: &Run) -> Vec<(&'static str, f64)> {
+fn values(run: &Run) -> Vec<(Cow<'static, str>, f64)> {
     let simulation = run.simulation();
     let sample = run.recorder().samples().last();
     let of_sample = |value: Option<f64>| value.unwrap_or(f64::NAN);
     vec![
-        ("period", simulation.wall().cycles()),
-        ("heading", simulation.wall().heading()),
-        ("flow_rate", of_sample(sample.map(|it| it.flow_rate))),
+        ("period".into(), simulation.wall().cycles()),
+        ("heading".into(), simulation.wall().heading()),
+        ("flow_rate".into(), of_sample(sample.map(|it| it.flow_rate))),
         (
-            "flow_rate_ratio",
+            "flow_rate_ratio".into(),
             of_sample(sample.map(|it| it.flow_rate_ratio)),
         ),
         (
-            "flow_rate_instantaneous",
+            "flow_rate_instantaneous".into(),
             instantaneous_flow_rate(simulation, &TubeShape::of(simulation)),
         ),
     ]

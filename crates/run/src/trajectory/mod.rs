@@ -2,6 +2,7 @@
 
 mod frame;
 mod plan;
+mod source;
 
 use std::path::{Path, PathBuf};
 
@@ -13,6 +14,7 @@ use crate::run::Run;
 
 use self::frame::frame;
 pub use self::plan::{Span, TrajectoryPlan, TrajectoryRequest, Window};
+pub use self::source::FrameSource;
 
 /// The plan, in a run's folder.
 const PLAN: &str = "trajectory.toml";

@@ -12,22 +12,23 @@
 //! The index has room for the whole trajectory from the start, so that nothing is ever moved, and a trajectory that was
 //! cut back and goes on has the same bytes as one in one go.
 
+use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::super::append::Growing;
 use crate::error::FormatError;
 
-const MAGIC: u64 = 0x65df_65df_65df_65df;
+pub(super) const MAGIC: u64 = 0x65df_65df_65df_65df;
 const FORMAT_VERSION: u32 = (2 << 16) | 1;
 const APPLICATION: &str = concat!("peristalsis ", env!("CARGO_PKG_VERSION"));
 const SCHEMA: &str = "hoomd";
 const SCHEMA_VERSION: u32 = (1 << 16) | 4;
-const HEADER_BYTES: u64 = 256;
+pub(super) const HEADER_BYTES: u64 = 256;
 /// Bytes of an index entry.
 pub(super) const ENTRY_BYTES: u64 = 32;
 /// Names are allocated in units of so many bytes.
-const NAME_UNIT: u64 = 64;
+pub(super) const NAME_UNIT: u64 = 64;
 /// Index entries that are read at once.
 const ENTRIES_A_READ: u64 = 4096;
 const NAMES_BYTES: u64 = 16 * NAME_UNIT;
@@ -64,13 +65,13 @@ pub(super) struct Chunk {
 
 /// Where an array is.
 #[derive(Clone, Copy, Debug)]
-struct Entry {
-    frame: u64,
-    rows: u64,
-    location: u64,
-    columns: u32,
-    name: u16,
-    kind: u8,
+pub(super) struct Entry {
+    pub(super) frame: u64,
+    pub(super) rows: u64,
+    pub(super) location: u64,
+    pub(super) columns: u32,
+    pub(super) name: u16,
+    pub(super) kind: u8,
 }
 
 impl Entry {
@@ -98,7 +99,7 @@ impl Entry {
     }
 }
 
-fn u64_at(bytes: &[u8], at: usize) -> u64 {
+pub(super) fn u64_at(bytes: &[u8], at: usize) -> u64 {
     let mut eight = [0; 8];
     eight.copy_from_slice(&bytes[at..at + 8]);
     u64::from_le_bytes(eight)
@@ -156,7 +157,7 @@ impl Container {
             reason: reason.to_owned(),
         };
         let length = file.end();
-        let header = read(&mut file, 0, HEADER_BYTES.min(length))?;
+        let header = read(file.file(), path, 0, HEADER_BYTES.min(length))?;
         if header.len() < HEADER_BYTES as usize || u64_at(&header, 0) != MAGIC {
             return Err(damaged("it does not begin like a GSD file"));
         }
@@ -171,14 +172,14 @@ impl Container {
         let (true, Some(first_array)) = (of_ours, first_array) else {
             return Err(damaged("it is another program's GSD file, or cut short"));
         };
-        let names = read(&mut file, names_at, NAMES_BYTES)?
+        let names = read(file.file(), path, names_at, NAMES_BYTES)?
             .split(|&byte| byte == 0)
             .take_while(|name| !name.is_empty())
             .map(|name| String::from_utf8_lossy(name).into_owned())
             .collect::<Vec<_>>();
         let wanted = names.iter().position(|known| known == name);
 
-        let written = read_entries(&mut file, capacity)?;
+        let written = read_entries(file.file(), path, HEADER_BYTES, capacity)?;
         let (mut entries, mut frames, mut end) = (0, 0, first_array);
         for frame in written.chunk_by(|one, other| one.frame == other.frame) {
             let marker = frame
@@ -186,7 +187,7 @@ impl Container {
                 .find(|entry| Some(usize::from(entry.name)) == wanted)
                 .filter(|entry| entry.location + 8 <= length);
             let Some(marker) = marker else { break };
-            let value = u64_at(&read(&mut file, marker.location, 8)?, 0);
+            let value = u64_at(&read(file.file(), path, marker.location, 8)?, 0);
             let frame_end = frame
                 .iter()
                 .map(|entry| {
@@ -295,7 +296,7 @@ impl Container {
 }
 
 /// Bytes of a number of a type; 0 for a type that is never written.
-fn kind_bytes(kind: u8) -> u64 {
+pub(super) fn kind_bytes(kind: u8) -> u64 {
     [
         Kind::U32,
         Kind::U64,
@@ -310,13 +311,19 @@ fn kind_bytes(kind: u8) -> u64 {
 }
 
 /// The entries that have been written; the rest of the index, which may be long, is not looked at.
-fn read_entries(file: &mut Growing, capacity: u64) -> Result<Vec<Entry>, FormatError> {
+pub(super) fn read_entries(
+    file: &mut File,
+    path: &Path,
+    index_at: u64,
+    capacity: u64,
+) -> Result<Vec<Entry>, FormatError> {
     let mut entries = Vec::new();
     while (entries.len() as u64) < capacity {
         let done = entries.len() as u64;
         let block = read(
             file,
-            HEADER_BYTES + done * ENTRY_BYTES,
+            path,
+            index_at + done * ENTRY_BYTES,
             ENTRIES_A_READ.min(capacity - done) * ENTRY_BYTES,
         )?;
         let written = block
@@ -331,13 +338,16 @@ fn read_entries(file: &mut Growing, capacity: u64) -> Result<Vec<Entry>, FormatE
     Ok(entries)
 }
 
-fn read(file: &mut Growing, offset: u64, bytes: u64) -> Result<Vec<u8>, FormatError> {
+/// So many bytes of a file from a place on.
+pub(super) fn read(
+    file: &mut File,
+    path: &Path,
+    offset: u64,
+    bytes: u64,
+) -> Result<Vec<u8>, FormatError> {
     let mut buffer = vec![0; bytes as usize];
-    let path = file.path().to_owned();
-    let inner = file.file();
-    inner
-        .seek(SeekFrom::Start(offset))
-        .and_then(|_| inner.read_exact(&mut buffer))
-        .map_err(FormatError::io("read", &path))?;
+    file.seek(SeekFrom::Start(offset))
+        .and_then(|_| file.read_exact(&mut buffer))
+        .map_err(FormatError::io("read", path))?;
     Ok(buffer)
 }

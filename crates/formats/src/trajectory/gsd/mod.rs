@@ -6,10 +6,13 @@
 //!   `log/particles/angular_velocity`.
 //! - `log/time` and the frame's other values are in 64 bits; all else in 32.
 //!
+//! [`GsdTrajectory`] writes, [`GsdReader`] reads.
+//!
 //! The container is our own: the published Rust library (`hoomd-gsd`) cannot cut a trajectory back to a
 //! checkpoint, goes on writing after a full disk, and panics on a damaged index.
 
 mod container;
+mod reader;
 
 use std::path::Path;
 
@@ -17,12 +20,31 @@ use self::container::{Chunk, Container, ENTRY_BYTES, Kind};
 use super::{Frame, TrajectoryFile};
 use crate::error::FormatError;
 
+pub use self::reader::GsdReader;
+
 /// Name of the file in a run's folder.
 pub const FILE: &str = "trajectory.gsd";
 
 /// Most arrays in a frame.
 const MOST_CHUNKS: u64 = 20;
 const STEP: &str = "configuration/step";
+const BOX: &str = "configuration/box";
+const NUMBER: &str = "particles/N";
+const POSITION: &str = "particles/position";
+const VELOCITY: &str = "particles/velocity";
+const IMAGE: &str = "particles/image";
+const ORIENTATION: &str = "particles/orientation";
+const ANGULAR_VELOCITY: &str = "log/particles/angular_velocity";
+const TYPES: &str = "particles/types";
+const TYPE_NUMBERS: &str = "particles/typeid";
+const DIAMETER: &str = "particles/diameter";
+/// What names of logged values begin with.
+const LOG: &str = "log/";
+/// The logged time.
+const TIME: &str = "time";
+/// Types of spheres by name: grains, and the wall's.
+const GRAIN: &str = "grain";
+const WALL: &str = "wall";
 
 /// A trajectory in GSD that is being written.
 #[derive(Debug)]
@@ -88,26 +110,21 @@ fn every_frame(frame: &Frame) -> Vec<Chunk> {
     let mut chunks = vec![
         chunk(STEP, Kind::U64, 1, frame.step.to_le_bytes()),
         chunk(
-            "configuration/box",
+            BOX,
             Kind::F32,
             1,
             singles([[frame.width, frame.width, frame.length, 0.0, 0.0, 0.0]]),
         ),
+        chunk(NUMBER, Kind::U32, 1, (frame.spheres() as u32).to_le_bytes()),
+        chunk(POSITION, Kind::F32, 3, singles(position)),
         chunk(
-            "particles/N",
-            Kind::U32,
-            1,
-            (frame.spheres() as u32).to_le_bytes(),
-        ),
-        chunk("particles/position", Kind::F32, 3, singles(position)),
-        chunk(
-            "particles/velocity",
+            VELOCITY,
             Kind::F32,
             3,
             singles(frame.velocity.iter().copied()),
         ),
         chunk(
-            "particles/image",
+            IMAGE,
             Kind::I32,
             3,
             image.flatten().flat_map(i32::to_le_bytes),
@@ -117,22 +134,16 @@ fn every_frame(frame: &Frame) -> Vec<Chunk> {
         let orientation = frame.for_spheres(&rotation.orientation, [1.0, 0.0, 0.0, 0.0]);
         let angular_velocity = frame.for_spheres(&rotation.angular_velocity, [0.0; 3]);
         chunks.extend([
-            chunk("particles/orientation", Kind::F32, 4, singles(orientation)),
-            chunk(
-                "log/particles/angular_velocity",
-                Kind::F32,
-                3,
-                singles(angular_velocity),
-            ),
+            chunk(ORIENTATION, Kind::F32, 4, singles(orientation)),
+            chunk(ANGULAR_VELOCITY, Kind::F32, 3, singles(angular_velocity)),
         ]);
     }
-    let logged = [("time", frame.time)]
-        .into_iter()
-        .chain(frame.values.iter().copied());
-    chunks.extend(
-        logged
-            .map(|(name, value)| chunk(&format!("log/{name}"), Kind::F64, 1, value.to_le_bytes())),
-    );
+    let values = frame.values.iter().map(|(name, value)| (&**name, *value));
+    let logged = [(TIME, frame.time)].into_iter().chain(values);
+    chunks
+        .extend(logged.map(|(name, value)| {
+            chunk(&format!("{LOG}{name}"), Kind::F64, 1, value.to_le_bytes())
+        }));
     chunks
 }
 
@@ -140,15 +151,10 @@ fn every_frame(frame: &Frame) -> Vec<Chunk> {
 fn first_frame(frame: &Frame) -> [Chunk; 3] {
     let kinds = (0..frame.spheres()).map(|sphere| u32::from(sphere >= frame.grains));
     [
-        chunk("particles/types", Kind::I8, 6, *b"grain\0wall\0\0"),
+        chunk(TYPES, Kind::I8, 6, *b"grain\0wall\0\0"),
+        chunk(TYPE_NUMBERS, Kind::U32, 1, kinds.flat_map(u32::to_le_bytes)),
         chunk(
-            "particles/typeid",
-            Kind::U32,
-            1,
-            kinds.flat_map(u32::to_le_bytes),
-        ),
-        chunk(
-            "particles/diameter",
+            DIAMETER,
             Kind::F32,
             1,
             singles(frame.diameter.iter().map(|&diameter| [diameter])),

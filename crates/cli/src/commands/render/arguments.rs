@@ -1,0 +1,260 @@
+//! What `peristalsis render` is asked for.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use peristalsis_run::{
+    Aspect, Eye, Field, FilmFormat, Look, Paper, Place, Span, WallLook, Window, Writing,
+};
+
+/// From where a tube is looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ViewName {
+    /// from the side
+    Side,
+    /// cut across, along the axis
+    Section,
+    /// flow rate of each wave against time
+    SpaceTime,
+}
+
+/// What the grains are coloured by.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum FieldName {
+    /// v_z/c: blue against the wave, white at rest, red along it
+    AxialVelocity,
+    /// |v|/c
+    Speed,
+    /// d_i
+    Diameter,
+    /// way along the wave since the first frame, in wavelengths
+    AxialDisplacement,
+    /// speed of the surface by rotation, in c
+    AngularVelocity,
+    /// (z - c t)/lambda
+    Phase,
+    /// spheres that a grain touches
+    Coordination,
+    /// mean normal stress by the forces of contacts; not from a trajectory
+    Pressure,
+}
+
+/// How the wall looks from the side.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum WallName {
+    /// cut open
+    Cut,
+    /// its front of glass
+    Glass,
+    /// not drawn
+    None,
+}
+
+/// What stands still.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum EyeName {
+    /// the tube
+    Tube,
+    /// the wave
+    Wave,
+}
+
+/// The page.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum PaperName {
+    /// white
+    Light,
+    /// nearly black
+    Dark,
+}
+
+/// Where instants are taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Origin {
+    /// frames that were written in GSD
+    Trajectory,
+    /// the saved state, and what follows it
+    State,
+    /// the run computed anew
+    Start,
+}
+
+/// What is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// picture
+    Png,
+    /// picture with its writing as vectors
+    Svg,
+    /// film that plays everywhere
+    Gif,
+    /// film as animated PNG, in every colour
+    Apng,
+    /// film; needs ffmpeg
+    Mp4,
+    /// film; needs ffmpeg
+    Webm,
+}
+
+impl Format {
+    pub(crate) fn film(self) -> Option<FilmFormat> {
+        match self {
+            Self::Png | Self::Svg => None,
+            Self::Gif => Some(FilmFormat::Gif),
+            Self::Apng => Some(FilmFormat::Apng),
+            Self::Mp4 => Some(FilmFormat::Mp4),
+            Self::Webm => Some(FilmFormat::Webm),
+        }
+    }
+
+    pub(crate) fn extension(self) -> &'static str {
+        match self.film() {
+            Some(film) => film.extension(),
+            None if self == Self::Svg => "svg",
+            None => "png",
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "A film shows a trajectory where there is one, or else the run computed anew; --from says otherwise. An \
+                  interrupted film leaves no file."
+)]
+pub(crate) struct RenderArguments {
+    /// Folder of a run, finished or stopped; only the picture is added to it.
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// From where the tube is looked at.
+    #[arg(long, value_name = "VIEW", value_enum, default_value = "side")]
+    pub(crate) view: ViewName,
+    /// What the grains are coloured by.
+    #[arg(
+        long,
+        value_name = "FIELD",
+        value_enum,
+        default_value = "axial-velocity",
+        alias = "color"
+    )]
+    pub(crate) colour: FieldName,
+    /// Values of the first and the last colour; those that suit the field unless given.
+    #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
+    pub(crate) range: Option<(f64, f64)>,
+    /// How the wall looks from the side.
+    #[arg(long, value_name = "LOOK", value_enum, default_value = "cut")]
+    pub(crate) wall: WallName,
+    /// What stands still in a film from the side.
+    #[arg(long, value_name = "WHAT", value_enum, default_value = "tube")]
+    pub(crate) eye: EyeName,
+    /// Where a section is, as z in d; the middle of the tube unless given.
+    #[arg(long, value_name = "Z", conflicts_with = "phase")]
+    pub(crate) place: Option<f64>,
+    /// Where a section is, as a phase (z - c t)/lambda: it moves with the wave.
+    #[arg(long, value_name = "PHASE", allow_negative_numbers = true)]
+    pub(crate) phase: Option<f64>,
+    /// Wavelengths that a side view shows at most.
+    #[arg(long, value_name = "N", default_value_t = 2.0)]
+    pub(crate) waves: f64,
+    /// Pixels across, 16 to 16384; 2400 for a picture and 960 for a film unless given, half of it for a section.
+    #[arg(long, value_name = "PIXELS")]
+    pub(crate) width: Option<u32>,
+    /// The page.
+    #[arg(long, value_name = "PAPER", value_enum, default_value = "light")]
+    pub(crate) paper: PaperName,
+    /// No time, scale, marks or colours around the picture.
+    #[arg(long)]
+    pub(crate) bare: bool,
+    /// Make a film, as GIF unless --format or the ending of --out says otherwise.
+    #[arg(long)]
+    pub(crate) film: bool,
+    /// What is made; by the ending of --out unless given.
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    pub(crate) format: Option<Format>,
+    /// Where the instants are from.
+    #[arg(long, value_name = "ORIGIN", value_enum)]
+    pub(crate) from: Option<Origin>,
+    /// GSD trajectory of this run; the default is DIR/trajectory.gsd.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trajectory: Option<PathBuf>,
+    /// Instant of a picture, in periods of the run or, as in 40t, in time; the last one unless given.
+    #[arg(long, value_name = "SPAN")]
+    pub(crate) at: Option<Span>,
+    /// Part of the run that a film shows, in periods or time: 20:25, 100:, :5t; all unless given.
+    #[arg(long, value_name = "FROM:TO")]
+    pub(crate) window: Option<Window>,
+    /// How long a film goes on from the saved state, in periods or time; two periods unless given.
+    #[arg(long, value_name = "SPAN", conflicts_with = "window")]
+    pub(crate) duration: Option<Span>,
+    /// Time between two frames of a film; every frame of a trajectory, or a twentieth of a period unless given.
+    #[arg(long, value_name = "SPAN")]
+    pub(crate) every: Option<Span>,
+    /// Frames a second.
+    #[arg(long, value_name = "N", default_value_t = 20.0)]
+    pub(crate) fps: f64,
+    /// File for the picture or film; the default is DIR/tube-VIEW with the format's ending.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print what was made as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+/// Pixels across of a picture and of a film.
+const WIDTHS: [u32; 2] = [2400, 960];
+
+impl RenderArguments {
+    /// How the tube is drawn; a section is at `middle` unless the arguments place it.
+    pub(crate) fn look(&self, is_film: bool, middle: f64) -> Look {
+        let aspect = match (self.view, self.phase) {
+            (ViewName::Section, Some(phase)) => Aspect::Section(Place::Phase(phase)),
+            (ViewName::Section, None) => Aspect::Section(Place::At(self.place.unwrap_or(middle))),
+            _ => Aspect::Side,
+        };
+        let usual = WIDTHS[usize::from(is_film)] / if aspect == Aspect::Side { 1 } else { 2 };
+        Look {
+            aspect,
+            field: match self.colour {
+                FieldName::AxialVelocity => Field::AxialVelocity,
+                FieldName::Speed => Field::Speed,
+                FieldName::Diameter => Field::Diameter,
+                FieldName::AxialDisplacement => Field::AxialDisplacement,
+                FieldName::AngularVelocity => Field::AngularVelocity,
+                FieldName::Phase => Field::Phase,
+                FieldName::Coordination => Field::Coordination,
+                FieldName::Pressure => Field::Pressure,
+            },
+            range: self.range,
+            wall: match self.wall {
+                WallName::Cut => WallLook::Cut,
+                WallName::Glass => WallLook::Glass,
+                WallName::None => WallLook::Hidden,
+            },
+            eye: match self.eye {
+                EyeName::Tube => Eye::Laboratory,
+                EyeName::Wave => Eye::Wave,
+            },
+            waves: self.waves,
+            width: self.width.unwrap_or(usual),
+            paper: match self.paper {
+                PaperName::Light => Paper::Light,
+                PaperName::Dark => Paper::Dark,
+            },
+            writing: if self.bare {
+                Writing::None
+            } else {
+                Writing::Full
+            },
+        }
+    }
+}
+
+fn range(text: &str) -> Result<(f64, f64), String> {
+    let number = |text: &str| text.trim().parse::<f64>().ok().filter(|it| it.is_finite());
+    text.split_once(':')
+        .and_then(|(from, to)| Some((number(from)?, number(to)?)))
+        .filter(|(from, to)| from < to)
+        .ok_or_else(|| "two numbers FROM:TO with FROM less than TO, such as -0.5:0.5".to_owned())
+}

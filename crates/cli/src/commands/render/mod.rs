@@ -1,0 +1,370 @@
+//! `peristalsis render`
+
+mod arguments;
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use peristalsis_formats::atomic::{self, Pending};
+use peristalsis_run::{
+    Drawing, Field, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, Portrait, Run,
+    RunError, RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window,
+    space_time,
+};
+use serde_json::json;
+
+pub(crate) use self::arguments::RenderArguments;
+use self::arguments::{Format, Origin, ViewName};
+use crate::commands::{print, say};
+use crate::failure::Failure;
+use crate::progress::Display;
+use crate::stop::Stop;
+
+/// How long a film goes on from a saved state, and the time between its frames where they are computed, in periods.
+const DURATION: Span = Span::Periods(2.0);
+const INTERVAL: Span = Span::Periods(0.05);
+
+/// Draws a picture or a film of a run.
+pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    let format = format(arguments)?;
+    check(arguments, format)?;
+    let (folder, run) = RunFolder::open(&arguments.folder)?;
+    let name = match arguments.view {
+        ViewName::Side => "tube-side",
+        ViewName::Section => "tube-section",
+        ViewName::SpaceTime => "space-time",
+    };
+    let out = arguments
+        .out
+        .clone()
+        .unwrap_or_else(|| folder.path().join(format!("{name}.{}", format.extension())));
+    if arguments.view == ViewName::SpaceTime {
+        return finish_picture(arguments, &out, format, &space_time(&run)?);
+    }
+    let middle = 0.5 * run.simulation().wall().lattice().length();
+    let look = arguments.look(format.film().is_some(), middle);
+    match format.film() {
+        Some(film) => make_film(arguments, run, look, film, &out, &stop),
+        None => {
+            let drawing = still(arguments, run, look, &stop)?;
+            match drawing {
+                Some(drawing) => finish_picture(arguments, &out, format, &drawing),
+                None => Ok(stopped(&stop)),
+            }
+        }
+    }
+}
+
+/// What is to be made.
+fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
+    use clap::ValueEnum;
+    let by_name =
+        |path: &PathBuf| {
+            let ending = path.extension().and_then(|ending| ending.to_str());
+            let known = ending.and_then(|ending| Format::from_str(ending, true).ok());
+            known.ok_or_else(|| usage(
+            format!("{}: no picture or film is known by this ending", path.display()),
+            "endings: .png, .svg, .gif, .apng, .mp4, .webm; or name the format with --format",
+        ))
+        };
+    let format = match (arguments.format, &arguments.out) {
+        (Some(format), _) => format,
+        (None, Some(out)) => by_name(out)?,
+        (None, None) if arguments.film => Format::Gif,
+        (None, None) => Format::Png,
+    };
+    if arguments.film && format.film().is_none() {
+        return Err(usage(
+            format!("{} is no format of films", format.extension()),
+            "films: gif, apng, and with ffmpeg mp4, webm",
+        ));
+    }
+    Ok(format)
+}
+
+/// Refuses what goes together with no picture.
+fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
+    let refused = |reason: &str, help: &str| Err(usage(reason.to_owned(), help));
+    let is_film = format.film().is_some();
+    if arguments.view == ViewName::SpaceTime && is_film {
+        return refused(
+            "the space-time diagram shows all times at once, and makes no film",
+            "take --view side or --view section for a film, or --format png or svg for the diagram",
+        );
+    }
+    if arguments.view != ViewName::Section
+        && (arguments.place.is_some() || arguments.phase.is_some())
+    {
+        return refused(
+            "--place and --phase are those of a section",
+            "add --view section",
+        );
+    }
+    if is_film && arguments.at.is_some() {
+        return refused(
+            "--at is the instant of a picture",
+            "a film has a --window FROM:TO",
+        );
+    }
+    let only_of_films =
+        arguments.window.is_some() || arguments.duration.is_some() || arguments.every.is_some();
+    if !is_film && only_of_films {
+        return refused(
+            "--window, --duration and --every are those of a film",
+            "add --film",
+        );
+    }
+    if arguments.trajectory.is_some() && !matches!(arguments.from, None | Some(Origin::Trajectory))
+    {
+        return refused(
+            "--trajectory names a file that --from then does not read",
+            "leave one of them out",
+        );
+    }
+    if arguments.duration.is_some() && arguments.from != Some(Origin::State) {
+        return refused(
+            "--duration is how long a film goes on from the saved state",
+            "add --from state, or take a --window FROM:TO of the run",
+        );
+    }
+    if arguments.window.is_some() && arguments.from == Some(Origin::State) {
+        return refused(
+            "--from state begins with the saved state",
+            "take --duration SPAN",
+        );
+    }
+    Ok(())
+}
+
+fn usage(message: String, help: &str) -> Failure {
+    Failure::Usage {
+        message,
+        help: Some(help.to_owned()),
+    }
+}
+
+/// The trajectory that is asked for or, where that is left open, lies in the run's folder.
+fn trajectory(arguments: &RenderArguments, field: Field) -> Result<Option<PathBuf>, Failure> {
+    let path = match (&arguments.trajectory, arguments.from) {
+        (Some(path), _) => path.clone(),
+        (None, Some(Origin::Trajectory)) => FrameSource::in_folder(&arguments.folder)?,
+        (None, None) if field != Field::Pressure => {
+            return Ok(FrameSource::in_folder(&arguments.folder).ok());
+        }
+        (None, _) => return Ok(None),
+    };
+    if field == Field::Pressure {
+        return Err(usage(
+            "a GSD trajectory holds no forces of contacts, of which pressure is made".to_owned(),
+            "take --from state or --from start, or another field",
+        ));
+    }
+    Ok(Some(path))
+}
+
+/// The picture of an instant; `None` where it was given up on the way.
+fn still(
+    arguments: &RenderArguments,
+    run: Run,
+    look: Look,
+    stop: &Stop,
+) -> Result<Option<Drawing>, Failure> {
+    let with_contacts = look.field == Field::Pressure;
+    // Where nothing is said the picture is of the saved state.
+    let is_of_state = matches!(arguments.from, Some(Origin::State))
+        || (arguments.from.is_none() && arguments.trajectory.is_none() && arguments.at.is_none());
+    if is_of_state {
+        if arguments.at.is_some() {
+            return Err(usage(
+                "the saved state is of one instant only".to_owned(),
+                "leave --at out, or take --from trajectory or --from start",
+            ));
+        }
+        let frame = FrameSource::now(&run, with_contacts);
+        return Ok(Some(draw(&run, look, &[frame])?));
+    }
+    if let Some(path) = trajectory(arguments, look.field)? {
+        let frames = FrameSource::nearest(&path, arguments.at)?;
+        return Ok(Some(draw(&run, look, &frames)?));
+    }
+    let run = Run::new(run.configuration().clone())?;
+    let first = FrameSource::now(&run, with_contacts);
+    let Some(at) = arguments.at else {
+        return Ok(Some(draw(&run, look, &[first])?));
+    };
+    let window = Window {
+        from: Some(at),
+        to: Some(at),
+    };
+    let plan = TrajectoryPlan::new(
+        &request(None, window),
+        run.configuration(),
+        0,
+        run.configuration().run.steps(),
+    )?;
+    let drawn = Run::new(run.configuration().clone())?;
+    let mut source = FrameSource::of_run(run, plan, with_contacts);
+    while !source.is_over() {
+        if stop.requested().is_some() {
+            return Ok(None);
+        }
+        if let Some(frame) = source.step()? {
+            return Ok(Some(draw(&drawn, look, &[first, frame])?));
+        }
+    }
+    Ok(None)
+}
+
+/// The picture of the last of some frames.
+fn draw(run: &Run, look: Look, frames: &[Frame]) -> Result<Drawing, RunError> {
+    let last = &frames[frames.len() - 1];
+    Portrait::new(run, look, frames)?.draw(last)
+}
+
+fn request(every: Option<Span>, window: Window) -> TrajectoryRequest {
+    TrajectoryRequest {
+        formats: vec![TrajectoryFormat::Gsd],
+        every,
+        window,
+    }
+}
+
+/// Where a film's frames come from.
+fn frames(arguments: &RenderArguments, run: Run, field: Field) -> Result<FrameSource, Failure> {
+    let with_contacts = field == Field::Pressure;
+    let window = arguments.window.unwrap_or(Window {
+        from: None,
+        to: None,
+    });
+    if let Some(path) = trajectory(arguments, field)? {
+        return Ok(FrameSource::of_file(&path, arguments.every, window)?);
+    }
+    let has_periods = run.configuration().drive.period().is_some();
+    let every = arguments.every.or(has_periods.then_some(INTERVAL));
+    let request = request(every, window);
+    if arguments.from == Some(Origin::State) {
+        let now = run.simulation().step();
+        let duration = arguments.duration.unwrap_or(DURATION);
+        let plan = TrajectoryPlan::onward(&request, run.configuration(), now, duration)?;
+        return Ok(FrameSource::of_run(run, plan, with_contacts));
+    }
+    let run = Run::new(run.configuration().clone())?;
+    let steps = run.configuration().run.steps();
+    let plan = TrajectoryPlan::new(&request, run.configuration(), 0, steps)?;
+    Ok(FrameSource::of_run(run, plan, with_contacts))
+}
+
+fn make_film(
+    arguments: &RenderArguments,
+    run: Run,
+    look: Look,
+    format: FilmFormat,
+    out: &Path,
+    stop: &Stop,
+) -> Result<ExitCode, Failure> {
+    let start = Instant::now();
+    let drawn = run.clone();
+    let mut source = frames(arguments, run, look.field)?;
+    let lost = source.lost_frames();
+    if lost > 0 {
+        say(&format!(
+            "the last {lost} of the trajectory's frames were cut short and are left out"
+        ));
+    }
+    let portrait = Portrait::new(&drawn, look, &source.samples()?)?;
+    let plan = FilmPlan {
+        frames: source.frames() as u32,
+        frames_per_second: arguments.fps,
+        paper: look.paper.srgb(),
+    };
+    let pending = Pending::create(out).map_err(RunError::from)?;
+    let mut film = format
+        .create(pending.partial_path(), plan)
+        .map_err(RunError::from)?;
+    // From here on there is something to clear away.
+    stop.keep_results();
+    let total = source.frames() as u64;
+    let mut display = Display::new(arguments.quiet, total);
+    let mut done = 0;
+    let mut size = (0, 0);
+    while !source.is_over() {
+        if stop.requested().is_some() {
+            display.finish();
+            say("the film was given up: nothing is left of it");
+            return Ok(stopped(stop));
+        }
+        let Some(frame) = source.step()? else {
+            continue;
+        };
+        let picture = picture(&portrait.draw(&frame)?)?;
+        film.add(&picture).map_err(RunError::from)?;
+        size = (picture.width(), picture.height());
+        done += 1;
+        display.show([done, total], start.elapsed(), || {
+            format!("frame {done} of {total}")
+        });
+    }
+    film.finish().map_err(RunError::from)?;
+    display.finish();
+    pending.commit().map_err(RunError::from)?;
+    report(arguments, out, size, total)
+}
+
+/// The pixels of a page.
+fn picture(drawing: &Drawing) -> Result<Picture, RunError> {
+    let raster = drawing.raster().map_err(|source| RunError::Figure {
+        figure: "the picture",
+        source,
+    })?;
+    Ok(Picture::new(raster.width, raster.height, raster.pixels))
+}
+
+fn finish_picture(
+    arguments: &RenderArguments,
+    out: &Path,
+    format: Format,
+    drawing: &Drawing,
+) -> Result<ExitCode, Failure> {
+    let figure_error = |source| RunError::Figure {
+        figure: "the picture",
+        source,
+    };
+    let bytes = match format {
+        Format::Svg => drawing.svg().into_bytes(),
+        _ => drawing.png().map_err(figure_error)?,
+    };
+    atomic::write(out, &bytes).map_err(RunError::from)?;
+    let [width, height] = drawing.size();
+    report(arguments, out, (width, height), 1)
+}
+
+fn report(
+    arguments: &RenderArguments,
+    out: &Path,
+    (width, height): (u32, u32),
+    frames: u64,
+) -> Result<ExitCode, Failure> {
+    let out = out.display();
+    let text = if arguments.json {
+        let made = json!({
+            "files": [out.to_string()],
+            "width": width,
+            "height": height,
+            "frames": frames,
+        });
+        format!("{made:#}\n")
+    } else if frames == 1 {
+        format!("{width} x {height} pixels: {out}\n")
+    } else {
+        format!("{frames} frames of {width} x {height} pixels: {out}\n")
+    };
+    print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The exit code of a signal that asked to stop.
+fn stopped(stop: &Stop) -> ExitCode {
+    stop.requested().map_or(ExitCode::SUCCESS, ExitCode::from)
+}

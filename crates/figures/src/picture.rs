@@ -1,0 +1,338 @@
+//! A picture of pixels with what is needed to read it: notes, marks, a scale and a bar of colours.
+
+use crate::colour::{BLACK, Colour, WHITE};
+use crate::colour_scale::ColourScale;
+use crate::drawing::{Anchor, Drawing, Layer, Point, Rectangle, Stroke};
+use crate::error::FigureError;
+use crate::style::{LABEL_SIZE, LEGEND_SIZE, TICK_SIZE, Width};
+use crate::text::{DIGIT_HEIGHT, Text};
+
+/// A picture of pixels, such as the tube as it looks, with notes above it, marks along its upper edge, and a scale and a
+/// bar of colours below. No pixel of the picture is hidden, and none is changed.
+#[derive(Clone, Copy, Debug)]
+pub struct PictureFigure<'a> {
+    /// What is seen, in markup: the title of the SVG, not drawn.
+    pub title: &'a str,
+    /// Red, green and blue, row by row from the top.
+    pub pixels: &'a [u8],
+    /// Pixels across.
+    pub columns: u32,
+    /// Notes above the picture in markup, the first at its left, the last at its right.
+    pub notes: &'a [&'a str],
+    /// Places along the upper edge.
+    pub marks: &'a [PlaceMark<'a>],
+    /// The length that is shown for scale.
+    pub scale_bar: Option<ScaleBar<'a>>,
+    /// What the colours mean.
+    pub colours: Option<&'a ColourScale>,
+    /// Colour of the page around.
+    pub paper: Paper,
+    /// Width on a journal's page, from which the size of type follows; a coarse picture has larger type.
+    pub width: Width,
+}
+
+/// A place along the upper edge of a picture, with a word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlaceMark<'a> {
+    /// Part of the width, from the left.
+    pub place: f64,
+    /// What is there, in markup.
+    pub label: &'a str,
+}
+
+/// A length in a picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleBar<'a> {
+    /// Part of the width.
+    pub length: f64,
+    /// How long that is, in markup.
+    pub label: &'a str,
+}
+
+/// The page that a picture is on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Paper {
+    /// White, written on in black.
+    #[default]
+    Light,
+    /// Nearly black, written on in white.
+    Dark,
+}
+
+impl Paper {
+    /// Its red, green and blue.
+    #[must_use]
+    pub fn srgb(self) -> [u8; 3] {
+        let Colour {
+            red, green, blue, ..
+        } = self.colour();
+        [red, green, blue]
+    }
+
+    fn colour(self) -> Colour {
+        match self {
+            Self::Light => WHITE,
+            Self::Dark => Colour::new(13, 15, 20),
+        }
+    }
+
+    fn ink(self) -> Colour {
+        match self {
+            Self::Light => BLACK,
+            Self::Dark => Colour::new(236, 236, 236),
+        }
+    }
+
+    fn faint_ink(self) -> Colour {
+        match self {
+            Self::Light => Colour::new(90, 90, 90),
+            Self::Dark => Colour::new(165, 168, 175),
+        }
+    }
+}
+
+impl Default for PictureFigure<'_> {
+    fn default() -> Self {
+        Self {
+            title: "",
+            pixels: &[],
+            columns: 0,
+            notes: &[],
+            marks: &[],
+            scale_bar: None,
+            colours: None,
+            paper: Paper::Light,
+            width: Width::DoubleColumn,
+        }
+    }
+}
+
+/// Fewest pixels in a point: letters of coarser pictures would not be read.
+const FEWEST_PIXELS_PER_POINT: f64 = 1.65;
+/// Space between the page's edge and what is written.
+const EDGE: f64 = 5.0;
+const BAR_HEIGHT: f64 = 5.5;
+/// Widest bar of colours, and its part of a narrow page.
+const BAR_WIDTH: f64 = 120.0;
+const BAR_PART: f64 = 0.3;
+/// Gap between the picture and what is below.
+const GAP_BELOW: f64 = 6.0;
+/// Half the width of a mark, and its height.
+const MARK: (f64, f64) = (2.2, 3.4);
+
+impl PictureFigure<'_> {
+    /// Lays the figure out, and paints it with the picture's own pixels.
+    ///
+    /// # Errors
+    /// If there are no pixels or no whole number of rows, or if the range of the colours is none.
+    pub fn draw(&self) -> Result<Drawing, FigureError> {
+        let columns = self.columns as usize;
+        let rows = self.pixels.len() / (3 * columns).max(1);
+        if self.pixels.is_empty() || 3 * rows * columns != self.pixels.len() {
+            return Err(FigureError::GridSize {
+                rows,
+                columns,
+                found: self.pixels.len() / 3,
+            });
+        }
+        if let Some(colours) = self.colours {
+            colours.check()?;
+        }
+        let scale = (columns as f64 / self.width.points()).max(FEWEST_PIXELS_PER_POINT);
+        // The picture begins with a whole pixel of the page.
+        let whole = |points: f64| (points * scale).ceil() / scale;
+        let above = whole(self.space_above());
+        let area = Rectangle {
+            left: 0.0,
+            top: above,
+            width: columns as f64 / scale,
+            height: rows as f64 / scale,
+        };
+        let height = area.bottom() + whole(self.space_below());
+        let mut drawing =
+            Drawing::new(area.width, height, self.title).on_paper(self.paper.colour(), scale);
+        drawing
+            .layer("picture", None)
+            .picture(area, columns, self.pixels);
+        self.draw_notes(drawing.layer("notes", None), area.width);
+        self.draw_marks(drawing.layer("marks", None), area);
+        self.draw_scale_bar(drawing.layer("scale", None), area);
+        if let Some(colours) = self.colours {
+            let width = BAR_WIDTH.min(BAR_PART * area.width);
+            let bar = Rectangle {
+                left: area.width - EDGE - 0.5 * TICK_SIZE - width,
+                top: area.bottom() + GAP_BELOW,
+                width,
+                height: BAR_HEIGHT,
+            };
+            colours.draw_bar_across(&mut drawing, bar, self.paper.ink());
+        }
+        Ok(drawing)
+    }
+
+    fn space_above(&self) -> f64 {
+        let notes = if self.notes.is_empty() {
+            0.0
+        } else {
+            EDGE + LABEL_SIZE + 2.0
+        };
+        let marks = if self.marks.is_empty() {
+            0.0
+        } else {
+            LEGEND_SIZE + MARK.1 + 2.0
+        };
+        notes + marks
+    }
+
+    fn space_below(&self) -> f64 {
+        if self.colours.is_some() || self.scale_bar.is_some() {
+            GAP_BELOW + BAR_HEIGHT + TICK_SIZE + EDGE + 2.0
+        } else {
+            0.0
+        }
+    }
+
+    /// Notes at equal distances: the first from the left edge, the last up to the right one.
+    fn draw_notes(&self, layer: &mut Layer, width: f64) {
+        let baseline = EDGE + DIGIT_HEIGHT * LABEL_SIZE;
+        let last = self.notes.len().saturating_sub(1);
+        let room = (width - 2.0 * EDGE) / self.notes.len().max(1) as f64;
+        for (index, note) in self.notes.iter().enumerate() {
+            let text = Text::fitted(note, LABEL_SIZE, room);
+            let (x, anchor) = match index {
+                0 => (EDGE, Anchor::Start),
+                _ if index == last => (width - EDGE, Anchor::End),
+                _ => (width * index as f64 / last as f64, Anchor::Middle),
+            };
+            layer.text((x, baseline), anchor, text, self.paper.ink());
+        }
+    }
+
+    /// Small triangles that point down to the picture; a word that would stand on another is left out.
+    fn draw_marks(&self, layer: &mut Layer, area: Rectangle) {
+        let ink = self.paper.faint_ink();
+        let tip = area.top - 0.5;
+        let mut taken: Vec<(f64, f64)> = Vec::new();
+        for mark in self.marks {
+            let x = area.width * mark.place;
+            let corners = [
+                (x, tip),
+                (x - MARK.0, tip - MARK.1),
+                (x + MARK.0, tip - MARK.1),
+            ];
+            layer.polygon(corners.map(|(x, y)| Point { x, y }), ink);
+            let text = Text::new(mark.label, LEGEND_SIZE);
+            let half = 0.5 * text.width;
+            let (left, right) = (x - half - 2.0, x + half + 2.0);
+            let is_free = taken.iter().all(|&(from, to)| right < from || left > to);
+            if is_free && left > 0.0 && right < area.width {
+                taken.push((left, right));
+                let baseline = tip - MARK.1 - 2.0;
+                layer.text((x, baseline), Anchor::Middle, text, ink);
+            }
+        }
+    }
+
+    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle) {
+        let Some(bar) = self.scale_bar else { return };
+        let ink = self.paper.ink();
+        let (left, middle) = (EDGE, area.bottom() + GAP_BELOW + 0.5 * BAR_HEIGHT);
+        let right = left + bar.length * area.width;
+        let pen = Stroke::solid(ink, 1.0);
+        let line = |from: (f64, f64), to: (f64, f64)| [from, to].map(|(x, y)| Point { x, y });
+        let end = 0.5 * BAR_HEIGHT;
+        layer.segments(
+            vec![
+                line((left, middle), (right, middle)),
+                line((left, middle - end), (left, middle + end)),
+                line((right, middle - end), (right, middle + end)),
+            ],
+            pen,
+        );
+        let baseline = middle + 0.5 * DIGIT_HEIGHT * LABEL_SIZE;
+        layer.text(
+            (right + 4.0, baseline),
+            Anchor::Start,
+            Text::new(bar.label, LABEL_SIZE),
+            ink,
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::drawing::Shape;
+
+    fn figure(pixels: &[u8]) -> PictureFigure<'_> {
+        PictureFigure {
+            pixels,
+            columns: 400,
+            notes: &["*t*/*T* = 1.5", "*J*/*J*_{max} = 0.9"],
+            marks: &[
+                PlaceMark {
+                    place: 0.3,
+                    label: "throat",
+                },
+                PlaceMark {
+                    place: 0.31,
+                    label: "crest",
+                },
+            ],
+            scale_bar: Some(ScaleBar {
+                length: 0.25,
+                label: "10 *d*",
+            }),
+            ..PictureFigure::default()
+        }
+    }
+
+    #[test]
+    fn the_picture_is_on_the_page_pixel_by_pixel() {
+        let pixels: Vec<u8> = (0..400 * 90_u32)
+            .flat_map(|it| [it as u8, (it / 400) as u8, 7])
+            .collect();
+        let drawing = figure(&pixels).draw().expect("drawable");
+        let raster = drawing.raster().expect("small");
+        assert_eq!(raster.width, 400);
+        let row = |number: usize| &raster.pixels[1200 * number..1200 * (number + 1)];
+        let first = (0..raster.height as usize).find(|&it| *row(it) == pixels[..1200]);
+        let first = first.expect("the first row is there");
+        assert!((0..90).all(|it| *row(first + it) == pixels[1200 * it..1200 * (it + 1)]));
+        // Notes above and a scale below leave ink.
+        let inked = |rows: std::ops::Range<usize>| {
+            rows.into_iter()
+                .any(|it| row(it).iter().any(|&byte| byte < 60))
+        };
+        assert!(inked(0..first) && inked(first + 90..raster.height as usize));
+        let png = drawing.png().expect("encodable");
+        assert!(png.starts_with(b"\x89PNG"));
+        assert!(drawing.svg().contains("data:image/png;base64,"));
+    }
+
+    #[test]
+    fn words_do_not_stand_on_each_other_and_the_scale_is_as_long_as_it_says() {
+        let pixels = vec![255; 1200 * 60];
+        let drawing = figure(&pixels).draw().expect("drawable");
+        let words = drawing
+            .shapes("marks")
+            .into_iter()
+            .filter(|it| matches!(it, Shape::Text { .. }));
+        assert_eq!(words.count(), 1);
+        let Shape::Segments { segments, .. } = drawing.shapes("scale")[0] else {
+            panic!("a scale is of segments");
+        };
+        let [from, to] = segments[0];
+        assert!((to.x - from.x - 0.25 * 400.0 / FEWEST_PIXELS_PER_POINT).abs() < 1e-9);
+    }
+
+    #[test]
+    fn pixels_that_are_no_picture_are_refused() {
+        for pixels in [&[][..], &[0; 1201]] {
+            assert!(matches!(
+                figure(pixels).draw(),
+                Err(FigureError::GridSize { .. })
+            ));
+        }
+    }
+}

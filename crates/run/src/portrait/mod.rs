@@ -1,0 +1,307 @@
+//! The tube as it looks: pictures of single instants, with what is needed to read them.
+
+mod field;
+mod scene;
+mod words;
+
+use peristalsis_engine::Wall;
+use peristalsis_figures::{ColourScale, Drawing, Paper, PictureFigure, Width};
+use peristalsis_formats::Frame;
+use peristalsis_render::{Colour, Picture, Scene, View, render};
+
+use crate::error::RunError;
+use crate::run::Run;
+
+use self::field::Coloured;
+pub use self::field::Field;
+pub(crate) use self::words::time_unit;
+
+/// From where a tube is looked at; the wave always runs to the right, or towards the eye.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Aspect {
+    /// From the side.
+    Side,
+    /// Along the axis: a slice of the tube at a place.
+    Section(Place),
+}
+
+/// Where a tube is cut across.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Place {
+    /// At z \[d\].
+    At(f64),
+    /// At a phase of the wave, (z - c t)/lambda with z along the wave, so that the cut moves with it.
+    Phase(f64),
+}
+
+/// How the wall looks from the side.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WallLook {
+    /// Cut open: the half before the axis is taken away.
+    #[default]
+    Cut,
+    /// Seen through: the half before the axis is of glass.
+    Glass,
+    /// Not drawn.
+    Hidden,
+}
+
+/// What stands still in a picture of several instants.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Eye {
+    /// The tube.
+    #[default]
+    Laboratory,
+    /// The wave: the eye moves with it.
+    Wave,
+}
+
+/// What is written around a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Writing {
+    /// Time, flow rate, crest and throat, scale and colours.
+    #[default]
+    Full,
+    /// Nothing: the bare picture.
+    None,
+}
+
+/// How a tube is drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Look {
+    /// From where.
+    pub aspect: Aspect,
+    /// What colours the grains.
+    pub field: Field,
+    /// Values of the first and the last colour; those that suit the field unless given.
+    pub range: Option<(f64, f64)>,
+    /// How the wall looks.
+    pub wall: WallLook,
+    /// What stands still.
+    pub eye: Eye,
+    /// Wavelengths that a side view shows at most.
+    pub waves: f64,
+    /// Pixels across.
+    pub width: u32,
+    /// The page.
+    pub paper: Paper,
+    /// What is written on it.
+    pub writing: Writing,
+}
+
+impl Default for Look {
+    fn default() -> Self {
+        Self {
+            aspect: Aspect::Side,
+            field: Field::AxialVelocity,
+            range: None,
+            wall: WallLook::Cut,
+            eye: Eye::Laboratory,
+            waves: 2.0,
+            width: 2400,
+            paper: Paper::Light,
+            writing: Writing::Full,
+        }
+    }
+}
+
+/// White round the tube \[d\].
+const MARGIN: f64 = 0.35;
+/// Thickness of a section, in diameters of wall spheres.
+const SECTION: f64 = 2.5;
+/// How far an elastic wall is expected to open, in radii of the tube at rest.
+const OPEN_RADII: f64 = 1.3;
+/// Fewest and most pixels across.
+const WIDTHS: std::ops::RangeInclusive<u32> = 16..=16_384;
+/// Most pixels down: what narrow views of wide tubes come to.
+const MOST_DOWN: f64 = 16_384.0;
+
+/// Draws the tube of one run, instant by instant, always from the same place, on the same scale and in the same colours.
+#[derive(Clone, Debug)]
+pub struct Portrait {
+    look: Look,
+    wall: Wall,
+    /// Unit of time in markup.
+    time_unit: &'static str,
+    /// Distance from the axis that is shown \[d\].
+    radius: f64,
+    /// Length of the tube that is shown \[d\].
+    shown: f64,
+    coloured: Coloured,
+    scale: ColourScale,
+}
+
+impl Portrait {
+    /// Prepares to draw a run. `samples` are instants, one at least, from which the room and the range of colours follow
+    /// that all pictures share; the first is what displacements are counted from.
+    ///
+    /// # Errors
+    /// [`RunError::Picture`] where the look is not possible for this run.
+    pub fn new(run: &Run, look: Look, samples: &[Frame]) -> Result<Self, RunError> {
+        let refused = |reason: String, help: &str| RunError::Picture {
+            reason,
+            help: help.to_owned(),
+        };
+        let [first, ..] = samples else {
+            return Err(refused(
+                "there is nothing to draw".to_owned(),
+                "take a longer window",
+            ));
+        };
+        if !WIDTHS.contains(&look.width) {
+            return Err(refused(
+                format!("a width of {} pixels is beyond reach", look.width),
+                "take 16 to 16384 pixels",
+            ));
+        }
+        if !(look.waves > 0.0 && look.waves.is_finite()) {
+            return Err(refused(
+                format!("a view of {} waves shows nothing", look.waves),
+                "take a positive number of waves",
+            ));
+        }
+        if let Some((least, largest)) = look.range
+            && !(least.is_finite() && largest.is_finite() && least < largest)
+        {
+            return Err(refused(
+                format!("the colours cannot go from {least} to {largest}"),
+                "take FROM:TO with FROM less than TO",
+            ));
+        }
+        let wall = run.simulation().wall().clone();
+        let lattice = wall.lattice();
+        if let Aspect::Section(Place::At(z)) = look.aspect
+            && !(0.0..lattice.length()).contains(&z)
+        {
+            return Err(refused(
+                format!("there is no place z = {z} in this tube"),
+                &format!("take 0 to {} d", lattice.length()),
+            ));
+        }
+        let shown = lattice.length().min(look.waves * lattice.wavelength);
+        let coloured = Coloured::new(look.field, run, samples)?;
+        let scale = coloured.scale(look.range);
+        let portrait = Self {
+            look,
+            time_unit: words::time_unit(run.configuration()),
+            radius: shown_radius(&wall, first, samples),
+            wall,
+            shown,
+            coloured,
+            scale,
+        };
+        let view = portrait.size();
+        if view.1 > MOST_DOWN {
+            return Err(refused(
+                format!("the picture would be {:.0} pixels high", view.1),
+                "take fewer pixels across, or show more waves",
+            ));
+        }
+        Ok(portrait)
+    }
+
+    /// Pixels a unit of length, and pixels down.
+    fn size(&self) -> (f64, f64) {
+        let width = f64::from(self.look.width);
+        let across = 2.0 * (self.radius + MARGIN);
+        match self.look.aspect {
+            Aspect::Side => {
+                let scale = width / (self.shown + 2.0 * MARGIN);
+                (scale, (across * scale).round().max(1.0))
+            }
+            Aspect::Section(_) => (width / across, width),
+        }
+    }
+
+    /// The picture of an instant, with what is written around it.
+    ///
+    /// # Errors
+    /// [`RunError::Render`], [`RunError::Figure`] where it is too large for memory; [`RunError::Picture`] where the frame
+    /// is not one of this run.
+    pub fn draw(&self, frame: &Frame) -> Result<Drawing, RunError> {
+        let picture = self.picture(frame)?;
+        let words = words::Words::of(self, frame);
+        let notes = words.notes();
+        let marks = words.marks();
+        let full = self.look.writing == Writing::Full;
+        PictureFigure {
+            title: &words.title,
+            pixels: picture.pixels(),
+            columns: picture.width(),
+            notes: if full { &notes } else { &[] },
+            marks: if full { &marks } else { &[] },
+            scale_bar: full.then(|| words.scale_bar()),
+            colours: full.then_some(&self.scale),
+            paper: self.look.paper,
+            width: match self.look.aspect {
+                Aspect::Side => Width::DoubleColumn,
+                Aspect::Section(_) => Width::SingleColumn,
+            },
+        }
+        .draw()
+        .map_err(|source| RunError::Figure {
+            figure: "the picture",
+            source,
+        })
+    }
+
+    /// The bare picture of an instant.
+    ///
+    /// # Errors
+    /// As [`Portrait::draw`].
+    pub fn picture(&self, frame: &Frame) -> Result<Picture, RunError> {
+        let length = self.wall.lattice().length();
+        if (frame.length - length).abs() > 1e-3 * length {
+            return Err(RunError::Picture {
+                reason: format!(
+                    "the frame is of a tube {} d long, and that of the run is {length} d",
+                    frame.length
+                ),
+                help: "name the trajectory of this run".to_owned(),
+            });
+        }
+        let values = self.coloured.values(frame, &self.wall)?;
+        let [red, green, blue] = self.look.paper.srgb();
+        let scene = Scene {
+            spheres: self.spheres(frame, &values),
+            background: Colour::srgb(red, green, blue),
+        };
+        Ok(render(&scene, &self.view())?)
+    }
+
+    /// The view of what [`Portrait::spheres`] places.
+    fn view(&self) -> View {
+        let (scale, height) = self.size();
+        let heading = self.wall.heading();
+        let (middle, right) = match self.look.aspect {
+            Aspect::Side => (0.5 * self.shown, heading * glam::DVec3::Z),
+            Aspect::Section(_) => (
+                0.5 * self.wall.lattice().length(),
+                -heading * glam::DVec3::Y,
+            ),
+        };
+        View {
+            middle: glam::DVec3::new(0.0, 0.0, middle),
+            right,
+            up: glam::DVec3::X,
+            width: self.look.width,
+            height: height as u32,
+            scale,
+        }
+    }
+}
+
+/// Distance from the axis that a picture shows: to the outer side of the widest wall.
+fn shown_radius(wall: &Wall, first: &Frame, samples: &[Frame]) -> f64 {
+    let half = 0.5 * wall.lattice().sphere_diameter;
+    match wall {
+        Wall::Prescribed(_) => wall.usual_radius() + half,
+        Wall::Elastic(elastic) => {
+            let spheres = samples
+                .iter()
+                .flat_map(|frame| frame.position.iter().skip(first.grains));
+            let widest = spheres.map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
+            half + widest.max(OPEN_RADII * elastic.parameters().mean_radius)
+        }
+    }
+}

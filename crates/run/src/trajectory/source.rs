@@ -1,0 +1,240 @@
+//! Frames one after the other, from a file or as they are computed.
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_formats::trajectory::gsd::GsdReader;
+use peristalsis_formats::{Frame, TrajectoryFormat};
+
+use super::frame::frame;
+use super::plan::{Span, TrajectoryPlan, Window};
+use crate::error::RunError;
+use crate::run::Run;
+
+/// Part of an interval by which a frame may come too early: times are rounded.
+const TOLERANCE: f64 = 1e-6;
+
+/// Frames of a run, one after the other.
+#[derive(Debug)]
+pub struct FrameSource {
+    from: From,
+    frames: usize,
+    next: usize,
+}
+
+#[derive(Debug)]
+enum From {
+    /// A trajectory, and which of its frames.
+    File(Box<GsdReader>, Vec<usize>),
+    /// A run that goes on.
+    Computed {
+        run: Box<Run>,
+        plan: TrajectoryPlan,
+        with_contacts: bool,
+    },
+}
+
+impl FrameSource {
+    /// The frames of a GSD trajectory within a window, at least `every` apart.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where it cannot be read; [`RunError::Trajectory`] where the window holds none of its frames.
+    pub fn of_file(path: &Path, every: Option<Span>, window: Window) -> Result<Self, RunError> {
+        let mut reader = GsdReader::open(path)?;
+        let mut chosen = Vec::new();
+        let mut due = f64::NEG_INFINITY;
+        let (mut first, mut last) = ([f64::NAN; 2], [f64::NAN; 2]);
+        for number in 0..reader.frames() {
+            let time = reader.value(number, "time")?.unwrap_or(f64::NAN);
+            let period = reader.value(number, "period")?.unwrap_or(f64::NAN);
+            if number == 0 {
+                first = [period, time];
+            }
+            last = [period, time];
+            let (place, interval) = match every {
+                Some(Span::Periods(every)) => (period, every),
+                Some(Span::Time(every)) => (time, every),
+                None => (0.0, 0.0),
+            };
+            let is_within =
+                |span: Option<Span>, missing: bool, is_on_side: fn(f64, f64) -> bool| {
+                    span.map_or(missing, |span| match span {
+                        Span::Periods(end) => is_on_side(period, end),
+                        Span::Time(end) => is_on_side(time, end),
+                    })
+                };
+            let slack = TOLERANCE * interval.max(1.0);
+            if is_within(window.from, true, |place, end| place >= end - TOLERANCE)
+                && is_within(window.to, true, |place, end| place <= end + TOLERANCE)
+                && place >= due - slack
+            {
+                chosen.push(number);
+                // On the grid of intervals, so that uneven frames do not drift.
+                due = if due.is_finite() {
+                    due.max(place - interval)
+                } else {
+                    place
+                } + interval;
+            }
+        }
+        if chosen.is_empty() {
+            return Err(RunError::Trajectory {
+                reason: format!(
+                    "the window holds none of the {} frames of {}, which go from t/T = {:.2} (t = {:.1}) to {:.2} ({:.1})",
+                    reader.frames(),
+                    path.display(),
+                    first[0],
+                    first[1],
+                    last[0],
+                    last[1],
+                ),
+                help: "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t",
+            });
+        }
+        Ok(Self {
+            frames: chosen.len(),
+            from: From::File(Box::new(reader), chosen),
+            next: 0,
+        })
+    }
+
+    /// The GSD trajectory in the folder of a run.
+    ///
+    /// # Errors
+    /// [`RunError::Trajectory`] where there is none.
+    pub fn in_folder(folder: &Path) -> Result<PathBuf, RunError> {
+        let path = folder.join(TrajectoryFormat::Gsd.file_name());
+        if path.is_file() {
+            return Ok(path);
+        }
+        Err(RunError::Trajectory {
+            reason: format!(
+                "{} holds no {}",
+                folder.display(),
+                TrajectoryFormat::Gsd.file_name()
+            ),
+            help: "write one with run --trajectory gsd, name one with --trajectory FILE, or let the frames be computed: \
+                   --from state, --from start",
+        })
+    }
+
+    /// The frames that a run goes through on a plan, which must not begin before its present state.
+    #[must_use]
+    pub fn of_run(run: Run, plan: TrajectoryPlan, with_contacts: bool) -> Self {
+        Self {
+            frames: plan.frames() as usize,
+            from: From::Computed {
+                run: Box::new(run),
+                plan,
+                with_contacts,
+            },
+            next: 0,
+        }
+    }
+
+    /// The frame of a GSD trajectory nearest to an instant, or the last where none is asked for; and the first.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where it cannot be read.
+    pub fn nearest(path: &Path, at: Option<Span>) -> Result<[Frame; 2], RunError> {
+        let mut reader = GsdReader::open(path)?;
+        let mut found = (reader.frames() - 1, f64::INFINITY);
+        if let Some(at) = at {
+            let (name, at) = match at {
+                Span::Periods(periods) => ("period", periods),
+                Span::Time(time) => ("time", time),
+            };
+            for number in 0..reader.frames() {
+                let away = reader
+                    .value(number, name)?
+                    .map_or(f64::INFINITY, |it| (it - at).abs());
+                if away < found.1 {
+                    found = (number, away);
+                }
+            }
+        }
+        Ok([reader.frame(0)?, reader.frame(found.0)?])
+    }
+
+    /// The present state of a run, as a frame.
+    #[must_use]
+    pub fn now(run: &Run, with_contacts: bool) -> Frame {
+        frame(run, with_contacts)
+    }
+
+    /// Frames in all.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.frames
+    }
+
+    /// Frames of the file that a kill or a full disk left in parts.
+    #[must_use]
+    pub fn lost_frames(&self) -> u64 {
+        match &self.from {
+            From::File(reader, _) => reader.lost_frames(),
+            From::Computed { .. } => 0,
+        }
+    }
+
+    /// Instants that tell what the frames will need of room and colours: the first, and the last where it is known.
+    ///
+    /// # Errors
+    /// As [`FrameSource::step`].
+    pub fn samples(&mut self) -> Result<Vec<Frame>, RunError> {
+        match &mut self.from {
+            From::File(reader, chosen) => {
+                let mut numbers = vec![
+                    chosen[0],
+                    chosen[chosen.len() / 2],
+                    chosen[chosen.len() - 1],
+                ];
+                numbers.dedup();
+                numbers
+                    .into_iter()
+                    .map(|number| Ok(reader.frame(number)?))
+                    .collect()
+            }
+            From::Computed {
+                run, with_contacts, ..
+            } => Ok(vec![frame(run, *with_contacts)]),
+        }
+    }
+
+    /// The next frame; or, where many steps lead to it, `None` on the way. Ask again until [`FrameSource::is_over`].
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the file cannot be read; [`RunError::Engine`] where the run diverges.
+    pub fn step(&mut self) -> Result<Option<Frame>, RunError> {
+        if self.is_over() {
+            return Ok(None);
+        }
+        let found = match &mut self.from {
+            From::File(reader, chosen) => Some(reader.frame(chosen[self.next])?),
+            From::Computed {
+                run,
+                plan,
+                with_contacts,
+            } => {
+                let step = run.simulation().step();
+                let is_new = plan.is_due(step) && plan.frames_through(step) as usize > self.next;
+                if is_new {
+                    Some(frame(run, *with_contacts))
+                } else {
+                    let steps = plan.steps_to_next(step);
+                    run.advance_at_most(
+                        steps.expect("not all frames have been made, so one is ahead"),
+                    )?;
+                    None
+                }
+            }
+        };
+        self.next += usize::from(found.is_some());
+        Ok(found)
+    }
+
+    /// Whether there are no more frames.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.next >= self.frames
+    }
+}

@@ -1,0 +1,17 @@
+#!/usr/bin/env bash
+# The films of the README (docs/images/*.gif), from runs of a few seconds.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+cargo build --locked --release --package peristalsis
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+peristalsis() { target/release/peristalsis "$@" --quiet; }
+
+peristalsis run --preset frictionless-fine --set drive.width=2.2 --set drive.strain_rate=0.1 --set tube.waves=4 \
+    --set run.periods=16 --trajectory gsd --trajectory-every 0.1 --out "$scratch/jamming"
+peristalsis render "$scratch/jamming" --film --width 560 --window 0:8 --fps 15 --out docs/images/jamming.gif
+
+peristalsis run --preset frictional --set run.periods=14 \
+    --trajectory gsd --trajectory-every 0.05 --trajectory-window 12:14 --out "$scratch/back-flow"
+peristalsis render "$scratch/back-flow" --film --width 560 --fps 12 --out docs/images/back-flow.gif
