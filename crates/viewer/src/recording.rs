@@ -101,9 +101,15 @@ impl Recording {
         let lattice = self.wall.lattice();
         let is_elastic = matches!(self.wall, Wall::Elastic(_));
         let slack = SLACK * course.unit_period();
-        let samples = self
+        let run = &self.configuration.run;
+        let interval = run.steps_per_sample as f64 * run.time_step + slack;
+        let taken = self
             .samples
             .partition_point(|sample| sample.time <= frame.time + slack);
+        // What went on from a saved state has frames long after the last sample.
+        let sample = self.samples[..taken]
+            .last()
+            .filter(|sample| frame.time - sample.time <= interval);
         let head = Head {
             number: Some(number),
             epoch: 0,
@@ -126,7 +132,7 @@ impl Recording {
             turning: frame.rotation.is_some(),
             driven: course.driven(clock),
             rows: Vec::new(),
-            sample: samples.checked_sub(1).map(|at| (&self.samples[at]).into()),
+            sample: sample.map(Into::into),
         };
         let spheres_per_ring = lattice.spheres_per_ring as usize;
         Ok(of_recording(&head, &frame, spheres_per_ring))
@@ -164,18 +170,21 @@ impl Recording {
         Ok(())
     }
 
+    /// The samples, and what frames logged that come after them.
     fn read_rows(&mut self) -> Result<Vec<Row>, ViewerError> {
-        let mut rows = Vec::new();
-        if self.samples.is_empty() {
-            for (number, &time) in self.times.iter().enumerate() {
-                let ratio = self.reader.value(number, "flow_rate_ratio")?;
-                let ratio = ratio.unwrap_or(f64::NAN);
-                rows.push(Course(&self.configuration).row(number, time, ratio, f64::NAN));
-            }
-        }
         let course = Course(&self.configuration);
         let samples = self.samples.iter().enumerate();
-        rows.extend(samples.map(|(number, sample)| course.row_of(number, sample)));
+        let mut rows: Vec<Row> = samples
+            .map(|(number, sample)| course.row_of(number, sample))
+            .collect();
+        let sampled = self.samples.last().map_or(-1.0, |sample| sample.time);
+        for (frame, &time) in self.times.iter().enumerate() {
+            if time > sampled + SLACK * course.unit_period() {
+                let ratio = self.reader.value(frame, "flow_rate_ratio")?;
+                let ratio = ratio.unwrap_or(f64::NAN);
+                rows.push(course.row(rows.len(), time, ratio, f64::NAN));
+            }
+        }
         Ok(rows)
     }
 
