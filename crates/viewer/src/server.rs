@@ -306,6 +306,10 @@ async fn attend(socket: WebSocket, shared: Shared) {
                     return;
                 }
                 let frame = Arc::clone(&frames.borrow_and_update());
+                // Nothing was computed yet, or nothing is: a recording.
+                if frame.is_empty() {
+                    continue;
+                }
                 Message::Binary(frame.to_vec().into())
             }
             notice = notices.recv() => match notice {
