@@ -42,6 +42,8 @@ function record(name, preset, every, ...settings) {
 async function open(browser, address, options) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
+  // Without a graphics card a picture may take seconds where others use the machine as well.
+  page.setDefaultTimeout(120000);
   const complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -61,7 +63,7 @@ async function open(browser, address, options) {
 }
 
 const measured = (page) => page.evaluate(() => window.viewer.measured);
-const until = (page, condition, argument) => page.waitForFunction(condition, argument, { timeout: 60000 });
+const until = (page, condition, argument) => page.waitForFunction(condition, argument);
 const shoot = async (page, name) => pictures && page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
 
 /** Which parts of the stage are edges, and strongly coloured; and a number that changes with the picture. */
@@ -174,6 +176,7 @@ async function checkPlaying(browser) {
   // To the end, where it stops, and from the begin again.
   await page.keyboard.press("Escape");
   await page.selectOption("#speed", "");
+  await page.fill("#time", "112");
   await page.click("#play");
   await until(page, () => window.viewer.measured.number === 120);
   await until(page, () => document.getElementById("play").ariaPressed === "false");

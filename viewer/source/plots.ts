@@ -18,8 +18,8 @@ export function drawFlow(chart: Chart, film: Film, averages: number[], tube: Wel
   for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
   chart.begin([0, last], [least, most], ["time / periods", "J / Jmax"], colours);
   chart.curve([[0, 0], [last, 0]], colours.faint, 1);
-  // Where there are frames.
-  if (recorded) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
+  // Where there are frames, unless everywhere.
+  if (recorded && recorded[recorded.length - 1] - recorded[0] < 0.98 * last) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
   chart.curve(record.map(([x, y]) => [x, y ?? NaN]), colours.wall, 1.5, [4, 3]);
   chart.curve(sparse(rows.map((row) => [row.clock, row.flow_rate_ratio ?? NaN])), colours.line, 1);
   chart.curve(sparse(rows.map((row, k) => [row.clock, averages[k]])), colours.accent, 2);

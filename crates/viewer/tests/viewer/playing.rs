@@ -90,7 +90,7 @@ fn frames_come_in_any_order_as_they_were_computed() {
         ),
     ] {
         let recorded = Recorded::new(preset, &settings);
-        let again = Run::new(recorded.configuration.clone()).unwrap();
+        let mut run = Run::new(recorded.configuration.clone()).unwrap();
         let samples = recorded.run.recorder().samples().to_vec();
         let served = recorded.serve();
         let (mut client, welcome) = served.client();
@@ -105,12 +105,13 @@ fn frames_come_in_any_order_as_they_were_computed() {
             rows[rows.len() - 1]["flow_rate_ratio"],
             last.flow_rate_ratio
         );
-        for number in [5, 0, 8, 5] {
-            let frame = frame(&mut client, number);
-            let mut run = again.clone();
-            let step = frame.head["step"].as_u64().unwrap();
-            while run.simulation().step() < step {
-                run.advance_at_most(step - run.simulation().step()).unwrap();
+        let mut frames = [5, 0, 8, 5].map(|number| frame(&mut client, number));
+        let step = |frame: &Frame| frame.head["step"].as_u64().unwrap();
+        frames.sort_by_key(step);
+        for frame in frames {
+            while run.simulation().step() < step(&frame) {
+                let ahead = step(&frame) - run.simulation().step();
+                run.advance_at_most(ahead).unwrap();
             }
             let bodies = run.simulation().bodies();
             assert_eq!(frame.head["grains"], bodies.grains);
@@ -147,7 +148,7 @@ fn frames_come_in_any_order_as_they_were_computed() {
                 }
             }
             let sample = &frame.head["sample"]["flow_rate_ratio"];
-            assert_eq!(sample.is_number(), number > 0, "{sample}");
+            assert_eq!(sample.is_number(), step(&frame) > 0, "{sample}");
         }
     }
 }
