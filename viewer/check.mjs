@@ -1,9 +1,10 @@
 // The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR]
 //
-// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, and asks nobody else for anything; tells the
-// time of a picture of 10,000 grains. CHROMIUM names another browser than Debian's.
+// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, and asks
+// nobody else for anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
+// Debian's.
 import assert from "node:assert/strict";
-import { spawn } from "node:child_process";
+import { spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -12,6 +13,7 @@ import { chromium } from "playwright-core";
 const [program, option, pictures] = process.argv.slice(2);
 assert(program && (option === undefined || option === "--pictures"), "usage: node check.mjs PROGRAM [--pictures DIR]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
+const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
 const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 2, isMobile: true, hasTouch: true };
 
@@ -25,10 +27,23 @@ async function serve(...view) {
   return { address, end: () => served.kill("SIGINT") };
 }
 
+/** A run with its trajectory. */
+function record(name, preset, every, ...settings) {
+  const folder = join(runs, name);
+  const set = settings.flatMap((it) => ["--set", it]);
+  const done = spawnSync(program, [
+    "run", "--preset", preset, ...set, "--trajectory", "gsd", "--trajectory-every", every, "--out", folder,
+  ]);
+  assert.equal(done.status, 0, String(done.stderr));
+  return folder;
+}
+
 /** A page of it; whatever it complains of is a failure. */
 async function open(browser, address, options) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
+  // Without a graphics card a picture may take seconds where others use the machine as well.
+  page.setDefaultTimeout(120000);
   const complaints = [];
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
@@ -44,11 +59,11 @@ async function open(browser, address, options) {
     assert.deepEqual(own, []);
     await context.close();
   };
-  return { page, close };
+  return { page, context, close };
 }
 
 const measured = (page) => page.evaluate(() => window.viewer.measured);
-const until = (page, condition, argument) => page.waitForFunction(condition, argument, { timeout: 60000 });
+const until = (page, condition, argument) => page.waitForFunction(condition, argument);
 const shoot = async (page, name) => pictures && page.screenshot({ path: join(pictures, `${name}.png`), fullPage: true });
 
 /** Which parts of the stage are edges, and strongly coloured; and a number that changes with the picture. */
@@ -104,10 +119,7 @@ async function checkDriving(browser) {
   await until(page, (clock) => window.viewer.measured.clock < clock, newest.clock / 2);
 
   // The grain in the middle, by hand.
-  const box = await page.locator("#stage").boundingBox();
-  for (let k = 0; k < 90 && !(await page.isVisible("#grain")); k++)
-    await page.mouse.click(box.x + box.width * (0.2 + 0.02 * (k % 30)), box.y + box.height * (0.46 + 0.03 * Math.floor(k / 30)));
-  assert(await page.isVisible("#grain"), "no grain can be picked");
+  await pick(page, (x, y) => page.mouse.click(x, y));
   await page.check("#marks");
   await shoot(page, "picked");
   await page.keyboard.press("Escape");
@@ -121,12 +133,130 @@ async function checkDriving(browser) {
   end();
 }
 
+const isTooWide = (page) => page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
+
+async function checkPlaying(browser) {
+  const folder = record("played", "frictional", "0.05", "tube.waves=2", "run.periods=6");
+  const { address, end } = await serve(folder);
+  const { page, close } = await open(browser, address, desk);
+  await until(page, () => window.viewer.measured.number === 0);
+  const still = await pixels(page);
+  assert(still.edges > 0.005 && still.edges < 0.5, `edges cover ${still.edges} of the stage`);
+  for (const driving of ["#save", "#again", "#live", "#onward", "#slider-friction"])
+    assert(!(await page.isVisible(driving)), `${driving} is shown beside a recording`);
+
+  // Played at its speed, and halted.
+  await page.click("#play");
+  const begin = Date.now();
+  await until(page, () => window.viewer.measured.number >= 40);
+  const seconds = (Date.now() - begin) / 1000;
+  assert(seconds > 1.5, `two periods at one a second took ${seconds} s`);
+  await page.click("#play");
+  const { number } = await measured(page);
+  assert.notEqual((await pixels(page)).sum, still.sum);
+  await page.waitForTimeout(300);
+  assert.equal((await measured(page)).number, number);
+
+  // Anywhere in time, by the slider, the keys and the chart.
+  await page.fill("#time", "100");
+  await until(page, () => window.viewer.measured.number === 100);
+  await until(page, () => document.getElementById("clock").textContent === "5.00 T");
+  await page.evaluate(() => document.activeElement.blur());
+  await page.keyboard.press("ArrowLeft");
+  await until(page, () => window.viewer.measured.number === 99);
+  const flow = await page.locator("#flow").boundingBox();
+  await page.mouse.click(flow.x + 38 + (flow.width - 50) / 2, flow.y + 60);
+  await until(page, () => Math.abs(window.viewer.measured.number - 60) <= 1);
+  const ratio = Number((await page.textContent("#ratio")).replace("−", "-"));
+  assert(Number.isFinite(ratio), "no flow rate beside the frame");
+  assert.match(await page.textContent("#numbers"), /bottleneck[0-9.]+ d/);
+  await pick(page, (x, y) => page.mouse.click(x, y));
+  await shoot(page, "recording");
+
+  // To the end, where it stops, and from the begin again.
+  await page.keyboard.press("Escape");
+  await page.selectOption("#speed", "");
+  await page.fill("#time", "112");
+  await page.click("#play");
+  await until(page, () => window.viewer.measured.number === 120);
+  await until(page, () => document.getElementById("play").ariaPressed === "false");
+  await page.click("#play");
+  await until(page, () => window.viewer.measured.number < 100);
+  await close();
+
+  const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" });
+  await dark.fill("#time", "80");
+  await until(dark, () => window.viewer.measured.number === 80);
+  await dark.waitForTimeout(1200);
+  await shoot(dark, "recording-dark");
+  await closeDark();
+  await checkTouch(browser, address);
+  end();
+}
+
+/** Tries places on the stage until a grain is picked. */
+async function pick(page, tap) {
+  const box = await page.locator("#stage").boundingBox();
+  for (let k = 0; k < 90 && !(await page.isVisible("#grain")); k++)
+    await tap(box.x + box.width * (0.2 + 0.02 * (k % 30)), box.y + box.height * (0.46 + 0.03 * Math.floor(k / 30)));
+  assert(await page.isVisible("#grain"), "no grain can be picked");
+}
+
+async function checkTouch(browser, address) {
+  const { page, context, close } = await open(browser, address, phone);
+  await until(page, () => window.viewer.measured.number === 0);
+  assert(!(await isTooWide(page)), "a recording is wider than a phone");
+  const fingers = await context.newCDPSession(page);
+  const box = await page.locator("#stage").boundingBox();
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  /** Moves fingers from places to places, relative to the middle of the stage. */
+  const move = async (from, to) => {
+    const at = (part) => from.map(([dx, dy], id) => ({
+      id, x: x + dx + part * (to[id][0] - dx), y: y + dy + part * (to[id][1] - dy),
+    }));
+    await fingers.send("Input.dispatchTouchEvent", { type: "touchStart", touchPoints: at(0) });
+    for (let k = 1; k <= 10; k++) {
+      await fingers.send("Input.dispatchTouchEvent", { type: "touchMove", touchPoints: at(k / 10) });
+      await page.waitForTimeout(20);
+    }
+    await fingers.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
+    await page.waitForTimeout(800);
+    return (await measured(page)).eye;
+  };
+  const before = (await measured(page)).eye;
+  const turned = await move([[-60, 0]], [[60, 20]]);
+  const angle = Math.acos(before.reduce((sum, it, k) => sum + it * turned[k], 0) / (Math.hypot(...before) * Math.hypot(...turned)));
+  assert(angle > 0.2, `one finger turned the tube by ${angle}`);
+  assert(Math.abs(Math.hypot(...turned) / Math.hypot(...before) - 1) < 0.02, "one finger came nearer");
+  const nearer = await move([[-30, 0], [30, 0]], [[-110, 0], [110, 0]]);
+  assert(Math.hypot(...nearer) < 0.8 * Math.hypot(...turned), `two fingers came from ${Math.hypot(...turned)} to ${Math.hypot(...nearer)}`);
+  assert(!(await page.isVisible("#grain")), "turning picked a grain");
+  assert.equal(await page.evaluate(() => window.visualViewport.scale), 1, "the page came nearer, not the tube");
+  const further = await move([[-110, 0], [110, 0]], [[-30, 0], [30, 0]]);
+  assert(Math.hypot(...further) > 1.2 * Math.hypot(...nearer));
+  await page.touchscreen.tap(...(await middle(page, "#home")));
+  await pick(page, (left, top) => page.touchscreen.tap(left, top));
+  await page.touchscreen.tap(...(await middle(page, "#play")));
+  await until(page, () => window.viewer.measured.number >= 20);
+  await page.touchscreen.tap(...(await middle(page, "#play")));
+  assert(!(await isTooWide(page)), "a recording is wider than a phone");
+  await page.waitForTimeout(1200);
+  await shoot(page, "recording-phone");
+  await close();
+}
+
+/** The middle of an element, scrolled to. */
+async function middle(page, selector) {
+  await page.locator(selector).scrollIntoViewIfNeeded();
+  const { x, y, width, height } = await page.locator(selector).boundingBox();
+  return [x + width / 2, y + height / 2];
+}
+
 async function checkLooks(browser) {
   const { address, end } = await serve("frictional", "--set", "tube.waves=2");
   for (const [name, options] of [["phone", phone], ["dark", { ...desk, colorScheme: "dark" }]]) {
     const { page, close } = await open(browser, address, options);
-    const wider = await page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
-    assert(!wider, `${name}: the page is wider than the window`);
+    assert(!(await isTooWide(page)), `${name}: the page is wider than the window`);
     assert((await pixels(page)).edges > 0.005);
     await page.locator("#play").click();
     await page.waitForTimeout(3000);
@@ -140,22 +270,54 @@ async function checkLooks(browser) {
   end();
 }
 
+/** Milliseconds from picture to picture for some seconds: median and 95th percentile. */
+async function intervals(page, seconds) {
+  const times = await page.evaluate(
+    (until) =>
+      new Promise((done) => {
+        const times = [];
+        let drawn = -1;
+        const begin = performance.now();
+        const look = (now) => {
+          const { pictures, number, frames } = window.viewer.measured;
+          if (pictures !== drawn) times.push(now);
+          drawn = pictures;
+          // A recording is over and over.
+          if (number !== null && number === frames - 1) document.getElementById("play").click();
+          if (now - begin < until) requestAnimationFrame(look);
+          else done(times);
+        };
+        requestAnimationFrame(look);
+      }),
+    1000 * seconds,
+  );
+  const gaps = times.slice(1).map((time, k) => time - times[k]).sort((a, b) => a - b);
+  assert(gaps.length > 3, `${gaps.length} pictures in ${seconds} s`);
+  return [0.5, 0.95].map((part) => gaps[Math.floor(part * (gaps.length - 1))]);
+}
+
+/** Says how long pictures of 10,000 grains take: of a run that is computed meanwhile, and of a recording. */
 async function measureMany(browser) {
-  // 493 waves of the preset, 20.25 grains each.
-  const { address, end } = await serve("frictionless", "--set", "tube.waves=494");
-  const { page, close } = await open(browser, address, desk);
-  await page.click("#play");
-  const before = await measured(page);
-  const seconds = 10;
-  await page.waitForTimeout(1000 * seconds);
-  const after = await measured(page);
-  const grains = await page.textContent("#facts");
-  const each = (1000 * seconds) / (after.pictures - before.pictures);
-  console.log(`${grains}: ${each.toFixed(0)} ms from picture to picture, ${after.drawing.toFixed(1)} ms of them the page's own work`);
-  assert(after.pictures > before.pictures, "no picture is drawn");
-  await shoot(page, "many");
-  await close();
-  end();
+  // 494 waves of the preset, 20.25 grains each.
+  const waves = "tube.waves=494";
+  const folder = record("many", "frictionless", "0.02", waves, "run.periods=1");
+  for (const [name, view] of [["many", ["frictionless", "--set", waves]], ["many-recorded", [folder]]]) {
+    const { address, end } = await serve(...view);
+    const { page, close } = await open(browser, address, desk);
+    await page.selectOption("#speed", "");
+    await page.click("#play");
+    await page.waitForTimeout(3000);
+    const [median, most] = await intervals(page, 10);
+    const { drawing } = await measured(page);
+    const facts = await page.textContent("#facts");
+    console.log(
+      `${facts}: from picture to picture ${median.toFixed(0)} ms (median), ${most.toFixed(0)} ms (95th percentile), ` +
+        `${drawing.toFixed(1)} ms of them the page's own drawing`,
+    );
+    await shoot(page, name);
+    await close();
+    end();
+  }
 }
 
 const browser = await chromium.launch({
@@ -164,10 +326,11 @@ const browser = await chromium.launch({
 });
 try {
   await checkDriving(browser);
+  await checkPlaying(browser);
   await checkLooks(browser);
   await measureMany(browser);
   console.log("the viewer works");
 } finally {
   await browser.close();
-  rmSync(saves, { recursive: true });
+  for (const folder of [saves, runs]) rmSync(folder, { recursive: true });
 }

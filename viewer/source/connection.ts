@@ -25,7 +25,7 @@ export class Connection {
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
       if (typeof data === "string") this.listener.told(JSON.parse(data) as Told);
-      else if (data.byteLength > 0) this.listener.frame(decode(data));
+      else this.listener.frame(decode(data));
     };
     socket.onclose = () => {
       this.listener.lost();

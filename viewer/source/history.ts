@@ -1,14 +1,30 @@
-import type { Frame, Row } from "./protocol";
+import { Film } from "./film";
+import type { Frame } from "./protocol";
 
 /** Bytes of frames that are kept. */
 const ROOM = 256e6;
 
-/** The frames kept for going back, and every row of the time series. */
-export class History {
-  frames: Frame[] = [];
-  rows: Row[] = [];
+/** The frames of a run that goes on: those kept for going back. */
+export class History extends Film {
+  private frames: Frame[] = [];
   private bytes = 0;
   private epoch = 0;
+
+  get count(): number {
+    return this.frames.length;
+  }
+
+  frame(index: number): Frame | undefined {
+    return this.frames[index];
+  }
+
+  clock(index: number): number {
+    return this.frames[index].clock;
+  }
+
+  get newest(): Frame | undefined {
+    return this.frames.at(-1);
+  }
 
   /** Takes a frame; what came after it on a course that was left is forgotten. */
   add(frame: Frame): void {
@@ -27,37 +43,6 @@ export class History {
     this.frames.push(frame);
     this.bytes += frame.bytes;
     if (this.bytes > ROOM) this.thin();
-  }
-
-  addRows(rows: Row[]): void {
-    const newest = this.rows.at(-1)?.number ?? -1;
-    this.rows.push(...rows.filter((row) => row.number > newest));
-  }
-
-  /** Number of the frame nearest to a time. */
-  at(clock: number): number {
-    let low = 0;
-    let high = this.frames.length - 1;
-    while (low < high) {
-      const middle = (low + high) >> 1;
-      if (this.frames[middle].clock < clock) low = middle + 1;
-      else high = middle;
-    }
-    if (low > 0 && clock - this.frames[low - 1].clock < this.frames[low].clock - clock) low -= 1;
-    return low;
-  }
-
-  /** J/Jmax averaged over the last period before each row. */
-  averages(): number[] {
-    const averages: number[] = [];
-    let first = 0;
-    let sum = 0;
-    this.rows.forEach((row, last) => {
-      sum += row.flow_rate_ratio ?? 0;
-      while (this.rows[first].clock < row.clock - 0.999) sum -= this.rows[first++].flow_rate_ratio ?? 0;
-      averages.push(sum / (last - first + 1));
-    });
-    return averages;
   }
 
   /** Lets every second frame of the older half go. */

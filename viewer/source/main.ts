@@ -1,9 +1,11 @@
 import { Chart, ink, written } from "./charts";
 import { Connection } from "./connection";
 import { colourAt, css, FIELDS, inWave, stops } from "./fields";
+import type { Film } from "./film";
 import { History } from "./history";
-import { drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
+import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
 import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
+import { Recording } from "./recording";
 import { Scene, WALLS, type WallLook } from "./scene";
 
 function element<T extends HTMLElement>(id: string): T {
@@ -26,17 +28,25 @@ const CHARTS = 120;
 class Page {
   private tube: Welcome | null = null;
   private scene: Scene | null = null;
-  private readonly history = new History();
+  /** What is shown: a run that goes on, or a recording. */
+  private film: Film = new History();
   private readonly connection: Connection;
   private readonly charts = {
     flow: new Chart(element<HTMLCanvasElement>("flow")),
     loop: new Chart(element<HTMLCanvasElement>("loop")),
     profile: new Chart(element<HTMLCanvasElement>("profile")),
   };
-  /** Number of the frame that is shown; the newest where it is null. */
+  /** Number of the frame that is shown; the newest where it is null, which no recording has. */
   private cursor: number | null = null;
   /** Whether kept frames are played from the cursor on. */
   private replaying = false;
+  /** Periods a second at which a recording is played; every frame for one picture where it is null. */
+  private speed: number | null = 1;
+  /** Time in periods to which a recording was played. */
+  private played = 0;
+  /** Frames from one picture to the next. */
+  private apart = 1;
+  private ticked = 0;
   private shownFrame: Frame | null = null;
   private riding = false;
   /** Whether the picked grain stays in the middle. */
@@ -62,22 +72,57 @@ class Page {
   private told(message: Told): void {
     if (message.type === "welcome") this.welcome(message);
     else if (message.type === "saved") this.saved(message);
+    else if (message.type === "missing") this.missing(message.number, message.message);
     else this.status(message.message, true);
   }
 
   private welcome(tube: Welcome): void {
     this.status("", false);
     this.tube = tube;
-    this.history.frames = [];
-    this.history.rows = [];
-    this.history.addRows(tube.rows);
+    this.open(tube);
     this.scene ??= new Scene(element<HTMLCanvasElement>("stage"), tube);
     document.title = `${tube.title} – peristalsis`;
     element("title").textContent = tube.title;
     element("facts").textContent =
-      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control`;
+      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${this.extent(tube)}`;
     this.makeSliders(tube);
     document.body.dataset.ready = "true";
+  }
+
+  /** The film of a run or of a recording, from its begin. */
+  private open({ recorded, rows }: Welcome): void {
+    if (recorded) {
+      this.film = new Recording(recorded.clocks, (number) => this.connection.send({ type: "frame", number }));
+      this.cursor = Math.min(this.cursor ?? 0, recorded.clocks.length - 1);
+      this.played = recorded.clocks[this.cursor];
+      element<HTMLInputElement>("time").max = String(Math.max(1, recorded.clocks.length - 1));
+    } else {
+      this.film = new History();
+    }
+    this.film.addRows(rows);
+    this.shownFrame = null;
+    this.chartsStale = true;
+    document.body.dataset.recorded = String(recorded !== null);
+    element("loop-name").textContent = this.isSteady() ? "The bottleneck" : "The loop, as it was driven";
+    if (!recorded) element("loop-name").textContent = "The loop: drive it there and back";
+  }
+
+  /** How much of it there is to see. */
+  private extent({ recorded }: Welcome): string {
+    if (!recorded) return "";
+    const lost = recorded.lost_frames > 0 ? ", cut short" : "";
+    return ` · ${recorded.clocks.length.toLocaleString("en")} recorded frames${lost}`;
+  }
+
+  /** Whether a recording has no loop, for nothing was driven. */
+  private isSteady(): boolean {
+    const [first] = this.film.rows;
+    return this.film instanceof Recording && this.film.rows.every((row) => row.amplitude === first.amplitude);
+  }
+
+  private missing(number: number, message: string): void {
+    if (this.film instanceof Recording) this.film.miss(number);
+    this.status(`frame ${number + 1} cannot be shown: ${message}`, true);
   }
 
   private makeSliders(tube: Welcome): void {
@@ -130,13 +175,17 @@ class Page {
   }
 
   private receive(frame: Frame): void {
-    const epoch = this.history.frames.at(-1)?.epoch;
-    this.history.add(frame);
+    this.chartsStale = true;
+    if (this.film instanceof Recording) {
+      this.film.add(frame);
+      return;
+    }
+    if (!(this.film instanceof History)) return;
+    const epoch = this.film.newest?.epoch;
+    this.film.add(frame);
     if (epoch !== undefined && epoch !== frame.epoch) this.cursor = null;
     if (this.cursor === null) this.shownFrame = null;
-    this.chartsStale = true;
-    const slider = element<HTMLInputElement>("time");
-    slider.max = String(Math.max(1, this.history.frames.length - 1));
+    element<HTMLInputElement>("time").max = String(Math.max(1, this.film.count - 1));
     element("play").setAttribute("aria-pressed", String(this.playing()));
   }
 
@@ -144,15 +193,21 @@ class Page {
     return this.cursor === null ? this.newest()?.playing === true : this.replaying;
   }
 
+  /** The last frame that was computed; none of a recording. */
   private newest(): Frame | undefined {
-    return this.history.frames.at(-1);
+    return this.film instanceof History ? this.film.newest : undefined;
   }
 
   private shown(): number {
-    return this.cursor ?? this.history.frames.length - 1;
+    return this.cursor ?? this.film.count - 1;
   }
 
+  /** To the end: the newest frame, or the last of a recording. */
   private goLive(): void {
+    if (this.film instanceof Recording) {
+      this.scrub(this.film.count - 1);
+      return;
+    }
     this.cursor = null;
     this.replaying = false;
     this.shownFrame = null;
@@ -160,20 +215,27 @@ class Page {
   }
 
   private play(): void {
-    if (this.cursor !== null) {
-      this.replaying = !this.replaying;
-    } else {
+    if (this.cursor === null) {
       this.connection.send({ type: "play", playing: !this.playing() });
+    } else {
+      if (this.film instanceof Recording && this.cursor >= this.film.count - 1) this.scrub(0);
+      this.replaying = !this.replaying;
     }
     this.chartsStale = true;
   }
 
   private scrub(index: number): void {
     if (this.newest()?.playing) this.connection.send({ type: "play", playing: false });
-    const last = this.history.frames.length - 1;
+    const last = this.film.count - 1;
     this.replaying = false;
-    this.cursor = index >= last ? null : Math.max(0, index);
-    this.shownFrame = null;
+    if (this.film instanceof Recording) {
+      this.cursor = Math.min(last, Math.max(0, index));
+      this.played = this.film.clock(this.cursor);
+      this.apart = 1;
+    } else {
+      this.cursor = index >= last ? null : Math.max(0, index);
+      this.shownFrame = null;
+    }
     this.chartsStale = true;
   }
 
@@ -182,17 +244,46 @@ class Page {
     else this.scrub(this.shown() + direction);
   }
 
+  /** Plays a recording on; time waits for a frame that has not come yet. */
+  private playOn(film: Recording, seconds: number): void {
+    if (this.replaying && this.cursor !== null) {
+      const last = film.count - 1;
+      const until = this.played + (this.speed ?? 0) * seconds;
+      const aim = this.speed === null ? Math.min(last, this.cursor + 1) : Math.max(this.cursor, film.until(until));
+      if (aim > this.cursor) this.apart = aim - this.cursor;
+      if (aim === this.cursor || film.frame(aim) || film.isLost(aim)) {
+        this.played = this.speed === null ? film.clock(aim) : until;
+        if (aim !== this.cursor) this.chartsStale = true;
+        this.cursor = aim;
+        if (aim === last) this.replaying = false;
+      } else {
+        film.want(aim, this.apart);
+        return;
+      }
+    }
+    film.want(this.shown(), this.replaying ? this.apart : 1);
+  }
+
+  /** Plays the kept frames of a run on, one for one picture. */
+  private replay(): void {
+    if (!this.replaying || this.cursor === null) return;
+    this.cursor += 1;
+    this.shownFrame = null;
+    this.chartsStale = true;
+    if (this.cursor >= this.film.count - 1) this.goLive();
+  }
+
   private tick(now: number): void {
     requestAnimationFrame((next) => this.tick(next));
-    const { scene, tube } = this;
-    if (!scene || !tube || this.history.frames.length === 0) return;
-    if (this.replaying && this.cursor !== null) {
-      this.cursor += 1;
-      this.shownFrame = null;
-      this.chartsStale = true;
-      if (this.cursor >= this.history.frames.length - 1) this.goLive();
-    }
-    const frame = this.history.frames[this.shown()];
+    const { scene, tube, film } = this;
+    const seconds = Math.min(0.25, (now - this.ticked) / 1000);
+    this.ticked = now;
+    if (!scene || !tube || film.count === 0) return;
+    if (film instanceof Recording) this.playOn(film, seconds);
+    else this.replay();
+    // A recorded frame that has not come leaves the one before in the picture.
+    const frame = film.frame(this.shown()) ?? this.shownFrame;
+    if (!frame) return;
     if (frame !== this.shownFrame) {
       if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
       else if (this.riding) scene.slide(this.ridden(frame, tube));
@@ -217,17 +308,19 @@ class Page {
 
   private drawCharts(frame: Frame, tube: Welcome, scene: Scene): void {
     const colours = ink();
-    const averages = this.history.averages();
-    drawFlow(this.charts.flow, this.history, averages, tube, frame.clock, colours);
-    drawLoop(this.charts.loop, this.history, averages, tube, frame.clock, colours);
-    drawProfile(this.charts.profile, this.history, this.shown(), tube, colours);
+    const { film } = this;
+    const averages = film.averages();
+    drawFlow(this.charts.flow, film, averages, tube, frame.clock, colours);
+    if (!this.isSteady()) drawLoop(this.charts.loop, film, averages, tube, frame.clock, colours);
+    else element("loop-figure").hidden = !drawBottleneck(this.charts.loop, film, frame.clock, colours);
+    drawProfile(this.charts.profile, film, this.shown(), tube, colours);
     const view = { middle: scene.middle, half: scene.halfShown() / 1.1 };
     drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[this.field], tube, scene.lightness, view, colours);
     this.showNumbers(frame, averages, tube, scene);
   }
 
   private showNumbers(frame: Frame, averages: number[], tube: Welcome, scene: Scene): void {
-    const at = this.history.rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
+    const at = this.film.rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
     element("ratio").textContent = at >= 0 ? averages[at].toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "") : "–";
     element("clock").textContent = `${frame.clock.toFixed(2)} T`;
     const slider = element<HTMLInputElement>("time");
@@ -235,9 +328,9 @@ class Page {
     slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} periods`);
     element("live").dataset.live = String(this.cursor === null);
     element("play").setAttribute("aria-pressed", String(this.playing()));
-    element("onward").hidden = this.cursor === null;
+    element("onward").hidden = this.cursor === null || this.film instanceof Recording;
     const speed = element<HTMLSelectElement>("speed");
-    const asked = (this.newest() ?? frame).speed;
+    const asked = this.film instanceof Recording ? this.speed : (this.newest() ?? frame).speed;
     if (speed !== document.activeElement) speed.value = asked === null ? "" : String(asked);
     element("pace").textContent = frame.pace ? `at most ${written(frame.pace, 2)} T/s` : "";
     this.showDriven((this.newest() ?? frame).driven);
@@ -250,7 +343,7 @@ class Page {
       ["escaped grains", sample ? String(sample.escaped) : "–"],
       ["energy unaccounted", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
     ];
-    fill(element("numbers"), facts);
+    fill(element("numbers"), this.film instanceof Recording ? [...driven(frame.driven), ...facts] : facts);
     this.showGrain(frame, tube, scene.picked);
   }
 
@@ -341,11 +434,10 @@ class Page {
     element("forth").onclick = () => this.step(1);
     element("live").onclick = () => this.goLive();
     element("home").onclick = () => this.scene?.home();
-    element("save").onclick = () => this.connection.send({ type: "save" });
+    element("save").onclick = () => this.tube?.recorded === null && this.connection.send({ type: "save" });
     element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
     element("onward").onclick = () => {
-      const frame = this.history.frames[this.shown()];
-      this.connection.send({ type: "seek", period: frame.clock });
+      this.connection.send({ type: "seek", period: this.film.clock(this.shown()) });
     };
     element("again").onclick = () => this.connection.send({ type: "seek", period: 0 });
     element("grain-close").onclick = () => this.pick(-1);
@@ -356,7 +448,8 @@ class Page {
     const speed = element<HTMLSelectElement>("speed");
     speed.onchange = () => {
       const periods_per_second = speed.value === "" ? null : Number(speed.value);
-      this.connection.send({ type: "speed", periods_per_second });
+      if (this.film instanceof Recording) this.speed = periods_per_second;
+      else this.connection.send({ type: "speed", periods_per_second });
     };
     const look = element<HTMLSelectElement>("look");
     look.onchange = () => {
@@ -378,7 +471,7 @@ class Page {
   private pick(grain: number): void {
     if (!this.scene) return;
     this.scene.picked = grain;
-    const frame = this.history.frames[this.shown()];
+    const frame = this.shownFrame;
     if (this.tube && frame) this.showGrain(frame, this.tube, grain);
     this.scene.touch();
     this.chartsStale = true;
@@ -387,9 +480,13 @@ class Page {
   private listenToPointers(): void {
     const stage = element("stage");
     let down: [number, number] | null = null;
-    stage.addEventListener("pointerdown", (event) => (down = [event.clientX, event.clientY]));
+    stage.addEventListener("pointerdown", (event) => {
+      // A second finger means to come nearer, and picks nothing.
+      down = event.isPrimary ? [event.clientX, event.clientY] : null;
+    });
     stage.addEventListener("pointerup", (event) => {
-      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 4 || !this.scene) return;
+      const room = event.pointerType === "touch" ? 10 : 4;
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > room || !this.scene) return;
       const box = stage.getBoundingClientRect();
       const x = (2 * (event.clientX - box.left)) / box.width - 1;
       const y = 1 - (2 * (event.clientY - box.top)) / box.height;
@@ -417,7 +514,7 @@ class Page {
     });
     dragged("flow", (part) => {
       const { flow } = this.charts;
-      this.scrub(this.history.at(flow.x.value(part * flow.canvas.clientWidth)));
+      this.scrub(this.film.at(flow.x.value(part * flow.canvas.clientWidth)));
     });
   }
 
@@ -453,16 +550,32 @@ class Page {
   }
 
   /** What tests look at. */
-  get measured(): { frames: number; pictures: number; drawing: number; clock: number; ratio: number | null } {
-    const frame = this.newest();
+  get measured() {
+    const frame = this.newest() ?? this.shownFrame;
     return {
-      frames: this.history.frames.length,
+      frames: this.film.count,
       pictures: this.scene?.pictures ?? 0,
       drawing: this.scene?.frameTime ?? 0,
       clock: frame?.clock ?? 0,
+      number: frame?.number ?? null,
       ratio: frame?.sample?.flow_rate_ratio ?? null,
+      eye: this.scene?.eye ?? [],
     };
   }
+}
+
+/** What drove a recorded run, in words. */
+function driven(values: Driven): [string, string][] {
+  const of = (key: Steered, name: string, unit: string): [string, string][] => {
+    const value = values[key];
+    return value === null ? [] : [[name, written(value) + unit]];
+  };
+  return [
+    ...of("width", "width w", " d"),
+    ...of("force_amplitude", "force amplitude f", ""),
+    ...of("strain_rate", "strain rate ε̇", ""),
+    ...of("friction", "friction μ", ""),
+  ];
 }
 
 function fill(list: HTMLElement, facts: [string, string][]): void {

@@ -1,6 +1,6 @@
 import { type Chart, type Ink } from "./charts";
-import { colourAt, css, inWave, stops, type Field } from "./fields";
-import type { History } from "./history";
+import { colourAt, inWave, stops, type Field } from "./fields";
+import type { Film } from "./film";
 import type { Frame, Welcome } from "./protocol";
 
 /** Frames that a profile is averaged over. */
@@ -8,14 +8,18 @@ const AVERAGED = 16;
 const BINS = 24;
 
 /** J/Jmax against time, with the time that is shown. */
-export function drawFlow(chart: Chart, history: History, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
-  const { rows } = history;
+export function drawFlow(chart: Chart, film: Film, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
+  const { rows } = film;
   const record = tube.record;
-  const last = Math.max(rows.at(-1)?.clock ?? 0, record.at(-1)?.[0] ?? 0, 2);
+  const recorded = tube.recorded?.clocks;
+  const end = Math.max(rows.at(-1)?.clock ?? 0, record.at(-1)?.[0] ?? 0, recorded?.at(-1) ?? 0);
+  const last = recorded ? end : Math.max(end, 2);
   let [least, most] = [-0.05, 1.05];
   for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
   chart.begin([0, last], [least, most], ["time / periods", "J / Jmax"], colours);
   chart.curve([[0, 0], [last, 0]], colours.faint, 1);
+  // Where there are frames, unless everywhere.
+  if (recorded && recorded[recorded.length - 1] - recorded[0] < 0.98 * last) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
   chart.curve(record.map(([x, y]) => [x, y ?? NaN]), colours.wall, 1.5, [4, 3]);
   chart.curve(sparse(rows.map((row) => [row.clock, row.flow_rate_ratio ?? NaN])), colours.line, 1);
   chart.curve(sparse(rows.map((row, k) => [row.clock, averages[k]])), colours.accent, 2);
@@ -30,8 +34,8 @@ function sparse(points: [number, number][]): [number, number][] {
 }
 
 /** J/Jmax against width or force: the hysteresis loop as it is driven. */
-export function drawLoop(chart: Chart, history: History, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
-  const rows = history.rows;
+export function drawLoop(chart: Chart, film: Film, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
+  const rows = film.rows;
   const range = (tube.control === "strain" ? tube.ranges.width : tube.ranges.force_amplitude) ?? [0, 1];
   let [least, most] = [-0.05, 1.05];
   for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
@@ -66,9 +70,25 @@ export function drawLoop(chart: Chart, history: History, averages: number[], tub
   if (at >= 0) chart.dot(rows[at].amplitude, averages[at], 5, colours.accent, colours.back);
 }
 
+/** The bottleneck against time, with the time that is shown; false where it is not known. */
+export function drawBottleneck(chart: Chart, film: Film, clock: number, colours: Ink): boolean {
+  const points = film.rows.map((row): [number, number] => [row.clock, row.bottleneck ?? NaN]);
+  const known = points.map(([, bottleneck]) => bottleneck).filter(Number.isFinite);
+  if (known.length === 0) return false;
+  const [least, most] = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
+  const room = Math.max(0.15 * (most - least), 0.05);
+  const last = points[points.length - 1][0];
+  chart.begin([0, last], [least - room, most + room], ["time / periods", "narrowest place / d"], colours);
+  chart.curve(sparse(points), colours.accent, 2);
+  chart.upright(Math.min(clock, last), colours.text);
+  const at = points.findLastIndex(([time]) => time <= clock + 1e-9);
+  if (at >= 0) chart.dot(...points[at], 4, colours.accent, colours.back);
+  return true;
+}
+
 /** Density and axial velocity in the frame of the wave, under the outline of the tube. */
-export function drawProfile(chart: Chart, history: History, shown: number, tube: Welcome, colours: Ink): void {
-  const frames = history.frames.slice(Math.max(0, shown - AVERAGED + 1), shown + 1);
+export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
+  const frames = film.recent(shown, AVERAGED);
   const number = new Float64Array(BINS);
   const velocity = new Float64Array(BINS);
   for (const frame of frames) {
@@ -83,7 +103,7 @@ export function drawProfile(chart: Chart, history: History, shown: number, tube:
   chart.begin([0, 1], [least, 1.3], ["place in the wave (z − ct)/λ", "⟨v⟩/c and density"], colours);
   const middle = (bin: number) => (bin + 0.5) / BINS;
   // The tube's outline above and below the middle of the chart.
-  const radius = outline(history.frames[shown], tube);
+  const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
   const centre = 0.5 * (least + 1.3);
   const scale = (0.46 * (1.3 - least)) / Math.max(...radius, 1);
   const { context } = chart;
@@ -153,11 +173,22 @@ export function drawMap(
   const place = (z: number) => (tube.heading > 0 ? z : tube.length - z) / tube.length;
   const reach = 1.15 * tube.reach;
   const thick = Math.max(1, (width / tube.length) * 0.8);
+  // Ten thousand rectangles take a canvas longer than their pixels take to be set one by one.
+  const image = context.createImageData(canvas.width, canvas.height);
+  const pixels = new Uint32Array(image.data.buffer);
+  const inks = Uint32Array.from({ length: 256 }, (_, k) => pixel(colourAt(scale, k / 255)));
+  const unknown = pixel(colourAt(scale, NaN));
+  const across = Math.max(1, Math.round(density * thick));
+  const down = Math.max(2, Math.round(density * 2.5));
   for (let i = 0; i < frame.grains; i++) {
-    context.fillStyle = css(colourAt(scale, values.diverging ? 0.5 + 0.5 * tones[i] : tones[i]));
-    const y = 0.5 * height * (1 - frame.position[3 * i] / reach);
-    context.fillRect(place(frame.position[3 * i + 2]) * width - 0.5 * thick, y - 1.25, thick, 2.5);
+    const tone = values.diverging ? 0.5 + 0.5 * tones[i] : tones[i];
+    const colour = Number.isNaN(tone) ? unknown : inks[Math.round(255 * Math.min(1, Math.max(0, tone)))];
+    const left = Math.round(place(frame.position[3 * i + 2]) * image.width - 0.5 * across);
+    const top = Math.round(0.5 * image.height * (1 - frame.position[3 * i] / reach) - 0.5 * down);
+    for (let y = Math.max(0, top); y < Math.min(image.height, top + down); y++)
+      pixels.fill(colour, y * image.width + Math.max(0, left), y * image.width + Math.max(0, Math.min(image.width, left + across)));
   }
+  context.putImageData(image, 0, 0);
   const half = Math.min(0.5, view.half / tube.length);
   const centre = place(view.middle);
   context.strokeStyle = colours.text;
@@ -166,4 +197,9 @@ export function drawMap(
     for (const turn of [-1, 0, 1])
       context.strokeRect((centre - half + turn) * width, 0.75, 2 * half * width, height - 1.5);
   }
+}
+
+/** A colour as a canvas keeps it: red first in memory. */
+function pixel([red, green, blue]: [number, number, number]): number {
+  return ((255 << 24) | (blue << 16) | (green << 8) | red) >>> 0;
 }

@@ -10,7 +10,7 @@ export interface Row {
   /** Time in periods of the drive's own strain rate. */
   clock: number;
   flow_rate_ratio: number | null;
-  bottleneck: number;
+  bottleneck: number | null;
   /** Width or force amplitude. */
   amplitude: number;
   strain_rate: number;
@@ -37,6 +37,8 @@ export interface Welcome {
   record: [number, number | null][];
   rows: Row[];
   end: number;
+  /** The frames of a recording; null where the run is computed. */
+  recorded: { clocks: number[]; lost_frames: number } | null;
 }
 
 export interface Saved {
@@ -52,9 +54,18 @@ export interface Problem {
   message: string;
 }
 
-export type Told = Welcome | Saved | Problem;
+/** A frame of a recording that cannot be had. */
+export interface Missing {
+  type: "missing";
+  number: number;
+  message: string;
+}
+
+export type Told = Welcome | Saved | Problem | Missing;
 
 export interface Head {
+  /** Number of a recorded frame. */
+  number: number | null;
   epoch: number;
   playing: boolean;
   ended: boolean;
@@ -104,7 +115,8 @@ export type Command =
   | { type: "step" }
   | { type: "steer"; parameter: Steered; value: number }
   | { type: "seek"; period: number }
-  | { type: "save" };
+  | { type: "save" }
+  | { type: "frame"; number: number };
 
 /** Takes a frame apart; its arrays look into the bytes, nothing is copied. */
 export function decode(bytes: ArrayBuffer): Frame {

@@ -113,6 +113,11 @@ export class Scene {
     this.touch();
   }
 
+  /** From where the tube is looked at. */
+  get eye(): number[] {
+    return this.camera.position.toArray();
+  }
+
   slide(distance: number): void {
     const { length, heading } = this.tube;
     this.middle = (((this.middle + heading * distance) % length) + length) % length;
@@ -242,15 +247,21 @@ export class Scene {
     const half = Math.min(oblique * this.halfShown(), 0.5 * tube.length);
     let number = 0;
     const put = (x: number, y: number, z: number) => {
-      wallSpheres.centre.array.set([x, y, z], 3 * number);
+      const { array } = wallSpheres.centre;
+      array[3 * number] = x;
+      array[3 * number + 1] = y;
+      array[3 * number + 2] = z;
       wallSpheres.radius.array[number] = 0.5 * tube.wall_sphere_diameter;
       number += 1;
     };
     wallSpheres.reserve(tube.spheres_per_ring * rings);
     if (frame.wall_spheres > 0) {
       wallSpheres.reserve(frame.wall_spheres);
-      for (let i = 0; i < frame.wall_spheres; i++)
-        put(frame.wall[3 * i], frame.wall[3 * i + 1], frame.wall[3 * i + 2]);
+      for (let i = 0; i < frame.wall_spheres; i++) {
+        const z = frame.wall[3 * i + 2];
+        const away = z - this.middle - tube.length * Math.round((z - this.middle) / tube.length);
+        if (Math.abs(away) <= half) put(frame.wall[3 * i], frame.wall[3 * i + 1], z);
+      }
     } else {
       const first = Math.ceil((this.middle - half) / spacing);
       const last = Math.min(first + rings - 1, Math.floor((this.middle + half) / spacing));

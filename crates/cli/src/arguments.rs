@@ -177,13 +177,17 @@ pub(crate) struct TrajectoryArguments {
     after_help = "Prints an address on this machine that only you know; open it in a browser, through `ssh -L PORT:localhost:PORT` from afar. Ctrl-C ends."
 )]
 pub(crate) struct ViewArguments {
-    /// Folder of a run, configuration in TOML, or name of a preset.
+    /// Folder of a run (its trajectory.gsd is played, if it holds one), trajectory (.gsd), configuration in TOML, or name
+    /// of a preset.
     #[arg(value_name = "DIR|FILE|PRESET", default_value = "frictionless")]
     pub(crate) source: PathBuf,
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Begin with the saved state of a folder, not with its start.
+    /// Compute the run of a folder anew, though it holds a trajectory.
+    #[arg(long)]
+    pub(crate) live: bool,
+    /// Compute, beginning with the saved state of a folder, not with its start.
     #[arg(long, conflicts_with = "overrides")]
     pub(crate) from_state: bool,
     /// Port; a free one unless given.

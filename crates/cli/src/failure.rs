@@ -94,7 +94,10 @@ impl Failure {
             Self::Configuration(_)
             | Self::Read { .. }
             | Self::Usage { .. }
-            | Self::DoesNotFit { .. } => BAD_INPUT,
+            | Self::DoesNotFit { .. }
+            | Self::Viewer(ViewerError::Trajectory(_) | ViewerError::ForeignTrajectory { .. }) => {
+                BAD_INPUT
+            }
             Self::Run(error) => match error {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }

@@ -13,6 +13,7 @@
 //! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
 
 use peristalsis_engine::{Bodies, Wall};
+use peristalsis_formats::Frame;
 use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use serde::Serialize;
@@ -22,6 +23,8 @@ use crate::welcome::Driven;
 /// What a frame says beside where the spheres are.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Head {
+    /// Number of a recorded frame, counted from 0; null where the run is computed.
+    pub(crate) number: Option<usize>,
     /// Grows when the run jumps back, so that what was drawn after that time is void.
     pub(crate) epoch: u64,
     pub(crate) playing: bool,
@@ -89,13 +92,8 @@ impl From<&Sample> for Shown {
     }
 }
 
-/// Puts a frame together.
-pub(crate) fn encode(head: &Head, run: &Run) -> Vec<u8> {
-    let mut json = serde_json::to_vec(head).expect("a head holds numbers and words only");
-    json.resize(json.len().next_multiple_of(4), b' ');
-    let mut bytes = Vec::with_capacity(4 + json.len() + 44 * head.grains);
-    bytes.extend((json.len() as u32).to_le_bytes());
-    bytes.extend(json);
+/// The frame of a run as it is.
+pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
     let Bodies {
         grains,
         position,
@@ -104,30 +102,72 @@ pub(crate) fn encode(head: &Head, run: &Run) -> Vec<u8> {
         angular_velocity,
         ..
     } = run.simulation().bodies();
-    let mut number = |value: f64| bytes.extend((value as f32).to_le_bytes());
-    for vectors in [position, velocity] {
-        for vector in &vectors[..*grains] {
-            vector.to_array().into_iter().for_each(&mut number);
-        }
-    }
-    diameter[..*grains].iter().copied().for_each(&mut number);
-    if head.turning {
-        for vector in &angular_velocity[..*grains] {
-            vector.to_array().into_iter().for_each(&mut number);
-        }
-    }
-    match run.simulation().wall() {
-        Wall::Elastic(_) => {
-            for vector in &position[*grains..] {
-                vector.to_array().into_iter().for_each(&mut number);
-            }
-        }
-        Wall::Prescribed(wall) => {
-            for ring in 0..head.rings {
+    let [of_grains, of_wall] = [&position[..*grains], &position[*grains..]];
+    let spin = if head.turning {
+        &angular_velocity[..*grains]
+    } else {
+        &[]
+    };
+    let rings: Vec<f64> = match run.simulation().wall() {
+        Wall::Elastic(_) => Vec::new(),
+        Wall::Prescribed(wall) => (0..head.rings)
+            .map(|ring| {
                 let z = wall.lattice().axial_position(ring as u32);
-                number(wall.wave().radius(z, wall.cycles()));
-            }
-        }
+                wall.wave().radius(z, wall.cycles())
+            })
+            .collect(),
+    };
+    encode(
+        head,
+        [
+            &flat(of_grains),
+            &flat(&velocity[..*grains]),
+            &diameter[..*grains],
+            &flat(spin),
+            &flat(of_wall),
+            &rings,
+        ],
+    )
+}
+
+/// A recorded frame; a prescribed wall has so many spheres a ring.
+pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) -> Vec<u8> {
+    let grains = frame.grains;
+    let spin = frame.rotation.as_ref();
+    let rings: Vec<f64> = (0..head.rings)
+        .map(|ring| {
+            let [x, y, _] = frame.position[grains + ring * spheres_per_ring];
+            (x * x + y * y).sqrt()
+        })
+        .collect();
+    let of_wall = &frame.position[frame.position.len() - head.wall_spheres..];
+    encode(
+        head,
+        [
+            frame.position[..grains].as_flattened(),
+            frame.velocity[..grains].as_flattened(),
+            &frame.diameter[..grains],
+            spin.map_or(&[], |it| it.angular_velocity.as_flattened()),
+            of_wall.as_flattened(),
+            &rings,
+        ],
+    )
+}
+
+fn flat<Vector: Copy + Into<[f64; 3]>>(vectors: &[Vector]) -> Vec<f64> {
+    vectors.iter().flat_map(|&vector| vector.into()).collect()
+}
+
+/// Puts a frame together.
+fn encode(head: &Head, arrays: [&[f64]; 6]) -> Vec<u8> {
+    let mut json = serde_json::to_vec(head).expect("a head holds numbers and words only");
+    json.resize(json.len().next_multiple_of(4), b' ');
+    let numbers: usize = arrays.iter().map(|array| array.len()).sum();
+    let mut bytes = Vec::with_capacity(4 + json.len() + 4 * numbers);
+    bytes.extend((json.len() as u32).to_le_bytes());
+    bytes.extend(json);
+    for value in arrays.into_iter().flatten() {
+        bytes.extend((*value as f32).to_le_bytes());
     }
     bytes
 }

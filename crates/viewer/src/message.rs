@@ -32,6 +32,11 @@ pub enum Command {
     },
     /// Writes a folder from which the command line goes on.
     Save {},
+    /// Asks for a frame of a recording.
+    Frame {
+        /// Which, counted from 0.
+        number: usize,
+    },
 }
 
 /// What can be changed while a run goes on.
@@ -63,11 +68,24 @@ pub(crate) enum Notice {
         /// Time in periods.
         period: f64,
     },
+    /// A frame of a recording that cannot be had.
+    Missing {
+        /// Which, counted from 0.
+        number: usize,
+        /// Why, in words.
+        message: String,
+    },
     /// Something cannot be done; the run is as it was.
     Problem {
         /// What, in words.
         message: String,
     },
+}
+
+impl Notice {
+    pub(crate) fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a notice holds words only")
+    }
 }
 
 impl Command {
@@ -78,7 +96,7 @@ impl Command {
             Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),
             Self::Steer { value, .. } => value,
             Self::Seek { period } => period,
-            Self::Play { .. } | Self::Step {} | Self::Save {} => 0.0,
+            Self::Play { .. } | Self::Step {} | Self::Save {} | Self::Frame { .. } => 0.0,
         };
         if number.is_finite() && number >= 0.0 {
             Ok(command)
@@ -113,6 +131,10 @@ mod tests {
             }
         );
         assert_eq!(read(r#"{"type":"save"}"#), Command::Save {});
+        assert_eq!(
+            read(r#"{"type":"frame","number":7}"#),
+            Command::Frame { number: 7 }
+        );
     }
 
     #[test]
@@ -129,6 +151,11 @@ mod tests {
             r#"{"type":"speed","periods_per_second":-2}"#,
             r#"{"type":"steer","parameter":"seed","value":1}"#,
             r#"{"type":"play","playing":"yes"}"#,
+            r#"{"type":"frame"}"#,
+            r#"{"type":"frame","number":-1}"#,
+            r#"{"type":"frame","number":1.5}"#,
+            r#"{"type":"frame","number":"../state.checkpoint"}"#,
+            r#"{"type":"frame","number":18446744073709551616}"#,
         ] {
             assert!(Command::read(text).is_err(), "{text}");
         }

@@ -3,7 +3,7 @@
 use std::net::Ipv4Addr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{SyncSender, TrySendError, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 use axum::Router;
@@ -24,6 +24,8 @@ use crate::ViewerError;
 use crate::assets::asset;
 use crate::guard::{Token, is_loopback, is_own};
 use crate::message::{Command, Notice};
+use crate::player::Player;
+use crate::recording::Recording;
 use crate::tube::{self, Labels, Tube, Voices};
 
 /// Clients at a time.
@@ -83,17 +85,44 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError`] where the system gives no port, thread or random number.
     pub fn open(run: Run, options: Options) -> Result<Self, ViewerError> {
-        let refused = |source| ViewerError::Listen {
-            port: options.port,
-            source,
+        let labels = Labels {
+            title: options.title,
+            saves: options.saves,
+            record: options.record,
         };
+        Self::listen(options.port, |voices, requests| {
+            Tube::new(run, labels, voices).work(&requests);
+        })
+    }
+
+    /// Listens on loopback and gives the frames of a recording to whoever asks. Port 0 takes a free one.
+    ///
+    /// # Errors
+    /// As [`Viewer::open`].
+    pub fn play(recording: Recording, title: String, port: u16) -> Result<Self, ViewerError> {
+        Self::listen(port, |voices, requests| {
+            let player = Player {
+                recording,
+                title,
+                voices,
+            };
+            player.work(&requests);
+        })
+    }
+
+    /// Listens, with `work` in a thread of its own.
+    fn listen(
+        port: u16,
+        work: impl FnOnce(Voices, Receiver<tube::Request>) + Send + 'static,
+    ) -> Result<Self, ViewerError> {
+        let refused = |source| ViewerError::Listen { port, source };
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
             .enable_all()
             .build()
             .map_err(ViewerError::Thread)?;
         let listener = runtime
-            .block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, options.port)))
+            .block_on(TcpListener::bind((Ipv4Addr::LOCALHOST, port)))
             .map_err(refused)?;
         let port = listener.local_addr().map_err(refused)?.port();
         let token = Token::random()?;
@@ -102,15 +131,10 @@ impl Viewer {
             frames: watch::Sender::new(Arc::new(Vec::new())),
             notices: broadcast::Sender::new(NOTICES),
         };
-        let labels = Labels {
-            title: options.title,
-            saves: options.saves,
-            record: options.record,
-        };
-        let tube = Tube::new(run, labels, voices.clone());
+        let own = voices.clone();
         std::thread::Builder::new()
             .name("tube".to_owned())
-            .spawn(move || tube.work(&received))
+            .spawn(move || work(own, received))
             .map_err(ViewerError::Thread)?;
         let shared = Shared {
             token: Arc::new(token.clone()),
@@ -263,9 +287,11 @@ async fn attend(socket: WebSocket, shared: Shared) {
         let message = tokio::select! {
             received = from.next() => match received {
                 Some(Ok(Message::Text(text))) => match ask(&shared, &text).await {
-                    Ok(()) => continue,
+                    Ok(None) => continue,
+                    Ok(Some(answer)) => answer,
                     Err(reason) => {
-                        let notice = problem(reason.clone());
+                        let message = reason.clone();
+                        let notice = Notice::Problem { message }.to_json();
                         drop(to.send(Message::Text(notice.into())).await);
                         farewell(close_code::POLICY, &reason)
                     }
@@ -280,6 +306,10 @@ async fn attend(socket: WebSocket, shared: Shared) {
                     return;
                 }
                 let frame = Arc::clone(&frames.borrow_and_update());
+                // Nothing was computed yet, or nothing is: a recording.
+                if frame.is_empty() {
+                    continue;
+                }
                 Message::Binary(frame.to_vec().into())
             }
             notice = notices.recv() => match notice {
@@ -302,12 +332,29 @@ async fn welcome(shared: &Shared) -> Option<String> {
     answer.await.ok()
 }
 
-/// Passes a message on to the run; else the reason to close the connection.
-async fn ask(shared: &Shared, text: &str) -> Result<(), String> {
-    let command = Command::read(text).map_err(|reason| format!("not a command: {reason}"))?;
-    request(shared, tube::Request::Command(command))
-        .await
-        .ok_or_else(|| "the run has ended".to_owned())
+/// Passes a message on to the run, with the answer that is for this client alone; else the reason to close the
+/// connection.
+async fn ask(shared: &Shared, text: &str) -> Result<Option<Message>, String> {
+    let ended = || "the run has ended".to_owned();
+    match Command::read(text).map_err(|reason| format!("not a command: {reason}"))? {
+        Command::Frame { number } => {
+            let (reply, answer) = oneshot::channel();
+            let asked = request(shared, tube::Request::Frame(number, reply)).await;
+            asked.ok_or_else(ended)?;
+            Ok(Some(match answer.await.map_err(|_| ended())? {
+                Ok(frame) => Message::Binary(frame.into()),
+                Err(message) => {
+                    let notice = Notice::Missing { number, message };
+                    Message::Text(notice.to_json().into())
+                }
+            }))
+        }
+        command => {
+            let asked = request(shared, tube::Request::Command(command)).await;
+            asked.ok_or_else(ended)?;
+            Ok(None)
+        }
+    }
 }
 
 /// Waits for a place among the requests: who sends too many waits for the run, and nobody's are lost.
@@ -320,10 +367,6 @@ async fn request(shared: &Shared, mut request: tube::Request) -> Option<()> {
         };
         tokio::time::sleep(FULL).await;
     }
-}
-
-fn problem(message: String) -> String {
-    serde_json::to_string(&Notice::Problem { message }).expect("a notice holds words only")
 }
 
 fn farewell(code: u16, reason: &str) -> Message {

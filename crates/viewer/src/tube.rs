@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
-use peristalsis_configuration::{Control, ScheduledParameter};
+use peristalsis_configuration::ScheduledParameter;
 use peristalsis_observe::Sample;
 use peristalsis_run::{Run, RunError, RunFolder};
 use tokio::sync::{broadcast, oneshot, watch};
 
-use crate::frame::{Head, Row, encode};
+use crate::course::{Course, thin};
+use crate::frame::{Head, Row, of_run};
 use crate::message::{Command, Notice, Steered};
 use crate::welcome::{Driven, Welcome};
 
@@ -24,8 +25,6 @@ const RAMP: f64 = 0.25;
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;
-/// Rows that a client gets at first, at most.
-const FIRST_ROWS: usize = 4000;
 /// States kept to come back to.
 const MARKS: usize = 24;
 /// Saved states that are looked through for a free name.
@@ -38,6 +37,8 @@ pub(crate) enum Request {
     Command(Command),
     /// What a new client must know first.
     Welcome(oneshot::Sender<String>),
+    /// A frame of a recording; else why it cannot be had.
+    Frame(usize, oneshot::Sender<Result<Vec<u8>, String>>),
 }
 
 /// What clients listen to.
@@ -45,6 +46,13 @@ pub(crate) enum Request {
 pub(crate) struct Voices {
     pub(crate) frames: watch::Sender<Arc<Vec<u8>>>,
     pub(crate) notices: broadcast::Sender<String>,
+}
+
+impl Voices {
+    /// Tells everyone; with nobody there, nobody is told.
+    pub(crate) fn say(&self, notice: &Notice) {
+        drop(self.notices.send(notice.to_json()));
+    }
 }
 
 /// What a tube is called, where it is saved, and what is known of it from before.
@@ -135,19 +143,26 @@ impl Tube {
     fn answer(&mut self, request: Request) {
         match request {
             Request::Welcome(reply) => {
+                let course = self.course();
                 let record = self.labels.record.iter();
-                let record = thin(record.map(|it| (self.clock_of(it.time), it.flow_rate_ratio)));
-                let rows = thin(self.rows(0));
-                let welcome = Welcome::of(&self.run, &self.labels.title, record, rows);
-                let json = serde_json::to_string(&welcome)
-                    .expect("a welcome holds numbers and words only");
+                let (configuration, simulation) = (self.run.configuration(), self.run.simulation());
+                let grains = simulation.bodies().grains;
+                let title = &self.labels.title;
+                let mut welcome = Welcome::of(configuration, simulation.wall(), grains, title);
+                welcome.driven = Driven::of(&self.run);
+                welcome.record = thin(record.map(|it| (course.clock(it.time), it.flow_rate_ratio)));
+                welcome.rows = thin(self.rows(0));
                 // A client that has left meanwhile needs no answer.
-                drop(reply.send(json));
+                drop(reply.send(welcome.to_json()));
+            }
+            Request::Frame(_, reply) => {
+                let reason = "this run is computed as it is watched; it has no recorded frames";
+                drop(reply.send(Err(reason.to_owned())));
             }
             Request::Command(command) => {
                 if let Err(error) = self.obey(command) {
                     let message = error.to_string();
-                    self.say(&Notice::Problem { message });
+                    self.voices.say(&Notice::Problem { message });
                 }
                 self.publish();
             }
@@ -180,6 +195,8 @@ impl Tube {
             }
             Command::Seek { period } => self.seek(period),
             Command::Save {} => self.save()?,
+            // Answered to who asked.
+            Command::Frame { .. } => {}
         }
         Ok(())
     }
@@ -219,7 +236,7 @@ impl Tube {
         while done < most && begin.elapsed() < FRAME && !self.ended {
             if let Err(error) = self.steer() {
                 let message = error.to_string();
-                self.say(&Notice::Problem { message });
+                self.voices.say(&Notice::Problem { message });
             }
             // NaN, before a step was timed, becomes one step.
             let patient = (PATIENCE.as_secs_f64() / self.step_seconds).max(1.0) as u64;
@@ -229,7 +246,7 @@ impl Tube {
                 self.ended = true;
                 self.playing = false;
                 let message = error.to_string();
-                self.say(&Notice::Problem { message });
+                self.voices.say(&Notice::Problem { message });
             }
             let steps = self.run.simulation().step() - before;
             done += steps;
@@ -333,7 +350,7 @@ impl Tube {
         };
         let folder = RunFolder::create(&path, &configuration)?;
         folder.save_state(&self.run)?;
-        self.say(&Notice::Saved {
+        self.voices.say(&Notice::Saved {
             folder: path.display().to_string(),
             command: format!("peristalsis run --resume {}", path.display()),
             toml: configuration.to_toml(),
@@ -342,44 +359,23 @@ impl Tube {
         Ok(())
     }
 
-    fn unit_period(&self) -> f64 {
-        self.run.configuration().drive.period().unwrap_or(1.0)
+    fn course(&self) -> Course<'_> {
+        Course(self.run.configuration())
     }
 
-    fn clock_of(&self, time: f64) -> f64 {
-        time / self.unit_period()
+    fn unit_period(&self) -> f64 {
+        self.course().unit_period()
     }
 
     fn clock(&self) -> f64 {
-        self.clock_of(self.run.simulation().time())
+        self.course().clock(self.run.simulation().time())
     }
 
     /// Rows of the time series from a number on.
     fn rows(&self, from: usize) -> impl Iterator<Item = Row> {
         let samples = self.run.recorder().samples().iter().enumerate().skip(from);
-        let drive = &self.run.configuration().drive;
-        let value = move |parameter, constant, clock| {
-            let mut schedules = drive.schedules.iter();
-            let known = schedules.find(|it| it.parameter == parameter);
-            known.map_or(constant, |schedule| schedule.value(clock))
-        };
-        let (parameter, constant) = match drive.control {
-            Control::Strain { width } => (ScheduledParameter::Width, width),
-            Control::Stress {
-                force_amplitude, ..
-            } => (ScheduledParameter::ForceAmplitude, force_amplitude),
-        };
-        samples.map(move |(number, sample)| {
-            let clock = self.clock_of(sample.time);
-            Row {
-                number,
-                clock,
-                flow_rate_ratio: sample.flow_rate_ratio,
-                bottleneck: sample.bottleneck,
-                amplitude: value(parameter, constant, clock),
-                strain_rate: value(ScheduledParameter::StrainRate, drive.strain_rate, clock),
-            }
-        })
+        let course = self.course();
+        samples.map(move |(number, sample)| course.row_of(number, sample))
     }
 
     fn publish(&self) {
@@ -388,6 +384,7 @@ impl Tube {
         let samples = self.run.recorder().samples();
         let prescribed = bodies.number() == bodies.grains;
         let head = Head {
+            number: None,
             epoch: self.epoch,
             playing: self.playing,
             ended: self.ended,
@@ -410,20 +407,7 @@ impl Tube {
             rows: self.rows(samples.len().saturating_sub(ROWS)).collect(),
             sample: samples.last().map(Into::into),
         };
-        let frame = encode(&head, &self.run);
+        let frame = of_run(&head, &self.run);
         self.voices.frames.send_replace(Arc::new(frame));
     }
-
-    fn say(&self, notice: &Notice) {
-        let json = serde_json::to_string(notice).expect("a notice holds words only");
-        // With nobody there, nobody is told.
-        drop(self.voices.notices.send(json));
-    }
-}
-
-/// Every so many of them, so that there are not too many.
-fn thin<T>(rows: impl Iterator<Item = T>) -> Vec<T> {
-    let rows: Vec<T> = rows.collect();
-    let each = rows.len().div_ceil(FIRST_ROWS).max(1);
-    rows.into_iter().step_by(each).collect()
 }

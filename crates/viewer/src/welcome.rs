@@ -2,9 +2,10 @@
 
 use peristalsis_configuration::{Control, ScheduledParameter};
 use peristalsis_engine::Wall;
-use peristalsis_run::{Run, VERSION};
+use peristalsis_run::{Configuration, Run, VERSION};
 use serde::Serialize;
 
+use crate::course::Course;
 use crate::frame::Row;
 
 /// The tube and the ranges of its sliders.
@@ -29,13 +30,24 @@ pub(crate) struct Welcome {
     /// Time of a period of the drive's own strain rate.
     unit_period: f64,
     ranges: Ranges,
-    driven: Driven,
+    pub(crate) driven: Driven,
     /// A run that was computed before: its whole course, (time in periods, J/Jmax).
-    record: Vec<(f64, f64)>,
-    /// What was computed since the viewer began.
-    rows: Vec<Row>,
+    pub(crate) record: Vec<(f64, f64)>,
+    /// What was computed since the viewer began, or the time series of a recording.
+    pub(crate) rows: Vec<Row>,
     /// Time in periods to which the run was meant to go.
     end: f64,
+    /// The frames of a recording; null where the run is computed.
+    pub(crate) recorded: Option<Recorded>,
+}
+
+/// What frames there are.
+#[derive(Clone, Debug, Serialize)]
+pub(crate) struct Recorded {
+    /// Time of each in periods.
+    pub(crate) clocks: Vec<f64>,
+    /// Frames that were begun when the file was cut short.
+    pub(crate) lost_frames: u64,
 }
 
 /// Least and largest value of each slider; none where there is nothing to change.
@@ -72,8 +84,7 @@ impl Driven {
 }
 
 impl Ranges {
-    fn of(run: &Run) -> Self {
-        let configuration = run.configuration();
+    fn of(configuration: &Configuration) -> Self {
         let radius = configuration.tube.radius;
         let diameter = configuration.wall.sphere_diameter;
         let (width, force_amplitude) = match configuration.drive.control {
@@ -100,12 +111,16 @@ impl Ranges {
 }
 
 impl Welcome {
-    pub(crate) fn of(run: &Run, title: &str, record: Vec<(f64, f64)>, rows: Vec<Row>) -> Self {
-        let configuration = run.configuration();
-        let wall = run.simulation().wall();
+    /// At the start, with nothing measured.
+    pub(crate) fn of(
+        configuration: &Configuration,
+        wall: &Wall,
+        grains: usize,
+        title: &str,
+    ) -> Self {
         let lattice = wall.lattice();
-        let unit_period = configuration.drive.period().unwrap_or(1.0);
-        let steps = configuration.run.steps() as f64;
+        let course = Course(configuration);
+        let end = configuration.run.steps() as f64 * configuration.run.time_step;
         Self {
             kind: "welcome",
             version: VERSION,
@@ -114,7 +129,7 @@ impl Welcome {
                 Wall::Prescribed(_) => "strain",
                 Wall::Elastic(_) => "stress",
             },
-            grains: run.simulation().bodies().grains,
+            grains,
             length: lattice.length(),
             wavelength: lattice.wavelength,
             waves: lattice.waves,
@@ -127,12 +142,17 @@ impl Welcome {
                 Wall::Prescribed(_) => 2.0 * configuration.tube.radius,
                 Wall::Elastic(_) => wall.usual_radius(),
             },
-            unit_period,
-            ranges: Ranges::of(run),
-            driven: Driven::of(run),
-            record,
-            rows,
-            end: steps * configuration.run.time_step / unit_period,
+            unit_period: course.unit_period(),
+            ranges: Ranges::of(configuration),
+            driven: course.driven(0.0),
+            record: Vec::new(),
+            rows: Vec::new(),
+            end: course.clock(end),
+            recorded: None,
         }
+    }
+
+    pub(crate) fn to_json(&self) -> String {
+        serde_json::to_string(self).expect("a welcome holds numbers and words only")
     }
 }

@@ -1,12 +1,12 @@
 //! `peristalsis view`
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use peristalsis_configuration::{PRESETS, preset};
 use peristalsis_engine::Instructions;
-use peristalsis_run::{Run, RunFolder};
-use peristalsis_viewer::{Options, Viewer};
+use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
+use peristalsis_viewer::{Options, Recording, Viewer};
 
 use crate::arguments::{ConfigurationArguments, ViewArguments};
 use crate::commands::{print, say};
@@ -14,17 +14,91 @@ use crate::failure::Failure;
 use crate::sources;
 use crate::stop::Stop;
 
+/// Configuration in the folder of a run.
+const CONFIGURATION: &str = "config.toml";
+
 /// Serves the viewer until a signal.
 pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let (mut run, options) = open(arguments)?;
-    run.compute_with(Instructions::widest(), usize::from(arguments.threads))?;
-    let viewer = Viewer::open(run, options)?;
+    let viewer = match trajectory(arguments)? {
+        Some(path) => play(&path, arguments.port)?,
+        None => {
+            let (mut run, options) = open(arguments)?;
+            run.compute_with(Instructions::widest(), usize::from(arguments.threads))?;
+            Viewer::open(run, options)?
+        }
+    };
     print(&format!("{}\n", viewer.address()))?;
     say("open this address in a browser; Ctrl-C ends");
     stop.keep_results();
     viewer.serve(|| stop.requested().is_some())?;
     Ok(ExitCode::SUCCESS)
+}
+
+/// The trajectory that is to be played: the source itself or, unless the run is to be computed, the one in its folder.
+fn trajectory(arguments: &ViewArguments) -> Result<Option<PathBuf>, Failure> {
+    let source = &arguments.source;
+    let is_file = source.extension().is_some_and(|ending| ending == "gsd");
+    let computed = arguments.live || arguments.from_state;
+    if (is_file || source.is_dir()) && !arguments.overrides.is_empty() {
+        return Err(Failure::Usage {
+            message: format!("{} is a run that --set cannot change", source.display()),
+            help: Some(format!("view the {CONFIGURATION} of the run with --set")),
+        });
+    }
+    if is_file && computed {
+        return Err(Failure::Usage {
+            message: "a trajectory is played, not computed".to_owned(),
+            help: Some("name the folder of its run".to_owned()),
+        });
+    }
+    let in_folder = source.join(TrajectoryFormat::Gsd.file_name());
+    Ok(match is_file {
+        true => Some(source.clone()),
+        false => (!computed && in_folder.is_file()).then_some(in_folder),
+    })
+}
+
+/// A viewer that plays a trajectory. Its run is in its own folder or, as after `peristalsis trajectory`, in the one above.
+fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
+    let place = path.canonicalize().map_err(|source| Failure::Read {
+        path: path.to_owned(),
+        source,
+    })?;
+    let above = place.ancestors().skip(1).take(2);
+    let Some(folder) = above.clone().find(|it| it.join(CONFIGURATION).is_file()) else {
+        return Err(Failure::Usage {
+            message: format!(
+                "beside {} there is no {CONFIGURATION}, which says what tube it is of",
+                path.display()
+            ),
+            help: Some("leave trajectories in the folders of their runs".to_owned()),
+        });
+    };
+    // What a kill left has no state, and a trajectory tells J/Jmax itself.
+    let (configuration, samples) = match RunFolder::open(folder) {
+        Ok((_, run)) => (
+            run.configuration().clone(),
+            run.recorder().samples().to_vec(),
+        ),
+        Err(_) => {
+            let only = ConfigurationArguments {
+                file: Some(folder.join(CONFIGURATION)),
+                preset: None,
+                overrides: Vec::new(),
+            };
+            (sources::configuration(&only)?, Vec::new())
+        }
+    };
+    let recording = Recording::open(&place, configuration, samples)?;
+    let lost = recording.lost_frames();
+    if lost > 0 {
+        say(&format!(
+            "the trajectory was cut short: {} whole frames, {lost} lost",
+            recording.frames()
+        ));
+    }
+    Ok(Viewer::play(recording, name(folder), port)?)
 }
 
 /// The run to show, with what is known of it.

@@ -48,15 +48,21 @@ fn presets_files_and_folders_are_served() {
             "narrow.toml",
             "--set",
             "run.periods=1",
+            "--trajectory=gsd",
             "--out",
             "done",
         ])
         .expect_code(0);
-    let views: [&[&str]; 4] = [
+    let trajectory = ["trajectory", "done", "--duration=0.5"];
+    place.call(trajectory).expect_code(0);
+    let views: [&[&str]; 7] = [
         &["frictionless", "--set", "tube.waves=2"],
         &["narrow.toml"],
         &["done"],
+        &["done", "--live"],
         &["done", "--from-state"],
+        &["done/trajectory.gsd"],
+        &["done/from-state/trajectory.gsd"],
     ];
     for arguments in views {
         let page = page_of(&place, arguments);
@@ -70,6 +76,10 @@ fn presets_files_and_folders_are_served() {
 fn what_cannot_be_viewed_is_refused() {
     let place = Place::new();
     std::fs::create_dir(place.path("empty")).unwrap();
+    place.write("alone.gsd", "not beside its run");
+    std::fs::create_dir(place.path("damaged")).unwrap();
+    place.write("damaged/config.toml", "preset = \"frictionless\"\n");
+    place.write("damaged/trajectory.gsd", "no GSD at all");
     for (arguments, part) in [
         (["view", "frictionles", "--port=0"], "frictionles"),
         (
@@ -78,6 +88,11 @@ fn what_cannot_be_viewed_is_refused() {
         ),
         (["view", "frictionless", "--port=70000"], "70000"),
         (["view", "empty", "--port=0"], "config.toml"),
+        (["view", "none.gsd", "--port=0"], "none.gsd"),
+        (["view", "alone.gsd", "--port=0"], "config.toml"),
+        (["view", "alone.gsd", "--live"], "played, not computed"),
+        (["view", "empty", "--set=drive.width=2.7"], "--set"),
+        (["view", "damaged", "--port=0"], "begin like a GSD file"),
     ] {
         place.call(arguments).expect_code(2).says(&[part]);
     }

@@ -19,6 +19,17 @@ use tokio_tungstenite::tungstenite::{Error, Message, WebSocket, client};
 /// Longest time that anything may take.
 const LONG: Duration = Duration::from_secs(30);
 
+/// A preset with settings over it.
+pub(crate) fn configuration(preset: &str, settings: &[&str]) -> Configuration {
+    let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
+    Configuration::from_sources(&Sources {
+        file: None,
+        preset: Some(preset),
+        overrides: &overrides,
+    })
+    .unwrap()
+}
+
 /// A viewer in a thread of its own; stopped when dropped.
 pub(crate) struct Served {
     pub(crate) port: u16,
@@ -32,22 +43,20 @@ pub(crate) struct Served {
 
 impl Served {
     pub(crate) fn new(preset: &str, settings: &[&str]) -> Self {
-        let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
-        let configuration = Configuration::from_sources(&Sources {
-            file: None,
-            preset: Some(preset),
-            overrides: &overrides,
-        })
-        .unwrap();
+        let configuration = configuration(preset, settings);
         let folder = tempfile::tempdir().unwrap();
-        let saves = folder.path().join("saves");
         let options = Options {
             port: 0,
             title: "tube".to_owned(),
-            saves: saves.clone(),
+            saves: folder.path().join("saves"),
             record: Vec::new(),
         };
         let viewer = Viewer::open(Run::new(configuration).unwrap(), options).unwrap();
+        Self::serve(viewer, folder)
+    }
+
+    /// Serves what was opened; the folder lives as long.
+    pub(crate) fn serve(viewer: Viewer, folder: tempfile::TempDir) -> Self {
         let address = viewer.address();
         let (host, base) = address
             .strip_prefix("http://")
@@ -64,7 +73,7 @@ impl Served {
         Self {
             port,
             base,
-            saves,
+            saves: folder.path().join("saves"),
             stop,
             thread: Some(thread),
             _folder: folder,

@@ -1,0 +1,197 @@
+//! A trajectory to be played, and what is known of its run.
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_configuration::Configuration;
+use peristalsis_engine::Wall;
+use peristalsis_formats::trajectory::Frame;
+use peristalsis_formats::trajectory::gsd::GsdReader;
+use peristalsis_observe::Sample;
+use peristalsis_run::walls;
+
+use crate::ViewerError;
+use crate::course::{Course, thin};
+use crate::frame::{Head, Row, of_recording};
+use crate::welcome::{Recorded, Welcome};
+
+/// Part of its own length by which a tube may differ in a file of 32 bits.
+const TOLERANCE: f64 = 1e-3;
+/// Part of a period by which a sample may seem to come after the frame of the same step.
+const SLACK: f64 = 1e-9;
+
+/// A trajectory in GSD, with the configuration of its run and, where it is known, the time series.
+#[derive(Debug)]
+pub struct Recording {
+    path: PathBuf,
+    reader: GsdReader,
+    configuration: Configuration,
+    wall: Wall,
+    samples: Vec<Sample>,
+    rows: Vec<Row>,
+    /// Time of each frame.
+    times: Vec<f64>,
+    grains: usize,
+}
+
+impl Recording {
+    /// Opens a trajectory of the run with this configuration. Where the run left no samples, J/Jmax is what the trajectory
+    /// logged.
+    ///
+    /// # Errors
+    /// [`ViewerError::Trajectory`] where it cannot be read; [`ViewerError::ForeignTrajectory`] where it is of another run.
+    pub fn open(
+        path: &Path,
+        configuration: Configuration,
+        samples: Vec<Sample>,
+    ) -> Result<Self, ViewerError> {
+        let mut reader = GsdReader::open(path)?;
+        let first = reader.frame(0)?;
+        let wall = walls(&configuration);
+        let mut recording = Self {
+            path: path.to_owned(),
+            times: Vec::with_capacity(reader.frames()),
+            grains: first.grains,
+            rows: Vec::new(),
+            reader,
+            configuration,
+            wall,
+            samples,
+        };
+        recording.check(&first)?;
+        recording.read_times()?;
+        recording.rows = recording.read_rows()?;
+        Ok(recording)
+    }
+
+    /// Frames in it.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Frames that were begun when it was cut short.
+    #[must_use]
+    pub fn lost_frames(&self) -> u64 {
+        self.reader.lost_frames()
+    }
+
+    /// What a page must know before the first frame.
+    pub(crate) fn welcome(&self, title: &str) -> Welcome {
+        let course = Course(&self.configuration);
+        let clocks = self.times.iter().map(|&time| course.clock(time)).collect();
+        let mut welcome = Welcome::of(&self.configuration, &self.wall, self.grains, title);
+        welcome.rows = thin(self.rows.iter().copied());
+        welcome.recorded = Some(Recorded {
+            clocks,
+            lost_frames: self.lost_frames(),
+        });
+        welcome
+    }
+
+    /// A frame as it is sent, counted from 0.
+    ///
+    /// # Errors
+    /// [`ViewerError::Trajectory`] where there is no such frame or it cannot be read; [`ViewerError::ForeignTrajectory`]
+    /// where it does not fit to the run.
+    pub(crate) fn frame(&mut self, number: usize) -> Result<Vec<u8>, ViewerError> {
+        let frame = self.reader.frame(number)?;
+        self.check(&frame)?;
+        let course = Course(&self.configuration);
+        let clock = course.clock(frame.time);
+        let lattice = self.wall.lattice();
+        let is_elastic = matches!(self.wall, Wall::Elastic(_));
+        let slack = SLACK * course.unit_period();
+        let run = &self.configuration.run;
+        let interval = run.steps_per_sample as f64 * run.time_step + slack;
+        let taken = self
+            .samples
+            .partition_point(|sample| sample.time <= frame.time + slack);
+        // What went on from a saved state has frames long after the last sample.
+        let sample = self.samples[..taken]
+            .last()
+            .filter(|sample| frame.time - sample.time <= interval);
+        let head = Head {
+            number: Some(number),
+            epoch: 0,
+            playing: false,
+            ended: false,
+            speed: None,
+            pace: f64::NAN,
+            step: frame.step,
+            time: frame.time,
+            clock,
+            period: frame.value("period").unwrap_or(clock),
+            wave_speed: self.wall.frequency(frame.time) * lattice.wavelength,
+            grains: frame.grains,
+            wall_spheres: if is_elastic { lattice.spheres() } else { 0 },
+            rings: if is_elastic {
+                0
+            } else {
+                lattice.rings_per_wave as usize
+            },
+            turning: frame.rotation.is_some(),
+            driven: course.driven(clock),
+            rows: Vec::new(),
+            sample: sample.map(Into::into),
+        };
+        let spheres_per_ring = lattice.spheres_per_ring as usize;
+        Ok(of_recording(&head, &frame, spheres_per_ring))
+    }
+
+    /// Whether a frame is of this run.
+    fn check(&self, frame: &Frame) -> Result<(), ViewerError> {
+        let lattice = self.wall.lattice();
+        let (length, wall) = (lattice.length(), frame.spheres() - frame.grains);
+        let is_as_long = (frame.length - length).abs() <= TOLERANCE * length;
+        if !is_as_long || wall != lattice.spheres() || frame.grains != self.grains {
+            return Err(self.foreign(format!(
+                "its tube of {} d with {} grains and {wall} wall spheres is not that of the configuration, \
+                 {length} d with {} grains and {} wall spheres",
+                frame.length,
+                frame.grains,
+                self.grains,
+                lattice.spheres(),
+            )));
+        }
+        Ok(())
+    }
+
+    fn read_times(&mut self) -> Result<(), ViewerError> {
+        for number in 0..self.reader.frames() {
+            let time = self.reader.value(number, "time")?.unwrap_or(f64::NAN);
+            let last = self.times.last().copied().unwrap_or(0.0);
+            if !time.is_finite() || time < last {
+                return Err(self.foreign(format!(
+                    "frame {number} has the time {time} after {last}; times must not go back"
+                )));
+            }
+            self.times.push(time);
+        }
+        Ok(())
+    }
+
+    /// The samples, and what frames logged that come after them.
+    fn read_rows(&mut self) -> Result<Vec<Row>, ViewerError> {
+        let course = Course(&self.configuration);
+        let samples = self.samples.iter().enumerate();
+        let mut rows: Vec<Row> = samples
+            .map(|(number, sample)| course.row_of(number, sample))
+            .collect();
+        let sampled = self.samples.last().map_or(-1.0, |sample| sample.time);
+        for (frame, &time) in self.times.iter().enumerate() {
+            if time > sampled + SLACK * course.unit_period() {
+                let ratio = self.reader.value(frame, "flow_rate_ratio")?;
+                let ratio = ratio.unwrap_or(f64::NAN);
+                rows.push(course.row(rows.len(), time, ratio, f64::NAN));
+            }
+        }
+        Ok(rows)
+    }
+
+    fn foreign(&self, reason: String) -> ViewerError {
+        ViewerError::ForeignTrajectory {
+            path: self.path.clone(),
+            reason,
+        }
+    }
+}
