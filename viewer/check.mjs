@@ -196,6 +196,7 @@ async function checkPlaying(browser) {
 
 /** Tries places on the stage until a grain is picked. */
 async function pick(page, tap) {
+  await page.locator("#stage").scrollIntoViewIfNeeded();
   const box = await page.locator("#stage").boundingBox();
   for (let k = 0; k < 90 && !(await page.isVisible("#grain")); k++)
     await tap(box.x + box.width * (0.2 + 0.02 * (k % 30)), box.y + box.height * (0.46 + 0.03 * Math.floor(k / 30)));

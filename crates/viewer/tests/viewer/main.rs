@@ -3,5 +3,6 @@
 #[allow(clippy::unwrap_used, reason = "a test")]
 mod client;
 mod driving;
+#[allow(clippy::unwrap_used, reason = "a test")]
 mod playing;
 mod refusing;
