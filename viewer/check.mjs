@@ -271,10 +271,10 @@ async function checkLooks(browser) {
   end();
 }
 
-/** Milliseconds from picture to picture for some seconds: median and 95th percentile. */
-async function intervals(page, seconds) {
+/** Milliseconds from picture to picture: median and 95th percentile of so many, or of those of a minute. */
+async function intervals(page, most) {
   const times = await page.evaluate(
-    (until) =>
+    (most) =>
       new Promise((done) => {
         const times = [];
         let drawn = -1;
@@ -285,15 +285,14 @@ async function intervals(page, seconds) {
           drawn = pictures;
           // A recording is over and over.
           if (number !== null && number === frames - 1) document.getElementById("play").click();
-          if (now - begin < until) requestAnimationFrame(look);
+          if (times.length <= most && (now - begin < 60000 || times.length < 2)) requestAnimationFrame(look);
           else done(times);
         };
         requestAnimationFrame(look);
       }),
-    1000 * seconds,
+    most,
   );
   const gaps = times.slice(1).map((time, k) => time - times[k]).sort((a, b) => a - b);
-  assert(gaps.length > 3, `${gaps.length} pictures in ${seconds} s`);
   return [0.5, 0.95].map((part) => gaps[Math.floor(part * (gaps.length - 1))]);
 }
 
@@ -305,10 +304,11 @@ async function measureMany(browser) {
   for (const [name, view] of [["many", ["frictionless", "--set", waves]], ["many-recorded", [folder]]]) {
     const { address, end } = await serve(...view);
     const { page, close } = await open(browser, address, desk);
-    await page.selectOption("#speed", "");
+    // A run as fast as it goes takes the time from its pictures; a recording gives each frame one.
+    if (name === "many-recorded") await page.selectOption("#speed", "");
     await page.click("#play");
     await page.waitForTimeout(3000);
-    const [median, most] = await intervals(page, 10);
+    const [median, most] = await intervals(page, 60);
     const { drawing } = await measured(page);
     const facts = await page.textContent("#facts");
     console.log(
