@@ -16,12 +16,12 @@ pub(crate) fn crossing(runs: &[&Run]) -> Option<FractionCrossing> {
     fraction_crossing(&width, &jammed).ok()
 }
 
-/// Runs with the same key, by ascending key.
-pub(crate) fn grouped<K: PartialOrd + Copy>(
-    runs: &[Run],
-    key: impl Fn(&Run) -> K,
-) -> Vec<(K, Vec<&Run>)> {
-    let mut keyed: Vec<(K, &Run)> = runs.iter().map(|run| (key(run), run)).collect();
+/// What has the same key together, by ascending key.
+pub(crate) fn grouped<T: Copy, K: PartialOrd + Copy>(
+    all: impl IntoIterator<Item = T>,
+    key: impl Fn(T) -> K,
+) -> Vec<(K, Vec<T>)> {
+    let mut keyed: Vec<(K, T)> = all.into_iter().map(|one| (key(one), one)).collect();
     keyed.sort_by(|one, other| {
         one.0
             .partial_cmp(&other.0)
@@ -29,7 +29,7 @@ pub(crate) fn grouped<K: PartialOrd + Copy>(
     });
     keyed
         .chunk_by(|one, other| one.0 == other.0)
-        .map(|group| (group[0].0, group.iter().map(|(_, run)| *run).collect()))
+        .map(|group| (group[0].0, group.iter().map(|(_, one)| *one).collect()))
         .collect()
 }
 

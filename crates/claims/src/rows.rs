@@ -2,6 +2,7 @@
 
 use peristalsis_formats::{Table, Values};
 
+use crate::crossing::grouped;
 use crate::finding::Statistics;
 use crate::runs::Start;
 
@@ -32,16 +33,7 @@ pub(crate) fn by<'a, K: PartialOrd + Copy>(
     rows: &[Row<'a>],
     key: impl Fn(&Row<'a>) -> K,
 ) -> Vec<(K, Vec<Row<'a>>)> {
-    let mut keyed: Vec<(K, Row<'a>)> = rows.iter().map(|row| (key(row), *row)).collect();
-    keyed.sort_by(|one, other| {
-        one.0
-            .partial_cmp(&other.0)
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    keyed
-        .chunk_by(|one, other| one.0 == other.0)
-        .map(|group| (group[0].0, group.iter().map(|(_, row)| *row).collect()))
-        .collect()
+    grouped(rows.iter().copied(), |row| key(&row))
 }
 
 impl<'a> Row<'a> {
