@@ -22,14 +22,17 @@ const COLLAPSED: f64 = 10.0;
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
+/// Exponents of the source, and S with the overlap there, where curves can be compared at all.
+type Claimed = ([f64; 2], Option<(f64, f64)>);
+
 /// Curves of several strain rates, and how well they collapse.
 #[derive(Clone, Debug)]
 pub(crate) struct Collapsed {
     /// Fitted critical width of each curve.
     critical: Vec<f64>,
     curves: Vec<Curve>,
-    /// Exponents of the source, and S there.
-    claimed: ([f64; 2], Option<(f64, f64)>),
+    /// Exponents of the source, if it gives any, and S with the overlap there.
+    claimed: Option<Claimed>,
     fit: CollapseFit,
     exponents: Vec<Uncertain>,
     left_out: Vec<(f64, Vec<f64>)>,
@@ -76,6 +79,16 @@ pub(crate) fn collapse(
             });
         }
     }
+    collapse_curves(critical, curves, claimed, Some(claimed))
+}
+
+/// Collapses curves of known critical widths, beginning the search at `start`; `None` where there are fewer than three.
+pub(crate) fn collapse_curves(
+    critical: Vec<f64>,
+    curves: Vec<Curve>,
+    start: [f64; 2],
+    claimed: Option<[f64; 2]>,
+) -> Option<Collapsed> {
     if curves.len() < 3 {
         return None;
     }
@@ -88,7 +101,7 @@ pub(crate) fn collapse(
         transform: &transform,
         least_overlap: OVERLAP,
     };
-    let fit = collapse.fit(&claimed, &STEPS, STARTS, SEED).ok()?;
+    let fit = collapse.fit(&start, &STEPS, STARTS, SEED).ok()?;
     let bootstrap = Bootstrap {
         resamples: RESAMPLES,
         seed: SEED,
@@ -119,13 +132,13 @@ pub(crate) fn collapse(
             )
         })
         .collect();
-    let claimed_quality = collapse
-        .quality(&claimed)
-        .ok()
-        .map(|found| (found.quality, found.overlap));
+    let claimed = claimed.map(|claimed| {
+        let quality = collapse.quality(&claimed).ok();
+        (claimed, quality.map(|found| (found.quality, found.overlap)))
+    });
     Some(Collapsed {
         critical,
-        claimed: (claimed, claimed_quality),
+        claimed,
         fit,
         exponents,
         left_out,
@@ -143,14 +156,20 @@ fn jackknife(estimates: &[f64]) -> f64 {
 }
 
 impl Collapsed {
+    /// Whether the curves fall on one within a few of their errors.
+    pub(crate) fn holds(&self) -> bool {
+        self.fit.quality.quality <= COLLAPSED
+    }
+
     /// Whether both exponents are those of the source; not, where the curves do not collapse at all; `None` where the errors
-    /// are too large to say.
+    /// are too large to say or the source gives none.
     pub(crate) fn agrees(&self) -> Option<bool> {
-        if self.fit.quality.quality > COLLAPSED {
+        if !self.holds() {
             return Some(false);
         }
+        let (claimed, _) = self.claimed?;
         let each: Vec<Option<bool>> = (0..2)
-            .map(|place| super::claims::agrees(&self.exponents[place], self.claimed.0[place]))
+            .map(|place| super::claims::agrees(&self.exponents[place], claimed[place]))
             .collect();
         if each.contains(&Some(false)) {
             return Some(false);
@@ -170,17 +189,17 @@ impl Collapsed {
     }
 
     /// The exponents as quantities.
-    pub(crate) fn quantities(&self, name: &str, symbols: [&str; 2]) -> Vec<Quantity> {
+    pub(crate) fn quantities(&self, of: &str, symbols: [&str; 2]) -> Vec<Quantity> {
         let words = [
-            "power of the strain rate in the time",
+            "power of the strain rate in the ordinate",
             "power of the strain rate in the distance",
         ];
         (0..2)
             .map(|place| Quantity {
-                name: format!("{}, {name} lattice", words[place]),
+                name: format!("{}, {of}", words[place]),
                 symbol: symbols[place].to_owned(),
                 unit: String::new(),
-                source: Some(self.claimed.0[place]),
+                source: self.claimed.map(|(claimed, _)| claimed[place]),
                 ours: Some(self.exponents[place]),
                 method: format!("collapse of {} curves, resampled points", self.curves.len()),
             })
@@ -188,18 +207,20 @@ impl Collapsed {
     }
 
     /// Quality at the exponents of the source and at the best, and the fits without one curve.
-    pub(crate) fn tables(&self, name: &str) -> Vec<ReportTable> {
-        let mut rows = vec![vec![
-            "source".to_owned(),
-            number(self.claimed.0[0], 2),
-            number(self.claimed.0[1], 2),
-            self.claimed
-                .1
-                .map_or("–".to_owned(), |found| number(found.0, 1)),
-            self.claimed
-                .1
-                .map_or("–".to_owned(), |found| number(found.1, 2)),
-        ]];
+    pub(crate) fn tables(&self, of: &str) -> Vec<ReportTable> {
+        let in_table = |value: Option<f64>, digits| {
+            value.map_or("–".to_owned(), |value| number(value, digits))
+        };
+        let mut rows = Vec::new();
+        if let Some((claimed, quality)) = self.claimed {
+            rows.push(vec![
+                "source".to_owned(),
+                number(claimed[0], 2),
+                number(claimed[1], 2),
+                in_table(quality.map(|found| found.0), 1),
+                in_table(quality.map(|found| found.1), 2),
+            ]);
+        }
         rows.push(vec![
             "best".to_owned(),
             estimate(&self.exponents[0]),
@@ -218,7 +239,7 @@ impl Collapsed {
         }));
         vec![ReportTable {
             caption: format!(
-                "Collapse on the {name} lattice: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
+                "Collapse, {of}: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
             ),
             head: ["", "*a*", "*b*", "*S*", "overlap"]
                 .map(str::to_owned)
@@ -249,40 +270,33 @@ impl Collapsed {
     }
 }
 
-/// Both lattices scaled as the source says, and as collapses best.
+/// All curves scaled as the source says, if it does, and as collapses best: `found` with what each belongs to, and the
+/// labels of the axes at the exponents of the source (none where it gives none) and of the ordinate at the best.
 pub(crate) fn figure(
     found: &[(String, Collapsed)],
-    claimed: [f64; 2],
     name: &str,
-    [x_label, y_label, best_label]: [&str; 3],
+    claimed_labels: [&str; 2],
+    best_label: &str,
     slope: f64,
     caption: &str,
 ) -> Result<ReportFigure, ClaimError> {
     let mut panels = Vec::new();
-    for (lattice, collapsed) in found {
+    for (of, collapsed) in found {
         let best = &collapsed.fit.parameters;
-        let titles = [
-            format!("{lattice}, exponents of the source"),
-            format!(
-                "{lattice}, {} and {}",
-                number(best[0], 2),
-                number(best[1], 2)
-            ),
-        ];
-        for (title, exponents) in titles.iter().zip([claimed.to_vec(), best.clone()]) {
-            let is_claimed = exponents == claimed;
-            let mut panel = ChartPanel::new(
-                if is_claimed {
-                    x_label
-                } else {
-                    "(*w*_{c} − *w*)/*ε̇*^{*b*}"
-                },
-                if is_claimed { y_label } else { best_label },
-            )
-            .title(title)
-            .x_scale(Scale::Logarithmic)
-            .y_scale(Scale::Logarithmic);
-            let scaled = collapsed.scaled(&exponents);
+        let mut scalings = Vec::new();
+        if let Some((claimed, _)) = collapsed.claimed {
+            let title = format!("{of}, exponents of the source");
+            scalings.push((title, claimed.to_vec(), claimed_labels));
+        }
+        let title = format!("{of}, {} and {}", number(best[0], 2), number(best[1], 2));
+        let labels = ["(*w*_{c} − *w*)/*ε̇*^{*b*}", best_label];
+        scalings.push((title, best.clone(), labels));
+        for (title, exponents, [x_label, y_label]) in &scalings {
+            let mut panel = ChartPanel::new(x_label, y_label)
+                .title(title)
+                .x_scale(Scale::Logarithmic)
+                .y_scale(Scale::Logarithmic);
+            let scaled = collapsed.scaled(exponents);
             for (number, (rate, [x, y, error])) in scaled.iter().enumerate() {
                 panel = panel.with(
                     Points::new("", x, y)
@@ -322,7 +336,7 @@ pub(crate) fn figure(
     Ok(ReportFigure {
         name: name.to_owned(),
         caption: caption.to_owned(),
-        drawing: ChartFigure::grid(2, panels)
+        drawing: ChartFigure::grid(panels.len().min(2), panels)
             .colour_scale(scale)
             .width(Width::DoubleColumn)
             .description("Scaled curves of several strain rates.")

@@ -62,6 +62,16 @@ struct Count {
 }
 
 impl Count {
+    /// Whether all runs had a transition, or none had; `None` where they differ, or none has ended well.
+    fn unanimity(self) -> Option<bool> {
+        match (self.transitions, self.none) {
+            (0, 0) => None,
+            (_, 0) => Some(true),
+            (0, _) => Some(false),
+            _ => None,
+        }
+    }
+
     /// Whether most runs had a transition; `None` while none has ended well.
     fn majority(self) -> Option<bool> {
         (self.transitions + self.none > 0).then_some(self.transitions > self.none)
@@ -120,6 +130,34 @@ fn counts(plan: &Plan, found: &dyn Fn(&Identity) -> Option<Finding>) -> HashMap<
 }
 
 impl Line<'_> {
+    /// The neighbouring values on the way from the value at which all runs changed to that at which none did, or the reverse,
+    /// around the last change of the majority; that change alone where runs differ all the way to an end of the line.
+    fn undecided(&self, counts: &HashMap<usize, Count>) -> Vec<(f64, f64)> {
+        let Some((lower, upper)) = self.bracket(counts) else {
+            return Vec::new();
+        };
+        let of = |(value, point, _): &(f64, usize, &Point)| Some((*value, *counts.get(point)?));
+        let known: Vec<(f64, Count)> = self
+            .points
+            .iter()
+            .filter_map(of)
+            .filter(|(_, count)| count.majority().is_some())
+            .collect();
+        let below = known
+            .iter()
+            .rposition(|(value, count)| *value <= lower && count.unanimity().is_some());
+        let above = known
+            .iter()
+            .position(|(value, count)| *value >= upper && count.unanimity().is_some());
+        let (Some(below), Some(above)) = (below, above) else {
+            return vec![(lower, upper)];
+        };
+        known[below..=above]
+            .windows(2)
+            .map(|pair| (pair[0].0, pair[1].0))
+            .collect()
+    }
+
     /// The last two neighbouring values between which the majority changes, points that say nothing yet left out.
     fn bracket(&self, counts: &HashMap<usize, Count>) -> Option<(f64, f64)> {
         let known: Vec<(f64, bool)> = self
@@ -176,7 +214,8 @@ pub fn brackets(
 /// Adds the points that refinement asks for, as far as the runs that have ended decide them; answers whether there are
 /// any.
 ///
-/// A line of points is bisected only when all its runs have ended, so that the points added do not depend on the order in
+/// Between the value at which all runs changed their flow and that at which none did, the gaps between points are halved
+/// until none is wider than the tolerance. A line of points is bisected only when all its runs have ended, so that the points added do not depend on the order in
 /// which runs end.
 ///
 /// # Errors
@@ -198,22 +237,24 @@ pub fn refine(
                 .points
                 .iter()
                 .all(|(_, point, _)| counts.get(point).is_some_and(|count| count.open == 0));
-            let Some((lower, upper)) = line.bracket(&counts).filter(|_| all_ended) else {
-                continue;
-            };
-            let middle = neat(0.5 * (lower + upper));
-            if upper - lower <= refine.tolerance || middle <= lower || middle >= upper {
+            if !all_ended {
                 continue;
             }
-            let model = line.points[0].2;
-            let item = Item {
-                origin: refine.origin.clone(),
-                node: Node::Float(middle),
-            };
-            let mut choice = choice(study, &model.rows);
-            choice[setting_of(study, refine.axis)].2 = &item;
-            let state = study.states.as_ref().map(|_| model.state);
-            added.push(point(study, &choice, &model.rows, state)?);
+            for (lower, upper) in line.undecided(&counts) {
+                let middle = neat(0.5 * (lower + upper));
+                if upper - lower <= refine.tolerance || middle <= lower || middle >= upper {
+                    continue;
+                }
+                let model = line.points[0].2;
+                let item = Item {
+                    origin: refine.origin.clone(),
+                    node: Node::Float(middle),
+                };
+                let mut choice = choice(study, &model.rows);
+                choice[setting_of(study, refine.axis)].2 = &item;
+                let state = study.states.as_ref().map(|_| model.state);
+                added.push(point(study, &choice, &model.rows, state)?);
+            }
         }
         if added.is_empty() {
             return Ok(grown);
@@ -223,7 +264,8 @@ pub fn refine(
     }
 }
 
-/// Most points that refinement can add, were every line to have a change: for an estimate beforehand.
+/// Most points that refinement adds where every line changes within one gap between its points and runs differ all the way
+/// between: for an estimate beforehand.
 #[must_use]
 pub(crate) fn most_added_points(study: &Specification, plan: &Plan) -> usize {
     let Some(refine) = &study.refinement else {
@@ -246,5 +288,5 @@ pub(crate) fn most_added_points(study: &Specification, plan: &Plan) -> usize {
         left *= 0.5;
         halvings += 1;
     }
-    halvings * lines(study, plan, refine.axis).len()
+    ((1_usize << halvings.min(20)) - 1) * lines(study, plan, refine.axis).len()
 }

@@ -66,8 +66,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     for (name, collapsed) in &found {
         finding
             .quantities
-            .extend(collapsed.quantities(name, ["*a*", "*b*"]));
-        finding.tables.extend(collapsed.tables(name));
+            .extend(collapsed.quantities(&format!("{name} lattice"), ["*a*", "*b*"]));
+        finding
+            .tables
+            .extend(collapsed.tables(&format!("{name} lattice")));
     }
     finding.paragraphs.push(
         "*τε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*} with *w*_{c} of each strain rate as fitted for F2, and *a* and *b* \
@@ -83,9 +85,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding.figures.push(figure(
         &found,
-        EXPONENTS,
         "collapse-of-transition-times",
-        ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}", "*τε̇*^{*a*}"],
+        ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"],
+        "*τε̇*^{*a*}",
         -1.0,
         "Mean transition times scaled with the exponents of the source (left) and with those that collapse them best \
          (right), lattice by lattice; dashed: slope −1.",

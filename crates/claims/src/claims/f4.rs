@@ -78,8 +78,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let variance =
             |ensemble: &peristalsis_analysis::WidthEnsemble| ensemble.fit.map(|fit| fit.variance);
         if let Some(collapsed) = collapse(&fits, SCALING, EXPONENT, variance) {
-            quantities
-                .extend(collapsed.quantities(&format!("variance, {name}"), ["*a_{χ}*", "*b_{χ}*"]));
+            quantities.extend(
+                collapsed.quantities(&format!("variance, {name} lattice"), ["*a_{χ}*", "*b_{χ}*"]),
+            );
             collapses.push((name, collapsed));
         }
     }
@@ -140,9 +141,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     if !collapses.is_empty() {
         finding.figures.push(figure(
             &collapses,
-            SCALING,
             "collapse-of-variances",
-            ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}", "*χ_{τ}ε̇*^{*a*}"],
+            ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"],
+            "*χ_{τ}ε̇*^{*a*}",
             -3.0,
             "Variances scaled with the exponents of the source (left) and with those that collapse them best (right); \
              dashed: slope −3.",

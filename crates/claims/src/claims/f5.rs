@@ -1,14 +1,15 @@
 //! F5: the fluctuation of the flow rate across an ensemble.
 
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Interval, Law, MomentPeak, Uncertain, fit_law, second_moment,
-    second_moment_peak,
+    AfterEnd, Bootstrap, Curve as Scaled, CurvePoint, Interval, Law, MomentPeak, Uncertain,
+    fit_law, second_moment, second_moment_peak,
 };
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
 use super::{label, rate_colours};
 use crate::claim::Claim;
+use crate::collapse::{Collapsed, collapse_curves, figure as collapse_figure};
 use crate::critical::strain_rates;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
@@ -32,6 +33,9 @@ const HELD: usize = 5;
 /// Runs at a width below which there is no variance.
 const LEAST_RUNS: usize = 4;
 
+/// Error below which that of a peak, which is resampled, is not believed.
+const LEAST_ERROR: f64 = 1e-4;
+
 /// The peak of chi_J at one width.
 struct Peak {
     width: f64,
@@ -47,6 +51,30 @@ struct Line {
     moments: Vec<(f64, Vec<f64>)>,
     /// Largest width at which most runs had a transition.
     last: f64,
+}
+
+impl Line {
+    /// Midway between the last width at which most runs jammed and the next one.
+    fn critical_width(&self) -> Option<Uncertain> {
+        let beyond = self
+            .peaks
+            .iter()
+            .map(|peak| peak.width)
+            .find(|width| *width > self.last)?;
+        let critical = Uncertain {
+            value: 0.5 * (self.last + beyond),
+            error: 0.3 * (beyond - self.last),
+            interval_68: Interval {
+                lower: self.last,
+                upper: beyond,
+            },
+            interval_95: Interval {
+                lower: self.last,
+                upper: beyond,
+            },
+        };
+        Some(critical)
+    }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
@@ -115,6 +143,21 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             number(beyond, 3),
         ]);
     }
+    let scaling = scaling_relation(&lines);
+    let in_words = scaling.as_ref().map_or_else(
+        || "too few strain rates to look for a scaling relation".to_owned(),
+        |found| {
+            format!(
+                "{}: {}",
+                if found.holds() {
+                    "the peaks of all strain rates obey a scaling relation"
+                } else {
+                    "the peaks of all strain rates do not fall on one curve, at the best exponents"
+                },
+                found.in_words()
+            )
+        },
+    );
     let mut finding = Finding::new(
         if bounded == lines.len() {
             Verdict::Differs
@@ -123,7 +166,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         },
         format!(
             "*χ_{{J}}* peaks next to *w*_{{c}} and stays below 0.3 at {bounded} of {} strain rates: where each run is slow or \
-             fast it cannot exceed 1/4 by much, so that in this sense nothing diverges.",
+             fast it cannot exceed 1/4 by much, so that in this sense nothing diverges; {in_words}.",
             lines.len()
         ),
         statistics,
@@ -144,9 +187,26 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
          value. *χ_{J}*(*t*) is taken over the runs at one width (without bias), its peak over *t* with errors from resampled \
          runs. A peak of 1/4 means that half of the runs have jammed at that time: it measures how much transition times \
          scatter in comparison with how long the jump itself takes. The exponent is that of the height of the peak against \
-         (*w*_{c} − *w*), as far as it rises."
+         (*w*_{c} − *w*), as far as it rises. The scaling relation is that of F3 and F4 with free exponents: the peak times \
+         *ε̇*^{*a*} against (*w*_{c} − *w*)/*ε̇*^{*b*}, with *w*_{c} midway between the last width that jams and the next."
             .to_owned(),
     );
+    if let Some(found) = scaling {
+        let of = "peak of the second moment";
+        finding
+            .quantities
+            .extend(found.quantities(of, ["*a_{J}*", "*b_{J}*"]));
+        finding.tables.extend(found.tables(of));
+        finding.figures.push(collapse_figure(
+            &[("fine".to_owned(), found)],
+            "collapse-of-second-moments",
+            ["", ""],
+            "max_{*t*} *χ_{J}ε̇*^{*a*}",
+            -1.0,
+            "Peaks of the second moment of all strain rates, scaled with the exponents that collapse them best; dashed: \
+             slope −1.",
+        )?);
+    }
     finding.weaknesses.push(
         "The abstract does not say whether the moment is that of *J*, of *J*/*J*_{max} or of *J* in time; a moment of *J* \
          itself, which is extensive, may well grow without bound in longer tubes."
@@ -211,6 +271,39 @@ fn line(study: &StudyResults, strain_rate: f64) -> Result<Line, ClaimError> {
     })
 }
 
+/// Collapse of the rising sides of the peaks of all strain rates, with free exponents.
+fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
+    let mut critical = Vec::new();
+    let mut curves = Vec::new();
+    for line in lines {
+        let Some(width) = line.critical_width() else {
+            continue;
+        };
+        let points: Vec<CurvePoint> = line
+            .peaks
+            .iter()
+            .filter(|peak| peak.width <= line.last && peak.peak.value.value > 0.0)
+            .map(|peak| {
+                let found = peak.peak.value;
+                let steepness = found.value / (width.value - peak.width);
+                CurvePoint {
+                    x: peak.width,
+                    y: found.value,
+                    error: found.error.max(LEAST_ERROR).hypot(steepness * width.error),
+                }
+            })
+            .collect();
+        if points.len() > 2 {
+            critical.push(width.value);
+            curves.push(Scaled {
+                parameter: line.strain_rate,
+                points,
+            });
+        }
+    }
+    collapse_curves(critical, curves, [0.0, 1.0], None)
+}
+
 /// Exponent of the rise of the peak toward the critical width, where it can be fitted.
 fn exponent(line: &Line) -> Option<Quantity> {
     let rising: Vec<&Peak> = line
@@ -222,25 +315,9 @@ fn exponent(line: &Line) -> Option<Quantity> {
     let value: Vec<f64> = rising.iter().map(|peak| peak.peak.value.value).collect();
     let error: Vec<f64> = rising
         .iter()
-        .map(|peak| peak.peak.value.error.max(1e-4))
+        .map(|peak| peak.peak.value.error.max(LEAST_ERROR))
         .collect();
-    let beyond = line
-        .peaks
-        .iter()
-        .map(|peak| peak.width)
-        .find(|width| *width > line.last)?;
-    let critical = Uncertain {
-        value: 0.5 * (line.last + beyond),
-        error: 0.3 * (beyond - line.last),
-        interval_68: Interval {
-            lower: line.last,
-            upper: beyond,
-        },
-        interval_95: Interval {
-            lower: line.last,
-            upper: beyond,
-        },
-    };
+    let critical = line.critical_width()?;
     let fit = fit_law(Law::Power, &width, &value, &error, Some(critical)).ok()?;
     Some(Quantity {
         name: format!(

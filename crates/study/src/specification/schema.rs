@@ -87,7 +87,7 @@ fn build() -> Value {
                 "additionalProperties": false,
                 "required": ["key", "tolerance"],
                 "description": "Adds points where the flow changes its kind: for each combination of the other axes, \
-                                bisection between the values where most runs had a transition and where most had none.",
+                                bisection between the values where all runs had a transition and where none had.",
                 "properties": {
                     "key": {
                         "type": "string",
@@ -96,7 +96,7 @@ fn build() -> Value {
                     "tolerance": {
                         "type": "number",
                         "exclusiveMinimum": 0,
-                        "description": "Distance of the two values at which bisection ends, in the unit of the key.",
+                        "description": "Distance of neighbouring values at which bisection ends, in the unit of the key.",
                     },
                 },
             },

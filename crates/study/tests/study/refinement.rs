@@ -105,6 +105,52 @@ fn bisection_ends_within_the_tolerance_of_each_line() {
 }
 
 #[test]
+fn where_some_runs_jam_the_points_are_dense_between_all_and_none() {
+    let study = study(&STUDY.replace(r#"["rest", "jammed"]"#, r#"["rest"]"#));
+    let mut plan = Plan::of(&study).unwrap();
+    loop {
+        // Each replicate jams up to a width of its own: 2.64, 2.67, 2.70.
+        let known: Vec<(Identity, Finding)> = plan
+            .runs()
+            .iter()
+            .map(|run| {
+                let width = plan.point(run).settings[1].value.number().unwrap();
+                let found = if width < 2.64 + 0.03 * f64::from(run.replicate) {
+                    Finding::Transition
+                } else {
+                    Finding::NoTransition
+                };
+                (run.identity, found)
+            })
+            .collect();
+        let found = |identity: &Identity| {
+            let known = known.iter().find(|(other, _)| other == identity);
+            known.map(|(_, finding)| *finding)
+        };
+        if !refine(&study, &mut plan, &found).unwrap() {
+            break;
+        }
+    }
+    for strain_rate in [0.05, 0.1] {
+        let mut widths: Vec<f64> = plan
+            .points()
+            .iter()
+            .filter(|point| point.settings[0].value.number() == Some(strain_rate))
+            .map(|point| point.settings[1].value.number().unwrap())
+            .collect();
+        widths.sort_by(f64::total_cmp);
+        let gaps = widths
+            .windows(2)
+            .filter(|pair| pair[1] > 2.64 && pair[0] < 2.70);
+        for gap in gaps {
+            assert!(gap[1] - gap[0] <= 0.01, "{gap:?}");
+        }
+        // 2.5, 2.7, 2.9, and the sixteenths and thirty-seconds of 0.2 from 2.64 to 2.70 with what led to them.
+        assert_eq!(widths.len(), 15, "{widths:?}");
+    }
+}
+
+#[test]
 fn the_points_added_do_not_depend_on_the_order_in_which_runs_end() {
     let sorted = |plan: Plan| {
         let mut identities: Vec<Identity> = plan.runs().iter().map(|run| run.identity).collect();
