@@ -5,7 +5,8 @@ use std::cell::RefCell;
 use numpy::PyReadonlyArray1;
 use peristalsis_analysis as analysis;
 use peristalsis_analysis::{
-    Bootstrap, Collapse, Curve, CurvePoint, Family, Law, Scaling, Survival, Transition, Uncertain,
+    AfterEnd, Bootstrap, Collapse, Curve, CurvePoint, Family, Law, Scaling, Survival, Transition,
+    Uncertain,
 };
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
@@ -194,6 +195,46 @@ fn compare_laws<'py>(
 }
 
 #[pyfunction]
+fn fit_law_to_runs_in_windows<'py>(
+    py: Python<'py>,
+    law: &Bound<'py, PyAny>,
+    family: &Bound<'py, PyAny>,
+    width: Reals<'py>,
+    time: Reals<'py>,
+    observed: Truths<'py>,
+) -> Answer<'py> {
+    let (law, family): (Law, Family) = (named(law)?, named(family)?);
+    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
+    answer(py, || {
+        analysis::fit_law_to_runs_in_windows(law, family, &width, &runs)
+    })
+}
+
+#[pyfunction]
+fn fit_law_with_scatter<'py>(
+    py: Python<'py>,
+    width: Reals<'py>,
+    time: Reals<'py>,
+    observed: Truths<'py>,
+) -> Answer<'py> {
+    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
+    answer(py, || analysis::fit_law_with_scatter(&width, &runs))
+}
+
+#[pyfunction]
+fn ensembles_by_width<'py>(
+    py: Python<'py>,
+    family: &Bound<'py, PyAny>,
+    width: Reals<'py>,
+    time: Reals<'py>,
+    observed: Truths<'py>,
+) -> Answer<'py> {
+    let family: Family = named(family)?;
+    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
+    answer(py, || analysis::ensembles_by_width(family, &width, &runs))
+}
+
+#[pyfunction]
 fn fraction_crossing<'py>(py: Python<'py>, width: Reals<'py>, jammed: Truths<'py>) -> Answer<'py> {
     let (width, jammed) = (vector(&width)?, truths(&jammed)?);
     answer(py, || analysis::fraction_crossing(&width, &jammed))
@@ -282,6 +323,31 @@ fn power_exponent<'py>(
 fn ensemble_moments<'py>(py: Python<'py>, replicas: Vec<Reals<'py>>) -> Answer<'py> {
     let replicas: Vec<Vec<f64>> = replicas.iter().map(vector).collect::<PyResult<_>>()?;
     answer(py, || analysis::ensemble_moments(&replicas))
+}
+
+/// What stands for runs that ended early: the mean of so many last samples, or nothing.
+fn after_end(held: Option<usize>) -> AfterEnd {
+    held.map_or(AfterEnd::Leave, |samples| AfterEnd::Hold { samples })
+}
+
+#[pyfunction]
+fn second_moment<'py>(py: Python<'py>, runs: Vec<Reals<'py>>, held: Option<usize>) -> Answer<'py> {
+    let runs: Vec<Vec<f64>> = runs.iter().map(vector).collect::<PyResult<_>>()?;
+    answer(py, || analysis::second_moment(&runs, after_end(held)))
+}
+
+#[pyfunction]
+fn second_moment_peak<'py>(
+    py: Python<'py>,
+    runs: Vec<Reals<'py>>,
+    held: Option<usize>,
+    resamples: usize,
+    seed: u64,
+) -> Answer<'py> {
+    let runs: Vec<Vec<f64>> = runs.iter().map(vector).collect::<PyResult<_>>()?;
+    answer(py, || {
+        analysis::second_moment_peak(&runs, after_end(held), Bootstrap { resamples, seed })
+    })
 }
 
 /// Curves as the estimators take them.
@@ -473,6 +539,11 @@ pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(fit_law, module)?)?;
     module.add_function(wrap_pyfunction!(fit_law_to_runs, module)?)?;
     module.add_function(wrap_pyfunction!(compare_laws, module)?)?;
+    module.add_function(wrap_pyfunction!(fit_law_to_runs_in_windows, module)?)?;
+    module.add_function(wrap_pyfunction!(fit_law_with_scatter, module)?)?;
+    module.add_function(wrap_pyfunction!(ensembles_by_width, module)?)?;
+    module.add_function(wrap_pyfunction!(second_moment, module)?)?;
+    module.add_function(wrap_pyfunction!(second_moment_peak, module)?)?;
     module.add_function(wrap_pyfunction!(fraction_crossing, module)?)?;
     module.add_function(wrap_pyfunction!(hysteresis, module)?)?;
     module.add_function(wrap_pyfunction!(jump_height, module)?)?;

@@ -85,6 +85,36 @@ def test_laws_from_runs_with_censored_ones() -> None:
     assert sum(each.weight for each in evidence) == pytest.approx(1.0)
 
 
+def test_mean_and_variance_of_transition_times_near_their_divergence() -> None:
+    randomness = np.random.default_rng(11)
+    width = np.repeat(np.linspace(2.4, 2.75, 8), 60)
+    distance = 2.8 - width
+    # alpha = 1 and q = 1: shape (w_c - w)/C
+    shape = distance / 0.02
+    time = randomness.gamma(shape, 3.0 / distance / shape)
+    observed = time < 150.0
+    time = np.minimum(time, 150.0)
+    fit = analysis.fit_law_with_scatter(width, time, observed)
+    for found, true in ((fit.critical_width, 2.8), (fit.exponent, 1.0), (fit.scatter_exponent, 1.0)):
+        assert abs(found.value - true) < 4 * found.error < 1.0
+    assert fit.chance_probability < 1e-6
+    ensembles = analysis.ensembles_by_width(width, time, observed)
+    assert [each.width for each in ensembles] == sorted(set(width)) and ensembles[0].observed == 60
+    first = ensembles[0].fit
+    assert first is not None and first.variance.value == pytest.approx(3.0**2 * 0.02 / 0.4**3, rel=0.5)
+    windows = analysis.fit_law_to_runs_in_windows("power", width, time, observed)
+    assert len(windows) > 3 and (windows[0].least, windows[0].largest) == (2.4, 2.75)
+
+
+def test_second_moment_of_runs_that_end() -> None:
+    runs = [[0.0, 1.0], [0.0, 0.5, 1.0], [0.0, 0.0, 0.4]]
+    held = analysis.second_moment(runs, held=1)
+    assert (held[1].variance, held[2].mean, held[2].variance) == pytest.approx((0.25, 0.8, 0.12))
+    assert len(analysis.second_moment(runs)) == 2
+    peak = analysis.second_moment_peak(runs * 4, held=1, resamples=50)
+    assert peak.index.value == 1.0 and peak.value.value == pytest.approx(0.25 * 8 / 11)
+
+
 def test_survival_by_hand() -> None:
     curve = analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True, True])
     # 3/4, then 1 of 2 at risk, then 0.

@@ -594,6 +594,140 @@ class CurveFit:
 
 
 @dataclass(frozen=True)
+class WidthEnsemble:
+    """Transition times of the runs at one width, estimated in three ways.
+
+    Attributes
+    ----------
+    width : float
+        Width w.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+    watched : float
+        Longest time at which a run was watched.
+    naive_mean : float | None
+        Mean of the observed times alone, which near w_c lies below the truth for want of the long ones.
+    restricted : RestrictedMoments | None
+        Mean and variance of min(tau, `watched`): no distribution assumed. `None` below 3 transitions.
+    fit : LifetimeFit | None
+        Maximum likelihood under censoring, chi_tau its variance; `None` where it has no estimate.
+    """
+
+    width: float
+    observed: int
+    censored: int
+    watched: float
+    naive_mean: float | None
+    restricted: RestrictedMoments | None
+    fit: LifetimeFit | None
+
+
+@dataclass(frozen=True)
+class WindowRunsFit:
+    """A law fitted to the runs within a window of widths.
+
+    Attributes
+    ----------
+    least : float
+        Smallest width of the window.
+    largest : float
+        Largest width of the window.
+    fit : LawRunsFit
+        The fit.
+    """
+
+    least: float
+    largest: float
+    fit: LawRunsFit
+
+
+@dataclass(frozen=True)
+class ScatterLawFit:
+    """Power laws of the mean transition time and of its relative variance, fitted to the runs at all widths.
+
+    Attributes
+    ----------
+    critical_width : Uncertain
+        Critical width w_c.
+    exponent : Uncertain
+        alpha of tau ~ (w_c - w)^-alpha.
+    scatter_exponent : Uncertain
+        q of chi_tau/tau^2 ~ (w_c - w)^-q.
+    variance_exponent : Uncertain
+        beta = 2 alpha + q of chi_tau ~ (w_c - w)^-beta.
+    ln_amplitude : float
+        ln A of tau = A (w_c - w)^-alpha.
+    ln_scatter : float
+        ln C of chi_tau/tau^2 = C (w_c - w)^-q.
+    log_likelihood : float
+        Largest log-likelihood; five parameters.
+    chance_probability : float
+        Probability of so large a likelihood ratio if chi_tau/tau^2 = 1 at all widths: nucleation at a constant rate.
+    constant_probability : float
+        The same if chi_tau/tau^2 has one value at all widths, q = 0.
+    inverse_probability : float
+        The same if chi_tau/tau^2 ~ 1/(w_c - w), q = 1.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+    """
+
+    critical_width: Uncertain
+    exponent: Uncertain
+    scatter_exponent: Uncertain
+    variance_exponent: Uncertain
+    ln_amplitude: float
+    ln_scatter: float
+    log_likelihood: float
+    chance_probability: float
+    constant_probability: float
+    inverse_probability: float
+    observed: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class SecondMoment:
+    """Mean and variance of j = J/Jmax across an ensemble at one time.
+
+    Attributes
+    ----------
+    mean : float
+        Mean `<j>`.
+    variance : float
+        `chi_J = <j^2> - <j>^2`, estimated without bias (divisor n - 1).
+    runs : int
+        Runs behind it, held ones included.
+    """
+
+    mean: float
+    variance: float
+    runs: int
+
+
+@dataclass(frozen=True)
+class MomentPeak:
+    """Peak over time of the second moment.
+
+    Attributes
+    ----------
+    index : Uncertain
+        Position of the peak in the series, from 0, with bootstrap errors.
+    value : Uncertain
+        Height of the peak, with bootstrap errors.
+    bias : float
+        Mean height of the resampled peaks less `value`; the true height is likely near `value - bias`.
+    """
+
+    index: Uncertain
+    value: Uncertain
+    bias: float
+
+
+@dataclass(frozen=True)
 class Moments:
     """Mean and variance of independent values, with jackknife errors.
 

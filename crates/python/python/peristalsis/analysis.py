@@ -45,10 +45,13 @@ from ._results import (
     LawRunsFit,
     LifetimeFit,
     LineFit,
+    MomentPeak,
     Moments,
     Peak,
     Resampled,
     RestrictedMoments,
+    ScatterLawFit,
+    SecondMoment,
     ShiftedExponentialFit,
     Stationarity,
     StationaryMean,
@@ -56,6 +59,8 @@ from ._results import (
     Truncation,
     TwoPeaks,
     Uncertain,
+    WidthEnsemble,
+    WindowRunsFit,
     result,
 )
 
@@ -77,10 +82,13 @@ __all__ = [
     "LawRunsFit",
     "LifetimeFit",
     "LineFit",
+    "MomentPeak",
     "Moments",
     "Peak",
     "Resampled",
     "RestrictedMoments",
+    "ScatterLawFit",
+    "SecondMoment",
     "ShiftedExponentialFit",
     "Stationarity",
     "StationaryMean",
@@ -90,12 +98,17 @@ __all__ = [
     "Truncation",
     "TwoPeaks",
     "Uncertain",
+    "WidthEnsemble",
+    "WindowRunsFit",
     "autocorrelation_time",
     "compare_laws",
     "dip_test",
     "ensemble_moments",
+    "ensembles_by_width",
     "fit_law",
     "fit_law_to_runs",
+    "fit_law_to_runs_in_windows",
+    "fit_law_with_scatter",
     "fit_lifetime",
     "fit_line",
     "fit_parabola",
@@ -106,6 +119,8 @@ __all__ = [
     "mean_with_error",
     "power_exponent",
     "restricted_moments",
+    "second_moment",
+    "second_moment_peak",
     "stationarity",
     "stationary_mean",
     "transition_time",
@@ -337,6 +352,54 @@ def fit_law_to_runs(
     return result(LawRunsFit, _core.fit_law_to_runs(_law(law), family, widths, times, truths))
 
 
+def fit_law_to_runs_in_windows(
+    law: Law,
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: str = "gamma",
+) -> list[WindowRunsFit]:
+    """`fit_law_to_runs` in windows that leave out the smallest, then the largest widths one by one.
+
+    The first window holds all widths. An exponent that is one moves by no more than its error from window to window.
+    """
+    times, truths = _runs(time, observed)
+    widths, times = _columns(width, times)
+    answers = _core.fit_law_to_runs_in_windows(_law(law), family, widths, times, truths)
+    return [result(WindowRunsFit, answer) for answer in answers]
+
+
+def fit_law_with_scatter(
+    width: Numbers, time: Numbers, observed: npt.ArrayLike | None = None
+) -> ScatterLawFit:
+    """Power laws of the mean transition time and of its relative variance at once, censored runs included.
+
+    tau = A (w_c - w)^-alpha and chi_tau/tau^2 = C (w_c - w)^-q, gamma distributions of shape tau^2/chi_tau; so
+    chi_tau ~ (w_c - w)^-(2 alpha + q). Needs three widths with transitions.
+    """
+    times, truths = _runs(time, observed)
+    widths, times = _columns(width, times)
+    return result(ScatterLawFit, _core.fit_law_with_scatter(widths, times, truths))
+
+
+def ensembles_by_width(
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: str = "gamma",
+) -> list[WidthEnsemble]:
+    """Transition times of a table of runs, one row a run, estimated width by width in three ways.
+
+    Mean and variance chi_tau with errors for `fit_law` are those of each answer's `fit`.
+    """
+    times, truths = _runs(time, observed)
+    widths, times = _columns(width, times)
+    answers = _core.ensembles_by_width(family, widths, times, truths)
+    return [result(WidthEnsemble, answer) for answer in answers]
+
+
 def compare_laws(
     laws: Iterable[Law],
     width: Numbers,
@@ -411,6 +474,29 @@ def ensemble_moments(replicas: Iterable[Numbers]) -> list[Moments]:
     """Mean and variance over replicas of equal length, at each place of their series, with jackknife errors."""
     rows = _columns(*replicas)
     return [result(Moments, answer) for answer in _core.ensemble_moments(rows)]
+
+
+def second_moment(runs: Iterable[Numbers], *, held: int | None = None) -> list[SecondMoment]:
+    """chi_J(t) = <j^2> - <j>^2 over runs of unequal length, up to the last time that three runs have reached.
+
+    Parameters
+    ----------
+    runs : iterable of array_like
+        j(t) of each run, at common times.
+    held : int, optional
+        A run that ended stays at the mean of so many of its last samples: right where runs were stopped because they
+        had settled. Without it runs that ended are left out from then on.
+    """
+    answers = _core.second_moment([_reals(run) for run in runs], held)
+    return [result(SecondMoment, answer) for answer in answers]
+
+
+def second_moment_peak(
+    runs: Iterable[Numbers], *, held: int | None = None, resamples: int = 200, seed: int = 0
+) -> MomentPeak:
+    """The peak over time of `second_moment`, with errors by resampling whole runs."""
+    rows = [_reals(run) for run in runs]
+    return result(MomentPeak, _core.second_moment_peak(rows, held, int(resamples), int(seed)))
 
 
 # Collapse
