@@ -186,6 +186,22 @@ impl Axis {
     }
 
     fn logarithmic_ticks(&self, most: usize) -> Vec<Tick> {
+        let few = libm::log10(self.largest / self.least) < FEW_DECADES;
+        let ticks = self.power_ticks(most, few && most >= MOST_FOR_POWERS);
+        if labels_of(&ticks) >= LEAST_LABELS {
+            return ticks;
+        }
+        // Few decades may hold but one power of ten, and less than one may hold none.
+        let ticks = self.power_ticks(most, few);
+        if labels_of(&ticks) >= LEAST_LABELS {
+            ticks
+        } else {
+            self.linear_ticks(most)
+        }
+    }
+
+    /// Ticks at the multiples of powers of ten, with labels at the powers, and between them if so wished.
+    fn power_ticks(&self, most: usize, label_between: bool) -> Vec<Tick> {
         let decades = libm::log10(self.largest / self.least);
         let stride = (decades / most as f64).ceil().max(1.0);
         let plain = decades < FEW_DECADES && self.least >= PLAIN.0 && self.largest <= PLAIN.1;
@@ -203,7 +219,7 @@ impl Axis {
                 }
                 let labelled = match multiple {
                     1 => exponent.rem_euclid(stride) == 0.0,
-                    2 | 5 => decades < FEW_DECADES && most >= MOST_FOR_POWERS,
+                    2 | 5 => label_between,
                     _ => false,
                 };
                 let label = || {
@@ -224,12 +240,7 @@ impl Axis {
                 });
             }
         }
-        if labels_of(&ticks) >= LEAST_LABELS {
-            ticks
-        } else {
-            // Less than a decade may hold no power of ten at all.
-            self.linear_ticks(most)
-        }
+        ticks
     }
 }
 
@@ -368,6 +379,9 @@ mod tests {
         );
         let short = Axis::with_margin(Scale::Logarithmic, (1.0, 6.0), 0.0);
         assert_eq!(labels(&short, 6), ["1", "2", "5"]);
+        // One power of ten alone would not tell a scale.
+        let one = Axis::exact(Scale::Logarithmic, (18.0, 640.0));
+        assert_eq!(labels(&one, 3), ["20", "50", "100", "200", "500"]);
     }
 
     #[test]
