@@ -95,6 +95,8 @@ pub const STUDIES: &[StudyFile] = &[
     study!("wavelength"),
     study!("radius"),
     study!("length"),
+    study!("method-fine"),
+    study!("method-coarse"),
     study!("back-flow"),
     study!("two-by-two-stress"),
     study!("two-by-two-strain"),

@@ -438,3 +438,59 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
     let alone = examine("Q9", &[("pumping-frictionless", &one)]);
     assert_eq!(alone.verdict, Verdict::Open);
 }
+
+/// Runs that jam below a critical width of each method.
+fn methods(critical: impl Fn(f64, bool) -> f64) -> Rows {
+    let mut rows = Rows::default();
+    let all = [
+        (0.1, 0.3, "verlet"),
+        (0.05, 0.3, "verlet"),
+        (0.025, 0.3, "verlet"),
+        (0.05, 0.6, "verlet"),
+        (0.05, 0.3, "adams_bashforth"),
+    ];
+    for (step, skin, integrator) in all {
+        for place in 0..21 {
+            let width = 2.7 + 0.01 * f64::from(place);
+            let jams = width < critical(step, integrator == "adams_bashforth");
+            for replicate in 0..5 {
+                rows.add(
+                    &[("initial_state", "rest"), ("run.integrator", integrator)],
+                    &[
+                        ("run.time_step", step),
+                        ("run.neighbour_skin", skin),
+                        ("strain_rate", 0.1),
+                        ("width", width),
+                        ("time", 500.0),
+                        ("transition_time", if jams { 50.0 } else { f64::NAN }),
+                        (
+                            "flow_rate_ratio",
+                            if jams { 0.99 } else { 0.1 } + noise(replicate - 1),
+                        ),
+                        ("replicate", f64::from(replicate)),
+                    ],
+                );
+            }
+        }
+    }
+    rows
+}
+
+#[test]
+fn the_method_is_judged_by_smaller_steps_and_other_integrators() {
+    let rows = methods(|step, is_other| match (step, is_other) {
+        (0.1, _) => 2.755,
+        (_, true) => 2.815,
+        _ => 2.795,
+    });
+    let finding = examine("Q11", &[("method-fine", &rows), ("method-coarse", &rows)]);
+    assert_eq!(finding.verdict, Verdict::Answered, "{}", finding.summary);
+    let usual = value(&finding, "fine lattice, Verlet, step 0.05, skin 0.3");
+    let coarse_step = value(&finding, "fine lattice, Verlet, step 0.1,");
+    let other = value(&finding, "coarse lattice, Adams-Bashforth");
+    assert!((usual - 2.795).abs() < 0.006 && (coarse_step - 2.755).abs() < 0.006);
+    assert!((other - 2.815).abs() < 0.006);
+    // The step of 0.1 is not one to trust more; the other integrator moves by 0.02.
+    assert!(finding.summary.contains("0.020 ±"), "{}", finding.summary);
+    assert_eq!(finding.tables[0].rows.len(), 10);
+}

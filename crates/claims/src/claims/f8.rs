@@ -8,6 +8,7 @@ use super::{Part, best, judge, label};
 use crate::branches::Branch;
 use crate::claim::Claim;
 use crate::critical::{Line, WINDOW, lines_at_own_threshold, weighted_mean};
+use crate::crossing::crossing;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
@@ -108,9 +109,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding.quantities = quantities;
     finding.paragraphs.push(format!(
-        "J/Jmax of the jammed flow is compared at *w* = {COMPARED} *d*; *w*_{{c}} and *α* are those of the power law of F2 at \
-         each density, the threshold midway up that density's jump; where no power law could be fitted, *w*_{{c}} is the middle \
-         of the bracket of the jump. “Hardly” is taken as a change by less than {} per cent from the least to the largest \
+        "J/Jmax of the jammed flow is compared at *w* = {COMPARED} *d*; *w*_{{c}} is where half of the runs jam, or the middle of \
+         the bracket of the jump where none or all do; *α* is that of the power law of F2 with a *w*_{{c}} of its own through the \
+         six widths next to it, which lie farther apart here, so that it is an effective exponent; the threshold is midway up \
+         each density's jump. “Hardly” is taken as a change by less than {} per cent from the least to the largest \
          density.",
         100.0 * HARDLY
     ));
@@ -159,8 +161,8 @@ fn densities(runs: &[Run]) -> Vec<Density> {
                 .map(|point| (point.mean, point.error));
             Density {
                 fraction: here[0].volume_fraction,
-                critical: fit
-                    .map(|fit| fit.critical_width)
+                critical: crossing(&here.iter().collect::<Vec<_>>())
+                    .map(|found| found.width)
                     .or_else(|| branch.drop().map(|drop| drop.width())),
                 exponent: fit.map(|fit| fit.exponent),
                 ratio,

@@ -12,6 +12,7 @@ mod f8;
 mod f9;
 mod q1;
 mod q10;
+mod q11;
 mod q2;
 mod q3;
 mod q4;
@@ -65,6 +66,7 @@ pub const CLAIMS: &[Claim] = &[
     q8::CLAIM,
     q9::CLAIM,
     q10::CLAIM,
+    q11::CLAIM,
 ];
 
 /// Fraction of grains outside the tube beyond which a strain rate is left out of fits: another system flows then.
