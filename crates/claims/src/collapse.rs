@@ -156,6 +156,11 @@ fn jackknife(estimates: &[f64]) -> f64 {
 }
 
 impl Collapsed {
+    /// Houdayer and Hartmann's S at the best exponents.
+    pub(crate) fn quality(&self) -> f64 {
+        self.fit.quality.quality
+    }
+
     /// Whether the curves fall on one within a few of their errors.
     pub(crate) fn holds(&self) -> bool {
         self.fit.quality.quality <= COLLAPSED

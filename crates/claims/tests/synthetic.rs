@@ -208,7 +208,8 @@ fn the_divergence_is_judged_by_its_exponent() {
 fn a_collapse_finds_the_powers_of_the_strain_rate() {
     // tau = epsdot^-2 (w_c - w)^-1 = epsdot^(-a) ((w_c - w)/epsdot^b)^-1 for a - b = 2.
     let finding = find("F3", SOURCE);
-    let [a, b] = ["in the ordinate, fine", "in the distance, fine"].map(|name| value(&finding, name));
+    let [a, b] =
+        ["in the ordinate, fine", "in the distance, fine"].map(|name| value(&finding, name));
     assert!((a - b - 2.0).abs() < 0.15, "{a} {b}");
     assert!(!finding.figures.is_empty());
 }

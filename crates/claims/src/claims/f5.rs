@@ -33,6 +33,8 @@ const HELD: usize = 5;
 /// Runs at a width below which there is no variance.
 const LEAST_RUNS: usize = 4;
 
+/// Houdayer and Hartmann's S up to which curves agree within their errors.
+const AGREED: f64 = 2.0;
 /// Error below which that of a peak, which is resampled, is not believed.
 const LEAST_ERROR: f64 = 1e-4;
 
@@ -148,11 +150,12 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         || "too few strain rates to look for a scaling relation".to_owned(),
         |found| {
             format!(
-                "{}: {}",
-                if found.holds() {
-                    "the peaks of all strain rates obey a scaling relation"
-                } else {
-                    "the peaks of all strain rates do not fall on one curve, at the best exponents"
+                "scaled, the peaks of all strain rates {}: {}",
+                match found.quality() {
+                    quality if quality <= AGREED => "fall on one curve within their errors",
+                    _ if found.holds() =>
+                        "come near one curve, but differ by more than their errors",
+                    _ => "do not fall on one curve",
                 },
                 found.in_words()
             )

@@ -122,7 +122,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         rows,
     });
     finding.weaknesses.push(
-        "One strain rate a lattice: 0.1 on the fine, 0.05 on the coarse one. At 0.60 these soft grains overlap strongly."
+        "One strain rate a lattice: 0.1 on the fine, 0.05 on the coarse one. Where the flow falls without a jump, *w*_{c} only \
+         says where it passes the threshold. At 0.60 these soft grains overlap strongly."
             .to_owned(),
     );
     finding.figures.push(ReportFigure {
