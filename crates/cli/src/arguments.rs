@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Study(StudyCommand),
     /// Examine the claims of the source: run their studies and write the report.
     Reproduce(ReproduceArguments),
+    /// Run textbook experiments beside their analytic solutions.
+    Validate(ValidateArguments),
     /// Print completions for a shell.
     Completions(CompletionsArguments),
 }
@@ -270,6 +272,31 @@ pub(crate) struct ReproduceArguments {
     #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
     pub(crate) limit: Option<Duration>,
     /// Print claims.json on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// No progress on standard error.
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(
+    after_help = "Writes validation.json, and a table, a text and figures for each case. Ends with 1 where a case failed."
+)]
+pub(crate) struct ValidateArguments {
+    /// Only these cases, such as normal-impact,haff.
+    #[arg(long, value_name = "CASES", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Fewer points and replicates, in some twenty seconds.
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// Folder for the results.
+    #[arg(long, value_name = "DIR", default_value = "validation-report")]
+    pub(crate) out: PathBuf,
+    /// Put the results into this document, between the lines `<!-- validate CASE -->` and `<!-- /validate -->`.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) write: Option<PathBuf>,
+    /// Print validation.json on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,
     /// No progress on standard error.

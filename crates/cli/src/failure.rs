@@ -12,6 +12,7 @@ use peristalsis_formats::FormatError;
 use peristalsis_report::ReportError;
 use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
+use peristalsis_validate::ValidateError;
 use peristalsis_viewer::ViewerError;
 
 use crate::commands::say;
@@ -62,6 +63,9 @@ pub(crate) enum Failure {
     /// The report.
     #[error(transparent)]
     Report(#[from] ReportError),
+    /// The textbook experiments.
+    #[error(transparent)]
+    Validate(#[from] ValidateError),
     /// The viewer.
     #[error(transparent)]
     Viewer(#[from] ViewerError),
@@ -123,11 +127,18 @@ impl Failure {
                 | StudyError::Trial(_) => BAD_INPUT,
                 _ => FAILED,
             },
-            Self::Claim(ClaimError::NoSuchClaim { .. } | ClaimError::Folder { .. }) => BAD_INPUT,
+            Self::Claim(ClaimError::NoSuchClaim { .. } | ClaimError::Folder { .. })
+            | Self::Validate(
+                ValidateError::NoSuchCase { .. }
+                | ValidateError::Folder { .. }
+                | ValidateError::Read { .. }
+                | ValidateError::NoPlace { .. },
+            ) => BAD_INPUT,
             Self::Write { .. }
             | Self::Trajectory { .. }
             | Self::Claim(_)
             | Self::Report(_)
+            | Self::Validate(_)
             | Self::Viewer(_)
             | Self::Signals(_)
             | Self::Output(_) => FAILED,
@@ -180,7 +191,14 @@ impl Failure {
             Self::Claim(ClaimError::NoSuchClaim { known, .. }) => {
                 Some(format!("claims: {}", known.join(", ")))
             }
-            Self::Claim(ClaimError::Folder { .. }) => {
+            Self::Validate(ValidateError::NoSuchCase { known, .. }) => {
+                Some(format!("cases: {}", known.join(", ")))
+            }
+            Self::Validate(ValidateError::NoPlace { block, .. }) => Some(format!(
+                "put the lines <!-- validate {block} --> and <!-- /validate --> where the results are to stand"
+            )),
+            Self::Claim(ClaimError::Folder { .. })
+            | Self::Validate(ValidateError::Folder { .. }) => {
                 Some("name another folder with --out".to_owned())
             }
             Self::Viewer(ViewerError::Listen { .. }) => {

@@ -28,6 +28,7 @@ fn main() -> ExitCode {
         Command::Schema(arguments) => commands::schema::schema(arguments),
         Command::Newtonian(arguments) => commands::newtonian::newtonian(&arguments),
         Command::Reproduce(arguments) => commands::reproduce::reproduce(&arguments),
+        Command::Validate(arguments) => commands::validate::validate(&arguments),
         Command::Study(command) => commands::study::study(&command),
         Command::Completions(arguments) => commands::completions::completions(&arguments),
     };

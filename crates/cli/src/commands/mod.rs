@@ -10,6 +10,7 @@ pub(crate) mod run;
 pub(crate) mod schema;
 pub(crate) mod study;
 pub(crate) mod trajectory;
+pub(crate) mod validate;
 pub(crate) mod view;
 
 use std::io::Write;

@@ -1,0 +1,134 @@
+//! `peristalsis validate`
+
+use std::process::ExitCode;
+use std::time::Instant;
+
+use peristalsis_validate::{CASES, Examination, Extent, ValidateError, Validation, chosen};
+
+use crate::arguments::ValidateArguments;
+use crate::commands::{print, say};
+use crate::failure::Failure;
+use crate::progress::seconds;
+use crate::stop::Stop;
+
+/// Runs the cases.
+pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    let extent = if arguments.quick {
+        Extent::Quick
+    } else {
+        Extent::Full
+    };
+    let cases = chosen(CASES, &arguments.only)?;
+    // A document without places for the results is better refused before the work than after it.
+    if let Some(document) = &arguments.write {
+        Validation::check_places(document, &cases)?;
+    }
+    let tell = |text: &str| {
+        if !arguments.quiet {
+            say(text);
+        }
+    };
+    tell(&format!(
+        "{} case{}, {}, in {}",
+        cases.len(),
+        if cases.len() == 1 { "" } else { "s" },
+        extent.name(),
+        arguments.out.display()
+    ));
+    stop.keep_results();
+    let mut began = Instant::now();
+    let outcome = Validation::run(
+        extent,
+        &cases,
+        &|| stop.requested().is_some(),
+        &mut |examination| {
+            let took = seconds(began.elapsed().as_secs_f64());
+            tell(&format!("{} ({took})", line(examination)));
+            for failed in failures(examination) {
+                tell(&format!("  {failed}"));
+            }
+            began = Instant::now();
+        },
+    );
+    let validation = match outcome {
+        Err(ValidateError::Stopped) => {
+            tell("stopped, nothing is written");
+            return Ok(ExitCode::from(stop.requested().unwrap_or(1)));
+        }
+        outcome => outcome?,
+    };
+    validation.write(&arguments.out)?;
+    if let Some(document) = &arguments.write {
+        validation.write_into(document, CASES)?;
+    }
+    if arguments.json {
+        print(&validation.json())?;
+    } else {
+        let lines: Vec<String> = validation.examinations.iter().map(line).collect();
+        print(&format!("{}\n", lines.join("\n")))?;
+        print(&format!("results: {}\n", arguments.out.display()))?;
+    }
+    Ok(if validation.passed() {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::FAILURE
+    })
+}
+
+/// A case in one line.
+fn line(examination: &Examination) -> String {
+    let finding = &examination.finding;
+    let verdict = if examination.passed() {
+        "passed"
+    } else {
+        "failed"
+    };
+    format!(
+        "{:<15} {verdict}  {} checks, {} orders",
+        examination.case.name,
+        finding.checks.len(),
+        finding.convergences.len()
+    )
+}
+
+/// What failed of a case, a line each.
+fn failures(examination: &Examination) -> Vec<String> {
+    let finding = &examination.finding;
+    let checks = finding
+        .checks
+        .iter()
+        .filter(|check| !check.passed)
+        .map(|check| {
+            format!(
+                "{} ({}): {} instead of {}, a deviation of {:.1e} where {:.1e} is allowed",
+                check.quantity,
+                check.setting,
+                check.found,
+                check.expected,
+                check.deviation,
+                check.tolerance
+            )
+        });
+    let orders = finding
+        .convergences
+        .iter()
+        .filter(|convergence| !convergence.passed)
+        .map(|convergence| {
+            format!(
+                "{} ({}): order {:.2}, not from {} to {}",
+                convergence.quantity,
+                convergence.setting,
+                convergence.order.unwrap_or(f64::NAN),
+                convergence.expected_order[0],
+                convergence.expected_order[1]
+            )
+        });
+    examination
+        .failure
+        .iter()
+        .cloned()
+        .chain(checks)
+        .chain(orders)
+        .collect()
+}

@@ -1,0 +1,198 @@
+//! Haff's law: a gas of inelastic grains cools.
+
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Points, Tint};
+use peristalsis_figures::{Drawing, Scale};
+use peristalsis_physics::contact::LinearSpringDashpot;
+
+use super::restitution::linear_damping;
+use super::study::{numbers, table};
+use crate::case::{Case, Circumstances};
+use crate::error::ValidateError;
+use crate::experiment::Means;
+use crate::experiment::gas::Gas;
+use crate::finding::{CaseFigure, Check, Finding};
+use crate::reference::kinetic::CoolingGas;
+
+pub(super) const CASE: Case = Case {
+    name: "haff",
+    title: "Haff's law: the cooling of a homogeneous gas of inelastic grains",
+    source: "Haff 1983; van Noije & Ernst 1998",
+    examine,
+};
+
+/// Restitutions of the gases.
+const RESTITUTIONS: [f64; 2] = [0.9, 0.8];
+const VOLUME_FRACTION: f64 = 0.02;
+/// Collisions of a grain in the duration of one, at the start: how far grains are from hard spheres.
+const OVERLAPPING: f64 = 0.01;
+/// Steps in a contact.
+const STEPS_PER_CONTACT: f64 = 20.0;
+/// T_0/T at the end, in units of tau: the temperature falls to 1/16.
+const TIMES_TAU: f64 = 3.0;
+const SAMPLES: usize = 30;
+/// Samples left out at the start, where grains still stand as they were put.
+const LEFT_OUT: usize = 4;
+
+/// A gas with its theory.
+struct Experiment {
+    gas: Gas,
+    theory: CoolingGas,
+    time_step: f64,
+}
+
+impl Experiment {
+    fn new(restitution: f64, grains: usize, length: f64) -> Result<Self, ValidateError> {
+        let law = LinearSpringDashpot {
+            normal_stiffness: 1.0,
+            normal_damping: linear_damping(restitution),
+        };
+        let contact_time = law.contact_time(0.5);
+        let time_step = contact_time / STEPS_PER_CONTACT;
+        let mut gas = Gas {
+            law,
+            grains,
+            volume_fraction: VOLUME_FRACTION,
+            length,
+            temperature: 0.0,
+        };
+        let theory = CoolingGas {
+            // What the engine's collisions have at this step.
+            restitution: super::restitution::measured_at(law.normal_damping, time_step)?,
+            density: gas.density(),
+            surface: 2.0 / gas.radius(),
+        };
+        gas.temperature = (OVERLAPPING / (theory.collision_rate() * contact_time)).powi(2);
+        Ok(Self {
+            gas,
+            theory,
+            time_step,
+        })
+    }
+
+    /// tau of Haff's law at the start.
+    fn cooling_time(&self) -> f64 {
+        1.0 / (self.theory.haff_rate() * self.gas.temperature.sqrt())
+    }
+}
+
+/// Slope of y against x by least squares.
+fn slope(x: &[f64], y: &[f64]) -> f64 {
+    let number = x.len() as f64;
+    let (x_mean, y_mean) = (
+        x.iter().sum::<f64>() / number,
+        y.iter().sum::<f64>() / number,
+    );
+    let above: f64 = x
+        .iter()
+        .zip(y)
+        .map(|(x, y)| (x - x_mean) * (y - y_mean))
+        .sum();
+    above / x.iter().map(|x| (x - x_mean).powi(2)).sum::<f64>()
+}
+
+/// Mean and standard error.
+fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let number = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / number;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (number * (number - 1.0))).sqrt())
+}
+
+/// Part of the rate that theory and experiment may differ by besides three standard errors: grains touch for a time (1 %
+/// of that between collisions, or less), and the mirror is looked at a few times a contact only.
+const SYSTEMATIC: f64 = 0.015;
+
+fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
+    let replicates = circumstances.extent.choose(3, 8);
+    let (grains, length) = circumstances.extent.choose((600, 10.0), (2000, 16.0));
+    let mut finding = Finding {
+        paragraphs: vec![format!(
+            "{replicates} replicates of {grains} grains each (volume fraction 0.02) under the linear law, whose e does not depend on \
+             speed. 1/sqrt(T) grows linearly in time; its slope, divided by that of kinetic theory (contact value of Carnahan & \
+             Starling, second Sonine coefficient, e as the engine's own collisions have it at this step), is 1. The error is \
+             that of the mean over replicates; three of them and {:.1} % are allowed, for soft grains touch for up to 1 % of the time \
+             between two collisions. The engine has no fully periodic box: the gas is in a cylinder that is periodic along its axis \
+             and has a mirror for a side (the state is taken out and radial velocities of grains outside are reversed), which \
+             takes no energy; theory is corrected for the collisions that grains beside the mirror lack.",
+            100.0 * SYSTEMATIC
+        )],
+        ..Finding::default()
+    };
+    let mut curves: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
+    let (mut all_times, mut all_temperatures) = (Vec::new(), Vec::new());
+    let (mut all_restitutions, mut all_replicates) = (Vec::new(), Vec::new());
+    for restitution in RESTITUTIONS {
+        let experiment = Experiment::new(restitution, grains, length)?;
+        let tau = experiment.cooling_time();
+        let mut ratios = Vec::new();
+        let mut mean = vec![[0.0; 2]; SAMPLES + 1];
+        for replicate in 0..replicates {
+            let course = experiment.gas.cool(
+                replicate,
+                Means::USUAL,
+                experiment.time_step,
+                [TIMES_TAU * tau, SAMPLES as f64],
+                circumstances,
+            )?;
+            let late = &course[LEFT_OUT..];
+            let times: Vec<f64> = late.iter().map(|sample| sample[0]).collect();
+            let inverse: Vec<f64> = late.iter().map(|sample| 1.0 / sample[1].sqrt()).collect();
+            ratios.push(slope(&times, &inverse) / experiment.theory.haff_rate());
+            for (sum, sample) in mean.iter_mut().zip(&course) {
+                sum[0] = sample[0] / tau;
+                sum[1] += sample[1] / (experiment.gas.temperature * f64::from(replicates as u32));
+                all_times.push(sample[0] / tau);
+                all_temperatures.push(sample[1] / experiment.gas.temperature);
+                all_restitutions.push(restitution);
+                all_replicates.push(replicate as f64);
+            }
+        }
+        let (found, error) = mean_and_error(&ratios);
+        finding.checks.push(
+            Check::absolute(
+                "rate of cooling over that of theory",
+                &format!("e = {restitution}"),
+                1.0,
+                found,
+                3.0 * error + SYSTEMATIC,
+            )
+            .by("Haff 1983, van Noije & Ernst 1998")
+            .with_error(error),
+        );
+        curves.push((restitution, mean));
+    }
+    finding.figures.push(CaseFigure {
+        name: "haff",
+        caption: "Temperature of gases of two restitutions, mean over replicates, against time in units of their tau from kinetic \
+                  theory, with Haff's law (no parameter is fitted).",
+        drawing: drawing(&curves)?,
+    });
+    finding.table = table([
+        numbers("restitution", "", "e", all_restitutions),
+        numbers("replicate", "", "number", all_replicates),
+        numbers("time", "tau", "time", all_times),
+        numbers("temperature", "T_0", "temperature", all_temperatures),
+    ])?;
+    Ok(finding)
+}
+
+fn drawing(curves: &[(f64, Vec<[f64; 2]>)]) -> Result<Drawing, ValidateError> {
+    let times = super::study::evenly(0.0, TIMES_TAU, 100);
+    let law: Vec<f64> = times
+        .iter()
+        .map(|t| 1.0 / ((1.0 + t) * (1.0 + t)))
+        .collect();
+    let mut panel = ChartPanel::new("time *t*/*τ*", "temperature *T*/*T*_{0}")
+        .x_range(0.0..)
+        .y_scale(Scale::Logarithmic)
+        .with(Line::new("(1 + *t*/*τ*)^{−2}", &times, &law).tint(Tint::Black));
+    for (series, (restitution, course)) in curves.iter().enumerate() {
+        let (x, y): (Vec<f64>, Vec<f64>) =
+            course.iter().map(|sample| (sample[0], sample[1])).unzip();
+        let points = Points::new(&format!("*e* = {restitution}"), &x, &y).series(series);
+        panel = panel.with(if series == 0 { points } else { points.open() });
+    }
+    Ok(ChartFigure::new(panel)
+        .description("Both gases cool along Haff's law.")
+        .draw()?)
+}

@@ -1,0 +1,163 @@
+//! A dilute gas of grains that cools by their collisions.
+
+use core::f64::consts::{PI, TAU};
+
+use glam::DVec3;
+use peristalsis_engine::{Bodies, Simulation};
+use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+use super::{Means, far_away};
+use crate::case::Circumstances;
+use crate::error::ValidateError;
+
+/// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
+///
+/// The tube's wall stands outside and is never touched. The engine has no mirror: a few times a contact time the state is
+/// taken out, the radial velocity of each grain that is outside and goes on outwards is reversed, and the simulation
+/// continued. Nothing is lost there, and the collisions are the engine's own.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Gas {
+    pub(crate) law: LinearSpringDashpot,
+    pub(crate) grains: usize,
+    pub(crate) volume_fraction: f64,
+    /// Length of the period \[d\].
+    pub(crate) length: f64,
+    /// T at the start, m v^2/3 \[m d^2/t^2\].
+    pub(crate) temperature: f64,
+}
+
+/// Longest time between two looks at the mirror, over the duration of a contact.
+const LOOK: f64 = 3.0;
+/// Distance of the places on which grains may stand at the start \[d\].
+const PLACES: f64 = 1.25;
+
+impl Gas {
+    /// n \[1/d^3\]
+    pub(crate) fn density(&self) -> f64 {
+        6.0 * self.volume_fraction / PI
+    }
+
+    /// Radius of the mirror \[d\].
+    pub(crate) fn radius(&self) -> f64 {
+        (self.grains as f64 / (PI * self.density() * self.length)).sqrt()
+    }
+
+    /// Grains on places drawn at random, with velocities of a normal distribution, brought to rest together and to the
+    /// temperature.
+    fn start(&self, seed: u64) -> Bodies {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut uniform = move || (random.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0;
+        let radius = self.radius();
+        let across = (2.0 * radius / PLACES).floor() as i32;
+        let along = (self.length / PLACES).floor() as i32;
+        let mut places = Vec::new();
+        for x in 0..across {
+            for y in 0..across {
+                let centred = |i: i32| (f64::from(i) - 0.5 * f64::from(across - 1)) * PLACES;
+                if libm::hypot(centred(x), centred(y)) < radius {
+                    places.extend((0..along).map(|z| {
+                        DVec3::new(centred(x), centred(y), (f64::from(z) + 0.5) * PLACES)
+                    }));
+                }
+            }
+        }
+        // The first so many of a random order.
+        for i in 0..self.grains {
+            let other = i + (uniform() * (places.len() - i) as f64) as usize;
+            places.swap(i, other);
+        }
+        places.truncate(self.grains);
+        let mut bodies = Bodies::grains_at_rest(places, vec![1.0; self.grains]);
+        let mut normal = || {
+            let (size, angle) = (uniform().max(f64::MIN_POSITIVE), uniform());
+            (-2.0 * libm::log(size)).sqrt() * libm::cos(TAU * angle)
+        };
+        for velocity in &mut bodies.velocity {
+            *velocity = DVec3::new(normal(), normal(), normal());
+        }
+        let mean = bodies.velocity.iter().sum::<DVec3>() / self.grains as f64;
+        for velocity in &mut bodies.velocity {
+            *velocity -= mean;
+        }
+        let scale = (self.temperature / temperature(&bodies)).sqrt();
+        for velocity in &mut bodies.velocity {
+            *velocity *= scale;
+        }
+        bodies
+    }
+
+    /// Time and temperature, `samples` times in equal parts of `duration`.
+    ///
+    /// # Errors
+    /// Those of the engine, and a request to stop.
+    pub(crate) fn cool(
+        &self,
+        seed: u64,
+        means: Means,
+        time_step: f64,
+        [duration, samples]: [f64; 2],
+        circumstances: Circumstances<'_>,
+    ) -> Result<Vec<[f64; 2]>, ValidateError> {
+        let contact = ContactModel {
+            normal: Normal::Linear(self.law),
+            friction: None,
+        };
+        let radius = self.radius();
+        let wall = far_away(2.0 * radius + 10.0, self.length);
+        let parameters = means.parameters(contact, time_step, 0.3);
+        let mut simulation = Simulation::new(self.start(seed), wall.clone(), parameters);
+        let look = (LOOK * self.law.contact_time(0.5) / time_step)
+            .round()
+            .max(1.0) as u64;
+        let looks = (duration / samples / (time_step * look as f64))
+            .round()
+            .max(1.0) as u64;
+        let mut course = vec![[0.0, temperature(simulation.bodies())]];
+        for _ in 0..samples as u64 {
+            circumstances.go_on()?;
+            for _ in 0..looks {
+                simulation.advance(look)?;
+                simulation = reflected(simulation, radius)?;
+            }
+            course.push([simulation.time(), temperature(simulation.bodies())]);
+        }
+        Ok(course)
+    }
+}
+
+/// The simulation with the grains outside turned back.
+fn reflected(simulation: Simulation, radius: f64) -> Result<Simulation, ValidateError> {
+    let leaves = |position: &DVec3, velocity: &DVec3| {
+        let outward = position.x * velocity.x + position.y * velocity.y;
+        position.x * position.x + position.y * position.y > radius * radius && outward > 0.0
+    };
+    let bodies = simulation.bodies();
+    let mut grains = bodies.position.iter().zip(&bodies.velocity);
+    if !grains.any(|(position, velocity)| leaves(position, velocity)) {
+        return Ok(simulation);
+    }
+    let mut snapshot = simulation.snapshot();
+    let bodies = &mut snapshot.bodies;
+    for (position, velocity) in bodies.position.iter().zip(&mut bodies.velocity) {
+        if leaves(position, velocity) {
+            let normal = DVec3::new(position.x, position.y, 0.0).normalize();
+            *velocity -= 2.0 * velocity.dot(normal) * normal;
+        }
+    }
+    let (wall, parameters) = (simulation.wall().clone(), *simulation.parameters());
+    Ok(Simulation::restore(snapshot, wall, parameters)?)
+}
+
+/// T = sum m |v - <v>|^2/(3 N).
+fn temperature(bodies: &Bodies) -> f64 {
+    let number = bodies.grains as f64;
+    let mean = bodies.velocity.iter().sum::<DVec3>() / number;
+    let squares: f64 = bodies
+        .velocity
+        .iter()
+        .map(|v| (*v - mean).length_squared())
+        .sum();
+    squares / (3.0 * number)
+}

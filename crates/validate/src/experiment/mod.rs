@@ -1,0 +1,86 @@
+//! Experiments with the engine itself: its kernels and integrators, through its public interface.
+
+pub(crate) mod chain;
+pub(crate) mod gas;
+pub(crate) mod impact;
+pub(crate) mod sliding;
+
+use peristalsis_engine::wall::PrescribedWall;
+use peristalsis_engine::{Integrator, Kernel, Parameters, Wall};
+use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+
+/// By which part of the engine a trajectory is computed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Means {
+    pub(crate) integrator: Integrator,
+    pub(crate) kernel: Kernel,
+}
+
+impl Means {
+    /// What runs by default.
+    pub(crate) const USUAL: Self = Self {
+        integrator: Integrator::Verlet,
+        kernel: Kernel::Fast,
+    };
+
+    /// Both integrators by the fast kernels.
+    pub(crate) const INTEGRATORS: [Self; 2] = [
+        Self::USUAL,
+        Self {
+            integrator: Integrator::AdamsBashforth,
+            kernel: Kernel::Fast,
+        },
+    ];
+
+    /// The same integrator by the plain kernel.
+    pub(crate) fn plainly(self) -> Self {
+        Self {
+            kernel: Kernel::Reference,
+            ..self
+        }
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self.integrator {
+            Integrator::Verlet => "Verlet",
+            Integrator::AdamsBashforth => "Adams-Bashforth",
+        }
+    }
+
+    /// Parameters of a simulation by these means.
+    pub(crate) fn parameters(self, contact: ContactModel, time_step: f64, skin: f64) -> Parameters {
+        Parameters {
+            contact,
+            integrator: self.integrator,
+            time_step,
+            skin,
+            kernel: self.kernel,
+            body_force: 0.0,
+        }
+    }
+}
+
+/// A wall at rest: a straight tube.
+pub(crate) fn straight(lattice: Lattice, radius: f64) -> Wall {
+    Wall::Prescribed(PrescribedWall::new(
+        lattice,
+        radius,
+        Waveform::Sine,
+        1.0,
+        Schedule::constant(0.0),
+        Schedule::constant(0.0),
+    ))
+}
+
+/// A periodic tube whose wall is too far away to be touched.
+pub(crate) fn far_away(radius: f64, length: f64) -> Wall {
+    let lattice = Lattice {
+        spheres_per_ring: 4,
+        rings_per_wave: 2,
+        waves: 1,
+        wavelength: length,
+        sphere_diameter: 1.0,
+    };
+    straight(lattice, radius)
+}
