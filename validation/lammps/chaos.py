@@ -17,6 +17,8 @@ NAME = "chaos"
 NUDGE = 1e-12
 # A difference grows as exp(growth t) between these sizes [d].
 LEAST, LARGEST = 1e-10, 1e-3
+# When the first difference is looked at [t], and the distance at which two runs have parted [d].
+EARLY, APART = 8.0, 0.1
 # Between frames [t].
 INTERVAL = 0.4
 PAIRS = {
@@ -106,14 +108,29 @@ def _distance(some: Array, others: Array, length: float) -> list[float]:
 
 def growth_rate(times: Array, distances: Array) -> float | None:
     """Slope of the straight line through the logarithms of a distance while it is between `LEAST` and `LARGEST`, for the
-    last time below the one to the first time above the other; none where that is too short."""
+    last time below the one to the first time above the other; none where it begins far above the one."""
     above = np.flatnonzero(distances > LARGEST)
     last = above[0] if len(above) else len(distances)
     below = np.flatnonzero(distances[:last] < LEAST)
     first = below[-1] + 1 if len(below) else 0
-    if last - first < 10:
+    if last - first < 10 or distances[first] > 10 * LEAST:
         return None
     return float(np.polyfit(times[first:last], np.log(distances[first:last]), 1)[0])
+
+
+def as_array(distances: list[float]) -> Array:
+    return np.array(distances)
+
+
+def typical(runs: list[list[float]], time: float) -> float:
+    """Geometric mean of the distance at a time."""
+    frame = round(time / INTERVAL)
+    return float(np.exp(np.mean([np.log(run[frame]) for run in runs])))
+
+
+def parting_time(case: Case, runs: list[list[float]]) -> float:
+    """Mean of the first times at which two runs are `APART` apart."""
+    return float(np.mean([case.times[np.argmax(np.array(run) > APART)] for run in runs]))
 
 
 @dataclass(frozen=True)
