@@ -47,7 +47,7 @@ class Case:
 
     @property
     def times(self) -> Array:
-        return np.arange(self.frames + 1) * INTERVAL
+        return np.arange(self.frames + 1, dtype=float) * INTERVAL
 
 
     @classmethod

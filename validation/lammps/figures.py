@@ -22,7 +22,7 @@ matplotlib.use("Agg")
 # Millimetres of an inch, and of two columns of a journal.
 INCH, WIDTH = 25.4, 178.0
 BLUE, VERMILLION, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#808080"
-STYLE: dict[str, Any] = {
+STYLE: Any = {
     "font.family": "sans-serif",
     "font.sans-serif": ["Arimo", "Arial", "Liberation Sans", "Helvetica", "DejaVu Sans"],
     "font.size": 7.0,
@@ -155,13 +155,14 @@ def draw_stationary(found: Samples, path: Path) -> None:
         grid[0, 0].legend(loc="lower left")
         for row in range(1, 2 * len(groups), 2):
             grid[row, 0].set_ylabel("difference\n/ error")
+        figure.align_ylabels()
         _save(figure, path)
 
 
 def _draw_means(axes: Axes, results: list[Comparison]) -> None:
     widths = np.array([result.point.width for result in results])
     # Side by side, for they would cover each other.
-    apart = 0.004 * (widths.max() - widths.min())
+    apart = 0.012 * (widths.max() - widths.min())
     values = {
         "ours": (widths - apart, [r.ours for r in results], [r.our_error for r in results]),
         "theirs": (widths + apart, [r.theirs for r in results], [r.their_error for r in results]),
@@ -177,3 +178,4 @@ def _draw_deviations(axes: Axes, results: list[Comparison]) -> None:
     axes.axhline(0, color=GREY, lw=0.5)
     axes.plot([r.point.width for r in results], [r.deviation for r in results], "d", color=GREEN)
     axes.set_ylim(-4.5, 4.5)
+    axes.set_yticks([-4, -2, 0, 2, 4])

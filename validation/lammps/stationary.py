@@ -14,7 +14,7 @@ from observables import Observed
 from own_tube import OwnTube
 from start_files import Lattice
 from store import Store
-from tubes import COARSE, FINE, Tube
+from tubes import COARSE, FINE, Course, Tube
 
 NAME, FRICTIONAL_NAME = "stationary", "friction"
 SAMPLES_PER_PERIOD = 20
@@ -46,8 +46,8 @@ class Point:
 
     @property
     def title(self) -> str:
-        periods = f"periods {self.first_period} – {self.last_period}"
-        return f"{self.group}, strain rate {self.strain_rate:g}, w {self.width:g}, from {self.start}, {periods}"
+        where = f"{self.group}, {self.strain_rate:g}, w {self.width:g}"
+        return f"{where}, {self.start}, {self.first_period} – {self.last_period}"
 
     @property
     def tube(self) -> Tube:
@@ -77,6 +77,7 @@ POINTS = [
 # The same in a coarse tube with friction between all spheres.
 FRICTIONAL_POINTS = [
     *_line("linear", COARSE, FRICTIONAL, 0.02, (6, 20), {"jammed": (2.0,), "rest": (2.75,)}),
+    *_line("linear", COARSE, FRICTIONAL, 0.002, (3, 8), {"jammed": (2.0,), "rest": (2.75,)}),
     *_line("hertz", COARSE, FRICTIONAL_HERTZ, 0.005, (4, 10), {"jammed": (2.2,), "rest": (2.75,)}),
 ]
 # A round is one run of LAMMPS and four of ours at each point.
@@ -87,9 +88,11 @@ QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)
 COMPARED = {
     "flow_rate_ratio": "J/Jmax",
     "granular_temperature": "granular temperature",
-    "contacts": "contacts of a grain",
+    "contacts": "contacts",
 }
-COMPARED_WITH_FRICTION = COMPARED | {"rotational_energy": "rotational energy of a grain"}
+# What the slip velocity decides, which LAMMPS reads differently.
+READ_DIFFERENTLY = "rotational_energy"
+COMPARED_WITH_FRICTION = COMPARED | {"rotational_energy": "rotational energy"}
 
 
 def observe(point: Point, program: str, seed: int, own: OwnTube) -> dict[str, float]:
@@ -97,7 +100,7 @@ def observe(point: Point, program: str, seed: int, own: OwnTube) -> dict[str, fl
     steps = round(1 / (point.strain_rate * SAMPLES_PER_PERIOD * point.tube.time_step))
     frames = point.last_period * SAMPLES_PER_PERIOD
     grains = own.pack(point.tube, VOLUME_FRACTION, point.start, seed)
-    run: Callable[..., object] = own.run if program == OURS else lammps_tube.run
+    run: Callable[..., Course] = own.run if program == OURS else lammps_tube.run
     course = run(point.tube, grains, frames, steps)
     return asdict(Observed.of(course, point.first_period * SAMPLES_PER_PERIOD))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cache
 
 import numpy as np
 import numpy.typing as npt
@@ -65,12 +66,18 @@ class Tube:
 
     def wall(self, time: float) -> tuple[Array, Array]:
         """Places and velocities of the wall's spheres."""
-        places = np.array(self.lattice.places())
+        places = _places(self.lattice)
         phase = 2 * np.pi * places[:, 2] / self.lattice.wavelength + self.frequency * time
         direction = places * [1, 1, 0] / self.lattice.radius
         radius = self.lattice.radius + self.amplitude * np.sin(phase)
         rate = self.amplitude * self.frequency * np.cos(phase)
         return direction * radius[:, None] + places * [0, 0, 1], direction * rate[:, None]
+
+
+@cache
+def _places(lattice: Lattice) -> Array:
+    """Of the spheres in the straight tube."""
+    return np.array(lattice.places())
 
 
 @dataclass(frozen=True)

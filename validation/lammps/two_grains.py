@@ -80,7 +80,7 @@ def _rate(state: Array, law: Law, reading: Reading) -> tuple[Array, float]:
     overlap = 1.0 - distance
     velocity = grains[0, 3:6] - grains[1, 3:6]
     normal_velocity = float(velocity @ normal)
-    pressing = _normal_force(law, overlap, normal_velocity)
+    pressing = _normal_force(law, float(overlap), normal_velocity)
     rate = np.zeros_like(state)
     rates = rate[:SPRING].reshape(2, 9)
     rates[:, 0:3] = grains[:, 3:6]
@@ -94,8 +94,9 @@ def _rate(state: Array, law: Law, reading: Reading) -> tuple[Array, float]:
         rate[SPRING:] = slip - (spring @ lateral) / distance * normal
         bound = law.friction.coefficient * (abs(pressing) if reading.pulling_friction else max(pressing, 0.0))
         longest = bound / law.friction.stiffness
-        length = np.linalg.norm(spring)
-        held = -law.friction.stiffness * spring * (min(1.0, longest / length) if length > 0.0 else 0.0)
+        length = float(np.linalg.norm(spring))
+        cut = min(1.0, longest / length) if length > 0.0 else 0.0
+        held = -law.friction.stiffness * cut * spring
         force = force + held
         rates[:, 6:9] = -lever * np.cross(normal, held) / INERTIA
     rates[0, 3:6], rates[1, 3:6] = force, -force

@@ -33,6 +33,8 @@ class Work:
     program: Program
     store: Store
     quick: bool
+    # Of statistics.
+    rounds: int
     # Where pictures go; none are made in a quick run.
     pictures: Path | None
 
@@ -67,28 +69,27 @@ class Work:
         self.picture(chaos.NAME, lambda path: draw_chaos(found, path))
         return sections.of_chaos(found)
 
-    def _rounds(self) -> int:
-        return stationary.QUICK_ROUNDS if self.quick else stationary.ROUNDS
-
     def _stationary(self) -> Section:
         from figures import draw_stationary
 
         points = [point for point in stationary.POINTS if not self.quick or point.name in stationary.QUICK_POINTS]
-        found = stationary.measure(points, self._rounds(), self.own, self.store)
+        found = stationary.measure(points, self.rounds, self.own, self.store)
         self.picture(stationary.NAME, lambda path: draw_stationary(found, path))
         return sections.of_statistics(stationary.NAME, found, points, stationary.COMPARED)
 
     def _friction(self) -> Section:
         quick = stationary.QUICK_FRICTIONAL_POINTS
         points = [point for point in stationary.FRICTIONAL_POINTS if not self.quick or point.name in quick]
-        found = stationary.measure(points, self._rounds(), self.own, self.store)
-        return sections.of_statistics(stationary.FRICTIONAL_NAME, found, points, stationary.COMPARED_WITH_FRICTION)
+        found = stationary.measure(points, self.rounds, self.own, self.store)
+        compared, apart = stationary.COMPARED_WITH_FRICTION, stationary.READ_DIFFERENTLY
+        return sections.of_statistics(stationary.FRICTIONAL_NAME, found, points, compared, apart)
 
 
 def arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="a few minutes: fewer seeds, longer steps; no document")
     parser.add_argument("--only", nargs="+", choices=NAMES, default=NAMES, metavar="NAME", help=", ".join(NAMES))
+    parser.add_argument("--rounds", type=int, help="of statistics: one run of LAMMPS and four of ours at each point")
     parser.add_argument("--fresh", action="store_true", help="forget the results that are there")
     parser.add_argument("--folder", type=Path, default=ROOT / "target" / "validation-lammps", help="for results")
     release = ROOT / "target" / "release"
@@ -96,7 +97,12 @@ def arguments() -> argparse.Namespace:
     parser.add_argument("--example", type=Path, default=release / "examples" / "placed_grains")
     parser.add_argument("--document", type=Path, default=ROOT / "VALIDATION.md", help="where tables go")
     parser.add_argument("--pictures", type=Path, default=ROOT / "docs" / "images" / "validation")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.rounds is None:
+        options.rounds = stationary.QUICK_ROUNDS if options.quick else stationary.ROUNDS
+    if options.rounds < 1:
+        parser.error("--rounds must be at least 1")
+    return options
 
 
 def main() -> None:
@@ -108,7 +114,8 @@ def main() -> None:
     if options.fresh:
         shutil.rmtree(results, ignore_errors=True)
     pictures = None if options.quick else options.pictures
-    work = Work(OwnTube(options.example), Program(options.program), Store(results), options.quick, pictures)
+    own, program = OwnTube(options.example), Program(options.program)
+    work = Work(own, program, Store(results), options.quick, options.rounds, pictures)
     faults: list[str] = []
     for name in options.only:
         section = work.section(name)

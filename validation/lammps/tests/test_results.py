@@ -16,7 +16,7 @@ def test_growth_is_that_of_an_exponential() -> None:
     assert growth_rate(times, distances) == pytest.approx(0.25)
     # One that begins too late says nothing.
     assert growth_rate(times, np.maximum(distances, 1e-5)) is None
-    assert Growth.of([1.0, 3.0]) == Growth(2.0, pytest.approx(1.0), 2)
+    assert Growth.of([1.0, 3.0]) == Growth(2.0, 1.0, 2)
 
 
 def test_deviations_are_in_joint_errors() -> None:
