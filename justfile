@@ -63,6 +63,11 @@ bench-peers *options:
     cargo build --release -p peristalsis
     python3 benchmarks/peers/bench_peers.py {{options}}
 
+# The same physics in LAMMPS, from the same initial states (see validation/lammps/README.md): --quick, --only NAME ...,
+# --fresh.
+validate-peers *options:
+    bash scripts/validate_peers.sh {{options}}
+
 # Speed against cores, grains and width of the tube (--quick, --runs N, --only NAME ...).
 bench-scaling *options:
     cargo build --release -p peristalsis
