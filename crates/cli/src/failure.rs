@@ -1,7 +1,7 @@
 //! Errors as a person reads them, and the exit code that goes with each.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -102,6 +102,7 @@ impl Failure {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }
                 | RunError::NothingToResume { .. }
+                | RunError::State { .. }
                 | RunError::Trajectory { .. }
                 | RunError::Picture { .. }
                 | RunError::Render(RenderError::NoFfmpeg { .. } | RenderError::Speed { .. })
@@ -140,6 +141,7 @@ impl Failure {
             Self::Run(RunError::HoldsAnotherRun { .. }) => {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }
+            Self::Run(RunError::State { path, source }) => Some(of_state(path, source)),
             Self::Run(RunError::Trajectory { help, .. }) => Some((*help).to_owned()),
             Self::Run(RunError::Picture { help, .. }) => Some(help.clone()),
             Self::Run(RunError::Render(RenderError::NoFfmpeg { .. })) => Some(
@@ -236,6 +238,25 @@ impl Failure {
         }
         ExitCode::from(self.exit_code())
     }
+}
+
+/// What to do about a state that cannot be gone on with.
+fn of_state(path: &Path, source: &RunError) -> String {
+    let remedy = match source {
+        RunError::OtherPhysicsVersion { .. }
+        | RunError::Format(
+            FormatError::CheckpointVersion { .. } | FormatError::CheckpointLayout { .. },
+        ) => "go on with the program that wrote it",
+        RunError::Format(FormatError::OtherPhysics { .. } | FormatError::CheckpointKind { .. }) => {
+            "put back the config.toml that it was begun with"
+        }
+        _ => "put the file back from a copy",
+    };
+    let configuration = path.with_file_name("config.toml");
+    format!(
+        "{remedy}, or begin anew in another folder: peristalsis run {} --out DIR",
+        configuration.display()
+    )
 }
 
 /// A problem of a configuration with its places marked in the text.

@@ -9,6 +9,7 @@ mod error;
 mod estimate;
 mod folder;
 mod late;
+mod leaking;
 mod local_flow;
 mod pictures;
 mod portrait;
@@ -45,6 +46,10 @@ pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
     TrajectoryRequest, Window,
 };
+
+/// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
+/// results, so that no old run is taken for a new one, and none goes on as another.
+pub const PHYSICS_VERSION: u32 = 2;
 
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -178,6 +178,12 @@ impl Store {
         }
         Ok(index)
     }
+
+    /// The index, to be looked at only; as it stands, where the store cannot be written to.
+    pub(crate) fn index_to_read(&self) -> Result<Index, StudyError> {
+        self.index()
+            .or_else(|refusal| Index::open_to_read(&self.file(INDEX), refusal))
+    }
 }
 
 /// The entry of a run that is finished here.
