@@ -108,6 +108,7 @@ impl Failure {
                 | RunError::Render(RenderError::NoFfmpeg { .. } | RenderError::Speed { .. })
                 | RunError::Format(FormatError::UnreadableTrajectory { .. })
                 | RunError::TooManyGrains { .. }
+                | RunError::NoMemory { .. }
                 | RunError::Configuration(_)
                 | RunError::Engine(
                     EngineError::DoesNotFit { .. } | EngineError::InvalidParameter { .. },
@@ -176,6 +177,18 @@ impl Failure {
                  (drive.width, tube.radius)"
                     .to_owned(),
             ),
+            Self::Run(RunError::NoMemory { .. }) => Some(
+                "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)"
+                    .to_owned(),
+            ),
+            Self::Run(RunError::NothingToResume { folder, reason })
+                if folder.join("config.toml").is_file() && !reason.contains("complete") =>
+            {
+                Some(format!(
+                    "begin it anew in another folder: peristalsis run {} --out DIR",
+                    folder.join("config.toml").display()
+                ))
+            }
             Self::Run(RunError::Engine(EngineError::Diverged { .. })) => {
                 Some("take a shorter run.time_step, or softer or fewer grains".to_owned())
             }
@@ -196,6 +209,10 @@ impl Failure {
             }
             Self::Study(StudyError::NoStore { .. }) => Some(
                 "a store is the folder that `peristalsis study run FILE --store DIR` made".to_owned(),
+            ),
+            Self::Study(error) if error.is_closed() => Some(
+                "nothing that was finished is lost: make the store writable for this user, or work in a copy of it"
+                    .to_owned(),
             ),
             Self::Study(
                 StudyError::Io { .. }

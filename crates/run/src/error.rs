@@ -24,6 +24,14 @@ pub enum RunError {
         /// Largest volume fraction that is tried.
         limit: f64,
     },
+    /// So many spheres that there is no memory for them.
+    #[error("{spheres} moving spheres take about {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
+    NoMemory {
+        /// Grains, and spheres of an elastic wall.
+        spheres: u64,
+        /// What they take, about.
+        bytes: u64,
+    },
     /// The configuration of a record cannot be read.
     #[error(transparent)]
     Configuration(#[from] peristalsis_configuration::ConfigurationError),

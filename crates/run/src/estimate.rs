@@ -224,7 +224,10 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     if let Some(units) = &configuration.units {
         warnings.extend(softness::warning(configuration, units));
     }
-    if let Wall::Prescribed(wall) = walls(configuration) {
+    // An elastic wall, which may be large, is not made for nothing.
+    if let Control::Strain { .. } = configuration.drive.control
+        && let Wall::Prescribed(wall) = walls(configuration)
+    {
         let wave = wall.wave();
         warnings.extend(leaking::warning(configuration, wave, wall.lattice()));
         let opening =

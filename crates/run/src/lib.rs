@@ -4,6 +4,8 @@
 //! measured; [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or
 //! not at all; [`Trajectory`] writes the spheres frame by frame. Nothing here prints or exits.
 
+#![forbid(unsafe_code)]
+
 mod assemble;
 mod error;
 mod estimate;

@@ -421,7 +421,7 @@ fn is_damaged(error: &rusqlite::Error) -> bool {
 }
 
 /// Whether the database is there and cannot be written to.
-fn is_closed(error: &rusqlite::Error) -> bool {
+pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
     use rusqlite::ErrorCode;
     matches!(
         error.sqlite_error_code(),

@@ -34,7 +34,7 @@ use crate::specification::Specification;
 pub use archive::Packed;
 pub use check::Verification;
 pub use export::Exported;
-pub(crate) use index::{Claim, Index};
+pub(crate) use index::{Claim, Index, is_closed};
 pub use index::{Entry, State};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
