@@ -104,6 +104,14 @@ impl Run {
             walls(&configuration),
             parameters(&configuration),
         )?;
+        let grains = simulation.bodies().grains;
+        let turning = state.orientations.as_ref();
+        if !state.recorder.fits(&configuration, &simulation)
+            || turning.is_some_and(|orientations| !orientations.fit(grains))
+        {
+            let reason = "what was measured is not of so many steps, grains or waves".to_owned();
+            return Err(EngineError::SnapshotMismatch { reason }.into());
+        }
         Ok(Self {
             configuration,
             simulation,

@@ -426,9 +426,17 @@ fn a_gsd_file_that_was_damaged_is_refused_and_keeps_its_frames() {
     let names = long(24) as usize;
     let full = [b'x'; 65_536];
     for (name, at, bytes) in [
-        ("a place beyond the file", entry + 16, &u64::MAX.to_le_bytes()[..]),
+        (
+            "a place beyond the file",
+            entry + 16,
+            &u64::MAX.to_le_bytes()[..],
+        ),
         ("a place in the header", entry + 16, &8_u64.to_le_bytes()),
-        ("rows beyond all numbers", entry + 8, &u64::MAX.to_le_bytes()),
+        (
+            "rows beyond all numbers",
+            entry + 8,
+            &u64::MAX.to_le_bytes(),
+        ),
         ("no type", entry + 30, &[77]),
         ("no names", names, &[0; 64]),
         ("names without end", names, &full[..64 * long(32) as usize]),
