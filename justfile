@@ -8,13 +8,25 @@ test:
 
 # The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
 # an hour on two cores).
-full-check: check audit clients check-viewer python slurm book
+full-check: check deny audit clients check-viewer python slurm book
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
 # Miri, AddressSanitizer and memcheck over the module with unsafe code, as far as this machine has them.
 audit:
     bash scripts/audit_unsafe.sh
+
+# Licences, duplicates and sources of every crate against deny.toml, where cargo-deny is installed.
+deny:
+    bash scripts/deny.sh
+
+# The release program built twice in different folders: the same bytes, and no path of this machine in them (some minutes).
+reproducible-build *profile:
+    bash scripts/reproducible_build.sh {{profile}}
+
+# Every fuzz target in turn for so many seconds, with cargo-fuzz and a nightly compiler (see fuzz/README.md).
+fuzz seconds="600":
+    bash scripts/fuzz.sh {{seconds}}
 
 # Trajectories as gsd, PyVista and OVITO from PyPI read them.
 clients:

@@ -18,6 +18,8 @@
 //!
 //! Numbers with uncertainties are [`Uncertain`]: value, standard error, and intervals of 68 and 95 per cent.
 
+#![forbid(unsafe_code)]
+
 mod autocorrelation;
 mod blocks;
 mod bootstrap;

@@ -4,6 +4,8 @@
 //! with errors, tables, figures, and a [`Verdict`]. One claim is one file in `claims/` and one row of [`CLAIMS`]. The
 //! studies are those of the folder `studies/` of this repository, in two sizes ([`Size`]). Nothing here prints or exits.
 
+#![forbid(unsafe_code)]
+
 mod branches;
 mod claim;
 mod claims;

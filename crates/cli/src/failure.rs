@@ -1,7 +1,7 @@
 //! Errors as a person reads them, and the exit code that goes with each.
 
 use std::io::IsTerminal;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
@@ -106,11 +106,13 @@ impl Failure {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }
                 | RunError::NothingToResume { .. }
+                | RunError::State { .. }
                 | RunError::Trajectory { .. }
                 | RunError::Picture { .. }
                 | RunError::Render(RenderError::NoFfmpeg { .. } | RenderError::Speed { .. })
                 | RunError::Format(FormatError::UnreadableTrajectory { .. })
                 | RunError::TooManyGrains { .. }
+                | RunError::NoMemory { .. }
                 | RunError::Configuration(_)
                 | RunError::Engine(
                     EngineError::DoesNotFit { .. } | EngineError::InvalidParameter { .. },
@@ -151,6 +153,7 @@ impl Failure {
             Self::Run(RunError::HoldsAnotherRun { .. }) => {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }
+            Self::Run(RunError::State { path, source }) => Some(of_state(path, source)),
             Self::Run(RunError::Trajectory { help, .. }) => Some((*help).to_owned()),
             Self::Run(RunError::Picture { help, .. }) => Some(help.clone()),
             Self::Run(RunError::Render(RenderError::NoFfmpeg { .. })) => Some(
@@ -185,6 +188,18 @@ impl Failure {
                  (drive.width, tube.radius)"
                     .to_owned(),
             ),
+            Self::Run(RunError::NoMemory { .. }) => Some(
+                "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)"
+                    .to_owned(),
+            ),
+            Self::Run(RunError::NothingToResume { folder, reason })
+                if folder.join("config.toml").is_file() && !reason.contains("complete") =>
+            {
+                Some(format!(
+                    "begin it anew in another folder: peristalsis run {} --out DIR",
+                    folder.join("config.toml").display()
+                ))
+            }
             Self::Run(RunError::Engine(EngineError::Diverged { .. })) => {
                 Some("take a shorter run.time_step, or softer or fewer grains".to_owned())
             }
@@ -212,6 +227,10 @@ impl Failure {
             }
             Self::Study(StudyError::NoStore { .. }) => Some(
                 "a store is the folder that `peristalsis study run FILE --store DIR` made".to_owned(),
+            ),
+            Self::Study(error) if error.is_closed() => Some(
+                "nothing that was finished is lost: make the store writable for this user, or work in a copy of it"
+                    .to_owned(),
             ),
             Self::Study(
                 StudyError::Io { .. }
@@ -254,6 +273,25 @@ impl Failure {
         }
         ExitCode::from(self.exit_code())
     }
+}
+
+/// What to do about a state that cannot be gone on with.
+fn of_state(path: &Path, source: &RunError) -> String {
+    let remedy = match source {
+        RunError::OtherPhysicsVersion { .. }
+        | RunError::Format(
+            FormatError::CheckpointVersion { .. } | FormatError::CheckpointLayout { .. },
+        ) => "go on with the program that wrote it",
+        RunError::Format(FormatError::OtherPhysics { .. } | FormatError::CheckpointKind { .. }) => {
+            "put back the config.toml that it was begun with"
+        }
+        _ => "put the file back from a copy",
+    };
+    let configuration = path.with_file_name("config.toml");
+    format!(
+        "{remedy}, or begin anew in another folder: peristalsis run {} --out DIR",
+        configuration.display()
+    )
 }
 
 /// A problem of a configuration with its places marked in the text.

@@ -3,6 +3,8 @@
 //! Parses, calls, reports: this is the only crate that prints or exits. Results go to standard output, everything else
 //! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130, 138 and 143 stopped by a signal.
 
+#![forbid(unsafe_code)]
+
 mod arguments;
 mod commands;
 mod failure;

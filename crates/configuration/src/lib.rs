@@ -21,6 +21,8 @@
 //! # Ok::<(), peristalsis_configuration::ConfigurationError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod canonical;
 mod configuration;
 mod contract;

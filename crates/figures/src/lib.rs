@@ -33,6 +33,8 @@
 //! # Ok::<(), peristalsis_figures::FigureError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod axis;
 pub mod chart;
 mod colour;

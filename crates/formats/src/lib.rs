@@ -11,6 +11,8 @@
 //!
 //! The file modules share four verbs: `encode` and `decode` work on bytes, `write` and `read` on a path.
 
+#![forbid(unsafe_code)]
+
 pub mod atomic;
 pub mod checkpoint;
 pub mod csv;

@@ -43,6 +43,18 @@ impl AxialDispersion {
         dispersion
     }
 
+    /// Whether it can be what was seen of so many grains.
+    #[must_use]
+    pub fn fits(&self, grains: usize) -> bool {
+        let times = self.times.len();
+        (1..=2 * times).contains(&self.stride)
+            && self.origins.iter().all(|origin| {
+                origin.place.len() == grains
+                    && origin.period < times
+                    && origin.variances.len() < times - origin.period
+            })
+    }
+
     /// Ends a period now, with an observer that has just taken its sample.
     pub fn end_period(&mut self, observer: &Observer, view: &View<'_>) {
         let inside: Vec<usize> = (0..observer.unfolded.len())

@@ -6,6 +6,8 @@
 //! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
 //! how grains turn.
 
+#![forbid(unsafe_code)]
+
 pub mod columns;
 pub mod diagnosis;
 pub mod dispersion;

@@ -29,6 +29,12 @@ impl Orientations {
         }
     }
 
+    /// Whether they can be those of so many grains.
+    #[must_use]
+    pub fn fit(&self, grains: usize) -> bool {
+        [self.turned.len(), self.angular_velocity.len()] == [grains; 2]
+    }
+
     /// Brings the orientations to the simulation's time.
     pub fn follow(&mut self, simulation: &Simulation) {
         let half_interval = 0.5 * (simulation.time() - self.time);

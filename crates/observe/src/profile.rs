@@ -209,6 +209,15 @@ impl WaveFrameProfile {
         }
     }
 
+    /// Whether it can be a profile with so many bins and samples in a block.
+    #[must_use]
+    pub fn fits(&self, bins: usize, samples_per_block: u64) -> bool {
+        self.bins == bins.max(1)
+            && self.block == samples_per_block.max(1)
+            && self.in_last <= self.block
+            && self.blocks.iter().all(|block| block.len() == self.bins)
+    }
+
     /// Adds the grains inside the tube, and its shape.
     pub fn add(&mut self, view: &View<'_>) {
         if self.blocks.is_empty() || self.in_last == self.block {

@@ -120,6 +120,12 @@ impl Observer {
         }
     }
 
+    /// Whether it can be the observer of so many grains.
+    #[must_use]
+    pub fn fits(&self, grains: usize) -> bool {
+        [self.unfolded.len(), self.start.len()] == [grains; 2]
+    }
+
     /// Ends the interval, begins the next, and answers what happened between.
     pub fn sample(&mut self, view: &View<'_>) -> Sample {
         let before = self.end_interval(view);

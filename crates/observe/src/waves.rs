@@ -70,6 +70,14 @@ impl WaveByWave {
         }
     }
 
+    /// Whether it can be what was seen of so many waves, with so many samples a period.
+    #[must_use]
+    pub fn fits(&self, waves: usize, samples_per_period: u64) -> bool {
+        self.sums.len() == waves
+            && self.samples_per_period == samples_per_period.max(1)
+            && self.samples < self.samples_per_period
+    }
+
     /// Adds the interval between two states of the observer, seen from its end.
     pub fn add(&mut self, before: &Observer, after: &Observer, view: &View<'_>) {
         let wall = view.simulation.wall();

@@ -5,6 +5,8 @@
 //! particles, so that grain-grain and grain-wall contacts, every integrator and every kernel share one formula;
 //! the laws are written for any [`real::Real`], one number or several side by side.
 
+#![forbid(unsafe_code)]
+
 pub mod contact;
 pub mod newtonian;
 pub mod real;

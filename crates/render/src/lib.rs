@@ -5,6 +5,8 @@
 //! the shadows of everything: ambient occlusion and soft shadows that are free of noise. [`FilmFormat`] makes films of
 //! pictures.
 
+#![forbid(unsafe_code)]
+
 mod caster;
 mod colour;
 mod depth_map;

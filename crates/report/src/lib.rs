@@ -5,6 +5,8 @@
 //! SVG and PNG and every table as CSV. Nothing in them depends on when or how the runs were computed: the same runs give the
 //! same bytes. [`number`] writes numbers with errors as physicists do. Nothing here prints or exits.
 
+#![forbid(unsafe_code)]
+
 mod error;
 mod files;
 mod json;

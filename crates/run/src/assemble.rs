@@ -19,11 +19,14 @@ use crate::RunError;
 /// Volume fraction above which packing is not even tried: neighbours would be nearer than half a diameter, and the pairs
 /// to relax more than fit in memory.
 const LARGEST_VOLUME_FRACTION: f64 = 10.0;
+/// Bytes that a moving sphere takes, about: its state, its neighbours and what is measured of it.
+const BYTES_PER_SPHERE: u64 = 1000;
 
 /// Packs the grains and makes the simulation of a configuration, at time 0.
 ///
 /// # Errors
-/// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit.
+/// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit, [`RunError::NoMemory`] where there is
+/// no room for them.
 pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
     let volume_fraction = configuration.volume_fraction();
     if volume_fraction > LARGEST_VOLUME_FRACTION {
@@ -33,6 +36,7 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
             limit: LARGEST_VOLUME_FRACTION,
         });
     }
+    check_memory(configuration)?;
     let wall = walls(configuration);
     let contact = contact_model(configuration);
     let packing = Packing {
@@ -51,6 +55,20 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
         Simulation::new(bodies, wall, parameters(configuration)),
         report,
     ))
+}
+
+/// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
+/// the program later, in the middle of its work.
+fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
+    let of_wall = match configuration.drive.control {
+        Control::Strain { .. } => 0,
+        Control::Stress { .. } => configuration.tube.wall_spheres(),
+    };
+    let spheres = configuration.grains.number.saturating_add(of_wall);
+    let bytes = spheres.saturating_mul(BYTES_PER_SPHERE);
+    let mut room: Vec<u8> = Vec::new();
+    let given = room.try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX));
+    given.map_err(|_| RunError::NoMemory { spheres, bytes })
 }
 
 /// How the engine computes a configuration.

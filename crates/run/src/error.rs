@@ -24,6 +24,14 @@ pub enum RunError {
         /// Largest volume fraction that is tried.
         limit: f64,
     },
+    /// So many spheres that there is no memory for them.
+    #[error("{spheres} moving spheres take about {:.1} GB of memory, which the system does not give", *bytes as f64 / 1e9)]
+    NoMemory {
+        /// Grains, and spheres of an elastic wall.
+        spheres: u64,
+        /// What they take, about.
+        bytes: u64,
+    },
     /// The configuration of a record cannot be read.
     #[error(transparent)]
     Configuration(#[from] peristalsis_configuration::ConfigurationError),
@@ -72,6 +80,25 @@ pub enum RunError {
         folder: PathBuf,
         /// What is missing.
         reason: String,
+    },
+    /// The state was computed with other physics, so that it cannot go on to the same bits.
+    #[error(
+        "it was computed with version {found} of the physics; this program computes version {computed}, which comes to \
+         other results"
+    )]
+    OtherPhysicsVersion {
+        /// Version of the physics of the state.
+        found: u32,
+        /// Version of the physics of this program.
+        computed: u32,
+    },
+    /// The saved state of a run cannot be gone on with.
+    #[error("{} cannot be gone on with: {source}", path.display())]
+    State {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: Box<RunError>,
     },
     /// A file cannot be written or read.
     #[error(transparent)]

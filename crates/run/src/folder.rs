@@ -100,7 +100,8 @@ impl RunFolder {
     /// Opens the folder of a run that was stopped, to go on with it.
     ///
     /// # Errors
-    /// [`RunError::NothingToResume`] where configuration or state is missing; errors of reading either.
+    /// [`RunError::NothingToResume`] where configuration or state is missing; [`RunError::State`] where the state is damaged,
+    /// another run's or another version's; errors of the configuration.
     pub fn resume(path: &Path) -> Result<(Self, Run), RunError> {
         let (folder, run) = Self::open(path)?;
         if run.is_complete() {
@@ -135,9 +136,12 @@ impl RunFolder {
             preset: None,
             overrides: &[],
         })?;
-        let state = std::fs::read(folder.file(STATE))
-            .map_err(|error| missing(format!("{STATE}: {error}")))?;
-        let run = Run::from_checkpoint(configuration, &state)?;
+        let path = folder.file(STATE);
+        let state = std::fs::read(&path).map_err(|error| missing(format!("{STATE}: {error}")))?;
+        let run = Run::from_checkpoint(configuration, &state).map_err(|source| {
+            let source = Box::new(source);
+            RunError::State { path, source }
+        })?;
         Ok((folder, run))
     }
 

@@ -4,11 +4,14 @@
 //! measured; [`Summary`] is the outcome in numbers; [`RunFolder`] writes tables, figures and state, each file whole or
 //! not at all; [`Trajectory`] writes the spheres frame by frame. Nothing here prints or exits.
 
+#![forbid(unsafe_code)]
+
 mod assemble;
 mod error;
 mod estimate;
 mod folder;
 mod late;
+mod leaking;
 mod local_flow;
 mod pictures;
 mod portrait;
@@ -45,6 +48,10 @@ pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
     TrajectoryRequest, Window,
 };
+
+/// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
+/// results, so that no old run is taken for a new one, and none goes on as another.
+pub const PHYSICS_VERSION: u32 = 2;
 
 /// Version of this program.
 pub const VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -68,6 +68,26 @@ impl Recorder {
         }
     }
 
+    /// Whether this can be what was measured of a simulation up to its step: what a state holds besides spheres.
+    pub(crate) fn fits(&self, configuration: &Configuration, simulation: &Simulation) -> bool {
+        let grains = simulation.bodies().grains;
+        let samples = self.samples.len() as u64;
+        let samples_per_period = u64::from(configuration.observe.samples_per_period);
+        let each = configuration.run.steps_per_sample;
+        let waves = simulation.wall().lattice().waves as usize;
+        let bins = configuration.observe.profile_bins as usize;
+        self.samples_per_period == samples_per_period
+            && self.wall_interval == wall_interval(each, samples_per_period)
+            // A run that diverged may have come to the end of an interval, and taken no sample there.
+            && (samples..=samples + 1).contains(&(simulation.step() / each))
+            && self.averages.len() as u64 == samples / samples_per_period
+            && self.ladder.len() <= THRESHOLDS.len()
+            && self.observer.fits(grains)
+            && self.dispersion.fits(grains)
+            && self.waves.fits(waves, samples_per_period)
+            && self.profile.fits(bins, samples_per_period)
+    }
+
     /// Takes a sample of the simulation.
     pub(crate) fn record(&mut self, simulation: &Simulation) {
         let view = View::of(simulation);

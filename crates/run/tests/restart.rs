@@ -129,3 +129,44 @@ fn a_folder_goes_on_to_the_same_bits() {
         }
     }
 }
+
+/// A run that is stopped after every few steps, saved, and gone on with from the file, against the same run in one go;
+/// answers how often it was gone on with.
+fn in_pieces(preset: &str, settings: &[&str], steps: u64) -> u32 {
+    let configuration = common::configuration(preset, settings);
+    let whole = finish(Run::new(configuration.clone()).unwrap());
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("run");
+    let folder = RunFolder::create(&path, &configuration).unwrap();
+    let mut run = Run::new(configuration).unwrap();
+    let mut pieces = 0;
+    loop {
+        run.advance_at_most(steps).unwrap();
+        if run.is_complete() {
+            break;
+        }
+        folder.save_state(&run).unwrap();
+        run = RunFolder::resume(&path).unwrap().1;
+        pieces += 1;
+    }
+    for table in [timeseries_table, profile_table, waves_table, snapshot_table] {
+        assert!(table(&run).unwrap() == table(&whole).unwrap(), "{preset}");
+    }
+    pieces
+}
+
+#[test]
+fn a_run_of_many_short_pieces_is_the_run_in_one_go() {
+    let frictional = [STRESS, FRICTION].concat();
+    assert!(in_pieces("frictionless", STRAIN, 7) > 50);
+    assert!(in_pieces("frictional", &frictional, 17) > 50);
+}
+
+#[test]
+#[ignore = "half a minute: two runs of more than a thousand pieces"]
+fn a_run_of_a_thousand_short_pieces_is_the_run_in_one_go() {
+    let strain = [STRAIN, &["run.periods=20"]].concat();
+    assert!(in_pieces("frictionless", &strain, 7) > 1000);
+    let frictional = [STRESS, FRICTION, &["run.periods=1"]].concat();
+    assert!(in_pieces("frictional", &frictional, 4) > 1000);
+}

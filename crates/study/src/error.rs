@@ -98,6 +98,19 @@ pub enum StudyError {
 }
 
 impl StudyError {
+    /// Whether the store is there and cannot be written to.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
+        match self {
+            Self::Index { source, .. } => crate::store::is_closed(source),
+            Self::Io { source, .. } | Self::Format(FormatError::Io { source, .. }) => {
+                matches!(source.kind(), PermissionDenied | ReadOnlyFilesystem)
+            }
+            _ => false,
+        }
+    }
+
     /// Says what was tried where.
     pub(crate) fn io(
         operation: &'static str,

@@ -4,12 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use peristalsis_configuration::Configuration;
+pub use peristalsis_run::PHYSICS_VERSION;
 use peristalsis_run::Stopping;
 use sha2::{Digest, Sha256};
-
-/// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
-/// results, so that no old run is taken for a new one.
-pub const PHYSICS_VERSION: u32 = 2;
 
 /// What is kept of a run besides its row of numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -27,6 +27,8 @@
 //! # Ok::<(), peristalsis_study::StudyError>(())
 //! ```
 
+#![forbid(unsafe_code)]
+
 mod error;
 mod estimate;
 mod identity;

@@ -6,6 +6,8 @@
 //! Clients send commands ([`message`]). The page itself is part of the program, and no file is read for a client but the
 //! one recording.
 
+#![forbid(unsafe_code)]
+
 mod assets;
 mod course;
 mod frame;

@@ -14,6 +14,9 @@ use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use futures_util::{SinkExt, StreamExt};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
 use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use tokio::net::TcpListener;
@@ -28,6 +31,12 @@ use crate::player::Player;
 use crate::recording::Recording;
 use crate::tube::{self, Labels, Tube, Voices};
 
+/// Connections at a time that have not become a client's; more wait.
+const CONNECTIONS: usize = 64;
+/// Time that a connection may take to say what it wants.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// Bytes of a request's head, at most.
+const HEAD_BYTES: usize = 16 * 1024;
 /// Clients at a time.
 const CLIENTS: usize = 8;
 /// Bytes of a message from a client, at most.
@@ -158,30 +167,49 @@ impl Viewer {
     }
 
     /// Serves until `stop` says so.
-    ///
-    /// # Errors
-    /// [`ViewerError::Listen`] where the system takes the port away.
-    pub fn serve(self, stop: impl Fn() -> bool) -> Result<(), ViewerError> {
+    pub fn serve(self, stop: impl Fn() -> bool) {
         let Self {
             runtime,
             listener,
-            port,
             router,
             ..
         } = self;
-        let outcome = runtime.block_on(async {
+        runtime.block_on(async {
             let stopped = async {
                 while !stop() {
                     tokio::time::sleep(LOOK).await;
                 }
             };
             tokio::select! {
-                served = async { axum::serve(listener, router).await } => served,
-                () = stopped => Ok(()),
+                () = accept_all(listener, router) => {}
+                () = stopped => {}
             }
         });
         runtime.shutdown_background();
-        outcome.map_err(|source| ViewerError::Listen { port, source })
+    }
+}
+
+/// Takes connections, each of which has a place among [`CONNECTIONS`] until it ends or becomes a client's.
+async fn accept_all(listener: TcpListener, router: Router) {
+    let places = Arc::new(Semaphore::new(CONNECTIONS));
+    while let Ok(place) = Arc::clone(&places).acquire_owned().await {
+        let Ok((stream, _)) = listener.accept().await else {
+            // The connection is gone already, or there are too many open files: both pass.
+            tokio::time::sleep(LOOK).await;
+            continue;
+        };
+        let service = TowerToHyperService::new(router.clone());
+        tokio::spawn(async move {
+            let connection = http1::Builder::new()
+                .timer(TokioTimer::new())
+                .header_read_timeout(PATIENCE)
+                .max_buf_size(HEAD_BYTES)
+                .serve_connection(TokioIo::new(stream), service)
+                .with_upgrades();
+            // Who breaks off, or talks no HTTP, has been answered as far as there is an answer.
+            drop(connection.await);
+            drop(place);
+        });
     }
 }
 
@@ -194,11 +222,15 @@ fn router(shared: Shared) -> Router {
         .with_state(shared)
 }
 
-/// Whether a request names this machine, and comes from its page or from none.
+/// Whether a request names this machine, and comes from its page or from none; it may say either only once.
 fn is_known(headers: &HeaderMap) -> bool {
     let text = |name| {
-        let value: Option<&HeaderValue> = headers.get(name);
-        value.map(|value| value.to_str().unwrap_or("?"))
+        let mut values = headers.get_all(name).iter();
+        let value: Option<&HeaderValue> = values.next();
+        match values.next() {
+            None => value.map(|value| value.to_str().unwrap_or("?")),
+            Some(_) => Some("?"),
+        }
     };
     let host = text(header::HOST);
     is_loopback(host) && is_own(text(header::ORIGIN), host.unwrap_or_default())

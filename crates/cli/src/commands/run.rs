@@ -22,6 +22,9 @@ const SLOW_PACKING: u64 = 5_000;
 /// Time between two savings of the state.
 const SAVE_INTERVAL: Duration = Duration::from_secs(60);
 
+/// Steps after which signals are looked for and the state is saved at the latest, far fewer than some samples are apart.
+const MOST_STEPS: u64 = 50_000;
+
 /// Runs one simulation.
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
@@ -240,7 +243,8 @@ fn advance(run: &mut Run, record: &mut Record, stop: &Stop, display: &mut Displa
         if let Some(code) = stop.requested() {
             return Ending::Stopped(code);
         }
-        if let Err(error) = run.advance_at_most(record.steps_to_next(run)) {
+        let most = record.steps_to_next(run).min(MOST_STEPS);
+        if let Err(error) = run.advance_at_most(most) {
             return Ending::Failed(error);
         }
         if let Err(error) = record.observe(run) {

@@ -199,27 +199,19 @@ fn what_cannot_be_resumed() {
         .says(&["state.checkpoint"]);
 }
 
+/// A header of a checkpoint with other bytes from a place on, and the checksum that belongs to it.
+fn doctored(state: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
+    let mut state = state.to_vec();
+    state[at..at + bytes.len()].copy_from_slice(bytes);
+    let checksum = crc32fast::hash(&state[..76]);
+    state[76..80].copy_from_slice(&checksum.to_le_bytes());
+    state
+}
+
 #[test]
 fn a_state_that_is_damaged_or_of_another_run_is_refused() {
     let place = Place::new();
     place.run_small(&["--out", "results"]).expect_code(0);
-    let state = place.path("results/state.checkpoint");
-    let bytes = std::fs::read(&state).unwrap();
-    let mut flipped = bytes.clone();
-    flipped[bytes.len() / 2] ^= 1;
-    for damaged in [
-        &bytes[..bytes.len() / 2],
-        &flipped,
-        b"",
-        b"something else altogether",
-    ] {
-        std::fs::write(&state, damaged).unwrap();
-        let before = place.inventory();
-        let outcome = place.call(["run", "--resume", "results"]);
-        assert!(matches!(outcome.code, Some(1 | 2)), "{outcome:?}");
-        assert!(outcome.message().starts_with("error:"), "{outcome:?}");
-        assert_eq!(place.inventory(), before);
-    }
     // The state of another seed.
     place
         .call(
@@ -229,7 +221,108 @@ fn a_state_that_is_damaged_or_of_another_run_is_refused() {
                 .chain(&["--out", "other", "--set", "run.seed=2"]),
         )
         .expect_code(0);
-    std::fs::copy(place.path("other/state.checkpoint"), &state).unwrap();
-    let outcome = place.call(["run", "--resume", "results"]);
-    assert!(matches!(outcome.code, Some(1 | 2)), "{outcome:?}");
+    let state = place.path("results/state.checkpoint");
+    let bytes = std::fs::read(&state).unwrap();
+    let other = std::fs::read(place.path("other/state.checkpoint")).unwrap();
+    let mut flipped = bytes.clone();
+    flipped[bytes.len() / 2] ^= 1;
+    // The version of the physics stands in the first bytes of the hash: from 2 to 1, and to a later one.
+    let physics = |version: u8| doctored(&bytes, 24, &[bytes[24] ^ 2 ^ version]);
+    let cases: [(&str, &[u8], [&str; 2]); 10] = [
+        (
+            "half",
+            &bytes[..bytes.len() / 2],
+            ["cut short", "put the file back"],
+        ),
+        ("a header", &bytes[..40], ["cut short", "put the file back"]),
+        (
+            "nothing",
+            b"",
+            ["cut short: 0 of 80 bytes", "put the file back"],
+        ),
+        ("a flipped bit", &flipped, ["corrupt", "put the file back"]),
+        (
+            "other bytes",
+            b"something else altogether",
+            ["not a checkpoint", "put the file back"],
+        ),
+        (
+            "an older container",
+            &doctored(&bytes, 8, &[0]),
+            ["format version 0", "the program that wrote it"],
+        ),
+        (
+            "a newer layout",
+            &doctored(&bytes, 20, &[200]),
+            ["layout version 200", "the program that wrote it"],
+        ),
+        (
+            "older physics",
+            &physics(1),
+            [
+                "version 1 of the physics; this program computes version 2",
+                "the program that wrote it",
+            ],
+        ),
+        (
+            "newer physics",
+            &physics(9),
+            ["version 9 of the physics", "the program that wrote it"],
+        ),
+        (
+            "another seed",
+            &other,
+            ["other physics", "put back the config.toml"],
+        ),
+    ];
+    for (name, damaged, parts) in cases {
+        std::fs::write(&state, damaged).unwrap();
+        let before = place.inventory();
+        for command in [
+            &["run", "--resume", "results"][..],
+            &["render", "results"],
+            &["trajectory", "results"],
+        ] {
+            let outcome = place.call(command);
+            assert_eq!(outcome.code, Some(2), "{name}: {outcome:?}");
+            outcome
+                .says(&[
+                    "results/state.checkpoint cannot be gone on with",
+                    "peristalsis run results/config.toml --out DIR",
+                ])
+                .says(&parts);
+        }
+        assert_eq!(place.inventory(), before, "{name}");
+    }
+    // What the help says works.
+    place
+        .call(["run", "results/config.toml", "--out", "again"])
+        .expect_code(0);
+    std::fs::write(&state, bytes).unwrap();
+    place
+        .call(["run", "--resume", "results"])
+        .expect_code(2)
+        .says(&["it is complete"]);
+}
+
+#[test]
+fn a_run_that_was_killed_before_it_saved_a_state_can_be_begun_anew() {
+    let place = Place::new();
+    place.run_small(&["--out", "results"]).expect_code(0);
+    for entry in std::fs::read_dir(place.path("results")).unwrap() {
+        let path = entry.unwrap().path();
+        if !path.ends_with("config.toml") {
+            std::fs::remove_file(path).unwrap();
+        }
+    }
+    place
+        .call(["run", "--resume", "results"])
+        .expect_code(2)
+        .says(&[
+            "state.checkpoint",
+            "peristalsis run results/config.toml --out DIR",
+        ]);
+    place
+        .call(["run", "results/config.toml", "--out", "again"])
+        .expect_code(0);
 }

@@ -178,6 +178,51 @@ fn a_sound_wall_has_no_diagnosis() {
     assert_eq!(outcome.json()["wall_diagnosis"], Value::Array(Vec::new()));
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_tube_for_which_there_is_no_memory_is_refused_in_words() {
+    let place = Place::new();
+    let limited = |arguments: &[&str]| {
+        let mut command = std::process::Command::new("sh");
+        command
+            .args(["-c", "ulimit -v 4000000; exec \"$0\" \"$@\""])
+            .arg(env!("CARGO_BIN_EXE_peristalsis"))
+            .args(arguments)
+            .current_dir(place.folder.path());
+        Outcome::of(command.output().unwrap())
+    };
+    let large = [
+        "--preset",
+        "frictional",
+        "--set",
+        "tube.waves=1000000",
+        "--set",
+        "grains.number=5",
+    ];
+    for command in [&["run", "--out", "results"][..], &["check"]] {
+        let command = [command, &large].concat();
+        limited(&command).expect_code(2).says(&[
+            "506000005 moving spheres take about 506.0 GB of memory",
+            "tube.waves",
+            "ulimit -v",
+        ]);
+    }
+    // Small grains in a large tube take no more than they are.
+    let small = [
+        "grains.diameter_min=0.01",
+        "grains.diameter_max=0.01",
+        "tube.waves=200",
+    ];
+    let small = small.iter().flat_map(|setting| ["--set", setting]);
+    let small: Vec<&str> = ["run"]
+        .into_iter()
+        .chain(SMALL.iter().copied())
+        .chain(small)
+        .collect();
+    limited(&small).expect_code(0);
+    assert!(!place.path("results").exists());
+}
+
 /// Runs the small tube in a shell that lets no file grow beyond a number of blocks of 512 bytes.
 #[cfg(unix)]
 fn run_with_small_files(place: &Place, blocks: u32, arguments: &[&str]) -> Outcome {

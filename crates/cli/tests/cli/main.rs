@@ -8,15 +8,19 @@
 mod bad_input;
 mod checking;
 mod describing;
+mod edges;
 mod folders;
 mod limits;
 mod pictures;
 mod reproducing;
 mod running;
+mod sources;
 mod streams;
 mod study;
 mod trajectories;
 
+#[cfg(target_os = "linux")]
+mod paths;
 #[cfg(unix)]
 mod signals;
 #[cfg(unix)]

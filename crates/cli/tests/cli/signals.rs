@@ -122,3 +122,43 @@ fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
         );
     }
 }
+
+#[test]
+fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
+    let place = Place::new();
+    let settings = [
+        "grains.number=20",
+        "tube.waves=2",
+        "run.periods=1",
+        "run.time_step=1e-9",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let mut child = place
+        .command(
+            ["run", "--preset", "frictionless", "--out", "stopped"]
+                .into_iter()
+                .chain(settings.clone()),
+        )
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    // The folder is made when signals are watched for.
+    while !place.path("stopped/config.toml").is_file() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    let sent = Command::new("kill")
+        .args(["-INT".to_owned(), child.id().to_string()])
+        .status()
+        .unwrap();
+    assert!(sent.success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let summary = read_json(&place.path("stopped/summary.json"));
+    assert_eq!(summary["status"], "interrupted");
+    assert!(place.path("stopped/state.checkpoint").is_file());
+    // And a trial of it does not wait for its first sample.
+    let preset = ["check", "--preset", "frictionless"];
+    place
+        .call(preset.into_iter().chain(settings))
+        .expect_code(0);
+}

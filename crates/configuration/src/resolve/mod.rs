@@ -99,6 +99,7 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
         .help("name it with --preset, or in the file as preset = \"...\"");
         problems.push(Some(&entry.key), problem);
     }
+    refuse_derived(&overrides, problems);
     let overrides = checked(overrides, problems);
     let mut table = Table::new();
     if let Some(name) = preset_name(sources.preset, file.as_ref(), problems)
@@ -111,7 +112,10 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
         );
         table = checked(document::parse(&source, problems), problems);
     }
-    let above = above.iter().map(|layer| checked(layer.clone(), problems));
+    let above = above.iter().map(|layer| {
+        refuse_derived(layer, problems);
+        checked(layer.clone(), problems)
+    });
     let above: Vec<Table> = above.collect();
     for layer in file.into_iter().chain([overrides]).chain(above) {
         layers::lay_over(&mut table, layer, problems);
@@ -120,6 +124,20 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
         table.remove(aside);
     }
     table
+}
+
+/// Derived values are read with the record of a run that states them; to set one has no effect, and must not seem to.
+fn refuse_derived(layer: &Table, problems: &mut Problems) {
+    if let Some(entry) = layer.get("resolved") {
+        let problem = Problem::new(
+            ProblemKind::UnknownKey,
+            "the values below `resolved` follow from the other keys and cannot be set",
+        )
+        .key("resolved")
+        .at(&entry.key, "has no effect")
+        .help("set the keys that they follow from; `peristalsis schema` lists them");
+        problems.push(Some(&entry.key), problem);
+    }
 }
 
 fn checked(layer: Table, problems: &mut Problems) -> Table {

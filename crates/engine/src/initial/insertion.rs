@@ -120,7 +120,7 @@ pub(super) struct Inserted {
 pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8Rng) -> Inserted {
     // Without grains any width of the cells will do.
     let largest = diameter.iter().copied().reduce(f64::max).unwrap_or(1.0);
-    let mut bins = Bins::new(region, largest);
+    let mut bins = Bins::new(region, largest, diameter.len());
     let mut position: Vec<DVec3> = Vec::with_capacity(diameter.len());
     let mut without_overlap = 0;
     let mut stalled = 0_usize;
@@ -162,12 +162,15 @@ struct Bins {
 }
 
 impl Bins {
-    fn new(region: &Region<'_>, largest_diameter: f64) -> Self {
+    /// Cells at least as wide as the largest grain; not many more of them than grains, which may be small in a large tube.
+    fn new(region: &Region<'_>, largest_diameter: f64, grains: usize) -> Self {
         let half_width = region.wall.usual_radius();
-        let across = (2.0 * half_width / largest_diameter)
-            .floor()
-            .clamp(1.0, 64.0);
-        let along = (region.length / largest_diameter).floor().clamp(1.0, 1e6);
+        let most = (8.0 * grains as f64).max(4096.0);
+        let across = (2.0 * half_width / largest_diameter).floor();
+        let along = (region.length / largest_diameter).floor();
+        let coarser = (across * across * along / most).cbrt().max(1.0);
+        let across = (across / coarser).floor().clamp(1.0, 64.0);
+        let along = along.min(most / (across * across)).floor().clamp(1.0, 1e6);
         Self {
             across: across as i64,
             along: along as i64,

@@ -414,6 +414,45 @@ fn another_file_is_refused_and_stays() {
     }
 }
 
+#[test]
+fn a_gsd_file_that_was_damaged_is_refused_and_keeps_its_frames() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join(gsd::FILE);
+    filled(TrajectoryFormat::Gsd, place.path(), 0..4);
+    let whole = fs::read(&path).unwrap();
+    let long = |at: usize| u64::from_le_bytes(whole[at..at + 8].try_into().unwrap());
+    // The first entry of the frame after the first, in the middle of the file.
+    let entry = (256..).step_by(32).find(|&entry| long(entry) == 1).unwrap();
+    let names = long(24) as usize;
+    let full = [b'x'; 65_536];
+    for (name, at, bytes) in [
+        (
+            "a place beyond the file",
+            entry + 16,
+            &u64::MAX.to_le_bytes()[..],
+        ),
+        ("a place in the header", entry + 16, &8_u64.to_le_bytes()),
+        (
+            "rows beyond all numbers",
+            entry + 8,
+            &u64::MAX.to_le_bytes(),
+        ),
+        ("no type", entry + 30, &[77]),
+        ("no names", names, &[0; 64]),
+        ("names without end", names, &full[..64 * long(32) as usize]),
+    ] {
+        let mut bytes_now = whole.clone();
+        bytes_now[at..at + bytes.len()].copy_from_slice(bytes);
+        fs::write(&path, &bytes_now).unwrap();
+        let refused = TrajectoryFormat::Gsd.resume(place.path(), 1000);
+        assert!(
+            matches!(refused, Err(FormatError::NotATrajectory { .. })),
+            "{name}: {refused:?}"
+        );
+        assert!(fs::read(&path).unwrap() == bytes_now, "{name}");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_is_told() {

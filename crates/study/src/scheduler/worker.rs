@@ -128,7 +128,10 @@ fn carry_out(
     let mut run = match files.resume(assignment, &mut aside) {
         Ok(run) => run,
         Err(StudyError::Run {
-            source: source @ (RunError::Engine(_) | RunError::TooManyGrains { .. }),
+            source:
+                source @ (RunError::Engine(_)
+                | RunError::TooManyGrains { .. }
+                | RunError::NoMemory { .. }),
             ..
         }) => return give_up(shared, files, identity, &source.to_string()),
         Err(error) => return Err(error),

@@ -40,7 +40,7 @@ impl Store {
     /// Errors of reading the store.
     pub fn rows(&self) -> Result<Table, StudyError> {
         let survey = self.survey()?;
-        let (finished, _) = self.finished(&survey, &mut self.index()?)?;
+        let (finished, _) = self.finished(&survey, &mut self.index_to_read()?)?;
         rows_table(&survey, &finished)
     }
 
@@ -55,7 +55,7 @@ impl Store {
     /// Errors of reading the store and of writing.
     pub fn export(&self, folder: &Path, series: bool) -> Result<Exported, StudyError> {
         let survey = self.survey()?;
-        let mut index = self.index()?;
+        let mut index = self.index_to_read()?;
         let (finished, quarantined) = self.finished(&survey, &mut index)?;
         std::fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
         let name = &survey.study.name;

@@ -7,7 +7,9 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use rusqlite::{Connection, OptionalExtension, Transaction, TransactionBehavior, params};
+use rusqlite::{
+    Connection, OpenFlags, OptionalExtension, Transaction, TransactionBehavior, params,
+};
 
 use super::owner::{Owner, now};
 use crate::error::StudyError;
@@ -17,6 +19,9 @@ use crate::identity::Identity;
 const LAYOUT: i32 = 1;
 /// How long to wait for another process that writes.
 const BUSY: Duration = Duration::from_secs(60);
+
+/// Seconds by which the clock of another machine may be ahead of ours.
+const MOST_AHEAD: i64 = 3600;
 
 /// What has become of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
@@ -94,9 +99,11 @@ pub(crate) struct Lease {
 }
 
 impl Lease {
-    /// Whether the run may be taken over: its owner is dead, or has been silent for too long.
+    /// Whether the run may be taken over: its owner is dead, or has been silent for too long. A heartbeat from a future that
+    /// no difference of clocks explains was noted before the clock was set back, and says as little.
     fn is_void(&self, timeout: Duration) -> bool {
-        self.owner.is_dead() || now() - self.heartbeat > timeout.as_secs() as i64
+        let silent = now() - self.heartbeat;
+        self.owner.is_dead() || silent > timeout.as_secs() as i64 || silent < -MOST_AHEAD
     }
 }
 
@@ -125,6 +132,9 @@ const TABLES: &str = "
         heartbeat INTEGER NOT NULL
     ) WITHOUT ROWID;";
 
+/// All that is known of every run.
+const ENTRIES: &str = "SELECT identity, state, reason, row, transition_time, stamp FROM runs";
+
 impl Index {
     /// Opens the index, and answers whether it is new and has to be filled from the files.
     pub(crate) fn open(path: &Path) -> Result<(Self, bool), StudyError> {
@@ -135,6 +145,28 @@ impl Index {
                 Self::try_open(path)
             }
             outcome => outcome,
+        }
+    }
+
+    /// Opens the index of a store that cannot be written to, to look at it as it stands. `refusal` is the error of opening it
+    /// to write, and stays the error where nothing is there that can be read.
+    pub(crate) fn open_to_read(path: &Path, refusal: StudyError) -> Result<Self, StudyError> {
+        match &refusal {
+            StudyError::Index { source, .. } if is_closed(source) => {}
+            _ => return Err(refusal),
+        }
+        let opened = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).and_then(
+            |connection| {
+                let layout = layout(&connection)?;
+                Ok((connection, layout == LAYOUT))
+            },
+        );
+        match opened {
+            Ok((connection, true)) => Ok(Self {
+                path: path.to_owned(),
+                connection,
+            }),
+            _ => Err(refusal),
         }
     }
 
@@ -161,11 +193,7 @@ impl Index {
 
     /// What is known of every run that is not merely pending, leases apart.
     pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
-        select_entries(
-            &self.connection,
-            "SELECT identity, state, reason, row, transition_time, stamp FROM runs",
-        )
-        .map_err(|error| self.failed(error))
+        select_entries(&self.connection, ENTRIES).map_err(|error| self.failed(error))
     }
 
     /// The same without rows and stamps, which are most of it.
@@ -350,10 +378,14 @@ pub(crate) enum Claim {
     Nothing,
 }
 
+fn layout(connection: &Connection) -> rusqlite::Result<i32> {
+    connection.pragma_query_value(None, "user_version", |row| row.get(0))
+}
+
 fn prepare(connection: &mut Connection) -> rusqlite::Result<bool> {
     connection.busy_timeout(BUSY)?;
     let transaction = connection.transaction_with_behavior(TransactionBehavior::Immediate)?;
-    let layout: i32 = transaction.pragma_query_value(None, "user_version", |row| row.get(0))?;
+    let layout = layout(&transaction)?;
     if layout != 0 && layout != LAYOUT {
         transaction.execute_batch("DROP TABLE IF EXISTS runs; DROP TABLE IF EXISTS leases;")?;
     }
@@ -368,13 +400,32 @@ fn prepare(connection: &mut Connection) -> rusqlite::Result<bool> {
             Some(verdict),
         ));
     }
+    // A bit that flipped in a value leaves a database that is whole and says what cannot be.
+    select_entries(connection, ENTRIES)?;
+    all_leases(connection)?;
     Ok(layout != LAYOUT)
 }
 
+/// Whether the database is not what was written, rather than out of reach.
 fn is_damaged(error: &rusqlite::Error) -> bool {
+    use rusqlite::ErrorCode;
+    match error.sqlite_error_code() {
+        // `Unknown` is an error in our statements, which are right: the tables are not those that they speak of.
+        Some(code) => matches!(
+            code,
+            ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase | ErrorCode::Unknown
+        ),
+        // A value that is none of ours.
+        None => true,
+    }
+}
+
+/// Whether the database is there and cannot be written to.
+pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
+    use rusqlite::ErrorCode;
     matches!(
         error.sqlite_error_code(),
-        Some(rusqlite::ErrorCode::DatabaseCorrupt | rusqlite::ErrorCode::NotADatabase)
+        Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied)
     )
 }
 

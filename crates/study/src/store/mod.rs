@@ -34,7 +34,7 @@ use crate::specification::Specification;
 pub use archive::Packed;
 pub use check::Verification;
 pub use export::Exported;
-pub(crate) use index::{Claim, Index};
+pub(crate) use index::{Claim, Index, is_closed};
 pub use index::{Entry, State};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
@@ -177,6 +177,12 @@ impl Store {
             self.fill(&mut index)?;
         }
         Ok(index)
+    }
+
+    /// The index, to be looked at only; as it stands, where the store cannot be written to.
+    pub(crate) fn index_to_read(&self) -> Result<Index, StudyError> {
+        self.index()
+            .or_else(|refusal| Index::open_to_read(&self.file(INDEX), refusal))
     }
 }
 

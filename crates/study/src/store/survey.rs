@@ -117,7 +117,7 @@ impl Store {
     /// Errors of reading study file or index.
     pub fn survey(&self) -> Result<Survey, StudyError> {
         let study = self.specification()?;
-        let index = self.index()?;
+        let index = self.index_to_read()?;
         let entries = index.entries()?;
         let leases = index
             .leases(LEASE_TIMEOUT)?

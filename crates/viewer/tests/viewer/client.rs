@@ -68,7 +68,7 @@ impl Served {
         let stop = Arc::new(AtomicBool::new(false));
         let stopped = Arc::clone(&stop);
         let thread = std::thread::spawn(move || {
-            viewer.serve(|| stopped.load(Ordering::Relaxed)).unwrap();
+            viewer.serve(|| stopped.load(Ordering::Relaxed));
         });
         Self {
             port,

@@ -1,6 +1,8 @@
 //! What strangers and broken clients get.
 
-use std::io::Write;
+use std::io::{ErrorKind, Read, Write};
+use std::net::TcpStream;
+use std::time::{Duration, Instant};
 
 use tokio_tungstenite::tungstenite::Message;
 
@@ -165,4 +167,202 @@ fn a_flood_of_commands_waits_and_does_no_harm() {
     let (mut other, _) = served.client();
     other.send(r#"{"type":"play","playing":true}"#);
     other.frame_with(|head| head["clock"].as_f64().unwrap() > 0.05);
+}
+
+/// What comes until the server ends the connection.
+fn rest(mut stream: TcpStream) -> String {
+    let mut bytes = Vec::new();
+    match stream.read_to_end(&mut bytes) {
+        Ok(_) => {}
+        // It ended the connection while bytes were on their way to it.
+        Err(error) if error.kind() == ErrorKind::ConnectionReset => {}
+        Err(error) => panic!("the server goes on: {error}"),
+    }
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
+/// What comes in answer to these bytes until the server ends the connection.
+fn answer(served: &Served, bytes: &[u8]) -> String {
+    let mut stream = served.connect();
+    // The server may end it before everything has arrived.
+    drop(stream.write_all(bytes));
+    rest(stream)
+}
+
+#[test]
+fn who_is_slow_to_say_what_he_wants_is_left_alone_and_keeps_nobody_out() {
+    let served = Served::small();
+    let begin = Instant::now();
+    // More of them than there are places, some of which say nothing at all.
+    let slow: Vec<TcpStream> = (0..80)
+        .map(|number| {
+            let mut stream = served.connect();
+            if number % 2 == 0 {
+                let head = format!("GET {} HTTP/1.1\r\nHost: 127", served.base);
+                stream.write_all(head.as_bytes()).unwrap();
+            }
+            stream
+        })
+        .collect();
+    let page = served.get(&served.base, &[&served.host()]);
+    assert_eq!(status(&page), "200");
+    for stream in slow.into_iter().take(8) {
+        assert!(!rest(stream).contains("200 OK"));
+    }
+    assert!(
+        begin.elapsed() < Duration::from_secs(25),
+        "{:?}",
+        begin.elapsed()
+    );
+}
+
+#[test]
+fn requests_are_short_and_one_is_one() {
+    let served = Served::small();
+    let (base, host) = (&served.base, served.host());
+    let long = "x".repeat(1 << 20);
+    let many: String = (0..400)
+        .map(|number| format!("X-{number}: 1\r\n"))
+        .collect();
+    let evil = "Host: evil.example";
+    let refused = [
+        format!("GET /{long} HTTP/1.1\r\n{host}\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\nX: {long}\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{many}{host}\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\n{evil}\r\nConnection: close\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{evil}\r\n{host}\r\nConnection: close\r\n\r\n"),
+        format!(
+            "GET {base} HTTP/1.1\r\n{host}\r\nOrigin: http://evil.example\r\nOrigin: http://{}\r\nConnection: close\r\n\r\n",
+            &host[6..]
+        ),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\nContent-Length: 5\r\nContent-Length: 6\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\nContent-Length: -1\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\nTransfer-Encoding: gzip\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\n{host}\r\n folded: yes\r\nConnection: close\r\n\r\n"),
+        format!("GET {base} HTTP/1.1\r\nHo\0st: 127.0.0.1\r\n\r\n"),
+        format!("GET {base} HTTP/9.9\r\n{host}\r\n\r\n"),
+        format!("GET {base}\r\n\r\n"),
+        format!(
+            "POST {base} HTTP/1.1\r\n{host}\r\nConnection: close\r\nContent-Length: 2\r\n\r\n{{}}"
+        ),
+        format!("DELETE {base}viewer.js HTTP/1.1\r\n{host}\r\nConnection: close\r\n\r\n"),
+        format!("CONNECT 127.0.0.1:80 HTTP/1.1\r\n{host}\r\nConnection: close\r\n\r\n"),
+        "PRI * HTTP/2.0\r\n\r\nSM\r\n\r\n".to_owned(),
+        "\0".repeat(100_000),
+    ];
+    for request in &refused {
+        let answer = answer(&served, request.as_bytes());
+        let begin = &request[..request.len().min(300)];
+        assert!(!answer.contains("200 OK"), "{begin:?}: {answer}");
+        assert!(!answer.contains("<html"), "{begin:?}");
+    }
+    // What is in a body is no request; what follows a whole request is one, and is judged by itself.
+    let other = format!("GET {base} HTTP/1.1\r\n{evil}\r\nConnection: close\r\n\r\n");
+    let within = format!(
+        "GET {base} HTTP/1.1\r\n{host}\r\nConnection: close\r\nContent-Length: {}\r\n\r\n{other}",
+        other.len()
+    );
+    let after = format!("GET {base} HTTP/1.1\r\n{host}\r\n\r\n{other}");
+    for (request, statuses) in [(within, &["200"][..]), (after, &["200", "403"])] {
+        let answer = answer(&served, request.as_bytes());
+        let found: Vec<&str> = answer
+            .split("HTTP/1.1 ")
+            .skip(1)
+            .map(|it| &it[..3])
+            .collect();
+        assert_eq!(found, statuses);
+    }
+    served.client();
+}
+
+/// A WebSocket that is spoken by hand.
+fn by_hand(served: &Served) -> TcpStream {
+    let mut stream = served.connect();
+    let request = format!(
+        "GET {}live HTTP/1.1\r\n{}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
+         Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
+        served.base,
+        served.host()
+    );
+    stream.write_all(request.as_bytes()).unwrap();
+    let mut head = Vec::new();
+    while !head.ends_with(b"\r\n\r\n") {
+        let mut byte = [0];
+        stream.read_exact(&mut byte).unwrap();
+        head.push(byte[0]);
+    }
+    assert!(head.starts_with(b"HTTP/1.1 101"));
+    stream
+}
+
+/// A frame of a WebSocket whose mask changes nothing.
+fn masked(first: u8, payload: &[u8]) -> Vec<u8> {
+    let mut frame = vec![first];
+    match payload.len() {
+        length @ 0..=125 => frame.push(0x80 | length as u8),
+        length => {
+            frame.push(0x80 | 126);
+            frame.extend((length as u16).to_be_bytes());
+        }
+    }
+    frame.extend([0; 4]);
+    frame.extend(payload);
+    frame
+}
+
+#[test]
+fn frames_that_are_none_end_the_connection() {
+    let served = Served::small();
+    let mut endless = masked(0x01, &[b'x'; 1000]);
+    for _ in 0..20 {
+        endless.extend(masked(0x00, &[b'x'; 1000]));
+    }
+    let huge = [0x81, 0xff, 0x7f, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff];
+    let wrong: [(&str, Vec<u8>); 9] = [
+        ("not masked", vec![0x81, 0x02, b'{', b'}']),
+        ("reserved bits", masked(0xf1, b"{}")),
+        ("an unknown kind", masked(0x83, b"{}")),
+        ("2^63 bytes", huge.to_vec()),
+        ("pieces without end", endless),
+        ("a piece of nothing", masked(0x80, b"{}")),
+        ("no text", masked(0x81, &[0xff, 0xfe])),
+        ("a long ping", masked(0x89, &[0; 200])),
+        ("a ping in pieces", masked(0x09, b"{}")),
+    ];
+    for (name, bytes) in wrong {
+        let mut stream = by_hand(&served);
+        drop(stream.write_all(&bytes));
+        let said = rest(stream);
+        assert!(
+            said.contains("welcome") || said.is_empty(),
+            "{name}: {said}"
+        );
+    }
+    served.client();
+}
+
+#[test]
+fn no_bytes_bring_the_server_down() {
+    let served = Served::small();
+    let mut state = 1_u64;
+    let mut byte = || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 56) as u8
+    };
+    for number in 0..200 {
+        let length = 1 + usize::from(byte());
+        let bytes: Vec<u8> = (0..length).map(|_| byte()).collect();
+        let mut stream = if number % 2 == 0 {
+            by_hand(&served)
+        } else {
+            served.connect()
+        };
+        // Most are broken off at once, some in the middle of a frame.
+        drop(stream.write_all(&bytes));
+    }
+    let (mut client, _) = served.client();
+    client.send(r#"{"type":"play","playing":true}"#);
+    client.frame_with(|head| head["clock"].as_f64().unwrap() > 0.05);
 }

@@ -31,7 +31,7 @@ settled_periods = 30
 "#;
 
 /// Four runs that take no time.
-fn quick() -> String {
+pub(crate) fn quick() -> String {
     STUDY
         .replace("grains.number = 100", "grains.number = 20")
         .replace("tube.waves = 5", "tube.waves = 2")

@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
-use super::{STUDY, place_of, tables};
+use super::{STUDY, place_of, quick, tables};
 use crate::{Outcome, Place};
 
 /// Numbers that look random and are the same every time.
@@ -233,6 +233,16 @@ impl SmallDisk {
     }
 }
 
+impl SmallDisk {
+    /// Lets nothing be written any more, or again.
+    fn close(&self, closed: bool) {
+        let mode = if closed { "remount,ro" } else { "remount,rw" };
+        let mut command = Command::new("mount");
+        let status = command.args(["-o", mode]).arg(&self.folder).status();
+        assert!(status.unwrap().success());
+    }
+}
+
 impl Drop for SmallDisk {
     fn drop(&mut self) {
         drop(Command::new("umount").arg(&self.folder).status());
@@ -269,6 +279,120 @@ fn a_disk_that_is_full_ends_the_work_and_loses_nothing() {
     disk.resize("64m");
     place.call(run).expect_code(0);
     assert!(tables(&place, "disk/store") == *usual_tables());
+}
+
+#[test]
+fn a_store_that_cannot_be_written_to_can_be_looked_at() {
+    let place = place_of(&quick());
+    let Some(disk) = SmallDisk::mount(place.path("disk"), "64m") else {
+        println!("skipped: this user may mount no file system");
+        return;
+    };
+    let run = RUN.map(|argument| match argument {
+        "store" => "disk/store",
+        other => other,
+    });
+    place.call(run).expect_code(0);
+    let expected = tables(&place, "disk/store");
+    std::fs::rename(place.path("disk/store-tables"), place.path("before")).unwrap();
+    let before = files_below(&place.path("disk"));
+    disk.close(true);
+    place
+        .call(["study", "status", "disk/store"])
+        .expect_code(0)
+        .shows(&["4 done"]);
+    let identity = std::fs::read_dir(place.path("disk/store/runs"))
+        .unwrap()
+        .next();
+    let identity = identity.unwrap().unwrap().file_name();
+    let identity = identity.to_str().unwrap();
+    place
+        .call(["study", "why", "disk/store", identity])
+        .expect_code(0)
+        .shows(&["done"]);
+    let export = [
+        "study",
+        "export",
+        "disk/store",
+        "--out",
+        "tables",
+        "--series",
+    ];
+    place.call(export).expect_code(0);
+    for (name, bytes) in ["tested.csv", "tested.parquet", "tested-series.parquet"]
+        .iter()
+        .zip(&expected)
+    {
+        assert!(std::fs::read(place.path("tables").join(name)).unwrap() == *bytes);
+    }
+    // What has to write says that it cannot, and what to do.
+    for command in [
+        &run[..],
+        &["study", "scan", "disk/store"],
+        &["study", "verify", "disk/store"],
+        &["study", "retry", "disk/store", identity],
+    ] {
+        place
+            .call(command)
+            .expect_code(1)
+            .says(&["error:", "make the store writable"]);
+    }
+    assert_eq!(files_below(&place.path("disk")), before);
+    disk.close(false);
+    place.call(run).expect_code(0);
+    assert!(tables(&place, "disk/store") == expected);
+}
+
+#[test]
+fn files_from_the_future_are_as_good_as_others() {
+    let place = place_of(&quick());
+    place.call(RUN).expect_code(0);
+    let expected = tables(&place, "store");
+    // The clock was set back by ten years, after the store was made.
+    let later = std::time::SystemTime::now() + Duration::from_secs(315_000_000);
+    for path in files_below(&place.path("store")) {
+        let file = std::fs::File::options().write(true).open(path).unwrap();
+        file.set_modified(later).unwrap();
+    }
+    place.call(RUN).expect_code(0).says(&["all runs are done"]);
+    place.call(["study", "verify", "store"]).expect_code(0);
+    assert!(!place.path("store/quarantine").exists());
+    assert!(tables(&place, "store") == expected);
+}
+
+#[test]
+#[ignore = "some minutes: a store of ten thousand runs"]
+fn a_store_of_ten_thousand_runs_is_looked_at_within_a_second() {
+    let text = r#"
+name = "large"
+preset = "frictionless"
+replicates = 10
+[base]
+grains.number = 1
+tube.waves = 1
+run.periods = 0.05
+[record]
+columns = ["time"]
+profile = false
+[[axes]]
+key = "drive.width"
+from = 2.5
+to = 2.999
+step = 0.0005
+"#;
+    let place = place_of(text);
+    place.call(RUN).expect_code(0);
+    let start = std::time::Instant::now();
+    place
+        .call(["study", "status", "store"])
+        .expect_code(0)
+        .shows(&["9990 runs: 9990 done"]);
+    let took = start.elapsed();
+    println!("status of 9990 runs: {took:?}");
+    assert!(
+        cfg!(debug_assertions) || took < Duration::from_secs(1),
+        "{took:?}"
+    );
 }
 
 #[test]

@@ -97,6 +97,14 @@ impl Entry {
             kind: bytes[30],
         }
     }
+
+    /// Where the array ends in the file; `None` where no number of bytes is so large.
+    pub(super) fn end(&self) -> Option<u64> {
+        self.rows
+            .checked_mul(u64::from(self.columns))
+            .and_then(|numbers| numbers.checked_mul(kind_bytes(self.kind).max(1)))
+            .and_then(|bytes| bytes.checked_add(self.location))
+    }
 }
 
 pub(super) fn u64_at(bytes: &[u8], at: usize) -> u64 {
@@ -181,21 +189,36 @@ impl Container {
 
         let written = read_entries(file.file(), path, HEADER_BYTES, capacity)?;
         let (mut entries, mut frames, mut end) = (0, 0, first_array);
-        for frame in written.chunk_by(|one, other| one.frame == other.frame) {
+        let begun: Vec<&[Entry]> = written
+            .chunk_by(|one, other| one.frame == other.frame)
+            .collect();
+        // Where a frame ends whose arrays are all where arrays are; of what a kill cut short there is none.
+        let end_of = |frame: &[Entry]| {
+            let end = |entry: &Entry| {
+                let is_ours = entry.location >= first_array && kind_bytes(entry.kind) > 0;
+                entry.end().filter(|&end| is_ours && end <= length)
+            };
+            frame
+                .iter()
+                .map(end)
+                .try_fold(0, |last, end| Some(end?.max(last)))
+        };
+        for (number, frame) in begun.iter().enumerate() {
             let marker = frame
                 .iter()
                 .find(|entry| Some(usize::from(entry.name)) == wanted)
-                .filter(|entry| entry.location + 8 <= length);
-            let Some(marker) = marker else { break };
-            let value = u64_at(&read(file.file(), path, marker.location, 8)?, 0);
-            let frame_end = frame
-                .iter()
-                .map(|entry| {
-                    entry.location + entry.rows * u64::from(entry.columns) * kind_bytes(entry.kind)
-                })
-                .max()
-                .unwrap_or(0);
-            if !keep(value) || frame_end > length {
+                .filter(|entry| entry.rows > 0 && kind_bytes(entry.kind) == 8);
+            let (Some(marker), Some(frame_end)) = (marker, end_of(frame)) else {
+                // What was cut short is the end; before whole frames it is damage, and they are not to be thrown away.
+                if begun[number + 1..]
+                    .iter()
+                    .any(|later| end_of(later).is_some())
+                {
+                    return Err(damaged(&format!("frame {number} of it is damaged")));
+                }
+                break;
+            };
+            if !keep(u64_at(&read(file.file(), path, marker.location, 8)?, 0)) {
                 break;
             }
             (entries, frames, end) = (entries + frame.len() as u64, frames + 1, frame_end);
@@ -265,10 +288,13 @@ impl Container {
         }
         let text = names.iter().flat_map(|name| name.bytes().chain([0]));
         let text = text.collect::<Vec<_>>();
-        assert!(
-            (text.len() as u64) < NAMES_BYTES,
-            "the names of a frame's arrays are ours, and fit"
-        );
+        // Ours fit; those of a file that was damaged need not.
+        if text.len() as u64 >= NAMES_BYTES {
+            return Err(FormatError::NotATrajectory {
+                path: self.file.path().to_owned(),
+                reason: "its list of names is damaged".to_owned(),
+            });
+        }
         let at = HEADER_BYTES + self.capacity * ENTRY_BYTES;
         self.file.write_at(at, &text)
     }

@@ -350,14 +350,7 @@ impl GsdReader {
 
 /// The frames whose arrays are all in the file, and the number of those begun after them.
 fn whole_frames(entries: &[Entry], length: u64) -> (Vec<HashMap<u16, Entry>>, u64) {
-    let within = |entry: &Entry| {
-        let bytes = entry
-            .rows
-            .checked_mul(u64::from(entry.columns))
-            .and_then(|numbers| numbers.checked_mul(kind_bytes(entry.kind).max(1)))
-            .and_then(|bytes| bytes.checked_add(entry.location));
-        bytes.is_some_and(|end| end <= length)
-    };
+    let within = |entry: &Entry| entry.end().is_some_and(|end| end <= length);
     let groups: Vec<&[Entry]> = entries
         .chunk_by(|one, other| one.frame == other.frame)
         .collect();

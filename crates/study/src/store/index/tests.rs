@@ -163,3 +163,52 @@ fn what_others_note_while_the_files_are_looked_at_stays() {
         HashMap::from([(first, done)])
     );
 }
+
+#[test]
+fn a_heartbeat_from_before_the_clock_was_set_back_holds_nothing() {
+    let case = Case::new();
+    let [first, _] = case.runs;
+    assert_eq!(case.claim(0), Claim::Taken(first));
+    // Clocks of machines differ by minutes, which is no reason to take a run away.
+    case.age(0, -600);
+    assert!(case.index().leases(TIMEOUT).unwrap().contains_key(&first));
+    // By a day they do not: the clock was set back, and the owner may be dead for long.
+    case.age(0, -86_400);
+    assert!(case.index().leases(TIMEOUT).unwrap().is_empty());
+    assert_eq!(case.claim(1), Claim::Taken(first));
+}
+
+#[test]
+fn values_that_cannot_be_make_the_index_a_new_one() {
+    for damage in [
+        "UPDATE runs SET identity = 'no identity'",
+        "UPDATE runs SET reason = x'ff00ff'",
+        "UPDATE runs SET row = x'80'",
+        "UPDATE runs SET transition_time = 'late'",
+        "UPDATE leases SET process = -1",
+        "UPDATE leases SET token = CAST(x'fe' AS TEXT)",
+        "ALTER TABLE runs RENAME COLUMN stamp TO stump",
+        "DROP TABLE runs; CREATE TABLE runs (identity TEXT PRIMARY KEY, state)",
+    ] {
+        let case = Case::new();
+        let [first, second] = case.runs;
+        let mut index = case.index();
+        index
+            .note([(second, &Entry::new(State::Done, None))])
+            .unwrap();
+        index
+            .replace(&HashMap::new(), &index.states().unwrap())
+            .unwrap();
+        index
+            .note([(second, &Entry::new(State::Done, None))])
+            .unwrap();
+        drop(index);
+        assert_eq!(case.claim(0), Claim::Taken(first));
+        case.index().connection.execute_batch(damage).unwrap();
+        let (index, is_new) = Index::open(&case.path()).unwrap();
+        assert!(is_new, "{damage}");
+        assert!(index.entries().unwrap().is_empty(), "{damage}");
+        let aside = case.folder.path().join("index.sqlite.damaged-1");
+        assert!(aside.is_file(), "{damage}");
+    }
+}

@@ -1,0 +1,194 @@
+//! Configurations at the edge of what there can be: each is checked and run, or refused with its key and what to do.
+
+use crate::{Outcome, Place};
+
+/// What is to become of a configuration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Fate {
+    /// It runs.
+    Runs,
+    /// It is refused, with this in the message.
+    Refused(&'static str),
+    /// It may run or diverge, with step and grain; it may not end otherwise.
+    Tried,
+}
+
+use Fate::{Refused, Runs, Tried};
+
+/// Settings for any preset.
+const ANY: &[(&[&str], Fate)] = &[
+    (&["grains.number=0"], Runs),
+    (&["grains.number=1"], Runs),
+    (&["grains.number=2"], Runs),
+    (&["grains.number=0", "initial.state=jammed"], Runs),
+    (&["grains.number=900_000_000_000"], Refused("grains.number")),
+    (&["grains.number=20_000_000"], Refused("do not fit")),
+    (&["grains.number=3000"], Refused("do not fit")),
+    (&["grains.volume_fraction=1e300"], Refused("at most 10")),
+    (
+        &["grains.number_density=nan"],
+        Refused("grains.number_density"),
+    ),
+    (&["grains.diameter_min=0.01"], Runs),
+    (
+        &["grains.diameter_min=0.01", "grains.diameter_max=0.01"],
+        Runs,
+    ),
+    (&["grains.diameter_max=100"], Refused("closes on itself")),
+    (&["grains.diameter_min=1e-300"], Tried),
+    (&["drive.strain_rate=0"], Refused("run.duration")),
+    (&["drive.strain_rate=0", "run.duration=2"], Runs),
+    (&["drive.strain_rate=1e-300"], Refused("beyond reach")),
+    (&["drive.strain_rate=1e6"], Tried),
+    (&["drive.strain_rate=-inf"], Refused("drive.strain_rate")),
+    (&["drive.body_force=1e300"], Refused("drive.body_force")),
+    (&["run.time_step=0"], Refused("run.time_step")),
+    (&["run.time_step=1e-300"], Refused("beyond reach")),
+    (&["run.time_step=1"], Tried),
+    (&["run.time_step=100"], Tried),
+    (&["run.time_step=1e300"], Refused("run.time_step")),
+    (&["run.neighbour_skin=1e300"], Refused("run.neighbour_skin")),
+    (&["run.periods=1e300"], Refused("beyond reach")),
+    (&["run.periods=nan"], Refused("run.periods")),
+    (&["run.seed=18446744073709551616"], Refused("run.seed")),
+    (&["tube.waves=0"], Refused("tube.waves")),
+    (&["tube.waves=18446744073709551614"], Refused("tube.waves")),
+    (&["tube.radius=1e300"], Refused("tube.radius")),
+    (&["tube.radius=1e-6"], Tried),
+    (&["tube.wavelength=1e-6"], Refused("tube.wavelength")),
+    (
+        &["tube.spheres_per_ring=1"],
+        Refused("tube.spheres_per_ring"),
+    ),
+    (
+        &["observe.samples_per_period=1_000_000_000_000"],
+        Refused("observe.samples_per_period"),
+    ),
+    (&["observe.profile_bins=0"], Refused("observe.profile_bins")),
+    (&["observe.late_fraction=1e-300"], Runs),
+    (&["resolved.length=3"], Refused("cannot be set")),
+];
+
+/// Settings for a prescribed wall and the linear law.
+const STRAIN: &[(&[&str], Fate)] = &[
+    (&["tube.waves=1"], Runs),
+    (&["tube.waves=1000"], Runs),
+    // A straight tube, a tube that is closed, and one that is turned inside out.
+    (&["drive.width=3"], Runs),
+    (&["drive.amplitude=0"], Runs),
+    (&["drive.width=0"], Tried),
+    (&["drive.width=0", "initial.state=jammed"], Tried),
+    (&["drive.width=-1"], Refused("drive.width")),
+    (&["contact.normal_damping=0"], Runs),
+    (&["contact.normal_damping=1.5"], Runs),
+    (&["contact.normal_damping=1e3"], Tried),
+    (
+        &["contact.normal_damping=1e300"],
+        Refused("contact.normal_damping"),
+    ),
+    (
+        &["contact.normal_stiffness=1e300"],
+        Refused("contact.normal_stiffness"),
+    ),
+    (&["contact.normal_stiffness=1e-6"], Runs),
+    (&["contact.dissipation_time=1"], Refused("contact.law")),
+    (&["drive.force_amplitude=1"], Refused("drive.control")),
+];
+
+/// Settings for an elastic wall and the Hertz law.
+const STRESS: &[(&[&str], Fate)] = &[
+    (&["tube.waves=1"], Refused("tube.waves")),
+    (&["drive.force_amplitude=0"], Runs),
+    (&["drive.force_amplitude=10"], Tried),
+    (
+        &["drive.force_amplitude=inf"],
+        Refused("drive.force_amplitude"),
+    ),
+    (&["contact.dissipation_time=0"], Runs),
+    (&["contact.dissipation_time=1e3"], Tried),
+    (
+        &["contact.young_modulus=1e300"],
+        Refused("contact.young_modulus"),
+    ),
+    (
+        &["contact.static_friction=0", "contact.kinetic_friction=0"],
+        Runs,
+    ),
+    (&["contact.static_friction=1e3"], Tried),
+    (&["wall.sphere_mass=1e-300"], Tried),
+    (&["wall.sphere_mass=1e6"], Runs),
+    (&["wall.spring_stiffness=0"], Tried),
+    (&["wall.spring_stiffness=1e6"], Tried),
+    (&["wall.drag=1e6"], Tried),
+    (&["wall.contact_range=1e300"], Refused("wall.contact_range")),
+    (&["drive.width=2"], Refused("drive.control")),
+];
+
+fn try_all(preset: &str, tables: &[&[(&[&str], Fate)]]) {
+    for &(settings, fate) in tables.iter().copied().flatten() {
+        let place = Place::new();
+        let is_set = |key: &str| settings.iter().any(|setting| setting.starts_with(key));
+        // Short, but where the case says otherwise.
+        let mut all = Vec::new();
+        if !is_set("grains.number") && !is_set("grains.volume_fraction") {
+            all.push("grains.number=20");
+        }
+        if !is_set("tube.waves") {
+            all.push("tube.waves=2");
+        }
+        if !is_set("run.periods") && !is_set("run.duration") {
+            all.push("run.periods=0.05");
+        }
+        all.extend(settings);
+        let settings = all.iter().flat_map(|setting| ["--set", setting]);
+        let base = ["--preset", preset];
+        let arguments: Vec<&str> = base.into_iter().chain(settings).collect();
+        for command in [&["check"][..], &["run", "--out", "out"]] {
+            let outcome = place.call(command.iter().chain(&arguments));
+            assert_fate(
+                &place,
+                &outcome,
+                fate,
+                &format!("{preset} {command:?} {all:?}"),
+            );
+        }
+    }
+}
+
+/// Asserts that a call ended as it may: with a documented code, no panic, and a message that says what to do.
+fn assert_fate(place: &Place, outcome: &Outcome, fate: Fate, name: &str) {
+    let message = outcome.message();
+    assert!(!message.contains("panicked"), "{name}: {message}");
+    match (outcome.code, fate) {
+        (Some(0), Runs | Tried) => {}
+        (Some(1), Tried) => {
+            assert!(message.contains("diverged at step"), "{name}: {message}");
+            assert!(message.contains("help:"), "{name}: {message}");
+            assert!(place.path("out/state.checkpoint").is_file(), "{name}");
+        }
+        (Some(2), Refused(part)) => {
+            assert!(message.contains("error:"), "{name}: {message}");
+            assert!(message.contains("help:"), "{name}: {message}");
+            assert!(message.contains(part), "{name}: {part} is not in {message}");
+            assert!(!place.path("out").exists(), "{name}");
+        }
+        // A trial may as well be refused, where it says why.
+        (Some(2), Tried) => assert!(message.contains("help:"), "{name}: {message}"),
+        (code, _) => panic!("{name}: {code:?}, {fate:?}: {message}"),
+    }
+}
+
+#[test]
+fn edges_of_the_frictionless_tube() {
+    try_all("frictionless", &[ANY, STRAIN]);
+}
+
+#[test]
+fn edges_of_the_fine_tube() {
+    try_all("frictionless-fine", &[ANY, STRAIN]);
+}
+
+#[test]
+fn edges_of_the_elastic_tube() {
+    try_all("frictional", &[ANY, STRESS]);
+}
