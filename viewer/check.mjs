@@ -1,11 +1,11 @@
 // The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR]
 //
-// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, and asks
-// nobody else for anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
+// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, shows
+// studies and opens their runs, and asks nobody else for anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
 // Debian's.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { chromium } from "playwright-core";
@@ -39,7 +39,7 @@ function record(name, preset, every, ...settings) {
 }
 
 /** A page of it; whatever it complains of is a failure. */
-async function open(browser, address, options) {
+async function open(browser, address, options, ready = () => window.viewer?.measured.pictures > 0) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
   // Without a graphics card a picture may take seconds where others use the machine as well.
@@ -52,7 +52,7 @@ async function open(browser, address, options) {
     if (!["blob:", "data:"].includes(protocol) && hostname !== "127.0.0.1") complaints.push(`asks ${request.url()}`);
   });
   await page.goto(address);
-  await page.waitForFunction(() => window.viewer.measured.pictures > 0);
+  await page.waitForFunction(ready);
   const close = async () => {
     // What the graphics driver says of itself is not the page's.
     const own = complaints.filter((text) => !/GL Driver Message|GPU stall/.test(text));
@@ -271,6 +271,143 @@ async function checkLooks(browser) {
   end();
 }
 
+/** A study of both starts at two strain rates, two replicates each, as far as it is computed. */
+const STUDY = `
+name = "checked"
+title = "Width and strain rate, from both starts"
+preset = "frictionless"
+states = ["rest", "jammed"]
+replicates = 2
+[base]
+tube.waves = 2
+run.periods = 15
+[[axes]]
+key = "drive.strain_rate"
+values = [0.05, 0.1]
+[[axes]]
+key = "drive.width"
+values = [2.5, 2.7, 2.9]
+`;
+
+/** Part of a canvas of charts that is strongly coloured, and how many tones it has. */
+const inked = (page) =>
+  page.evaluate(() => {
+    const parts = [...document.querySelectorAll("#charts canvas")].map((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const tones = new Set();
+      let coloured = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        const [red, green, blue, cover] = data.subarray(at, at + 4);
+        if (cover < 255 || Math.max(red, green, blue) - Math.min(red, green, blue) < 40) continue;
+        coloured += 1;
+        tones.add((red >> 4) * 256 + (green >> 4) * 16 + (blue >> 4));
+      }
+      return { coloured: (4 * coloured) / data.length, tones: tones.size };
+    });
+    return { canvases: parts.length, coloured: Math.min(...parts.map((it) => it.coloured)), tones: Math.max(...parts.map((it) => it.tones)) };
+  });
+
+const studied = (page) => page.evaluate(() => window.study.measured);
+const hasPoints = () => window.study?.measured.places.length > 0;
+
+async function checkStudy(browser) {
+  const file = join(runs, "study.toml");
+  const store = join(runs, "store");
+  writeFileSync(file, STUDY);
+  const compute = (...options) => spawnSync(program, ["study", "run", file, "--store", store, "--quiet", ...options]);
+  const done = compute();
+  assert.equal(done.status, 0, String(done.stderr));
+  const { address, end } = await serve(store);
+  const { page, close } = await open(browser, address, desk, hasPoints);
+  assert.match(await page.textContent("#facts"), /24 runs done/);
+  const curves = await studied(page);
+  assert.deepEqual([curves.points, curves.curves], [12, 4]);
+  const drawn = await inked(page);
+  assert(drawn.coloured > 0.002 && drawn.tones > 4, `curves cover ${drawn.coloured} in ${drawn.tones} tones`);
+  // A pointer, and the keys, tell a point's number with its error.
+  await page.mouse.move(...curves.places[5]);
+  await until(page, () => !document.getElementById("tip").hidden);
+  assert.match(await page.textContent("#tip"), /±.*replicates2/s);
+  assert.equal(await page.locator("#runs a").count(), 2);
+  await shoot(page, "study-curves");
+  await page.focus("#charts canvas");
+  const { chosen } = await studied(page);
+  await page.keyboard.press("ArrowRight");
+  const next = (await studied(page)).chosen;
+  assert(next.x !== chosen.x || next.value !== chosen.value, "the arrow key stays where it was");
+
+  // Any number against any axes.
+  await page.selectOption("#value", "transition_time");
+  assert.match(await page.textContent("#legend"), /at least/);
+  await page.check("#logarithmic");
+  await shoot(page, "study-times");
+  await page.uncheck("#logarithmic");
+  await page.selectOption("#value", "granular_temperature");
+  await page.selectOption("#x", "drive.strain_rate");
+  assert.equal(await page.inputValue("#other"), "drive.width");
+  assert.equal((await studied(page)).curves, 6);
+  await page.selectOption("#start", "jammed");
+  assert.equal((await studied(page)).points, 6);
+  await page.selectOption("#start", "both");
+  await page.selectOption("#x", "drive.width");
+  await page.selectOption("#value", "flow_rate_ratio");
+
+  // The map, a click on which opens a run of its point, and the way back to the same map.
+  await page.click("#view-heat");
+  await until(page, () => document.querySelectorAll("#charts canvas").length === 2);
+  const heat = await inked(page);
+  assert(heat.coloured > 0.4 && heat.tones > 2, `the map covers ${heat.coloured} in ${heat.tones} tones`);
+  const cells = await studied(page);
+  assert.equal(cells.places.length, 12);
+  await page.mouse.move(...cells.places[0]);
+  await shoot(page, "study-map");
+  await page.mouse.click(...cells.places[0]);
+  await until(page, () => window.viewer?.measured.pictures > 0);
+  assert.match(await page.textContent("#title"), /strain rate 0\.05, width 2\.5, from rest/);
+  assert.equal(await page.locator("#siblings option").count(), 2);
+  await page.click("#play");
+  await until(page, () => window.viewer.measured.clock > 0.5);
+  await page.click("#play");
+  await shoot(page, "study-run");
+  await page.selectOption("#siblings", { index: 1 });
+  await until(page, () => window.viewer?.measured.pictures > 0 && document.getElementById("siblings").selectedIndex === 1);
+  await page.click("#to-study");
+  await until(page, () => window.study?.measured.places.length === 12);
+  assert.equal(await page.getAttribute("#view-heat", "aria-pressed"), "true");
+  await close();
+
+  const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" }, hasPoints);
+  await dark.mouse.move(...(await studied(dark)).places[2]);
+  await shoot(dark, "study-dark");
+  await closeDark();
+
+  // A finger tells first, and opens then.
+  const { page: small, close: closeSmall } = await open(browser, address, phone, hasPoints);
+  assert(!(await isTooWide(small)), "a study is wider than a phone");
+  const [x, y] = (await studied(small)).places[0];
+  await small.touchscreen.tap(x, y);
+  await until(small, () => !document.getElementById("tip").hidden);
+  await shoot(small, "study-phone");
+  const [again, down] = (await studied(small)).places[0];
+  await small.touchscreen.tap(again, down);
+  await until(small, () => window.viewer?.measured.pictures > 0);
+  assert(!(await isTooWide(small)), "a run of a study is wider than a phone");
+  await closeSmall();
+
+  // Runs that end meanwhile are seen.
+  const { page: growing, close: closeGrowing } = await open(browser, address, desk, hasPoints);
+  assert(!(await growing.isVisible("#refresh")));
+  writeFileSync(file, STUDY.replace("replicates = 2", "replicates = 3"));
+  assert.equal(compute("--for", "1ms").status, 3);
+  await growing.reload();
+  await until(growing, hasPoints);
+  await until(growing, () => document.getElementById("facts").textContent.includes("waiting"));
+  assert.equal(compute().status, 0);
+  await until(growing, () => document.getElementById("facts").textContent === "checked · 36 runs done");
+  await closeGrowing();
+  end();
+}
+
 /** Milliseconds from picture to picture: median and 95th percentile of so many, or of those of a minute. */
 async function intervals(page, most) {
   const times = await page.evaluate(
@@ -329,6 +466,7 @@ try {
   await checkDriving(browser);
   await checkPlaying(browser);
   await checkLooks(browser);
+  await checkStudy(browser);
   await measureMany(browser);
   console.log("the viewer works");
 } finally {

@@ -3,16 +3,11 @@ import { Connection } from "./connection";
 import { colourAt, css, FIELDS, inWave, stops } from "./fields";
 import type { Film } from "./film";
 import { History } from "./history";
+import { element, fill, listenToLook } from "./page";
 import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
 import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
 import { Recording } from "./recording";
 import { Scene, WALLS, type WallLook } from "./scene";
-
-function element<T extends HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no ${id}`);
-  return found as T;
-}
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
   width: { name: "Width <i>w</i>", digits: 3 },
@@ -73,7 +68,10 @@ class Page {
     if (message.type === "welcome") this.welcome(message);
     else if (message.type === "saved") this.saved(message);
     else if (message.type === "missing") this.missing(message.number, message.message);
-    else this.status(message.message, true);
+    else {
+      this.status(message.message, true);
+      if (!this.tube) element("facts").textContent = message.message;
+    }
   }
 
   private welcome(tube: Welcome): void {
@@ -86,6 +84,7 @@ class Page {
     element("facts").textContent =
       `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${this.extent(tube)}`;
     this.makeSliders(tube);
+    this.showWithin(tube);
     document.body.dataset.ready = "true";
   }
 
@@ -105,6 +104,20 @@ class Page {
     document.body.dataset.recorded = String(recorded !== null);
     element("loop-name").textContent = this.isSteady() ? "The bottleneck" : "The loop, as it was driven";
     if (!recorded) element("loop-name").textContent = "The loop: drive it there and back";
+  }
+
+  /** The way back to the study that the run is of, and to the other runs of its point. */
+  private showWithin({ within }: Welcome): void {
+    element("within").hidden = within === null;
+    if (!within) return;
+    const link = element<HTMLAnchorElement>("to-study");
+    link.textContent = `← ${within.study}`;
+    link.href = `../../../../${sessionStorage.getItem("study") ?? ""}`;
+    const siblings = element<HTMLSelectElement>("siblings");
+    const all = within.siblings.map(({ number, replicate }) => new Option(`${replicate + 1} of ${within.siblings.length}`, String(number)));
+    siblings.replaceChildren(...all);
+    siblings.value = String(within.number);
+    siblings.onchange = () => location.assign(`../${siblings.value}/`);
   }
 
   /** How much of it there is to see. */
@@ -451,12 +464,7 @@ class Page {
       if (this.film instanceof Recording) this.speed = periods_per_second;
       else this.connection.send({ type: "speed", periods_per_second });
     };
-    const look = element<HTMLSelectElement>("look");
-    look.onchange = () => {
-      document.documentElement.dataset.look = look.value;
-      this.redraw();
-    };
-    matchMedia("(prefers-color-scheme: dark)").onchange = () => this.redraw();
+    listenToLook(() => this.redraw());
     new ResizeObserver(() => {
       this.scene?.resize();
       this.chartsStale = true;
@@ -576,17 +584,6 @@ function driven(values: Driven): [string, string][] {
     ...of("strain_rate", "strain rate ε̇", ""),
     ...of("friction", "friction μ", ""),
   ];
-}
-
-function fill(list: HTMLElement, facts: [string, string][]): void {
-  list.replaceChildren(
-    ...facts.flatMap(([name, value]) => {
-      const [term, definition] = [document.createElement("dt"), document.createElement("dd")];
-      term.textContent = name;
-      definition.textContent = value;
-      return [term, definition];
-    }),
-  );
 }
 
 declare global {

@@ -39,6 +39,8 @@ export interface Welcome {
   end: number;
   /** The frames of a recording; null where the run is computed. */
   recorded: { clocks: number[]; lost_frames: number } | null;
+  /** The study that it was opened from. */
+  within: { study: string; number: number; siblings: { number: number; replicate: number }[] } | null;
 }
 
 export interface Saved {

@@ -59,16 +59,19 @@ pub enum Steered {
 pub(crate) enum Notice {
     /// The state was saved.
     Saved {
-        /// The folder.
-        folder: String,
+        /// The folder; none where the page keeps the state.
+        folder: Option<String>,
         /// What goes on from there.
         command: String,
         /// The configuration.
         toml: String,
+        /// The checkpoint in base64, where the page is to keep it.
+        state: Option<String>,
         /// Time in periods.
         period: f64,
     },
     /// A frame of a recording that cannot be had.
+    #[cfg(feature = "server")]
     Missing {
         /// Which, counted from 0.
         number: usize,
