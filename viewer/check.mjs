@@ -1,17 +1,25 @@
-// The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR]
+// The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR] [--only CHECKS]
 //
 // Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, shows
-// studies and opens their runs, and asks nobody else for anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
+// studies and opens their runs, computes by itself the same bits (where `just web` was called), and asks nobody else for
+// anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
 // Debian's.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
 
-const [program, option, pictures] = process.argv.slice(2);
-assert(program && (option === undefined || option === "--pictures"), "usage: node check.mjs PROGRAM [--pictures DIR]");
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { pictures: { type: "string" }, only: { type: "string" } },
+});
+const [program] = positionals;
+const { pictures, only } = values;
+assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,web,many]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
@@ -325,7 +333,7 @@ async function checkStudy(browser) {
   const drawn = await inked(page);
   assert(drawn.coloured > 0.002 && drawn.tones > 4, `curves cover ${drawn.coloured} in ${drawn.tones} tones`);
   // A pointer, and the keys, tell a point's number with its error.
-  await page.mouse.move(...curves.places[5]);
+  await page.mouse.move(...curves.places[4]);
   await until(page, () => !document.getElementById("tip").hidden);
   assert.match(await page.textContent("#tip"), /±.*replicates2/s);
   assert.equal(await page.locator("#runs a").count(), 2);
@@ -397,14 +405,100 @@ async function checkStudy(browser) {
   // Runs that end meanwhile are seen.
   const { page: growing, close: closeGrowing } = await open(browser, address, desk, hasPoints);
   assert(!(await growing.isVisible("#refresh")));
-  writeFileSync(file, STUDY.replace("replicates = 2", "replicates = 3"));
-  assert.equal(compute("--for", "1ms").status, 3);
+  writeFileSync(file, STUDY.replace("replicates = 2", "replicates = 9"));
+  compute("--for", "1s");
   await growing.reload();
   await until(growing, hasPoints);
   await until(growing, () => document.getElementById("facts").textContent.includes("waiting"));
   assert.equal(compute().status, 0);
-  await until(growing, () => document.getElementById("facts").textContent === "checked · 36 runs done");
+  await until(growing, () => document.getElementById("facts").textContent === "checked · 108 runs done");
   await closeGrowing();
+  end();
+}
+
+/** Where `just web` puts the page that computes by itself. */
+const WEB = new URL("../target/web/", import.meta.url);
+const KINDS = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm" };
+
+/** Its files on any static server. */
+async function serveFiles() {
+  const server = createServer((request, response) => {
+    const name = request.url === "/" ? "index.html" : request.url.slice(1);
+    const file = new URL(name, WEB);
+    if (!/^[a-z.]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": KINDS[name.split(".").at(-1)] });
+    response.end(readFileSync(file));
+  });
+  await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
+  return { address: `http://127.0.0.1:${server.address().port}/`, end: () => server.close() };
+}
+
+/** From the start on by so many samples, one after the other; what the state is then, in a number. */
+async function stepOn(page, samples) {
+  for (let k = 0; k < samples; k++) {
+    const { step } = await measured(page);
+    await page.click("#forth");
+    await until(page, (step) => window.viewer.measured.step > step, step);
+  }
+  const { step, digest } = await measured(page);
+  return { step, digest };
+}
+
+async function checkWeb(browser) {
+  if (!existsSync(new URL("engine.wasm", WEB))) {
+    console.log("skipped: the page that computes by itself ('just web' makes it)");
+    return;
+  }
+  const { address, end } = await serveFiles();
+  for (const [preset, ...settings] of [
+    ["frictionless", "tube.waves=2", "drive.width=2.6", "run.periods=3"],
+    ["frictional", "tube.waves=2", "run.periods=1"],
+  ]) {
+    const hash = new URLSearchParams([["preset", preset], ...settings.map((it) => ["set", it])]);
+    const { page, close } = await open(browser, `${address}#${hash}`, desk);
+    const still = await pixels(page);
+    assert(still.edges > 0.005 && still.edges < 0.5, `edges cover ${still.edges} of the stage`);
+    // The same bits as the program's own, step for step.
+    const own = await serve(preset, ...settings.flatMap((it) => ["--set", it]));
+    const { page: native, close: closeNative } = await open(browser, own.address, desk);
+    assert.deepEqual(await stepOn(page, 12), await stepOn(native, 12), `${preset} is another in the browser`);
+    await closeNative();
+    own.end();
+
+    // It goes on by itself, and is driven.
+    await page.selectOption("#speed", "");
+    await page.click("#play");
+    const { clock } = await measured(page);
+    await until(page, (clock) => window.viewer.measured.clock > clock + 0.5, clock);
+    assert.notEqual((await pixels(page)).sum, still.sum);
+    const key = preset === "frictional" ? "force_amplitude" : "width";
+    const before = await page.inputValue(`#number-${key}`);
+    await page.fill(`#number-${key}`, String(0.9 * Number(before)));
+    await page.press(`#number-${key}`, "Enter");
+    await until(page, ({ key, before }) => Math.abs(window.viewer.driven[key] / before - 0.9) < 1e-3, { key, before: Number(before) });
+    await page.click("#play");
+    const pace = await page.textContent("#pace");
+    console.log(`${preset} in the browser itself: ${pace}`);
+    await shoot(page, `web-${preset}`);
+
+    // What it saves, the program goes on with.
+    await page.click("#save");
+    await until(page, () => document.getElementById("saved").open);
+    const folder = join(runs, `from-web-${preset}`);
+    for (const link of ["#saved-toml", "#saved-state"]) {
+      const [file] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
+      await file.saveAs(join(folder, file.suggestedFilename()));
+    }
+    const resumed = spawnSync(program, ["run", "--quiet", "--resume", folder]);
+    assert.equal(resumed.status, 0, String(resumed.stderr));
+    await close();
+  }
+  const { page: small, close } = await open(browser, address, phone);
+  assert(!(await isTooWide(small)), "the page that computes by itself is wider than a phone");
+  await small.locator("#play").click();
+  await until(small, () => window.viewer.measured.clock > 0.3);
+  await shoot(small, "web-phone");
+  await close();
   end();
 }
 
@@ -462,12 +556,9 @@ const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
+const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, web: checkWeb, many: measureMany };
 try {
-  await checkDriving(browser);
-  await checkPlaying(browser);
-  await checkLooks(browser);
-  await checkStudy(browser);
-  await measureMany(browser);
+  for (const [name, check] of Object.entries(checks)) if (only === undefined || only.split(",").includes(name)) await check(browser);
   console.log("the viewer works");
 } finally {
   await browser.close();

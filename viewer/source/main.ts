@@ -1,5 +1,5 @@
 import { Chart, ink, written } from "./charts";
-import { Connection } from "./connection";
+import { type Connection, Engine, type Listener, Server } from "./connection";
 import { colourAt, css, FIELDS, inWave, stops } from "./fields";
 import type { Film } from "./film";
 import { History } from "./history";
@@ -8,6 +8,7 @@ import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plot
 import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
 import { Recording } from "./recording";
 import { Scene, WALLS, type WallLook } from "./scene";
+import { choice, wanted } from "./tubes";
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
   width: { name: "Width <i>w</i>", digits: 3 },
@@ -55,11 +56,15 @@ class Page {
   private readonly moved = new Map<Steered, number>();
 
   constructor() {
-    this.connection = new Connection({
+    const listener: Listener = {
       told: (message) => this.told(message),
       frame: (frame) => this.receive(frame),
       lost: () => this.status("connection lost: is the program still running?", true),
-    });
+    };
+    // The page that is put on any server computes its tube itself.
+    const alone = document.body.dataset.engine === "page";
+    this.connection = alone ? new Engine(listener, wanted()) : new Server(listener);
+    if (alone) element("tubes").replaceChildren(choice());
     this.listen();
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -385,11 +390,14 @@ class Page {
 
   private saved(saved: Saved): void {
     element("saved-command").textContent = saved.command;
-    element("saved-folder").textContent = saved.folder;
-    const link = element<HTMLAnchorElement>("saved-toml");
-    URL.revokeObjectURL(link.href);
-    link.href = URL.createObjectURL(new Blob([saved.toml], { type: "application/toml" }));
-    link.download = `${saved.folder.split("/").at(-1) ?? "state"}.toml`;
+    element("saved-folder").textContent = saved.folder
+      ? `${saved.folder} holds the checkpoint and its configuration.`
+      : "Put both files into a folder, under these names.";
+    const name = saved.folder?.split("/").at(-1);
+    offer("saved-toml", new Blob([saved.toml], { type: "application/toml" }), name ? `${name}.toml` : "config.toml");
+    const { state } = saved;
+    element("saved-state").hidden = state === null;
+    if (state !== null) offer("saved-state", new Blob([Uint8Array.from(atob(state), (it) => it.charCodeAt(0))]), "state.checkpoint");
     element<HTMLDialogElement>("saved").showModal();
   }
 
@@ -557,6 +565,11 @@ class Page {
     this.chartsStale = true;
   }
 
+  /** What drives the newest frame. */
+  get driven(): Driven | undefined {
+    return this.newest()?.driven;
+  }
+
   /** What tests look at. */
   get measured() {
     const frame = this.newest() ?? this.shownFrame;
@@ -568,8 +581,28 @@ class Page {
       number: frame?.number ?? null,
       ratio: frame?.sample?.flow_rate_ratio ?? null,
       eye: this.scene?.eye ?? [],
+      step: frame?.step ?? 0,
+      digest: frame ? digest(frame) : 0,
     };
   }
+}
+
+/** A number that another state would hardly have. */
+function digest(frame: Frame): number {
+  let sum = 0;
+  for (const numbers of [frame.position, frame.velocity]) {
+    const bits = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
+    for (const word of bits) sum = (Math.imul(sum, 16777619) ^ word) >>> 0;
+  }
+  return sum;
+}
+
+/** A file to be downloaded by a link. */
+function offer(id: string, file: Blob, name: string): void {
+  const link = element<HTMLAnchorElement>(id);
+  URL.revokeObjectURL(link.href);
+  link.href = URL.createObjectURL(file);
+  link.download = name;
 }
 
 /** What drove a recorded run, in words. */

@@ -45,9 +45,12 @@ export interface Welcome {
 
 export interface Saved {
   type: "saved";
-  folder: string;
+  /** Null where the page keeps the state. */
+  folder: string | null;
   command: string;
   toml: string;
+  /** The checkpoint in base64, where the page keeps it. */
+  state: string | null;
   period: number;
 }
 

@@ -7,8 +7,8 @@ import { element, fill, isDark, listenToLook } from "./page";
 import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
 import { withError } from "./words";
 
-/** Milliseconds from one look for new rows to the next. */
-const EACH = 4000;
+/** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
+const EACH = { growing: 4000, done: 15000 };
 
 type View = "curves" | "heat" | "figures";
 
@@ -66,7 +66,15 @@ class StudyPage {
       void this.open(study);
     });
     await this.open(this.choice.study);
-    setInterval(() => this.results?.study.growing && document.visibilityState === "visible" && void this.refresh(), EACH);
+    void this.follow();
+  }
+
+  /** Looks for new rows again and again, while anybody sees them. */
+  private async follow(): Promise<void> {
+    for (;;) {
+      await new Promise((done) => setTimeout(done, this.results?.study.growing ? EACH.growing : EACH.done));
+      if (this.results && document.visibilityState === "visible") await this.refresh();
+    }
   }
 
   /** Another study, with what of the choice it knows. */

@@ -91,9 +91,19 @@ impl Notice {
     }
 }
 
+/// What clients are told of something that cannot be done, in JSON.
+#[must_use]
+pub fn problem(message: &str) -> String {
+    let message = message.to_owned();
+    Notice::Problem { message }.to_json()
+}
+
 impl Command {
-    /// Reads a command; in words what is wrong with it otherwise.
-    pub(crate) fn read(text: &str) -> Result<Self, String> {
+    /// Reads a command.
+    ///
+    /// # Errors
+    /// In words what is wrong with it.
+    pub fn read(text: &str) -> Result<Self, String> {
         let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let number = match command {
             Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),

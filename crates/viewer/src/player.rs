@@ -2,7 +2,7 @@
 
 use std::sync::mpsc::Receiver;
 
-use crate::message::Notice;
+use crate::message::problem;
 use crate::recording::Recording;
 use crate::session::{Request, Voices};
 use crate::within::Within;
@@ -32,8 +32,7 @@ impl Player {
                 }
                 Request::Command(_) => {
                     let message = "this is a recording, which cannot be driven; `peristalsis view --live` computes the run";
-                    let message = message.to_owned();
-                    self.voices.say(Notice::Problem { message }.to_json());
+                    self.voices.say(problem(message));
                 }
             }
         }

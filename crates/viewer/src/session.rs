@@ -7,7 +7,7 @@ use std::time::Duration;
 use tokio::sync::{broadcast, oneshot, watch};
 
 use crate::ViewerError;
-use crate::message::{Command, Notice};
+use crate::message::{Command, problem};
 
 /// Requests that wait for the run, at most.
 const WAITING: usize = 64;
@@ -92,10 +92,7 @@ impl Session {
 pub(crate) fn apologize(reason: &str, requests: &Receiver<Request>) {
     while let Ok(request) = requests.recv() {
         match request {
-            Request::Welcome(reply) => {
-                let message = reason.to_owned();
-                drop(reply.send(Notice::Problem { message }.to_json()));
-            }
+            Request::Welcome(reply) => drop(reply.send(problem(reason))),
             Request::Frame(_, reply) => drop(reply.send(Err(reason.to_owned()))),
             Request::Command(_) => {}
         }

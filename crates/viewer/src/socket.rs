@@ -7,7 +7,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::{SinkExt, StreamExt};
 use tokio::sync::{broadcast, oneshot};
 
-use crate::message::{Command, Notice};
+use crate::message::{Command, Notice, problem};
 use crate::session::{Request, Session};
 
 /// Time that a client may take for a frame before it is left alone.
@@ -32,9 +32,7 @@ pub(crate) async fn attend(socket: WebSocket, session: Session) {
                     Ok(None) => continue,
                     Ok(Some(answer)) => answer,
                     Err(reason) => {
-                        let message = reason.clone();
-                        let notice = Notice::Problem { message }.to_json();
-                        drop(to.send(Message::Text(notice.into())).await);
+                        drop(to.send(Message::Text(problem(&reason).into())).await);
                         farewell(close_code::POLICY, &reason)
                     }
                 },

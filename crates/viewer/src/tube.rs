@@ -9,7 +9,7 @@ use peristalsis_run::{Run, RunError, RunFolder};
 
 use crate::course::{Course, thin};
 use crate::frame::{Head, Row, of_run};
-use crate::message::{Command, Notice, Steered};
+use crate::message::{self, Command, Notice, Steered};
 use crate::welcome::{Driven, Welcome};
 use crate::within::Within;
 
@@ -42,6 +42,10 @@ pub(crate) struct Labels {
 #[derive(Clone, Debug)]
 pub(crate) enum Saves {
     /// Each gets a folder in this one, its name beginning so.
+    #[cfg_attr(
+        not(feature = "server"),
+        expect(dead_code, reason = "a page has no folders")
+    )]
     Folders { inside: PathBuf, stem: String },
     /// They are given to the page.
     Page,
@@ -143,8 +147,7 @@ impl Tube {
     }
 
     fn tell(&mut self, problem: &str) {
-        let message = problem.to_owned();
-        self.notices.push(Notice::Problem { message }.to_json());
+        self.notices.push(message::problem(problem));
     }
 
     fn obey(&mut self, command: Command) -> Result<(), RunError> {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use peristalsis_claims::{Size, StudyFile};
 use peristalsis_formats::{FormatError, Table, csv, parquet};
 use peristalsis_study::{Specification, StudyError};
-use peristalsis_viewer::{Figure, Study};
+use peristalsis_viewer::{Figure, Study, ViewerError};
 
 use super::CONFIGURATION;
 use crate::commands::say;
@@ -41,12 +41,14 @@ impl Studies {
             return Ok(None);
         }
         if source.join(STUDY).is_file() {
-            found.studies.push(Study::of_store(source)?);
+            found
+                .studies
+                .push(Study::of_store(source).map_err(failure)?);
             return Ok(Some(found));
         }
         found.figures = Figure::of_report(source)?;
         for store in inside(&source.join(STORES), |path| path.join(STUDY).is_file()) {
-            found.add(&store, Study::of_store(&store).map_err(Failure::from));
+            found.add(&store, Study::of_store(&store).map_err(failure));
         }
         if found.is_empty() {
             for table in inside(source, |path| is_table(path) && path.is_file()) {
@@ -66,6 +68,14 @@ impl Studies {
 
     fn is_empty(&self) -> bool {
         self.studies.is_empty() && self.figures.is_empty()
+    }
+}
+
+/// What is wrong with a study is said as by every command about it.
+fn failure(error: ViewerError) -> Failure {
+    match error {
+        ViewerError::Study(error) => Failure::Study(error),
+        other => Failure::Viewer(other),
     }
 }
 
@@ -92,9 +102,9 @@ fn of_table(path: &Path) -> Result<Study, Failure> {
         Some(file) => vec![design(file, Size::Full)?, design(file, Size::Quick)?],
         None => Vec::new(),
     };
-    let mut best = Study::of_table(&stem, table.clone(), None)?;
+    let mut best = Study::of_table(&stem, table.clone(), None).map_err(failure)?;
     for design in &designs {
-        let study = Study::of_table(&stem, table.clone(), Some(design))?;
+        let study = Study::of_table(&stem, table.clone(), Some(design)).map_err(failure)?;
         if study.watchable() > best.watchable() {
             best = study;
         }
