@@ -58,6 +58,10 @@ wheel:
 python:
     bash scripts/check_python.sh
 
+# The page that computes the tube in the browser itself, target/web; needs the target wasm32-unknown-unknown.
+web:
+    bash scripts/web.sh
+
 # The films of the README, docs/images/*.gif.
 films:
     bash scripts/films.sh

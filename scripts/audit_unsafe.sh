@@ -32,8 +32,11 @@ miri() {
         cargo +nightly miri test --locked -p peristalsis-engine --lib "$tests"
 }
 
+# The names of functions that JavaScript calls are `unsafe` to choose; there is no other unsafe code beside them.
+exports=crates/browser/src/exports.rs
 step "unsafe code only in $module"
-elsewhere=$(grep -rlE --include='*.rs' 'allow\(.*unsafe_code' crates | grep -v "^$module/mod.rs$" || true)
+elsewhere=$(grep -rlzE --include='*.rs' 'allow\([^)]*unsafe_code' crates | grep -vE "^($module/mod.rs|$exports)$" || true)
+if grep -qE 'unsafe *\{|unsafe (fn|impl)' "$exports"; then elsewhere="$elsewhere $exports"; fi
 if [ -n "$elsewhere" ]; then
     printf 'error: unsafe code is allowed in %s too\n' "$elsewhere" >&2
     exit 1

@@ -2,11 +2,16 @@
 # The viewer in Chromium: the bundle is that of the sources, and the page does what it should. Needs npm and chromium.
 set -euo pipefail
 cd "$(dirname "$0")/.."
-committed=$(sha256sum crates/viewer/assets/viewer.js)
+bundles=(crates/viewer/assets/viewer.js crates/viewer/assets/study.js)
+committed=$(sha256sum "${bundles[@]}")
 bash scripts/viewer_bundle.sh
-if [ "$committed" != "$(sha256sum crates/viewer/assets/viewer.js)" ]; then
-    echo "error: crates/viewer/assets/viewer.js is not what viewer/ gives; commit what 'just viewer-bundle' made" >&2
+if [ "$committed" != "$(sha256sum "${bundles[@]}")" ]; then
+    echo "error: ${bundles[*]} are not what viewer/ gives; commit what 'just viewer-bundle' made" >&2
     exit 1
+fi
+# The page that computes by itself, where this toolchain can make it.
+if [ -d "$(rustc --print sysroot)/lib/rustlib/wasm32-unknown-unknown" ]; then
+    bash scripts/web.sh
 fi
 cargo build --release -p peristalsis
 cd viewer

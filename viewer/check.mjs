@@ -1,17 +1,25 @@
-// The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR]
+// The viewer in a browser without a display: node check.mjs PROGRAM [--pictures DIR] [--only CHECKS]
 //
-// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, and asks
-// nobody else for anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
+// Checks that the page loads, draws, plays, is driven, goes back, picks, saves, plays recordings, follows fingers, shows
+// studies and opens their runs, computes by itself the same bits (where `just web` was called), and asks nobody else for
+// anything; tells the time from picture to picture at 10,000 grains. CHROMIUM names another browser than
 // Debian's.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
+import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
 
-const [program, option, pictures] = process.argv.slice(2);
-assert(program && (option === undefined || option === "--pictures"), "usage: node check.mjs PROGRAM [--pictures DIR]");
+const { values, positionals } = parseArgs({
+  allowPositionals: true,
+  options: { pictures: { type: "string" }, only: { type: "string" } },
+});
+const [program] = positionals;
+const { pictures, only } = values;
+assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,web,many]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
@@ -39,7 +47,7 @@ function record(name, preset, every, ...settings) {
 }
 
 /** A page of it; whatever it complains of is a failure. */
-async function open(browser, address, options) {
+async function open(browser, address, options, ready = () => window.viewer?.measured.pictures > 0) {
   const context = await browser.newContext(options);
   const page = await context.newPage();
   // Without a graphics card a picture may take seconds where others use the machine as well.
@@ -52,7 +60,7 @@ async function open(browser, address, options) {
     if (!["blob:", "data:"].includes(protocol) && hostname !== "127.0.0.1") complaints.push(`asks ${request.url()}`);
   });
   await page.goto(address);
-  await page.waitForFunction(() => window.viewer.measured.pictures > 0);
+  await page.waitForFunction(ready);
   const close = async () => {
     // What the graphics driver says of itself is not the page's.
     const own = complaints.filter((text) => !/GL Driver Message|GPU stall/.test(text));
@@ -271,6 +279,229 @@ async function checkLooks(browser) {
   end();
 }
 
+/** A study of both starts at two strain rates, two replicates each, as far as it is computed. */
+const STUDY = `
+name = "checked"
+title = "Width and strain rate, from both starts"
+preset = "frictionless"
+states = ["rest", "jammed"]
+replicates = 2
+[base]
+tube.waves = 2
+run.periods = 15
+[[axes]]
+key = "drive.strain_rate"
+values = [0.05, 0.1]
+[[axes]]
+key = "drive.width"
+values = [2.5, 2.7, 2.9]
+`;
+
+/** Part of a canvas of charts that is strongly coloured, and how many tones it has. */
+const inked = (page) =>
+  page.evaluate(() => {
+    const parts = [...document.querySelectorAll("#charts canvas")].map((canvas) => {
+      const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+      const tones = new Set();
+      let coloured = 0;
+      for (let at = 0; at < data.length; at += 4) {
+        const [red, green, blue, cover] = data.subarray(at, at + 4);
+        if (cover < 255 || Math.max(red, green, blue) - Math.min(red, green, blue) < 40) continue;
+        coloured += 1;
+        tones.add((red >> 4) * 256 + (green >> 4) * 16 + (blue >> 4));
+      }
+      return { coloured: (4 * coloured) / data.length, tones: tones.size };
+    });
+    return { canvases: parts.length, coloured: Math.min(...parts.map((it) => it.coloured)), tones: Math.max(...parts.map((it) => it.tones)) };
+  });
+
+const studied = (page) => page.evaluate(() => window.study.measured);
+const hasPoints = () => window.study?.measured.places.length > 0;
+
+async function checkStudy(browser) {
+  const file = join(runs, "study.toml");
+  const store = join(runs, "store");
+  writeFileSync(file, STUDY);
+  const compute = (...options) => spawnSync(program, ["study", "run", file, "--store", store, "--quiet", ...options]);
+  const done = compute();
+  assert.equal(done.status, 0, String(done.stderr));
+  const { address, end } = await serve(store);
+  const { page, close } = await open(browser, address, desk, hasPoints);
+  assert.match(await page.textContent("#facts"), /24 runs done/);
+  const curves = await studied(page);
+  assert.deepEqual([curves.points, curves.curves], [12, 4]);
+  const drawn = await inked(page);
+  assert(drawn.coloured > 0.002 && drawn.tones > 4, `curves cover ${drawn.coloured} in ${drawn.tones} tones`);
+  // A pointer, and the keys, tell a point's number with its error.
+  await page.mouse.move(...curves.places[4]);
+  await until(page, () => !document.getElementById("tip").hidden);
+  assert.match(await page.textContent("#tip"), /±.*replicates2/s);
+  assert.equal(await page.locator("#runs a").count(), 2);
+  await shoot(page, "study-curves");
+  await page.focus("#charts canvas");
+  const { chosen } = await studied(page);
+  await page.keyboard.press("ArrowRight");
+  const next = (await studied(page)).chosen;
+  assert(next.x !== chosen.x || next.value !== chosen.value, "the arrow key stays where it was");
+
+  // Any number against any axes.
+  await page.selectOption("#value", "transition_time");
+  assert.match(await page.textContent("#legend"), /at least/);
+  await page.check("#logarithmic");
+  await shoot(page, "study-times");
+  await page.uncheck("#logarithmic");
+  await page.selectOption("#value", "granular_temperature");
+  await page.selectOption("#x", "drive.strain_rate");
+  assert.equal(await page.inputValue("#other"), "drive.width");
+  assert.equal((await studied(page)).curves, 6);
+  await page.selectOption("#start", "jammed");
+  assert.equal((await studied(page)).points, 6);
+  await page.selectOption("#start", "both");
+  await page.selectOption("#x", "drive.width");
+  await page.selectOption("#value", "flow_rate_ratio");
+
+  // The map, a click on which opens a run of its point, and the way back to the same map.
+  await page.click("#view-heat");
+  await until(page, () => document.querySelectorAll("#charts canvas").length === 2);
+  const heat = await inked(page);
+  assert(heat.coloured > 0.4 && heat.tones > 2, `the map covers ${heat.coloured} in ${heat.tones} tones`);
+  const cells = await studied(page);
+  assert.equal(cells.places.length, 12);
+  await page.mouse.move(...cells.places[0]);
+  await shoot(page, "study-map");
+  await page.mouse.click(...cells.places[0]);
+  await until(page, () => window.viewer?.measured.pictures > 0);
+  assert.match(await page.textContent("#title"), /strain rate 0\.05, width 2\.5, from rest/);
+  assert.equal(await page.locator("#siblings option").count(), 2);
+  await page.click("#play");
+  await until(page, () => window.viewer.measured.clock > 0.5);
+  await page.click("#play");
+  await shoot(page, "study-run");
+  await page.selectOption("#siblings", { index: 1 });
+  await until(page, () => window.viewer?.measured.pictures > 0 && document.getElementById("siblings").selectedIndex === 1);
+  await page.click("#to-study");
+  await until(page, () => window.study?.measured.places.length === 12);
+  assert.equal(await page.getAttribute("#view-heat", "aria-pressed"), "true");
+  await close();
+
+  const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" }, hasPoints);
+  await dark.mouse.move(...(await studied(dark)).places[2]);
+  await shoot(dark, "study-dark");
+  await closeDark();
+
+  // A finger tells first, and opens then.
+  const { page: small, close: closeSmall } = await open(browser, address, phone, hasPoints);
+  assert(!(await isTooWide(small)), "a study is wider than a phone");
+  const [x, y] = (await studied(small)).places[0];
+  await small.touchscreen.tap(x, y);
+  await until(small, () => !document.getElementById("tip").hidden);
+  await shoot(small, "study-phone");
+  const [again, down] = (await studied(small)).places[0];
+  await small.touchscreen.tap(again, down);
+  await until(small, () => window.viewer?.measured.pictures > 0);
+  assert(!(await isTooWide(small)), "a run of a study is wider than a phone");
+  await closeSmall();
+
+  // Runs that end meanwhile are seen.
+  const { page: growing, close: closeGrowing } = await open(browser, address, desk, hasPoints);
+  assert(!(await growing.isVisible("#refresh")));
+  writeFileSync(file, STUDY.replace("replicates = 2", "replicates = 9"));
+  compute("--for", "1s");
+  await growing.reload();
+  await until(growing, hasPoints);
+  await until(growing, () => document.getElementById("facts").textContent.includes("waiting"));
+  assert.equal(compute().status, 0);
+  await until(growing, () => document.getElementById("facts").textContent === "checked · 108 runs done");
+  await closeGrowing();
+  end();
+}
+
+/** Where `just web` puts the page that computes by itself. */
+const WEB = new URL("../target/web/", import.meta.url);
+const KINDS = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm" };
+
+/** Its files on any static server. */
+async function serveFiles() {
+  const server = createServer((request, response) => {
+    const name = request.url === "/" ? "index.html" : request.url.slice(1);
+    const file = new URL(name, WEB);
+    if (!/^[a-z.]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
+    response.writeHead(200, { "content-type": KINDS[name.split(".").at(-1)] });
+    response.end(readFileSync(file));
+  });
+  await new Promise((ready) => server.listen(0, "127.0.0.1", ready));
+  return { address: `http://127.0.0.1:${server.address().port}/`, end: () => server.close() };
+}
+
+/** From the start on by so many samples, one after the other; what the state is then, in a number. */
+async function stepOn(page, samples) {
+  for (let k = 0; k < samples; k++) {
+    const { step } = await measured(page);
+    await page.click("#forth");
+    await until(page, (step) => window.viewer.measured.step > step, step);
+  }
+  const { step, digest } = await measured(page);
+  return { step, digest };
+}
+
+async function checkWeb(browser) {
+  if (!existsSync(new URL("engine.wasm", WEB))) {
+    console.log("skipped: the page that computes by itself ('just web' makes it)");
+    return;
+  }
+  const { address, end } = await serveFiles();
+  for (const [preset, ...settings] of [
+    ["frictionless", "tube.waves=2", "drive.width=2.6", "run.periods=3"],
+    ["frictional", "tube.waves=2", "run.periods=1"],
+  ]) {
+    const hash = new URLSearchParams([["preset", preset], ...settings.map((it) => ["set", it])]);
+    const { page, close } = await open(browser, `${address}#${hash}`, desk);
+    const still = await pixels(page);
+    assert(still.edges > 0.005 && still.edges < 0.5, `edges cover ${still.edges} of the stage`);
+    // The same bits as the program's own, step for step.
+    const own = await serve(preset, ...settings.flatMap((it) => ["--set", it]));
+    const { page: native, close: closeNative } = await open(browser, own.address, desk);
+    assert.deepEqual(await stepOn(page, 12), await stepOn(native, 12), `${preset} is another in the browser`);
+    await closeNative();
+    own.end();
+
+    // It goes on by itself, and is driven.
+    await page.selectOption("#speed", "");
+    await page.click("#play");
+    const { clock } = await measured(page);
+    await until(page, (clock) => window.viewer.measured.clock > clock + 0.5, clock);
+    assert.notEqual((await pixels(page)).sum, still.sum);
+    const key = preset === "frictional" ? "force_amplitude" : "width";
+    const before = await page.inputValue(`#number-${key}`);
+    await page.fill(`#number-${key}`, String(0.9 * Number(before)));
+    await page.press(`#number-${key}`, "Enter");
+    await until(page, ({ key, before }) => Math.abs(window.viewer.driven[key] / before - 0.9) < 1e-3, { key, before: Number(before) });
+    await page.click("#play");
+    const pace = await page.textContent("#pace");
+    console.log(`${preset} in the browser itself: ${pace}`);
+    await shoot(page, `web-${preset}`);
+
+    // What it saves, the program goes on with.
+    await page.click("#save");
+    await until(page, () => document.getElementById("saved").open);
+    const folder = join(runs, `from-web-${preset}`);
+    for (const link of ["#saved-toml", "#saved-state"]) {
+      const [file] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
+      await file.saveAs(join(folder, file.suggestedFilename()));
+    }
+    const resumed = spawnSync(program, ["run", "--quiet", "--resume", folder]);
+    assert.equal(resumed.status, 0, String(resumed.stderr));
+    await close();
+  }
+  const { page: small, close } = await open(browser, address, phone);
+  assert(!(await isTooWide(small)), "the page that computes by itself is wider than a phone");
+  await small.locator("#play").click();
+  await until(small, () => window.viewer.measured.clock > 0.3);
+  await shoot(small, "web-phone");
+  await close();
+  end();
+}
+
 /** Milliseconds from picture to picture: median and 95th percentile of so many, or of those of a minute. */
 async function intervals(page, most) {
   const times = await page.evaluate(
@@ -325,11 +556,9 @@ const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
+const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, web: checkWeb, many: measureMany };
 try {
-  await checkDriving(browser);
-  await checkPlaying(browser);
-  await checkLooks(browser);
-  await measureMany(browser);
+  for (const [name, check] of Object.entries(checks)) if (only === undefined || only.split(",").includes(name)) await check(browser);
   console.log("the viewer works");
 } finally {
   await browser.close();

@@ -37,19 +37,41 @@ export function ink(): Ink {
   };
 }
 
-/** A linear axis. */
+/** A linear or logarithmic axis. */
 export class Axis {
-  constructor(readonly from: number, readonly to: number, readonly start: number, readonly end: number) {}
+  constructor(
+    readonly from: number, readonly to: number, readonly start: number, readonly end: number,
+    readonly logarithmic = false,
+  ) {}
 
   at(value: number): number {
-    return this.start + ((value - this.from) / (this.to - this.from || 1)) * (this.end - this.start);
+    const part = this.logarithmic
+      ? Math.log(value / this.from) / Math.log(this.to / this.from)
+      : (value - this.from) / (this.to - this.from || 1);
+    return this.start + part * (this.end - this.start);
   }
 
   value(place: number): number {
-    return this.from + ((place - this.start) / (this.end - this.start || 1)) * (this.to - this.from);
+    const part = (place - this.start) / (this.end - this.start || 1);
+    return this.logarithmic ? this.from * (this.to / this.from) ** part : this.from + part * (this.to - this.from);
   }
 
   ticks(most: number): number[] {
+    return this.logarithmic ? this.powers(most) : this.steps(most);
+  }
+
+  /** 1, 2 and 5 times powers of ten, or fewer of them. */
+  private powers(most: number): number[] {
+    const decades = Math.log10(this.to / this.from);
+    const leading = 3 * decades <= most ? [1, 2, 5] : [1];
+    const ticks: number[] = [];
+    for (let power = Math.floor(Math.log10(this.from)); power <= Math.log10(this.to); power++)
+      for (const digit of leading) ticks.push(digit * 10 ** power);
+    const inside = ticks.filter((tick) => tick >= this.from * (1 - 1e-9) && tick <= this.to * (1 + 1e-9));
+    return inside.length > 1 ? inside : this.steps(most);
+  }
+
+  private steps(most: number): number[] {
     const span = this.to - this.from;
     const rough = span / Math.max(1, most);
     const power = 10 ** Math.floor(Math.log10(rough));
@@ -60,13 +82,27 @@ export class Axis {
   }
 }
 
+const RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+
+/** 10 to a whole power. */
+export const powerOfTen = (power: number): string =>
+  `10${power < 0 ? "⁻" : ""}${[...String(Math.abs(power))].map((digit) => RAISED[Number(digit)]).join("")}`;
+
 export const written = (value: number, digits = 3): string => {
   if (!Number.isFinite(value)) return "–";
-  const text = Math.abs(value) >= 1e4 || (value !== 0 && Math.abs(value) < 1e-3)
-    ? value.toExponential(digits - 1)
-    : String(Number(value.toPrecision(digits)));
-  return text.replace("-", "−");
+  if (Math.abs(value) < 1e4 && (value === 0 || Math.abs(value) >= 1e-3)) return String(Number(value.toPrecision(digits))).replace("-", "−");
+  const [factor, power] = value.toExponential(digits - 1).split("e");
+  const plain = String(Number(factor)).replace("-", "−");
+  return `${plain === "1" ? "" : plain === "−1" ? "−" : `${plain}·`}${powerOfTen(Number(power))}`;
 };
+
+/** How a chart is laid out, where it is not a small one beside the tube. */
+export interface Layout {
+  left?: number;
+  logarithmic?: boolean;
+  /** Whether the vertical axis has a scale. */
+  scaled?: boolean;
+}
 
 /** A canvas with two axes. */
 export class Chart {
@@ -82,7 +118,7 @@ export class Chart {
   }
 
   /** Clears, and lays the axes out. */
-  begin(x: [number, number], y: [number, number], labels: [string, string], colours: Ink): void {
+  begin(x: [number, number], y: [number, number], labels: [string, string], colours: Ink, layout: Layout = {}): void {
     const { canvas, context } = this;
     const density = Math.min(3, devicePixelRatio);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
@@ -91,10 +127,11 @@ export class Chart {
     context.setTransform(density, 0, 0, density, 0, 0);
     context.clearRect(0, 0, width, height);
     context.font = "11px system-ui, sans-serif";
-    this.box = { left: 38, top: 20, width: width - 50, height: height - 50 };
-    const { left, top, width: across, height: high } = this.box;
+    const left = layout.left ?? 38;
+    this.box = { left, top: 20, width: width - left - 12, height: height - 50 };
+    const { top, width: across, height: high } = this.box;
     this.x = new Axis(...x, left, left + across);
-    this.y = new Axis(...y, top + high, top);
+    this.y = new Axis(...y, top + high, top, layout.logarithmic);
     context.lineWidth = 1;
     context.fillStyle = colours.faint;
     context.textAlign = "center";
@@ -106,7 +143,7 @@ export class Chart {
     }
     context.textAlign = "right";
     context.textBaseline = "middle";
-    for (const tick of this.y.ticks(high / 34)) {
+    for (const tick of layout.scaled === false ? [] : this.y.ticks(high / 34)) {
       context.strokeStyle = colours.line;
       this.line(left, this.y.at(tick), left + across, this.y.at(tick));
       context.fillText(written(tick), left - 6, this.y.at(tick));

@@ -74,13 +74,12 @@ export function inWave(frame: Frame, tube: Welcome, z: number): number {
   return position - Math.floor(position);
 }
 
-type Colour = [number, number, number];
+export type Colour = [number, number, number];
 /** Blue, white, red: equal steps of lightness on both sides. */
 const BLUE_RED: Colour[] = [[20, 70, 160], [110, 165, 215], [246, 244, 240], [240, 140, 105], [165, 15, 30]];
 /** Light rises from end to end, for every eye. */
 const BLUE_YELLOW: Colour[] = [[0, 34, 88], [64, 82, 108], [123, 123, 120], [187, 169, 108], [253, 234, 95]];
 const SEQUENTIAL: Colour[] = [[48, 18, 90], [38, 92, 150], [36, 150, 140], [130, 200, 90], [250, 230, 60]];
-
 
 /** The scale of colours of a field. */
 export function stops(field: Field, lightness: boolean): Colour[] {

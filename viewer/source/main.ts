@@ -1,18 +1,14 @@
 import { Chart, ink, written } from "./charts";
-import { Connection } from "./connection";
+import { type Connection, Engine, type Listener, Server } from "./connection";
 import { colourAt, css, FIELDS, inWave, stops } from "./fields";
 import type { Film } from "./film";
 import { History } from "./history";
+import { element, fill, listenToLook } from "./page";
 import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
 import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
 import { Recording } from "./recording";
 import { Scene, WALLS, type WallLook } from "./scene";
-
-function element<T extends HTMLElement>(id: string): T {
-  const found = document.getElementById(id);
-  if (!found) throw new Error(`the page has no ${id}`);
-  return found as T;
-}
+import { choice, wanted } from "./tubes";
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
   width: { name: "Width <i>w</i>", digits: 3 },
@@ -60,11 +56,15 @@ class Page {
   private readonly moved = new Map<Steered, number>();
 
   constructor() {
-    this.connection = new Connection({
+    const listener: Listener = {
       told: (message) => this.told(message),
       frame: (frame) => this.receive(frame),
       lost: () => this.status("connection lost: is the program still running?", true),
-    });
+    };
+    // The page that is put on any server computes its tube itself.
+    const alone = document.body.dataset.engine === "page";
+    this.connection = alone ? new Engine(listener, wanted()) : new Server(listener);
+    if (alone) element("tubes").replaceChildren(choice());
     this.listen();
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -73,7 +73,10 @@ class Page {
     if (message.type === "welcome") this.welcome(message);
     else if (message.type === "saved") this.saved(message);
     else if (message.type === "missing") this.missing(message.number, message.message);
-    else this.status(message.message, true);
+    else {
+      this.status(message.message, true);
+      if (!this.tube) element("facts").textContent = message.message;
+    }
   }
 
   private welcome(tube: Welcome): void {
@@ -86,6 +89,7 @@ class Page {
     element("facts").textContent =
       `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${this.extent(tube)}`;
     this.makeSliders(tube);
+    this.showWithin(tube);
     document.body.dataset.ready = "true";
   }
 
@@ -105,6 +109,20 @@ class Page {
     document.body.dataset.recorded = String(recorded !== null);
     element("loop-name").textContent = this.isSteady() ? "The bottleneck" : "The loop, as it was driven";
     if (!recorded) element("loop-name").textContent = "The loop: drive it there and back";
+  }
+
+  /** The way back to the study that the run is of, and to the other runs of its point. */
+  private showWithin({ within }: Welcome): void {
+    element("within").hidden = within === null;
+    if (!within) return;
+    const link = element<HTMLAnchorElement>("to-study");
+    link.textContent = `← ${within.study}`;
+    link.href = `../../../../${sessionStorage.getItem("study") ?? ""}`;
+    const siblings = element<HTMLSelectElement>("siblings");
+    const all = within.siblings.map(({ number, replicate }) => new Option(`${replicate + 1} of ${within.siblings.length}`, String(number)));
+    siblings.replaceChildren(...all);
+    siblings.value = String(within.number);
+    siblings.onchange = () => location.assign(`../${siblings.value}/`);
   }
 
   /** How much of it there is to see. */
@@ -372,11 +390,14 @@ class Page {
 
   private saved(saved: Saved): void {
     element("saved-command").textContent = saved.command;
-    element("saved-folder").textContent = saved.folder;
-    const link = element<HTMLAnchorElement>("saved-toml");
-    URL.revokeObjectURL(link.href);
-    link.href = URL.createObjectURL(new Blob([saved.toml], { type: "application/toml" }));
-    link.download = `${saved.folder.split("/").at(-1) ?? "state"}.toml`;
+    element("saved-folder").textContent = saved.folder
+      ? `${saved.folder} holds the checkpoint and its configuration.`
+      : "Put both files into a folder, under these names.";
+    const name = saved.folder?.split("/").at(-1);
+    offer("saved-toml", new Blob([saved.toml], { type: "application/toml" }), name ? `${name}.toml` : "config.toml");
+    const { state } = saved;
+    element("saved-state").hidden = state === null;
+    if (state !== null) offer("saved-state", new Blob([Uint8Array.from(atob(state), (it) => it.charCodeAt(0))]), "state.checkpoint");
     element<HTMLDialogElement>("saved").showModal();
   }
 
@@ -451,12 +472,7 @@ class Page {
       if (this.film instanceof Recording) this.speed = periods_per_second;
       else this.connection.send({ type: "speed", periods_per_second });
     };
-    const look = element<HTMLSelectElement>("look");
-    look.onchange = () => {
-      document.documentElement.dataset.look = look.value;
-      this.redraw();
-    };
-    matchMedia("(prefers-color-scheme: dark)").onchange = () => this.redraw();
+    listenToLook(() => this.redraw());
     new ResizeObserver(() => {
       this.scene?.resize();
       this.chartsStale = true;
@@ -549,6 +565,11 @@ class Page {
     this.chartsStale = true;
   }
 
+  /** What drives the newest frame. */
+  get driven(): Driven | undefined {
+    return this.newest()?.driven;
+  }
+
   /** What tests look at. */
   get measured() {
     const frame = this.newest() ?? this.shownFrame;
@@ -560,8 +581,28 @@ class Page {
       number: frame?.number ?? null,
       ratio: frame?.sample?.flow_rate_ratio ?? null,
       eye: this.scene?.eye ?? [],
+      step: frame?.step ?? 0,
+      digest: frame ? digest(frame) : 0,
     };
   }
+}
+
+/** A number that another state would hardly have. */
+function digest(frame: Frame): number {
+  let sum = 0;
+  for (const numbers of [frame.position, frame.velocity]) {
+    const bits = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
+    for (const word of bits) sum = (Math.imul(sum, 16777619) ^ word) >>> 0;
+  }
+  return sum;
+}
+
+/** A file to be downloaded by a link. */
+function offer(id: string, file: Blob, name: string): void {
+  const link = element<HTMLAnchorElement>(id);
+  URL.revokeObjectURL(link.href);
+  link.href = URL.createObjectURL(file);
+  link.download = name;
 }
 
 /** What drove a recorded run, in words. */
@@ -576,17 +617,6 @@ function driven(values: Driven): [string, string][] {
     ...of("strain_rate", "strain rate ε̇", ""),
     ...of("friction", "friction μ", ""),
   ];
-}
-
-function fill(list: HTMLElement, facts: [string, string][]): void {
-  list.replaceChildren(
-    ...facts.flatMap(([name, value]) => {
-      const [term, definition] = [document.createElement("dt"), document.createElement("dd")];
-      term.textContent = name;
-      definition.textContent = value;
-      return [term, definition];
-    }),
-  );
 }
 
 declare global {

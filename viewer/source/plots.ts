@@ -12,7 +12,9 @@ export function drawFlow(chart: Chart, film: Film, averages: number[], tube: Wel
   const { rows } = film;
   const record = tube.record;
   const recorded = tube.recorded?.clocks;
-  const end = Math.max(rows.at(-1)?.clock ?? 0, record.at(-1)?.[0] ?? 0, recorded?.at(-1) ?? 0);
+  // Of a record from before, what lies not too far ahead.
+  const ahead = Math.min(record.at(-1)?.[0] ?? 0, Math.max(20, 4 * (rows.at(-1)?.clock ?? 0)));
+  const end = Math.max(rows.at(-1)?.clock ?? 0, ahead, recorded?.at(-1) ?? 0);
   const last = recorded ? end : Math.max(end, 2);
   let [least, most] = [-0.05, 1.05];
   for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];

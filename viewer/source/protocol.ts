@@ -39,13 +39,18 @@ export interface Welcome {
   end: number;
   /** The frames of a recording; null where the run is computed. */
   recorded: { clocks: number[]; lost_frames: number } | null;
+  /** The study that it was opened from. */
+  within: { study: string; number: number; siblings: { number: number; replicate: number }[] } | null;
 }
 
 export interface Saved {
   type: "saved";
-  folder: string;
+  /** Null where the page keeps the state. */
+  folder: string | null;
   command: string;
   toml: string;
+  /** The checkpoint in base64, where the page keeps it. */
+  state: string | null;
   period: number;
 }
 

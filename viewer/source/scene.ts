@@ -11,6 +11,8 @@ export type WallLook = (typeof WALLS)[number];
 const FIELD_OF_VIEW = 24;
 /** Milliseconds from picture to picture above which pixels are saved. */
 const SLOW = 55;
+/** Spheres of the wall in one picture, about: where there would be more, fewer and larger ones stand for them. */
+const WALL_SPHERES = 9000;
 /** Milliseconds after which a picture counts as still. */
 const STILL = 700;
 
@@ -140,15 +142,9 @@ export class Scene {
   show(frame: Frame, field: Field): void {
     this.frame = frame;
     const number = frame.grains;
-    this.grains.reserve(number);
     if (this.values.length !== number) this.values = new Float32Array(number);
     field.values(frame, this.tube, this.values);
-    this.grains.centre.array.set(frame.position);
-    for (let i = 0; i < number; i++) {
-      this.grains.radius.array[i] = 0.5 * frame.diameter[i];
-      this.grains.value.array[i] = field.diverging ? 0.5 + 0.5 * this.values[i] : this.values[i];
-    }
-    this.grains.written(number);
+    if (field.diverging) for (let i = 0; i < number; i++) this.values[i] = 0.5 + 0.5 * this.values[i];
     const scale = stops(field, this.lightness);
     const texels = this.scaleTexture.image.data as Uint8Array;
     for (let i = 0; i < 256; i++) texels.set([...colourAt(scale, i / 255), 255], 4 * i);
@@ -168,7 +164,7 @@ export class Scene {
     this.shared.middle.value = this.middle;
     (this.shared.eye.value as three.Vector3).copy(this.camera.position).normalize();
     this.grainUniforms.marks.value = this.marks ? 1 : 0;
-    this.grainUniforms.picked.value = this.picked;
+    this.placeGrains(this.frame);
     this.meshes.wallBack.visible = this.wall === "cut open";
     this.meshes.wallFront.visible = this.wall === "cut open" || this.wall === "glass";
     this.meshes.wallAll.visible = this.wall === "closed";
@@ -236,6 +232,37 @@ export class Scene {
     return away * Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect * 1.1 + this.tube.radius;
   }
 
+  /** The grains that are in the picture: of a long tube few. */
+  private placeGrains(frame: Frame): void {
+    const { grains, tube, middle } = this;
+    const { heading, length } = tube;
+    this.camera.updateMatrixWorld();
+    const projection = new three.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+    const { planes } = new three.Frustum().setFromProjectionMatrix(projection);
+    // The near and the far end of the picture leave nothing out that its sides would not.
+    const sides = planes.slice(0, 4).map(({ normal, constant }) => [normal.x, normal.y, normal.z, constant]);
+    grains.reserve(frame.grains);
+    const [centre, radius, value] = [grains.centre.array, grains.radius.array, grains.value.array];
+    this.grainUniforms.picked.value = -1;
+    let number = 0;
+    for (let i = 0; i < frame.grains; i++) {
+      const [x, y, z] = [frame.position[3 * i], frame.position[3 * i + 1], frame.position[3 * i + 2]];
+      let along = heading * (z - middle);
+      along -= length * Math.floor(along / length + 0.5);
+      // With room for the ring round a grain that was picked.
+      const room = -0.7 * frame.diameter[i];
+      if (sides.some((side) => side[0] * along + side[1] * x + side[2] * heading * y + side[3] < room)) continue;
+      centre[3 * number] = x;
+      centre[3 * number + 1] = y;
+      centre[3 * number + 2] = z;
+      radius[number] = 0.5 * frame.diameter[i];
+      value[number] = this.values[i];
+      if (i === this.picked) this.grainUniforms.picked.value = number;
+      number += 1;
+    }
+    grains.written(number);
+  }
+
   /** The wall's spheres that can be in the picture. */
   private placeWall(frame: Frame): void {
     const { tube, wallSpheres } = this;
@@ -245,30 +272,36 @@ export class Scene {
     // Looking along the tube one sees to its end.
     const oblique = 1 / Math.max(0.05, 1 - 1.5 * (Math.abs(side.x) / side.length()));
     const half = Math.min(oblique * this.halfShown(), 0.5 * tube.length);
+    const seen = (Math.min(2 * half, tube.length) / spacing) * tube.spheres_per_ring;
+    const each = Math.max(1, Math.ceil(seen / WALL_SPHERES));
+    const size = 0.5 * tube.wall_sphere_diameter * Math.sqrt(each);
     let number = 0;
     const put = (x: number, y: number, z: number) => {
       const { array } = wallSpheres.centre;
       array[3 * number] = x;
       array[3 * number + 1] = y;
       array[3 * number + 2] = z;
-      wallSpheres.radius.array[number] = 0.5 * tube.wall_sphere_diameter;
+      wallSpheres.radius.array[number] = size;
       number += 1;
     };
     wallSpheres.reserve(tube.spheres_per_ring * rings);
     if (frame.wall_spheres > 0) {
       wallSpheres.reserve(frame.wall_spheres);
-      for (let i = 0; i < frame.wall_spheres; i++) {
+      for (let i = 0; i < frame.wall_spheres; i += each) {
         const z = frame.wall[3 * i + 2];
         const away = z - this.middle - tube.length * Math.round((z - this.middle) / tube.length);
         if (Math.abs(away) <= half) put(frame.wall[3 * i], frame.wall[3 * i + 1], z);
       }
     } else {
-      const first = Math.ceil((this.middle - half) / spacing);
+      // Some of each ring and some of the rings, the same ones wherever one looks from.
+      const round = Math.min(3, each);
+      const on = Math.ceil(each / round);
+      const first = on * Math.ceil((this.middle - half) / spacing / on);
       const last = Math.min(first + rings - 1, Math.floor((this.middle + half) / spacing));
-      for (let unfolded = first; unfolded <= last; unfolded++) {
+      for (let unfolded = first; unfolded <= last; unfolded += on) {
         const ring = ((unfolded % rings) + rings) % rings;
         const radius = frame.ringRadius[ring % tube.rings_per_wave];
-        for (let place = 0; place < tube.spheres_per_ring; place++) {
+        for (let place = 0; place < tube.spheres_per_ring; place += round) {
           const angle = ((2 * place + (ring % 2)) * Math.PI) / tube.spheres_per_ring;
           put(radius * Math.cos(angle), radius * Math.sin(angle), ring * spacing);
         }

@@ -180,7 +180,7 @@ pub(crate) struct TrajectoryArguments {
 )]
 pub(crate) struct ViewArguments {
     /// Folder of a run (its trajectory.gsd is played, if it holds one), trajectory (.gsd), configuration in TOML, or name
-    /// of a preset.
+    /// of a preset; store of a study, folder of a reproduction, or table of rows of runs (.parquet, .csv).
     #[arg(value_name = "DIR|FILE|PRESET", default_value = "frictionless")]
     pub(crate) source: PathBuf,
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.

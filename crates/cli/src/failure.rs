@@ -99,9 +99,12 @@ impl Failure {
             | Self::Read { .. }
             | Self::Usage { .. }
             | Self::DoesNotFit { .. }
-            | Self::Viewer(ViewerError::Trajectory(_) | ViewerError::ForeignTrajectory { .. }) => {
-                BAD_INPUT
-            }
+            | Self::Viewer(
+                ViewerError::Trajectory(_)
+                | ViewerError::ForeignTrajectory { .. }
+                | ViewerError::NotRows { .. }
+                | ViewerError::Claims { .. },
+            ) => BAD_INPUT,
             Self::Run(error) => match error {
                 RunError::HoldsAnotherRun { .. }
                 | RunError::Folder { .. }

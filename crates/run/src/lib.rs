@@ -22,6 +22,7 @@ mod softness;
 mod spheres;
 mod steering;
 mod stopping;
+mod stopwatch;
 mod summary;
 mod tables;
 mod trajectory;

@@ -1,7 +1,7 @@
 //! A run in progress.
 
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::initial::PackingReport;
@@ -13,6 +13,7 @@ use peristalsis_observe::Orientations;
 use crate::assemble::{assemble, parameters, walls};
 use crate::recorder::Recorder;
 use crate::stopping::Stopping;
+use crate::stopwatch::Stopwatch;
 use crate::{PHYSICS_VERSION, RunError};
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
@@ -134,6 +135,15 @@ impl Run {
         Self::resume(configuration, state)
     }
 
+    /// The bytes of a checkpoint, from which [`Run::from_checkpoint`] goes on.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the state is too large.
+    pub fn to_checkpoint(&self) -> Result<Vec<u8>, RunError> {
+        let identity = checkpoint_identity(&self.configuration, PHYSICS_VERSION);
+        Ok(checkpoint::encode(&identity, &self.state_view())?)
+    }
+
     /// Writes the state to a checkpoint file, whole or not at all.
     ///
     /// # Errors
@@ -242,7 +252,7 @@ impl Run {
     /// # Errors
     /// As [`Run::advance`].
     pub fn advance_at_most(&mut self, most: u64) -> Result<(), RunError> {
-        let start = Instant::now();
+        let start = Stopwatch::begin();
         // A run that was stopped between two samples, where a trajectory has a frame, goes on to the next.
         let each = self.configuration.run.steps_per_sample;
         let to_sample = each - self.simulation.step() % each;

@@ -1,32 +1,23 @@
 //! The files of the page, built into the program.
 
-/// A file of the page.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Asset {
-    pub(crate) content_type: &'static str,
-    pub(crate) bytes: &'static [u8],
-}
+use axum::http::{StatusCode, header};
+use axum::response::{IntoResponse, Response};
 
-/// The file of this name; the empty name is the page.
-pub(crate) fn asset(name: &str) -> Option<Asset> {
-    let (content_type, bytes): (_, &[u8]) = match name {
-        "" => (
-            "text/html; charset=utf-8",
-            include_bytes!("../assets/index.html"),
-        ),
-        "viewer.js" => (
-            "text/javascript; charset=utf-8",
-            include_bytes!("../assets/viewer.js"),
-        ),
-        "viewer.css" => (
-            "text/css; charset=utf-8",
-            include_bytes!("../assets/viewer.css"),
-        ),
+const HTML: &str = "text/html; charset=utf-8";
+const SCRIPT: &str = "text/javascript; charset=utf-8";
+const STYLE: &str = "text/css; charset=utf-8";
+
+/// The file of this name, as an answer.
+pub(crate) fn asset(name: &str) -> Response {
+    let (content_type, bytes): (_, &'static [u8]) = match name {
+        "tube.html" => (HTML, include_bytes!("../assets/tube.html")),
+        "study.html" => (HTML, include_bytes!("../assets/study.html")),
+        "viewer.js" => (SCRIPT, include_bytes!("../assets/viewer.js")),
+        "study.js" => (SCRIPT, include_bytes!("../assets/study.js")),
+        "viewer.css" => (STYLE, include_bytes!("../assets/viewer.css")),
+        "study.css" => (STYLE, include_bytes!("../assets/study.css")),
         "icon.svg" => ("image/svg+xml", include_bytes!("../assets/icon.svg")),
-        _ => return None,
+        _ => return StatusCode::NOT_FOUND.into_response(),
     };
-    Some(Asset {
-        content_type,
-        bytes,
-    })
+    ([(header::CONTENT_TYPE, content_type)], bytes).into_response()
 }

@@ -13,6 +13,7 @@
 //! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
 
 use peristalsis_engine::{Bodies, Wall};
+#[cfg(feature = "server")]
 use peristalsis_formats::Frame;
 use peristalsis_observe::Sample;
 use peristalsis_run::Run;
@@ -130,6 +131,7 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
     )
 }
 
+#[cfg(feature = "server")]
 /// A recorded frame; a prescribed wall has so many spheres a ring.
 pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) -> Vec<u8> {
     let grains = frame.grains;

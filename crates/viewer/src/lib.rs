@@ -3,25 +3,56 @@
 //! [`Viewer::open`] takes a run, [`Viewer::play`] a [`Recording`], and both listen on loopback; [`Viewer::serve`] answers
 //! until it is asked to stop. One thread owns the run and advances it, and each client gets frames over a WebSocket as
 //! fast as it takes them; or it owns the recording, and each client gets the frames that it asks for by their number.
-//! Clients send commands ([`message`]). The page itself is part of the program, and no file is read for a client but the
-//! one recording.
+//! [`Viewer::exhibit`] takes studies and figures; what a client can name of them is a number, and a run that it opens gets
+//! a thread as above.
+//! Clients send commands ([`message`]). The pages are part of the program, and no file is read for a client but recordings,
+//! rows and figures of what was opened.
+//!
+//! Without the feature `server` there is only [`Tube`], the run that is watched and driven, with neither threads nor files
+//! nor a clock of its own: what the page computes itself where it runs the engine as WebAssembly.
 
 #![forbid(unsafe_code)]
 
+#[cfg(feature = "server")]
 mod assets;
 mod course;
+#[cfg(feature = "server")]
+mod figure;
 mod frame;
+#[cfg(feature = "server")]
+mod gallery;
+#[cfg(feature = "server")]
 mod guard;
+#[cfg(feature = "server")]
+mod keeper;
 pub mod message;
+#[cfg(feature = "server")]
 mod player;
+#[cfg(feature = "server")]
 mod recording;
+#[cfg(feature = "server")]
 mod server;
+#[cfg(feature = "server")]
+mod session;
+#[cfg(feature = "server")]
+mod socket;
+#[cfg(feature = "server")]
+mod study;
 mod tube;
 mod welcome;
+mod within;
 
+#[cfg(feature = "server")]
+pub use figure::Figure;
+#[cfg(feature = "server")]
 pub use recording::Recording;
+#[cfg(feature = "server")]
 pub use server::{Options, Viewer};
+#[cfg(feature = "server")]
+pub use study::Study;
+pub use tube::Tube;
 
+#[cfg(feature = "server")]
 /// Why the viewer cannot serve.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -46,6 +77,25 @@ pub enum ViewerError {
         /// The file.
         path: std::path::PathBuf,
         /// What does not fit.
+        reason: String,
+    },
+    /// A store or a study file cannot be read.
+    #[error(transparent)]
+    Study(#[from] peristalsis_study::StudyError),
+    /// A table is not one of rows of runs.
+    #[error("{name} is no table of finished runs: {reason}")]
+    NotRows {
+        /// The table.
+        name: String,
+        /// What is wrong.
+        reason: String,
+    },
+    /// What a reproduction found cannot be read.
+    #[error("cannot read {}: {reason}", path.display())]
+    Claims {
+        /// The file.
+        path: std::path::PathBuf,
+        /// Why.
         reason: String,
     },
     /// The system gives no thread.

@@ -59,16 +59,19 @@ pub enum Steered {
 pub(crate) enum Notice {
     /// The state was saved.
     Saved {
-        /// The folder.
-        folder: String,
+        /// The folder; none where the page keeps the state.
+        folder: Option<String>,
         /// What goes on from there.
         command: String,
         /// The configuration.
         toml: String,
+        /// The checkpoint in base64, where the page is to keep it.
+        state: Option<String>,
         /// Time in periods.
         period: f64,
     },
     /// A frame of a recording that cannot be had.
+    #[cfg(feature = "server")]
     Missing {
         /// Which, counted from 0.
         number: usize,
@@ -88,9 +91,19 @@ impl Notice {
     }
 }
 
+/// What clients are told of something that cannot be done, in JSON.
+#[must_use]
+pub fn problem(message: &str) -> String {
+    let message = message.to_owned();
+    Notice::Problem { message }.to_json()
+}
+
 impl Command {
-    /// Reads a command; in words what is wrong with it otherwise.
-    pub(crate) fn read(text: &str) -> Result<Self, String> {
+    /// Reads a command.
+    ///
+    /// # Errors
+    /// In words what is wrong with it.
+    pub fn read(text: &str) -> Result<Self, String> {
         let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let number = match command {
             Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),

@@ -2,15 +2,17 @@
 
 use std::sync::mpsc::Receiver;
 
-use crate::message::Notice;
+use crate::message::problem;
 use crate::recording::Recording;
-use crate::tube::{Request, Voices};
+use crate::session::{Request, Voices};
+use crate::within::Within;
 
 /// A recording in the hands of its viewers, each of whom plays it at their own pace.
 #[derive(Debug)]
 pub(crate) struct Player {
     pub(crate) recording: Recording,
     pub(crate) title: String,
+    pub(crate) within: Option<Within>,
     pub(crate) voices: Voices,
 }
 
@@ -20,17 +22,18 @@ impl Player {
         while let Ok(request) = requests.recv() {
             match request {
                 Request::Welcome(reply) => {
-                    let welcome = self.recording.welcome(&self.title);
+                    let mut welcome = self.recording.welcome(&self.title);
+                    welcome.within = self.within.clone();
                     drop(reply.send(welcome.to_json()));
                 }
                 Request::Frame(number, reply) => {
                     let frame = self.recording.frame(number);
                     drop(reply.send(frame.map_err(|error| error.to_string())));
                 }
-                Request::Command(_) => self.voices.say(&Notice::Problem {
-                    message: "this is a recording, which cannot be driven; `peristalsis view --live` computes the run"
-                        .to_owned(),
-                }),
+                Request::Command(_) => {
+                    let message = "this is a recording, which cannot be driven; `peristalsis view --live` computes the run";
+                    self.voices.say(problem(message));
+                }
             }
         }
     }

@@ -1,19 +1,18 @@
-//! The server: the page, and a WebSocket for frames and commands.
+//! The server: pages, what they ask for, and a WebSocket for frames and commands.
 
 use std::net::Ipv4Addr;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 use axum::Router;
-use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade, close_code};
+use axum::extract::ws::WebSocketUpgrade;
+use axum::extract::ws::rejection::WebSocketUpgradeRejection;
 use axum::extract::{Path, Request, State};
 use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
 use axum::middleware::{self, Next};
 use axum::response::{IntoResponse, Response};
 use axum::routing::get;
-use futures_util::{SinkExt, StreamExt};
 use hyper::server::conn::http1;
 use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::service::TowerToHyperService;
@@ -21,15 +20,20 @@ use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
-use tokio::sync::{Semaphore, broadcast, oneshot, watch};
+use tokio::sync::Semaphore;
 
 use crate::ViewerError;
 use crate::assets::asset;
+use crate::figure::Figure;
+use crate::gallery::{Closed, Gallery};
 use crate::guard::{Token, is_loopback, is_own};
-use crate::message::{Command, Notice};
+use crate::keeper::Keeper;
 use crate::player::Player;
 use crate::recording::Recording;
-use crate::tube::{self, Labels, Tube, Voices};
+use crate::session::Session;
+use crate::socket::attend;
+use crate::study::Study;
+use crate::tube::{Labels, Saves};
 
 /// Connections at a time that have not become a client's; more wait.
 const CONNECTIONS: usize = 64;
@@ -41,20 +45,14 @@ const HEAD_BYTES: usize = 16 * 1024;
 const CLIENTS: usize = 8;
 /// Bytes of a message from a client, at most.
 const MESSAGE_BYTES: usize = 4096;
-/// Requests that wait for the run, at most.
-const WAITING: usize = 64;
-/// Time after which a request that found no place is tried again.
-const FULL: Duration = Duration::from_millis(2);
-/// Notices that a slow client may lag behind.
-const NOTICES: usize = 64;
 /// Time from one look at whether to stop to the next.
 const LOOK: Duration = Duration::from_millis(50);
-/// Time that a client may take for a frame before it is left alone.
-const SLOW: Duration = Duration::from_secs(30);
 
 /// What the page may load: itself, and nothing else.
 const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
      connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+
+const JSON: &str = "application/json";
 
 /// How to serve a run.
 #[derive(Clone, Debug)]
@@ -83,9 +81,17 @@ pub struct Viewer {
 #[derive(Clone)]
 struct Shared {
     token: Arc<Token>,
-    requests: SyncSender<tube::Request>,
-    voices: Voices,
+    exhibit: Exhibit,
     clients: Arc<Semaphore>,
+}
+
+/// What there is to see.
+#[derive(Clone)]
+enum Exhibit {
+    /// One run, or the recording of one.
+    Tube(Session),
+    /// Studies with their runs.
+    Gallery(Arc<Gallery>),
 }
 
 impl Viewer {
@@ -94,14 +100,20 @@ impl Viewer {
     /// # Errors
     /// [`ViewerError`] where the system gives no port, thread or random number.
     pub fn open(run: Run, options: Options) -> Result<Self, ViewerError> {
+        let samples = options.record.iter();
         let labels = Labels {
+            saves: Saves::Folders {
+                inside: options.saves,
+                stem: options.title.clone(),
+            },
             title: options.title,
-            saves: options.saves,
-            record: options.record,
+            record: samples.map(|it| (it.time, it.flow_rate_ratio)).collect(),
+            within: None,
         };
-        Self::listen(options.port, |voices, requests| {
-            Tube::new(run, labels, voices).work(&requests);
-        })
+        let session = Session::start(|voices, requests| {
+            Keeper::new(run, labels, voices).work(&requests);
+        })?;
+        Self::listen(options.port, Exhibit::Tube(session))
     }
 
     /// Listens on loopback and gives the frames of a recording to whoever asks. Port 0 takes a free one.
@@ -109,21 +121,33 @@ impl Viewer {
     /// # Errors
     /// As [`Viewer::open`].
     pub fn play(recording: Recording, title: String, port: u16) -> Result<Self, ViewerError> {
-        Self::listen(port, |voices, requests| {
+        let session = Session::start(|voices, requests| {
             let player = Player {
                 recording,
                 title,
+                within: None,
                 voices,
             };
             player.work(&requests);
-        })
+        })?;
+        Self::listen(port, Exhibit::Tube(session))
     }
 
-    /// Listens, with `work` in a thread of its own.
-    fn listen(
+    /// Listens on loopback and shows studies, whose runs can be opened, and figures. States of runs are saved in `saves`.
+    ///
+    /// # Errors
+    /// As [`Viewer::open`].
+    pub fn exhibit(
+        studies: Vec<Study>,
+        figures: Vec<Figure>,
+        saves: PathBuf,
         port: u16,
-        work: impl FnOnce(Voices, Receiver<tube::Request>) + Send + 'static,
     ) -> Result<Self, ViewerError> {
+        let gallery = Gallery::new(studies, figures, saves);
+        Self::listen(port, Exhibit::Gallery(Arc::new(gallery)))
+    }
+
+    fn listen(port: u16, exhibit: Exhibit) -> Result<Self, ViewerError> {
         let refused = |source| ViewerError::Listen { port, source };
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .worker_threads(1)
@@ -135,20 +159,9 @@ impl Viewer {
             .map_err(refused)?;
         let port = listener.local_addr().map_err(refused)?.port();
         let token = Token::random()?;
-        let (requests, received) = sync_channel(WAITING);
-        let voices = Voices {
-            frames: watch::Sender::new(Arc::new(Vec::new())),
-            notices: broadcast::Sender::new(NOTICES),
-        };
-        let own = voices.clone();
-        std::thread::Builder::new()
-            .name("tube".to_owned())
-            .spawn(move || work(own, received))
-            .map_err(ViewerError::Thread)?;
         let shared = Shared {
             token: Arc::new(token.clone()),
-            requests,
-            voices,
+            exhibit,
             clients: Arc::new(Semaphore::new(CLIENTS)),
         };
         Ok(Self {
@@ -213,13 +226,91 @@ async fn accept_all(listener: TcpListener, router: Router) {
     }
 }
 
+/// What is not there and what is not for everyone look the same.
 fn router(shared: Shared) -> Router {
-    Router::new()
-        .route("/{token}/", get(page))
-        .route("/{token}/live", get(live))
-        .route("/{token}/{name}", get(file))
+    let pages = match &shared.exhibit {
+        Exhibit::Tube(_) => Router::new()
+            .route("/{token}/", get(async || asset("tube.html")))
+            .route("/{token}/live", get(live))
+            .route("/{token}/{name}", get(file)),
+        Exhibit::Gallery(gallery) => rooms(Arc::clone(gallery)),
+    };
+    pages
+        .layer(middleware::from_fn_with_state(shared.clone(), admit))
         .layer(middleware::from_fn(guard))
         .with_state(shared)
+}
+
+/// The pages of studies and of their runs.
+fn rooms(gallery: Arc<Gallery>) -> Router<Shared> {
+    let (list, study, figure, run) = (
+        Arc::clone(&gallery),
+        Arc::clone(&gallery),
+        Arc::clone(&gallery),
+        gallery,
+    );
+    type Numbers = (String, usize, usize);
+    Router::new()
+        .route("/{token}/", get(async || asset("study.html")))
+        .route(
+            "/{token}/list",
+            get(async move || ([(header::CONTENT_TYPE, JSON)], list.list().to_string())),
+        )
+        .route(
+            "/{token}/study/{study}",
+            get(
+                async move |Path((_, number)): Path<(String, usize)>, headers: HeaderMap| {
+                    study_as(&study, number, &headers)
+                },
+            ),
+        )
+        .route(
+            "/{token}/figure/{figure}",
+            get(async move |Path((_, number)): Path<(String, usize)>| {
+                let picture = figure.picture(number).ok_or(StatusCode::NOT_FOUND)?;
+                Ok::<_, StatusCode>(([(header::CONTENT_TYPE, "image/svg+xml")], picture))
+            }),
+        )
+        .route(
+            "/{token}/study/{study}/run/{run}/",
+            get(async move |Path((_, study, number)): Path<Numbers>| {
+                if run.holds((study, number)) {
+                    asset("tube.html")
+                } else {
+                    StatusCode::NOT_FOUND.into_response()
+                }
+            }),
+        )
+        .route("/{token}/study/{study}/run/{run}/live", get(live_in_study))
+        .route(
+            "/{token}/study/{study}/run/{run}/{name}",
+            get(async |Path((_, _, _, name)): Path<(String, usize, usize, String)>| asset(&name)),
+        )
+        .route("/{token}/{name}", get(file))
+}
+
+/// A study, unless the client has it as it is.
+fn study_as(gallery: &Gallery, number: usize, headers: &HeaderMap) -> Response {
+    let known = headers
+        .get(header::IF_NONE_MATCH)
+        .and_then(|tag| tag.to_str().ok()?.trim_matches('"').parse().ok());
+    // To read a store and to write a table takes some ten milliseconds, in which the other thread goes on.
+    match tokio::task::block_in_place(|| gallery.study(number, known)) {
+        None => StatusCode::NOT_FOUND.into_response(),
+        Some(Ok(None)) => StatusCode::NOT_MODIFIED.into_response(),
+        Some(Ok(Some(study))) => ([(header::CONTENT_TYPE, JSON)], study).into_response(),
+        Some(Err(error)) => (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response(),
+    }
+}
+
+/// Lets in who knows the token, the first part of every path.
+async fn admit(State(shared): State<Shared>, request: Request, next: Next) -> Response {
+    let token = request.uri().path().split('/').nth(1).unwrap_or_default();
+    if shared.token.is(token) {
+        next.run(request).await
+    } else {
+        StatusCode::NOT_FOUND.into_response()
+    }
 }
 
 /// Whether a request names this machine, and comes from its page or from none; it may say either only once.
@@ -257,158 +348,61 @@ async fn guard(request: Request, next: Next) -> Response {
     response
 }
 
-async fn page(State(shared): State<Shared>, Path(token): Path<String>) -> Response {
-    serve_asset(&shared, &token, "")
-}
-
-async fn file(
-    State(shared): State<Shared>,
-    Path((token, name)): Path<(String, String)>,
-) -> Response {
-    serve_asset(&shared, &token, &name)
-}
-
-/// What is not there and what is not for everyone look the same.
-fn serve_asset(shared: &Shared, token: &str, name: &str) -> Response {
-    match asset(name) {
-        Some(asset) if shared.token.is(token) => {
-            ([(header::CONTENT_TYPE, asset.content_type)], asset.bytes).into_response()
-        }
-        _ => StatusCode::NOT_FOUND.into_response(),
-    }
+async fn file(Path((_, name)): Path<(String, String)>) -> Response {
+    asset(&name)
 }
 
 async fn live(
     State(shared): State<Shared>,
-    Path(token): Path<String>,
-    upgrade: Result<WebSocketUpgrade, axum::extract::ws::rejection::WebSocketUpgradeRejection>,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
 ) -> Response {
-    if !shared.token.is(&token) {
-        return StatusCode::NOT_FOUND.into_response();
+    match &shared.exhibit {
+        Exhibit::Tube(session) => talk(&shared, session.clone(), upgrade),
+        Exhibit::Gallery(_) => StatusCode::NOT_FOUND.into_response(),
     }
+}
+
+async fn live_in_study(
+    State(shared): State<Shared>,
+    Path((_, study, run)): Path<(String, usize, usize)>,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Response {
+    let Exhibit::Gallery(gallery) = &shared.exhibit else {
+        return StatusCode::NOT_FOUND.into_response();
+    };
+    match gallery.enter((study, run)) {
+        Ok(session) => talk(&shared, session, upgrade),
+        Err(Closed::Unknown) => StatusCode::NOT_FOUND.into_response(),
+        Err(Closed::Full) => busy(),
+        Err(Closed::Failed(error)) => {
+            (StatusCode::INTERNAL_SERVER_ERROR, error.to_string()).into_response()
+        }
+    }
+}
+
+/// Becomes a WebSocket, where there is a place for one more client.
+fn talk(
+    shared: &Shared,
+    session: Session,
+    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+) -> Response {
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
         Err(rejection) => return rejection.into_response(),
     };
     let Ok(place) = Arc::clone(&shared.clients).try_acquire_owned() else {
-        let wait = [(header::RETRY_AFTER, "5")];
-        return (StatusCode::SERVICE_UNAVAILABLE, wait).into_response();
+        return busy();
     };
     upgrade
         .max_message_size(MESSAGE_BYTES)
         .max_frame_size(MESSAGE_BYTES)
         .on_upgrade(async move |socket| {
-            attend(socket, shared).await;
+            attend(socket, session).await;
             drop(place);
         })
 }
 
-/// Serves one client until either side has had enough.
-async fn attend(socket: WebSocket, shared: Shared) {
-    let (mut to, mut from) = socket.split();
-    let mut frames = shared.voices.frames.subscribe();
-    let mut notices = shared.voices.notices.subscribe();
-    let Some(welcome) = welcome(&shared).await else {
-        return;
-    };
-    if to.send(Message::Text(welcome.into())).await.is_err() {
-        return;
-    }
-    frames.mark_changed();
-    loop {
-        let message = tokio::select! {
-            received = from.next() => match received {
-                Some(Ok(Message::Text(text))) => match ask(&shared, &text).await {
-                    Ok(None) => continue,
-                    Ok(Some(answer)) => answer,
-                    Err(reason) => {
-                        let message = reason.clone();
-                        let notice = Notice::Problem { message }.to_json();
-                        drop(to.send(Message::Text(notice.into())).await);
-                        farewell(close_code::POLICY, &reason)
-                    }
-                },
-                Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
-                Some(Ok(Message::Binary(_))) => farewell(close_code::UNSUPPORTED, "commands are text"),
-                // Gone, or no WebSocket any more.
-                Some(Ok(Message::Close(_)) | Err(_)) | None => return,
-            },
-            changed = frames.changed() => {
-                if changed.is_err() {
-                    return;
-                }
-                let frame = Arc::clone(&frames.borrow_and_update());
-                // Nothing was computed yet, or nothing is: a recording.
-                if frame.is_empty() {
-                    continue;
-                }
-                Message::Binary(frame.to_vec().into())
-            }
-            notice = notices.recv() => match notice {
-                Ok(text) => Message::Text(text.into()),
-                Err(broadcast::error::RecvError::Lagged(_)) => continue,
-                Err(broadcast::error::RecvError::Closed) => return,
-            },
-        };
-        let last = matches!(message, Message::Close(_));
-        let sent = tokio::time::timeout(SLOW, to.send(message)).await;
-        if last || !matches!(sent, Ok(Ok(()))) {
-            return;
-        }
-    }
-}
-
-async fn welcome(shared: &Shared) -> Option<String> {
-    let (reply, answer) = oneshot::channel();
-    request(shared, tube::Request::Welcome(reply)).await?;
-    answer.await.ok()
-}
-
-/// Passes a message on to the run, with the answer that is for this client alone; else the reason to close the
-/// connection.
-async fn ask(shared: &Shared, text: &str) -> Result<Option<Message>, String> {
-    let ended = || "the run has ended".to_owned();
-    match Command::read(text).map_err(|reason| format!("not a command: {reason}"))? {
-        Command::Frame { number } => {
-            let (reply, answer) = oneshot::channel();
-            let asked = request(shared, tube::Request::Frame(number, reply)).await;
-            asked.ok_or_else(ended)?;
-            Ok(Some(match answer.await.map_err(|_| ended())? {
-                Ok(frame) => Message::Binary(frame.into()),
-                Err(message) => {
-                    let notice = Notice::Missing { number, message };
-                    Message::Text(notice.to_json().into())
-                }
-            }))
-        }
-        command => {
-            let asked = request(shared, tube::Request::Command(command)).await;
-            asked.ok_or_else(ended)?;
-            Ok(None)
-        }
-    }
-}
-
-/// Waits for a place among the requests: who sends too many waits for the run, and nobody's are lost.
-async fn request(shared: &Shared, mut request: tube::Request) -> Option<()> {
-    loop {
-        request = match shared.requests.try_send(request) {
-            Ok(()) => return Some(()),
-            Err(TrySendError::Full(request)) => request,
-            Err(TrySendError::Disconnected(_)) => return None,
-        };
-        tokio::time::sleep(FULL).await;
-    }
-}
-
-fn farewell(code: u16, reason: &str) -> Message {
-    // A close frame holds 123 bytes of reason at most.
-    let mut end = reason.len().min(120);
-    while !reason.is_char_boundary(end) {
-        end -= 1;
-    }
-    Message::Close(Some(CloseFrame {
-        code,
-        reason: reason[..end].to_owned().into(),
-    }))
+fn busy() -> Response {
+    let wait = [(header::RETRY_AFTER, "5")];
+    (StatusCode::SERVICE_UNAVAILABLE, wait).into_response()
 }

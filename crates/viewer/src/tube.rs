@@ -1,24 +1,22 @@
-//! The thread that owns the run: advances it, changes it, and says what it looks like.
+//! A run that is watched and driven: advances, changes, and says what it looks like.
 
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::mpsc::{Receiver, RecvTimeoutError};
-use std::time::{Duration, Instant};
 
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::ScheduledParameter;
-use peristalsis_observe::Sample;
 use peristalsis_run::{Run, RunError, RunFolder};
-use tokio::sync::{broadcast, oneshot, watch};
 
 use crate::course::{Course, thin};
 use crate::frame::{Head, Row, of_run};
-use crate::message::{Command, Notice, Steered};
+use crate::message::{self, Command, Notice, Steered};
 use crate::welcome::{Driven, Welcome};
+use crate::within::Within;
 
-/// Time from frame to frame.
-const FRAME: Duration = Duration::from_millis(33);
-/// Time after which the thread looks for commands, at the latest.
-const PATIENCE: Duration = Duration::from_millis(4);
+/// Seconds from frame to frame.
+pub(crate) const FRAME: f64 = 0.033;
+/// Seconds after which a frame looks whether its time is over, at the latest.
+const PATIENCE: f64 = 0.004;
 /// Periods within which a parameter goes to where its slider was put: no wall jumps.
 const RAMP: f64 = 0.25;
 /// Periods a second beyond which nobody asks for a speed.
@@ -30,45 +28,38 @@ const MARKS: usize = 24;
 /// Saved states that are looked through for a free name.
 const SAVES: u32 = 9999;
 
-/// What the thread is asked.
-#[derive(Debug)]
-pub(crate) enum Request {
-    /// To do something.
-    Command(Command),
-    /// What a new client must know first.
-    Welcome(oneshot::Sender<String>),
-    /// A frame of a recording; else why it cannot be had.
-    Frame(usize, oneshot::Sender<Result<Vec<u8>, String>>),
-}
-
-/// What clients listen to.
-#[derive(Clone, Debug)]
-pub(crate) struct Voices {
-    pub(crate) frames: watch::Sender<Arc<Vec<u8>>>,
-    pub(crate) notices: broadcast::Sender<String>,
-}
-
-impl Voices {
-    /// Tells everyone; with nobody there, nobody is told.
-    pub(crate) fn say(&self, notice: &Notice) {
-        drop(self.notices.send(notice.to_json()));
-    }
-}
-
 /// What a tube is called, where it is saved, and what is known of it from before.
 #[derive(Clone, Debug)]
 pub(crate) struct Labels {
     pub(crate) title: String,
-    pub(crate) saves: PathBuf,
-    pub(crate) record: Vec<Sample>,
+    pub(crate) saves: Saves,
+    /// Time and J/Jmax of the same run from before.
+    pub(crate) record: Vec<(f64, f64)>,
+    pub(crate) within: Option<Within>,
+}
+
+/// What becomes of states that are saved.
+#[derive(Clone, Debug)]
+pub(crate) enum Saves {
+    /// Each gets a folder in this one, its name beginning so.
+    #[cfg_attr(
+        not(feature = "server"),
+        expect(dead_code, reason = "a page has no folders")
+    )]
+    Folders { inside: PathBuf, stem: String },
+    /// They are given to the page.
+    Page,
 }
 
 /// A run in the hands of its viewers.
 #[derive(Debug)]
-pub(crate) struct Tube {
+pub struct Tube {
     run: Run,
     labels: Labels,
-    voices: Voices,
+    /// Seconds since any instant.
+    clock: fn() -> f64,
+    /// What is to be told to everyone.
+    notices: Vec<String>,
     playing: bool,
     ended: bool,
     /// Periods a second, at most.
@@ -89,13 +80,26 @@ pub(crate) struct Tube {
 }
 
 impl Tube {
-    pub(crate) fn new(run: Run, labels: Labels, voices: Voices) -> Self {
+    /// A run at rest whose saved states are given to the page; `clock` answers seconds since any instant.
+    #[must_use]
+    pub fn for_page(run: Run, title: String, clock: fn() -> f64) -> Self {
+        let labels = Labels {
+            title,
+            saves: Saves::Page,
+            record: Vec::new(),
+            within: None,
+        };
+        Self::new(run, labels, clock)
+    }
+
+    pub(crate) fn new(run: Run, labels: Labels, clock: fn() -> f64) -> Self {
         use Steered::{ForceAmplitude, Friction, StrainRate, Width};
         Self {
             marks: vec![run.clone()],
             run,
             labels,
-            voices,
+            clock,
+            notices: Vec::new(),
             playing: false,
             ended: false,
             speed: Some(1.0),
@@ -108,65 +112,42 @@ impl Tube {
         }
     }
 
-    /// Works until nobody is left who could ask for anything.
-    pub(crate) fn work(mut self, requests: &Receiver<Request>) {
-        self.publish();
-        let mut next = Instant::now();
-        loop {
-            let busy = self.is_busy();
-            let patience = if busy {
-                next.saturating_duration_since(Instant::now())
-            } else {
-                FRAME
-            };
-            match requests.recv_timeout(patience) {
-                Ok(request) => {
-                    self.answer(request);
-                    continue;
-                }
-                Err(RecvTimeoutError::Disconnected) => return,
-                Err(RecvTimeoutError::Timeout) => {}
-            }
-            if busy {
-                next = Instant::now() + FRAME;
-                self.advance_by_a_frame();
-                self.publish();
-            }
+    /// Whether there is anything to compute.
+    #[must_use]
+    pub fn is_going(&self) -> bool {
+        !self.ended && (self.playing || self.seeking.is_some())
+    }
+
+    /// What a page must know first, in JSON.
+    #[must_use]
+    pub fn welcome(&self) -> String {
+        let course = self.course();
+        let (configuration, simulation) = (self.run.configuration(), self.run.simulation());
+        let grains = simulation.bodies().grains;
+        let title = &self.labels.title;
+        let mut welcome = Welcome::of(configuration, simulation.wall(), grains, title);
+        let record = self.labels.record.iter();
+        welcome.driven = Driven::of(&self.run);
+        welcome.record = thin(record.map(|&(time, ratio)| (course.clock(time), ratio)));
+        welcome.within = self.labels.within.clone();
+        welcome.rows = thin(self.rows(0));
+        welcome.to_json()
+    }
+
+    /// Does what a page asks; what cannot be done is told.
+    pub fn take(&mut self, command: Command) {
+        if let Err(error) = self.obey(command) {
+            self.tell(&error.to_string());
         }
     }
 
-    fn is_busy(&self) -> bool {
-        let watched = self.voices.frames.receiver_count() > 0;
-        !self.ended && watched && (self.playing || self.seeking.is_some())
+    /// What is to be told to every page since this was asked last, in JSON.
+    pub fn notices(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.notices)
     }
 
-    fn answer(&mut self, request: Request) {
-        match request {
-            Request::Welcome(reply) => {
-                let course = self.course();
-                let record = self.labels.record.iter();
-                let (configuration, simulation) = (self.run.configuration(), self.run.simulation());
-                let grains = simulation.bodies().grains;
-                let title = &self.labels.title;
-                let mut welcome = Welcome::of(configuration, simulation.wall(), grains, title);
-                welcome.driven = Driven::of(&self.run);
-                welcome.record = thin(record.map(|it| (course.clock(it.time), it.flow_rate_ratio)));
-                welcome.rows = thin(self.rows(0));
-                // A client that has left meanwhile needs no answer.
-                drop(reply.send(welcome.to_json()));
-            }
-            Request::Frame(_, reply) => {
-                let reason = "this run is computed as it is watched; it has no recorded frames";
-                drop(reply.send(Err(reason.to_owned())));
-            }
-            Request::Command(command) => {
-                if let Err(error) = self.obey(command) {
-                    let message = error.to_string();
-                    self.voices.say(&Notice::Problem { message });
-                }
-                self.publish();
-            }
-        }
+    fn tell(&mut self, problem: &str) {
+        self.notices.push(message::problem(problem));
     }
 
     fn obey(&mut self, command: Command) -> Result<(), RunError> {
@@ -229,28 +210,27 @@ impl Tube {
         outcome
     }
 
-    fn advance_by_a_frame(&mut self) {
-        let begin = Instant::now();
+    /// Advances for the time from one frame to the next, or to where a frame at the speed that was asked for lies.
+    pub fn advance_by_a_frame(&mut self) {
+        let begin = (self.clock)();
         let most = self.steps_of_a_frame();
         let mut done = 0;
-        while done < most && begin.elapsed() < FRAME && !self.ended {
+        while done < most && (self.clock)() - begin < FRAME && !self.ended {
             if let Err(error) = self.steer() {
-                let message = error.to_string();
-                self.voices.say(&Notice::Problem { message });
+                self.tell(&error.to_string());
             }
             // NaN, before a step was timed, becomes one step.
-            let patient = (PATIENCE.as_secs_f64() / self.step_seconds).max(1.0) as u64;
+            let patient = (PATIENCE / self.step_seconds).max(1.0) as u64;
             let before = self.run.simulation().step();
-            let chunk = Instant::now();
+            let chunk = (self.clock)();
             if let Err(error) = self.run.advance_at_most(patient.min(most - done)) {
                 self.ended = true;
                 self.playing = false;
-                let message = error.to_string();
-                self.voices.say(&Notice::Problem { message });
+                self.tell(&error.to_string());
             }
             let steps = self.run.simulation().step() - before;
             done += steps;
-            let seconds = chunk.elapsed().as_secs_f64() / steps.max(1) as f64;
+            let seconds = ((self.clock)() - chunk) / steps.max(1) as f64;
             self.step_seconds = if self.step_seconds.is_nan() {
                 seconds
             } else {
@@ -274,7 +254,7 @@ impl Tube {
             return u64::MAX;
         };
         let steps_per_period = self.unit_period() / self.run.configuration().run.time_step;
-        self.due += speed * steps_per_period * FRAME.as_secs_f64();
+        self.due += speed * steps_per_period * FRAME;
         let whole = self.due.floor();
         self.due -= whole;
         whole as u64
@@ -334,28 +314,37 @@ impl Tube {
         }
     }
 
-    fn save(&self) -> Result<(), RunError> {
+    fn save(&mut self) -> Result<(), RunError> {
         let mut configuration = self.run.configuration().clone();
         // So that there is something to go on with.
         let taken = self.run.recorder().samples().len() as u64;
         let more = 10 * u64::from(configuration.observe.samples_per_period);
         configuration.run.samples = configuration.run.samples.max(taken + more);
-        let Labels { saves, title, .. } = &self.labels;
-        let mut folders = (1..=SAVES).map(|number| saves.join(format!("{title}-{number}")));
-        let Some(path) = folders.find(|path| path.symlink_metadata().is_err()) else {
-            return Err(RunError::Folder {
-                folder: saves.clone(),
-                source: std::io::ErrorKind::AlreadyExists.into(),
-            });
+        let toml = configuration.to_toml();
+        let (folder, state) = match &self.labels.saves {
+            Saves::Page => (None, Some(STANDARD.encode(self.run.to_checkpoint()?))),
+            Saves::Folders { inside, stem } => {
+                let mut names = (1..=SAVES).map(|number| inside.join(format!("{stem}-{number}")));
+                let Some(path) = names.find(|path| path.symlink_metadata().is_err()) else {
+                    return Err(RunError::Folder {
+                        folder: inside.clone(),
+                        source: std::io::ErrorKind::AlreadyExists.into(),
+                    });
+                };
+                let folder = RunFolder::create(&path, &configuration)?;
+                folder.save_state(&self.run)?;
+                (Some(path.display().to_string()), None)
+            }
         };
-        let folder = RunFolder::create(&path, &configuration)?;
-        folder.save_state(&self.run)?;
-        self.voices.say(&Notice::Saved {
-            folder: path.display().to_string(),
-            command: format!("peristalsis run --resume {}", path.display()),
-            toml: configuration.to_toml(),
-            period: self.clock(),
-        });
+        let place = folder.as_deref().unwrap_or("FOLDER");
+        let saved = Notice::Saved {
+            command: format!("peristalsis run --resume {place}"),
+            folder,
+            toml,
+            state,
+            period: self.clock_now(),
+        };
+        self.notices.push(saved.to_json());
         Ok(())
     }
 
@@ -367,7 +356,8 @@ impl Tube {
         self.course().unit_period()
     }
 
-    fn clock(&self) -> f64 {
+    /// Time in periods.
+    fn clock_now(&self) -> f64 {
         self.course().clock(self.run.simulation().time())
     }
 
@@ -378,7 +368,9 @@ impl Tube {
         samples.map(move |(number, sample)| course.row_of(number, sample))
     }
 
-    fn publish(&self) {
+    /// What it looks like, as bytes ([`frame`](crate::frame)).
+    #[must_use]
+    pub fn frame(&self) -> Vec<u8> {
         let simulation = self.run.simulation();
         let (bodies, wall) = (simulation.bodies(), simulation.wall());
         let samples = self.run.recorder().samples();
@@ -392,7 +384,7 @@ impl Tube {
             pace: self.run.configuration().run.time_step / (self.step_seconds * self.unit_period()),
             step: simulation.step(),
             time: simulation.time(),
-            clock: self.clock(),
+            clock: self.clock_now(),
             period: wall.cycles(),
             wave_speed: wall.frequency(simulation.time()) * wall.lattice().wavelength,
             grains: bodies.grains,
@@ -407,7 +399,6 @@ impl Tube {
             rows: self.rows(samples.len().saturating_sub(ROWS)).collect(),
             sample: samples.last().map(Into::into),
         };
-        let frame = of_run(&head, &self.run);
-        self.voices.frames.send_replace(Arc::new(frame));
+        of_run(&head, &self.run)
     }
 }

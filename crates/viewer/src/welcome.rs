@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::course::Course;
 use crate::frame::Row;
+use crate::within::Within;
 
 /// The tube and the ranges of its sliders.
 #[derive(Clone, Debug, Serialize)]
@@ -39,6 +40,8 @@ pub(crate) struct Welcome {
     end: f64,
     /// The frames of a recording; null where the run is computed.
     pub(crate) recorded: Option<Recorded>,
+    /// The study that it was opened from; null where it was opened by itself.
+    pub(crate) within: Option<Within>,
 }
 
 /// What frames there are.
@@ -149,6 +152,7 @@ impl Welcome {
             rows: Vec::new(),
             end: course.clock(end),
             recorded: None,
+            within: None,
         }
     }
 

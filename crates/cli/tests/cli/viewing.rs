@@ -73,6 +73,36 @@ fn presets_files_and_folders_are_served() {
 }
 
 #[test]
+fn stores_tables_and_reproductions_are_served() {
+    let place = Place::new();
+    let study = "name = \"small\"\npreset = \"frictionless\"\n[base]\ntube.waves = 2\nrun.periods = 1\n\
+        [[axes]]\nkey = \"drive.width\"\nvalues = [2.5, 2.8]\n";
+    place.write("small.toml", study);
+    let run = ["study", "run", "small.toml", "--store", "all/stores/small"];
+    place.call(run).expect_code(0);
+    let export = ["study", "export", "all/stores/small", "--out", "tables"];
+    place.call(export).expect_code(0);
+    for source in [
+        "all/stores/small",
+        "all",
+        "tables/small.parquet",
+        "tables/small.csv",
+        "tables",
+    ] {
+        let page = page_of(&place, &[source]);
+        assert!(page.starts_with("HTTP/1.1 200"), "{source}: {page}");
+        assert!(page.contains("study.js"), "{source}: {page}");
+    }
+    for option in ["--live", "--from-state", "--set=drive.width=2.7"] {
+        let refused = place.call(["view", "all/stores/small", option]);
+        refused.expect_code(2).says(&["is a study", "for a run"]);
+    }
+    place.write("times.csv", "time,ratio\n0.5,1\n");
+    let other = place.call(["view", "times.csv"]);
+    other.expect_code(2).says(&["times", "identity"]);
+}
+
+#[test]
 fn what_cannot_be_viewed_is_refused() {
     let place = Place::new();
     std::fs::create_dir(place.path("empty")).unwrap();

@@ -44,6 +44,40 @@ impl Store {
         rows_table(&survey, &finished)
     }
 
+    /// What is known of the study, and its finished runs as the index has them, a row each in the order of the axes.
+    ///
+    /// For looking on while a study is computed: no hash is checked, and no file of a run is touched. What is to be
+    /// counted on comes from [`Store::rows`].
+    ///
+    /// # Errors
+    /// Errors of reading study file or index.
+    pub fn look(&self) -> Result<(Survey, Table), StudyError> {
+        let survey = self.survey()?;
+        let mut finished = Vec::new();
+        for run in survey.plan.sorted_runs() {
+            let entry = survey.entries.get(&run.identity);
+            if let Some(entry) = entry.filter(|it| it.state == State::Done) {
+                finished.push(self.finished_by_index(run, entry)?);
+            }
+        }
+        let rows = rows_table(&survey, &finished)?;
+        Ok((survey, rows))
+    }
+
+    /// A finished run with the row that the index has of it.
+    fn finished_by_index(&self, run: PlannedRun, entry: &Entry) -> Result<Finished, StudyError> {
+        let text = entry.row.as_deref().unwrap_or_default();
+        let row = Row::from_csv(text).map_err(|reason| StudyError::NotRows {
+            path: self.path().to_owned(),
+            reason,
+        })?;
+        Ok(Finished {
+            run,
+            row,
+            imported: entry.reason.is_some(),
+        })
+    }
+
     /// Writes the tables of the study into a folder: `NAME.parquet` and `NAME.csv`, a row a finished run in the order of
     /// the axes; `NAME-timing.csv`, what each took; `NAME-failed.csv`, the runs that failed; and with `series`
     /// `NAME-series.parquet`, J/Jmax in time of every run.
@@ -109,16 +143,7 @@ impl Store {
                 continue;
             }
             if entry.reason.is_some() {
-                let text = entry.row.as_deref().unwrap_or_default();
-                let row = Row::from_csv(text).map_err(|reason| StudyError::NotRows {
-                    path: self.path().to_owned(),
-                    reason,
-                })?;
-                finished.push(Finished {
-                    run,
-                    row,
-                    imported: true,
-                });
+                finished.push(self.finished_by_index(run, entry)?);
                 continue;
             }
             match self.run_files(run.identity).verdict(None) {

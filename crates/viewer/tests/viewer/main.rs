@@ -6,3 +6,5 @@ mod driving;
 #[allow(clippy::unwrap_used, reason = "a test")]
 mod playing;
 mod refusing;
+#[allow(clippy::unwrap_used, reason = "a test")]
+mod studying;

@@ -1,5 +1,7 @@
 //! `peristalsis view`
 
+mod studies;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -13,6 +15,7 @@ use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::sources;
 use crate::stop::Stop;
+use studies::Studies;
 
 /// Configuration in the folder of a run.
 const CONFIGURATION: &str = "config.toml";
@@ -20,9 +23,13 @@ const CONFIGURATION: &str = "config.toml";
 /// Serves the viewer until a signal.
 pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let viewer = match trajectory(arguments)? {
-        Some(path) => play(&path, arguments.port)?,
-        None => {
+    let viewer = match (studies(arguments)?, trajectory(arguments)?) {
+        (Some(found), _) => {
+            let saves = arguments.saves.clone();
+            Viewer::exhibit(found.studies, found.figures, saves, arguments.port)?
+        }
+        (None, Some(path)) => play(&path, arguments.port)?,
+        (None, None) => {
             let (mut run, options) = open(arguments)?;
             run.compute_with(Instructions::widest(), usize::from(arguments.threads))?;
             Viewer::open(run, options)?
@@ -33,6 +40,19 @@ pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     stop.keep_results();
     viewer.serve(|| stop.requested().is_some());
     Ok(ExitCode::SUCCESS)
+}
+
+/// The studies that are to be shown.
+fn studies(arguments: &ViewArguments) -> Result<Option<Studies>, Failure> {
+    let found = Studies::at(&arguments.source)?;
+    let asks = arguments.live || arguments.from_state || !arguments.overrides.is_empty();
+    if found.is_some() && asks {
+        return Err(Failure::Usage {
+            message: format!("{} is a study", arguments.source.display()),
+            help: Some("--set, --live and --from-state are for a run; a study's runs are opened in the page".to_owned()),
+        });
+    }
+    Ok(found)
 }
 
 /// The trajectory that is to be played: the source itself or, unless the run is to be computed, the one in its folder.

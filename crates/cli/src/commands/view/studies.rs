@@ -1,0 +1,130 @@
+//! Studies and figures to be viewed, from what a path leads to.
+
+use std::path::{Path, PathBuf};
+
+use peristalsis_claims::{Size, StudyFile};
+use peristalsis_formats::{FormatError, Table, csv, parquet};
+use peristalsis_study::{Specification, StudyError};
+use peristalsis_viewer::{Figure, Study, ViewerError};
+
+use super::CONFIGURATION;
+use crate::commands::say;
+use crate::failure::Failure;
+
+/// The file by which a store is known.
+const STUDY: &str = "study.toml";
+/// Folder of the stores of a reproduction.
+const STORES: &str = "stores";
+/// Endings of tables.
+const TABLES: [&str; 2] = ["parquet", "csv"];
+
+/// What a path leads to.
+#[derive(Debug)]
+pub(super) struct Studies {
+    pub(super) studies: Vec<Study>,
+    pub(super) figures: Vec<Figure>,
+}
+
+impl Studies {
+    /// The studies at a path: the store of one, what `peristalsis reproduce` wrote, a table of rows of runs, or a folder of
+    /// such tables; `None` where there is something else.
+    pub(super) fn at(source: &Path) -> Result<Option<Self>, Failure> {
+        let mut found = Self {
+            studies: Vec::new(),
+            figures: Vec::new(),
+        };
+        if is_table(source) && source.is_file() {
+            found.studies.push(of_table(source)?);
+            return Ok(Some(found));
+        }
+        if !source.is_dir() || source.join(CONFIGURATION).is_file() {
+            return Ok(None);
+        }
+        if source.join(STUDY).is_file() {
+            found
+                .studies
+                .push(Study::of_store(source).map_err(failure)?);
+            return Ok(Some(found));
+        }
+        found.figures = Figure::of_report(source)?;
+        for store in inside(&source.join(STORES), |path| path.join(STUDY).is_file()) {
+            found.add(&store, Study::of_store(&store).map_err(failure));
+        }
+        if found.is_empty() {
+            for table in inside(source, |path| is_table(path) && path.is_file()) {
+                found.add(&table, of_table(&table));
+            }
+        }
+        Ok((!found.is_empty()).then_some(found))
+    }
+
+    /// What is wrong with one study is told, and the others are shown.
+    fn add(&mut self, path: &Path, study: Result<Study, Failure>) {
+        match study {
+            Ok(study) => self.studies.push(study),
+            Err(error) => say(&format!("left out: {}: {error}", path.display())),
+        }
+    }
+
+    fn is_empty(&self) -> bool {
+        self.studies.is_empty() && self.figures.is_empty()
+    }
+}
+
+/// What is wrong with a study is said as by every command about it.
+fn failure(error: ViewerError) -> Failure {
+    match error {
+        ViewerError::Study(error) => Failure::Study(error),
+        other => Failure::Viewer(other),
+    }
+}
+
+/// What is as wanted in a folder, by name; nothing where there is no folder.
+fn inside(folder: &Path, wanted: impl Fn(&Path) -> bool) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.path()).collect();
+    paths.retain(|path| wanted(path));
+    paths.sort();
+    paths
+}
+
+fn is_table(path: &Path) -> bool {
+    let ending = path.extension().and_then(|ending| ending.to_str());
+    ending.is_some_and(|ending| TABLES.contains(&ending))
+}
+
+/// The runs of a table can be watched where it is of a study behind the claims, whose design this program knows.
+fn of_table(path: &Path) -> Result<Study, Failure> {
+    let table = read(path).map_err(StudyError::from)?;
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = table.metadata().get("peristalsis.study");
+    let designs = match StudyFile::named(name.map_or(&stem, |name| name.as_str())) {
+        Some(file) => vec![design(file, Size::Full)?, design(file, Size::Quick)?],
+        None => Vec::new(),
+    };
+    let mut best = Study::of_table(&stem, table.clone(), None).map_err(failure)?;
+    for design in &designs {
+        let study = Study::of_table(&stem, table.clone(), Some(design)).map_err(failure)?;
+        if study.watchable() > best.watchable() {
+            best = study;
+        }
+    }
+    Ok(best)
+}
+
+fn read(path: &Path) -> Result<Table, FormatError> {
+    if path.extension().is_some_and(|ending| ending == "csv") {
+        csv::read(path)
+    } else {
+        parquet::read(path)
+    }
+}
+
+fn design(file: &StudyFile, size: Size) -> Result<Specification, StudyError> {
+    Specification::from_toml(file.path, file.text(size), |named| {
+        Err(StudyError::Read {
+            path: named.into(),
+            source: std::io::ErrorKind::NotFound.into(),
+        })
+    })
+}

@@ -1,0 +1,110 @@
+//! The WebSocket beside a page: frames and notices to a client, its commands to the run.
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
+use futures_util::{SinkExt, StreamExt};
+use tokio::sync::{broadcast, oneshot};
+
+use crate::message::{Command, Notice, problem};
+use crate::session::{Request, Session};
+
+/// Time that a client may take for a frame before it is left alone.
+const SLOW: Duration = Duration::from_secs(30);
+
+/// Serves one client until either side has had enough.
+pub(crate) async fn attend(socket: WebSocket, session: Session) {
+    let (mut to, mut from) = socket.split();
+    let mut frames = session.voices.frames.subscribe();
+    let mut notices = session.voices.notices.subscribe();
+    let Some(welcome) = welcome(&session).await else {
+        return;
+    };
+    if to.send(Message::Text(welcome.into())).await.is_err() {
+        return;
+    }
+    frames.mark_changed();
+    loop {
+        let message = tokio::select! {
+            received = from.next() => match received {
+                Some(Ok(Message::Text(text))) => match ask(&session, &text).await {
+                    Ok(None) => continue,
+                    Ok(Some(answer)) => answer,
+                    Err(reason) => {
+                        drop(to.send(Message::Text(problem(&reason).into())).await);
+                        farewell(close_code::POLICY, &reason)
+                    }
+                },
+                Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
+                Some(Ok(Message::Binary(_))) => farewell(close_code::UNSUPPORTED, "commands are text"),
+                // Gone, or no WebSocket any more.
+                Some(Ok(Message::Close(_)) | Err(_)) | None => return,
+            },
+            changed = frames.changed() => {
+                if changed.is_err() {
+                    return;
+                }
+                let frame = Arc::clone(&frames.borrow_and_update());
+                // Nothing was computed yet, or nothing is: a recording.
+                if frame.is_empty() {
+                    continue;
+                }
+                Message::Binary(frame.to_vec().into())
+            }
+            notice = notices.recv() => match notice {
+                Ok(text) => Message::Text(text.into()),
+                Err(broadcast::error::RecvError::Lagged(_)) => continue,
+                Err(broadcast::error::RecvError::Closed) => return,
+            },
+        };
+        let last = matches!(message, Message::Close(_));
+        let sent = tokio::time::timeout(SLOW, to.send(message)).await;
+        if last || !matches!(sent, Ok(Ok(()))) {
+            return;
+        }
+    }
+}
+
+async fn welcome(session: &Session) -> Option<String> {
+    let (reply, answer) = oneshot::channel();
+    session.request(Request::Welcome(reply)).await?;
+    answer.await.ok()
+}
+
+/// Passes a message on to the run, with the answer that is for this client alone; else the reason to close the
+/// connection.
+async fn ask(session: &Session, text: &str) -> Result<Option<Message>, String> {
+    let ended = || "the run has ended".to_owned();
+    match Command::read(text).map_err(|reason| format!("not a command: {reason}"))? {
+        Command::Frame { number } => {
+            let (reply, answer) = oneshot::channel();
+            let asked = session.request(Request::Frame(number, reply)).await;
+            asked.ok_or_else(ended)?;
+            Ok(Some(match answer.await.map_err(|_| ended())? {
+                Ok(frame) => Message::Binary(frame.into()),
+                Err(message) => {
+                    let notice = Notice::Missing { number, message };
+                    Message::Text(notice.to_json().into())
+                }
+            }))
+        }
+        command => {
+            let asked = session.request(Request::Command(command)).await;
+            asked.ok_or_else(ended)?;
+            Ok(None)
+        }
+    }
+}
+
+fn farewell(code: u16, reason: &str) -> Message {
+    // A close frame holds 123 bytes of reason at most.
+    let mut end = reason.len().min(120);
+    while !reason.is_char_boundary(end) {
+        end -= 1;
+    }
+    Message::Close(Some(CloseFrame {
+        code,
+        reason: reason[..end].to_owned().into(),
+    }))
+}

@@ -1,0 +1,363 @@
+//! A study to be looked at: its rows, and what each of its runs is computed from.
+
+use std::collections::{BTreeMap, HashMap};
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use peristalsis_configuration::{Configuration, InitialState};
+use peristalsis_formats::{Table, Values, parquet};
+use peristalsis_run::TrajectoryFormat;
+use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, Store, refine};
+use serde::Serialize;
+
+use crate::ViewerError;
+use crate::within::{Sibling, Within};
+
+/// J/Jmax in time, in the folder of a run of a store.
+const SERIES: &str = "timeseries.parquet";
+/// Time from one look into a store to the next, at least.
+const EACH: Duration = Duration::from_secs(2);
+/// States in which a run may still come to a row.
+const UNFINISHED: [&str; 3] = ["pending", "leased", "checkpointed"];
+
+/// A study: the rows of its finished runs and, where its design is known, the configuration behind each.
+#[derive(Debug)]
+pub struct Study {
+    name: String,
+    title: String,
+    /// The folder that its runs are in; none where there is only a table.
+    store: Option<Store>,
+    plan: Option<Plan>,
+    table: Table,
+    /// Runs of the plan in each state.
+    counts: BTreeMap<&'static str, usize>,
+    /// Every run that was ever seen; its place is what a page calls it.
+    runs: Vec<Identity>,
+    numbers: HashMap<Identity, usize>,
+    /// Grows when there is something new to see.
+    version: u64,
+    looked: Instant,
+}
+
+/// A run of a study that is to be watched.
+#[derive(Clone, Debug)]
+pub(crate) struct StudyRun {
+    pub(crate) configuration: Configuration,
+    pub(crate) title: String,
+    /// What the names of saved states begin with.
+    pub(crate) stem: String,
+    /// Time and J/Jmax from when it was computed for the study.
+    pub(crate) record: Vec<(f64, f64)>,
+    /// Its recording, if there is one.
+    pub(crate) trajectory: Option<PathBuf>,
+    pub(crate) within: Within,
+}
+
+/// What a page is told of a study.
+#[derive(Debug, Serialize)]
+pub(crate) struct Shown<'a> {
+    version: u64,
+    name: &'a str,
+    title: &'a str,
+    columns: Vec<ShownColumn<'a>>,
+    /// What the run of each row is called; null where it cannot be watched.
+    runs: Vec<Option<usize>>,
+    counts: &'a BTreeMap<&'static str, usize>,
+    /// Whether there may be more rows later.
+    growing: bool,
+}
+
+#[derive(Debug, Serialize)]
+struct ShownColumn<'a> {
+    name: &'a str,
+    unit: &'a str,
+    description: &'a str,
+    values: ShownValues<'a>,
+}
+
+#[derive(Debug, Serialize)]
+#[serde(untagged)]
+enum ShownValues<'a> {
+    /// NaN, a missing number, is null.
+    Reals(&'a [f64]),
+    Integers(&'a [i64]),
+    Texts(&'a [String]),
+    Booleans(&'a [bool]),
+}
+
+impl<'a> From<&'a Values> for ShownValues<'a> {
+    fn from(values: &'a Values) -> Self {
+        match values {
+            Values::Real(values) => Self::Reals(values),
+            Values::Integer(values) => Self::Integers(values),
+            Values::Text(values) => Self::Texts(values),
+            Values::Boolean(values) => Self::Booleans(values),
+        }
+    }
+}
+
+impl Study {
+    /// The study in a store, as far as it has been computed.
+    ///
+    /// # Errors
+    /// [`ViewerError::Study`].
+    pub fn of_store(path: &Path) -> Result<Self, ViewerError> {
+        let store = Store::open(path)?;
+        let (survey, table) = store.look()?;
+        let mut study = Self::new(survey.study.name.clone(), survey.study.title.clone(), table);
+        study.counts = survey.counts();
+        study.store = Some(store);
+        study.follow(survey.plan);
+        Ok(study)
+    }
+
+    /// A table of rows of finished runs. With the study that they are of, which says how each was computed, they can be
+    /// watched.
+    ///
+    /// # Errors
+    /// [`ViewerError::NotRows`] where the table has no identities of runs; [`ViewerError::Study`] where the study file is
+    /// wrong.
+    pub fn of_table(
+        name: &str,
+        table: Table,
+        design: Option<&Specification>,
+    ) -> Result<Self, ViewerError> {
+        identities(&table).map_err(|reason| ViewerError::NotRows {
+            name: name.to_owned(),
+            reason,
+        })?;
+        let said = |key: &str| table.metadata().get(key).cloned();
+        let name = said("peristalsis.study").unwrap_or_else(|| name.to_owned());
+        let title = said("peristalsis.title").unwrap_or_default();
+        let plan = match design {
+            Some(design) => Some(plan_of(design, &table)?),
+            None => None,
+        };
+        let mut study = Self::new(name, title, table);
+        study.counts = BTreeMap::from([("done", study.table.rows())]);
+        if let Some(plan) = plan {
+            study.follow(plan);
+        }
+        Ok(study)
+    }
+
+    fn new(name: String, title: String, table: Table) -> Self {
+        Self {
+            name,
+            title,
+            store: None,
+            plan: None,
+            table,
+            counts: BTreeMap::new(),
+            runs: Vec::new(),
+            numbers: HashMap::new(),
+            version: 1,
+            looked: Instant::now(),
+        }
+    }
+
+    /// What it is called.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Finished runs in it.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.table.rows()
+    }
+
+    /// Rows whose run can be watched.
+    #[must_use]
+    pub fn watchable(&self) -> usize {
+        self.numbers_of_rows().iter().flatten().count()
+    }
+
+    pub(crate) fn title(&self) -> &str {
+        &self.title
+    }
+
+    pub(crate) fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Takes the plan, and gives each run that is new in it the next number.
+    fn follow(&mut self, plan: Plan) {
+        for run in plan.runs() {
+            self.numbers.entry(run.identity).or_insert_with(|| {
+                self.runs.push(run.identity);
+                self.runs.len() - 1
+            });
+        }
+        self.plan = Some(plan);
+    }
+
+    /// Looks whether there is more to see, now and then.
+    ///
+    /// # Errors
+    /// [`ViewerError::Study`] where the store cannot be read any more.
+    pub(crate) fn refresh(&mut self) -> Result<(), ViewerError> {
+        let Some(store) = &self.store else {
+            return Ok(());
+        };
+        if self.looked.elapsed() < EACH {
+            return Ok(());
+        }
+        let (survey, table) = store.look()?;
+        let counts = survey.counts();
+        if table != self.table || counts != self.counts {
+            self.version += 1;
+            self.table = table;
+            self.counts = counts;
+            self.follow(survey.plan);
+        }
+        self.looked = Instant::now();
+        Ok(())
+    }
+
+    pub(crate) fn shown(&self) -> Shown<'_> {
+        let columns = self.table.columns().iter();
+        let is_known = |values: &Values| match values {
+            Values::Real(values) => values.iter().any(|value| value.is_finite()),
+            _ => true,
+        };
+        Shown {
+            version: self.version,
+            name: &self.name,
+            title: &self.title,
+            columns: columns
+                .filter(|column| is_known(&column.values))
+                .map(|column| ShownColumn {
+                    name: &column.name,
+                    unit: &column.unit,
+                    description: &column.description,
+                    values: (&column.values).into(),
+                })
+                .collect(),
+            runs: self.numbers_of_rows(),
+            counts: &self.counts,
+            growing: self.store.is_some()
+                && UNFINISHED
+                    .iter()
+                    .any(|state| self.counts.contains_key(state)),
+        }
+    }
+
+    fn numbers_of_rows(&self) -> Vec<Option<usize>> {
+        let identities = identities(&self.table).unwrap_or_default();
+        identities
+            .iter()
+            .map(|identity| self.numbers.get(identity).copied())
+            .collect()
+    }
+
+    /// The run of this number; `None` where there is none.
+    pub(crate) fn run(&self, number: usize) -> Option<StudyRun> {
+        let plan = self.plan.as_ref()?;
+        let identity = self.runs.get(number)?;
+        let run = plan.runs().iter().find(|run| run.identity == *identity)?;
+        let siblings = plan.runs().iter().filter(|it| it.point == run.point);
+        let folder = self
+            .store
+            .as_ref()
+            .map(|store| store.run_folder(run.identity));
+        let trajectory = folder
+            .as_ref()
+            .map(|folder| folder.join(TrajectoryFormat::Gsd.file_name()));
+        let identity = identity.to_string();
+        Some(StudyRun {
+            configuration: plan.configuration(run),
+            title: title_of(plan, run),
+            stem: format!("{}-{}", file_name(&self.name), &identity[..8]),
+            record: folder
+                .and_then(|folder| series(&folder.join(SERIES)))
+                .unwrap_or_default(),
+            trajectory: trajectory.filter(|path| path.is_file()),
+            within: Within {
+                study: self.name.clone(),
+                number,
+                siblings: siblings
+                    .filter_map(|it| {
+                        Some(Sibling {
+                            number: *self.numbers.get(&it.identity)?,
+                            replicate: it.replicate,
+                        })
+                    })
+                    .collect(),
+            },
+        })
+    }
+}
+
+/// The plan of a study of which these runs are finished.
+fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
+    let identities = identities(table).unwrap_or_default();
+    let times = table.reals("transition_time").unwrap_or_default();
+    let findings: HashMap<Identity, Finding> = identities
+        .into_iter()
+        .zip(times)
+        .map(|(identity, time)| {
+            let finding = if time.is_nan() {
+                Finding::NoTransition
+            } else {
+                Finding::Transition
+            };
+            (identity, finding)
+        })
+        .collect();
+    let mut plan = Plan::of(design).map_err(peristalsis_study::StudyError::from)?;
+    refine(design, &mut plan, &|identity| {
+        findings.get(identity).copied()
+    })
+    .map_err(peristalsis_study::StudyError::from)?;
+    Ok(plan)
+}
+
+/// Whose rows they are.
+fn identities(table: &Table) -> Result<Vec<Identity>, String> {
+    let texts = table
+        .texts("identity")
+        .map_err(|error| error.to_string())?
+        .iter();
+    texts
+        .map(|text| text.parse().map_err(|error| format!("{text}: {error}")))
+        .collect()
+}
+
+/// Time and J/Jmax of a run; `None` where they are not kept or cannot be read.
+fn series(path: &Path) -> Option<Vec<(f64, f64)>> {
+    let table = parquet::read(path).ok()?;
+    let times = table.reals("time").ok()?.iter().copied();
+    let ratios = table.reals("flow_rate_ratio").ok()?.iter().copied();
+    Some(times.zip(ratios).collect())
+}
+
+/// Such as "width 2.7, strain rate 0.05, from rest".
+fn title_of(plan: &Plan, run: &PlannedRun) -> String {
+    let point = plan.point(run);
+    let mut words: Vec<String> = point
+        .settings
+        .iter()
+        .map(|setting| {
+            let key = setting.key.rsplit('.').next().unwrap_or(&setting.key);
+            format!("{} {}", key.replace('_', " "), setting.value)
+        })
+        .collect();
+    words.push(
+        match point.state {
+            InitialState::Rest => "from rest",
+            InitialState::Jammed => "from jammed",
+        }
+        .to_owned(),
+    );
+    words.join(", ")
+}
+
+/// A name without what no file should have in its own.
+fn file_name(name: &str) -> String {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
+    name.chars()
+        .map(|letter| if is_plain(letter) { letter } else { '-' })
+        .collect()
+}

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# The page that computes the tube in the visitor's own browser, as files for any static server: target/web. Needs npm, and
+# rustup or a toolchain that has the target wasm32-unknown-unknown.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+target=wasm32-unknown-unknown
+if ! [ -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
+    rustup target add "$target"
+fi
+# Every browser has had these instructions for years; none of them rounds otherwise.
+export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-C target-feature=+simd128"
+cargo build --locked --profile web --target "$target" -p peristalsis-browser
+rm -rf target/web
+mkdir -p target/web
+install -m 644 "${CARGO_TARGET_DIR:-target}/$target/web/peristalsis_browser.wasm" target/web/engine.wasm
+cd viewer
+[ -d node_modules ] || npm ci --ignore-scripts --no-audit --no-fund
+npm run check
+npm run web
+cd ..
+assets=crates/viewer/assets
+cp "$assets/viewer.css" "$assets/icon.svg" target/web/
+# What the server says in a header, the page says itself.
+policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; connect-src 'self'; \
+img-src 'self' data: blob:; base-uri 'none'; form-action 'none'"
+sed -e "s|<body>|<body data-engine=\"page\">|" \
+    -e "s|<meta charset=\"utf-8\">|&\n<meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" \
+    "$assets/tube.html" >target/web/index.html
+echo "target/web: open it with any static server, such as: python3 -m http.server --directory target/web --bind 127.0.0.1"

@@ -1,0 +1,229 @@
+/** The rows of a study: what was varied, what was measured, and points with their errors. */
+
+/** What the server says of a study; crates/viewer/src/study.rs says the same. */
+export interface Study {
+  version: number;
+  name: string;
+  title: string;
+  columns: { name: string; unit: string; description: string; values: (number | string | boolean | null)[] }[];
+  runs: (number | null)[];
+  counts: Record<string, number>;
+  growing: boolean;
+}
+
+export interface Figure {
+  claim: string;
+  title: string;
+  verdict: string;
+  caption: string;
+  studies: string[];
+}
+
+export interface List {
+  studies: { name: string; title: string; rows: number }[];
+  figures: Figure[];
+}
+
+export type Value = number | string;
+
+/** A column that rows are told apart by. */
+export interface Parameter {
+  name: string;
+  label: string;
+  /** Its values, ascending. */
+  values: Value[];
+}
+
+/** A column of numbers that were measured. */
+export interface Quantity {
+  name: string;
+  label: string;
+  description: string;
+}
+
+/** Rows that differ by their random numbers alone. */
+export interface Point {
+  rows: number[];
+  start: string;
+  x: number;
+  /** The member of the family, or the place on the other axis; null where there is none. */
+  other: Value | null;
+  value: number;
+  /** Standard error; NaN where it is not known. */
+  error: number;
+  /** Runs behind the value. */
+  number: number;
+  /** Whether the value is a lower limit: runs ended before what it is the time of. */
+  atLeast: boolean;
+  /** Runs that ended before. */
+  censored: number;
+}
+
+/** Columns that say how a run was made, in the order in which they are offered. */
+const PARAMETERS: Record<string, string> = {
+  width: "width w / d",
+  force_amplitude: "force amplitude f",
+  strain_rate: "strain rate ε̇ t",
+  wave_speed: "wave speed c",
+  volume_fraction: "volume fraction ρ",
+  number_density: "number density n d³",
+  body_force: "body force g",
+  pressure_rise: "pressure rise",
+  radius: "radius a / d",
+  wavelength: "wavelength λ / d",
+  waves: "waves",
+  spheres_per_ring: "wall spheres a ring",
+  rings_per_wave: "rings a wave",
+  kinetic_friction: "friction μ",
+  time_step: "time step",
+};
+
+/** What is asked for most, by the names that readers know. */
+const QUANTITIES: Record<string, string> = {
+  flow_rate_ratio: "J / Jmax, late mean",
+  transition_time: "transition time τ / t",
+  granular_temperature: "granular temperature",
+  contacts: "contacts a grain",
+  flow_rate: "flow rate J",
+  wall_power: "power of the wall",
+  dissipated_power: "dissipated power",
+  pumping_efficiency: "pumping efficiency",
+  useful_power: "useful power",
+  flow_rate_ratio_variance: "variance of J / Jmax",
+  residence_time: "residence time",
+  axial_dispersion: "axial dispersion",
+  bottleneck: "bottleneck / d",
+  escaped: "escaped grains",
+  energy_residual: "energy unaccounted",
+};
+
+/** Columns of numbers that are neither. */
+const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
+
+const words = (name: string) => (name.split(".").at(-1) ?? name).replaceAll("_", " ");
+
+const order = (one: Value, other: Value) =>
+  typeof one === "number" && typeof other === "number" ? one - other : String(one).localeCompare(String(other));
+
+/** A study as the page asks it. */
+export class Results {
+  readonly parameters: Parameter[];
+  readonly quantities: Quantity[];
+  readonly starts: string[];
+  readonly rows: number;
+  private readonly columns: Map<string, (number | string | boolean | null)[]>;
+
+  constructor(readonly study: Study) {
+    this.columns = new Map(study.columns.map((column) => [column.name, column.values]));
+    this.rows = study.runs.length;
+    const keys = study.columns.map(({ name }) => name).filter((name) => name.includes("."));
+    this.parameters = this.findParameters(keys);
+    const parameters = new Set([...Object.keys(PARAMETERS), ...keys]);
+    const measured = study.columns.filter(
+      ({ name, values }) => values.some((value) => typeof value === "number") && !parameters.has(name) &&
+        !NEITHER.has(name) && !name.endsWith("_error"),
+    );
+    const known = Object.keys(QUANTITIES);
+    const rank = (name: string) => (known.includes(name) ? known.indexOf(name) : known.length);
+    this.quantities = measured
+      .map(({ name, unit, description }) => ({
+        name,
+        label: QUANTITIES[name] ?? (unit && unit !== "1" ? `${words(name)} / ${unit.includes("/") ? `(${unit})` : unit}` : words(name)),
+        description,
+      }))
+      .sort((one, other) => rank(one.name) - rank(other.name));
+    const starts = new Set((this.columns.get("initial_state") ?? []).map(String));
+    this.starts = [...starts].sort().reverse();
+  }
+
+  /** The keys of the study's axes; of a table without them, the columns that say how a run was made. */
+  private findParameters(keys: string[]): Parameter[] {
+    const names = keys.length > 0 ? keys : Object.keys(PARAMETERS);
+    const all = names.filter((name) => this.columns.has(name)).map((name) => ({
+      name,
+      label: PARAMETERS[name.split(".").at(-1) ?? name] ?? words(name),
+      values: this.valuesOf(name, this.all()),
+    }));
+    return all.filter(({ values }) => values.length > 1);
+  }
+
+  all(): number[] {
+    return Array.from({ length: this.rows }, (_, row) => row);
+  }
+
+  /** Values of a column in these rows, ascending. */
+  valuesOf(name: string, rows: number[]): Value[] {
+    const column = this.columns.get(name) ?? [];
+    const found = new Set(rows.map((row) => this.plain(column[row])).filter((value) => value !== null));
+    return [...found].sort(order);
+  }
+
+  value(name: string, row: number): Value | null {
+    return this.plain(this.columns.get(name)?.[row] ?? null);
+  }
+
+  private plain(value: number | string | boolean | null): Value | null {
+    return typeof value === "boolean" ? String(value) : value;
+  }
+
+  number(name: string, row: number): number {
+    const value = this.columns.get(name)?.[row];
+    return typeof value === "number" ? value : NaN;
+  }
+
+  /** Rows in which all these columns have these values. */
+  where(rows: number[], fixed: Map<string, Value>): number[] {
+    return rows.filter((row) => [...fixed].every(([name, value]) => this.value(name, row) === value));
+  }
+
+  parameter(name: string): Parameter | undefined {
+    return this.parameters.find((it) => it.name === name);
+  }
+
+  /** Rows as points: replicates averaged, starts apart. */
+  points(rows: number[], quantity: string, x: string, other: string | null): Point[] {
+    const groups = new Map<string, number[]>();
+    for (const row of rows) {
+      const place = [this.value("initial_state", row), this.value(x, row), other && this.value(other, row)];
+      const key = JSON.stringify(place);
+      groups.set(key, [...(groups.get(key) ?? []), row]);
+    }
+    const points = [...groups.values()].map((group) => this.point(group, quantity, x, other));
+    return points.filter(({ value }) => Number.isFinite(value)).sort((one, next) => one.x - next.x);
+  }
+
+  private point(rows: number[], quantity: string, x: string, other: string | null): Point {
+    const isTime = quantity.startsWith("transition_time");
+    // A run that ended before its transition says that its time is longer than it went.
+    const ended = rows.filter((row) => isTime && Number.isNaN(this.number(quantity, row)));
+    const values = rows
+      .map((row) => (ended.includes(row) ? this.number("time", row) : this.number(quantity, row)))
+      .filter(Number.isFinite);
+    const number = values.length;
+    const mean = values.reduce((sum, value) => sum + value, 0) / number;
+    const squares = values.reduce((sum, value) => sum + (value - mean) ** 2, 0);
+    const alone = number === 1 ? this.number(`${quantity}_error`, rows[0]) : NaN;
+    return {
+      rows,
+      start: String(this.value("initial_state", rows[0]) ?? ""),
+      x: this.number(x, rows[0]),
+      other: other === null ? null : this.value(other, rows[0]),
+      value: mean,
+      error: number > 1 ? Math.sqrt(squares / (number - 1) / number) : alone,
+      number,
+      atLeast: ended.length > 0,
+      censored: ended.length,
+    };
+  }
+
+  /** Of the rows of a point, the one that is nearest to what the point shows, of those that can be watched. */
+  typical(point: Point, quantity: string): number | null {
+    const away = (row: number) => {
+      const value = this.number(quantity, row);
+      return Number.isNaN(value) ? Infinity : Math.abs(value - point.value);
+    };
+    const watchable = point.rows.filter((row) => this.study.runs[row] !== null);
+    const nearest = watchable.toSorted((one, other) => away(one) - away(other)).at(0);
+    return nearest === undefined ? null : this.study.runs[nearest];
+  }
+}

@@ -1,0 +1,644 @@
+import { Chart, ink, written } from "./charts";
+import { type Curve, curvesOf, drawCurves, extent, mark, type Style } from "./curves";
+import { css, colourAt } from "./fields";
+import { showFigures } from "./figures";
+import { across, type Cell, drawHeat, LIGHTNESS, type Scale } from "./heat";
+import { element, fill, isDark, listenToLook } from "./page";
+import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
+import { withError } from "./words";
+
+/** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
+const EACH = { growing: 4000, done: 15000 };
+
+type View = "curves" | "heat" | "figures";
+
+/** What is shown of a study, as the address keeps it. */
+interface Choice {
+  study: number;
+  view: View;
+  value: string;
+  x: string;
+  other: string;
+  start: string;
+  logarithmic: boolean;
+  fixed: Map<string, Value>;
+}
+
+/** A canvas with what can be pointed at in it. */
+interface Panel {
+  chart: Chart;
+  start: string | null;
+  places: Map<Point, [number, number]>;
+  cells: Cell[];
+  lines: Point[][];
+}
+
+/** The page of studies. */
+class StudyPage {
+  private list: List = { studies: [], figures: [] };
+  private results: Results | null = null;
+  private choice: Choice = {
+    study: 0, view: "curves", value: "", x: "", other: "", start: "both", logarithmic: false, fixed: new Map(),
+  };
+  private panels: Panel[] = [];
+  private points: Point[] = [];
+  private chosen: Point | null = null;
+  /** Which panel the chosen point is in. */
+  private within: Panel | null = null;
+  private drawn = 0;
+
+  constructor() {
+    this.read();
+    this.listen();
+    void this.begin();
+  }
+
+  private async begin(): Promise<void> {
+    this.list = (await (await fetch("list")).json()) as List;
+    const studies = element<HTMLSelectElement>("study");
+    this.list.studies.forEach((study, k) => studies.add(new Option(`${study.name} (${study.rows})`, String(k))));
+    element("study-label").hidden = this.list.studies.length < 2;
+    element("view-figures").hidden = this.list.figures.length === 0;
+    if (this.list.studies.length === 0) this.choice.view = "figures";
+    if (this.choice.study >= this.list.studies.length) this.choice.study = 0;
+    showFigures(element("figures"), this.list, (study) => {
+      this.choice.view = "curves";
+      void this.open(study);
+    });
+    await this.open(this.choice.study);
+    void this.follow();
+  }
+
+  /** Looks for new rows again and again, while anybody sees them. */
+  private async follow(): Promise<void> {
+    for (;;) {
+      await new Promise((done) => setTimeout(done, this.results?.study.growing ? EACH.growing : EACH.done));
+      if (this.results && document.visibilityState === "visible") await this.refresh();
+    }
+  }
+
+  /** Another study, with what of the choice it knows. */
+  private async open(study: number): Promise<void> {
+    this.choice.study = study;
+    this.results = null;
+    this.chosen = null;
+    if (this.list.studies.length > 0) await this.refresh();
+    this.show();
+  }
+
+  private async refresh(): Promise<void> {
+    const { study } = this.choice;
+    const known = this.results?.study.version;
+    try {
+      const headers: HeadersInit = known === undefined ? {} : { "If-None-Match": `"${known}"` };
+      const answer = await fetch(`study/${study}`, { headers, cache: "no-store" });
+      if (answer.status === 304) return this.say("");
+      if (!answer.ok) throw new Error(await answer.text());
+      if (study !== this.choice.study) return;
+      this.take(new Results((await answer.json()) as Study));
+      this.say("");
+    } catch (error) {
+      this.say(`no answer: is the program still running? (${error instanceof Error ? error.message : error})`);
+    }
+  }
+
+  private take(results: Results): void {
+    this.results = results;
+    this.settle();
+    this.show();
+  }
+
+  /** Makes the choice one that the study has. */
+  private settle(): void {
+    const { results, choice } = this;
+    if (!results) return;
+    const numbers = this.numeric();
+    const has = (name: string, among: { name: string }[]) => among.some((it) => it.name === name);
+    // What drives the transition goes across, else what was varied most.
+    const drives = ({ name, values }: Parameter) => values.length > 2 && /(^|\.)(width|force_amplitude)$/.test(name);
+    const weight = (it: Parameter) => it.values.length + (drives(it) ? 1e6 : 0);
+    const most = numbers.toSorted((one, other) => weight(other) - weight(one));
+    if (!has(choice.value, results.quantities)) choice.value = results.quantities.at(0)?.name ?? "";
+    if (!has(choice.x, numbers)) choice.x = most.at(0)?.name ?? "";
+    const others = results.parameters.filter(({ name }) => name !== choice.x);
+    if (!has(choice.other, others) && choice.other !== "none")
+      choice.other = others.toSorted((one, other) => other.values.length - one.values.length).at(0)?.name ?? "none";
+    if (choice.view === "heat" && choice.other === "none") choice.other = others.at(0)?.name ?? "none";
+    if (!results.starts.includes(choice.start)) choice.start = "both";
+    // Of what is neither axis, one value at a time; what follows from the others is not asked.
+    const fixed = new Map<string, Value>();
+    let rows = results.all();
+    for (const { name } of this.fixable()) {
+      const values = results.valuesOf(name, rows);
+      if (values.length < 2 || !this.isOpen(name, rows)) continue;
+      const wanted = choice.fixed.get(name);
+      const value = wanted !== undefined && values.includes(wanted) ? wanted : this.commonest(name, rows, values);
+      fixed.set(name, value);
+      rows = results.where(rows, new Map([[name, value]]));
+    }
+    choice.fixed = fixed;
+  }
+
+  /** Whether rows at one place of both axes differ in this column. */
+  private isOpen(name: string, rows: number[]): boolean {
+    const { results, choice } = this;
+    const seen = new Map<string, Value | null>();
+    return rows.some((row) => {
+      const place = JSON.stringify([results?.value(choice.x, row), results?.value(choice.other, row)]);
+      const value = results?.value(name, row) ?? null;
+      if (!seen.has(place)) seen.set(place, value);
+      return seen.get(place) !== value;
+    });
+  }
+
+  private commonest(name: string, rows: number[], values: Value[]): Value {
+    const count = (value: Value) => this.results?.where(rows, new Map([[name, value]])).length ?? 0;
+    return values.toSorted((one, other) => count(other) - count(one))[0];
+  }
+
+  private numeric(): Parameter[] {
+    return (this.results?.parameters ?? []).filter(({ values }) => values.every((value) => typeof value === "number"));
+  }
+
+  private fixable(): Parameter[] {
+    const { x, other } = this.choice;
+    return (this.results?.parameters ?? []).filter(({ name }) => name !== x && name !== other);
+  }
+
+  /** Everything anew. */
+  private show(): void {
+    this.settle();
+    this.showChoices();
+    this.showFacts();
+    this.regroup();
+    this.layOut();
+    this.draw();
+    this.write();
+  }
+
+  private showFacts(): void {
+    const { results, list, choice } = this;
+    element("plots").hidden = choice.view === "figures";
+    element("figures").hidden = choice.view !== "figures";
+    element("side").hidden = choice.view === "figures";
+    const entry = list.studies.at(choice.study);
+    const title = choice.view === "figures" ? "Figures" : entry?.title || entry?.name || "No studies";
+    document.title = `${title} – peristalsis`;
+    element("title").textContent = title;
+    if (choice.view === "figures") {
+      element("facts").textContent = `${list.figures.length} figures of the claims, with the studies behind them`;
+      return;
+    }
+    if (!results) return;
+    const { counts, name, growing } = results.study;
+    const rest = Object.entries(counts).filter(([state]) => state !== "done");
+    const states: Record<string, string> = { leased: "being computed", pending: "waiting", checkpointed: "interrupted" };
+    const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
+    element("facts").textContent = [name, `${results.rows.toLocaleString("en")} runs done`, ...parts].join(" · ");
+    element("refresh").hidden = !growing;
+  }
+
+  private showChoices(): void {
+    const { results, choice } = this;
+    for (const view of ["curves", "heat", "figures"] as const)
+      element(`view-${view}`).setAttribute("aria-pressed", String(choice.view === view));
+    element("choices").hidden = choice.view === "figures";
+    element<HTMLSelectElement>("study").value = String(choice.study);
+    if (!results) return;
+    options("value", results.quantities, choice.value);
+    options("x", this.numeric(), choice.x);
+    const none = choice.view === "curves" ? [{ name: "none", label: "none" }] : [];
+    options("other", [...results.parameters.filter(({ name }) => name !== choice.x), ...none], choice.other);
+    element("other-name").textContent = choice.view === "heat" ? "up" : "family";
+    element("start-label").hidden = results.starts.length < 2;
+    const starts = ["both", ...results.starts].map((name) => ({ name, label: name === "both" ? "both" : `from ${name}` }));
+    options("start", starts, choice.start);
+    element<HTMLInputElement>("logarithmic").checked = choice.logarithmic;
+    const box = element("fixed");
+    box.replaceChildren();
+    let rows = results.all();
+    for (const parameter of this.fixable()) {
+      const value = choice.fixed.get(parameter.name);
+      if (value === undefined) continue;
+      const values = results.valuesOf(parameter.name, rows);
+      const label = document.createElement("label");
+      const select = document.createElement("select");
+      values.forEach((it, k) => select.add(new Option(typeof it === "number" ? written(it, 4) : it, String(k))));
+      select.value = String(values.indexOf(value));
+      select.onchange = () => {
+        choice.fixed.set(parameter.name, values[Number(select.value)]);
+        this.show();
+      };
+      label.append(`${parameter.label} `, select);
+      box.append(label);
+      rows = results.where(rows, new Map([[parameter.name, value]]));
+    }
+    const quantity = results.quantities.find(({ name }) => name === choice.value);
+    element("description").textContent = quantity ? quantity.description : "";
+  }
+
+  /** The points of the choice; the one that was chosen stays chosen. */
+  private regroup(): void {
+    const { results, choice, chosen } = this;
+    this.points = [];
+    if (!results || choice.view === "figures" || !choice.x) return;
+    const rows = results.where(results.all(), choice.fixed);
+    const kept = rows.filter((row) => choice.start === "both" || results.value("initial_state", row) === choice.start);
+    const other = choice.other === "none" ? null : choice.other;
+    const points = results.points(kept, choice.value, choice.x, other);
+    this.points = choice.logarithmic ? points.filter(({ value }) => value > 0) : points;
+    const is = (point: Point) => point.x === chosen?.x && point.other === chosen.other && point.start === chosen.start;
+    this.chosen = this.points.find(is) ?? null;
+  }
+
+  private shownStarts(): string[] {
+    const starts = new Set(this.points.map(({ start }) => start));
+    return (this.results?.starts ?? []).filter((start) => starts.has(start));
+  }
+
+  private members(): (Value | null)[] {
+    const own = new Set(this.points.map(({ other }) => other));
+    const values = this.results?.parameter(this.choice.other)?.values ?? [];
+    return this.choice.other === "none" ? [null] : values.filter((value) => own.has(value));
+  }
+
+  /** One canvas for curves; for a map one for each start. */
+  private layOut(): void {
+    const starts = this.choice.view === "heat" ? this.shownStarts() : [null];
+    const same = starts.length === this.panels.length && starts.every((start, k) => this.panels[k].start === start);
+    if (same) return;
+    const box = element("charts");
+    box.replaceChildren();
+    this.panels = starts.map((start) => {
+      const figure = document.createElement("figure");
+      const canvas = document.createElement("canvas");
+      canvas.tabIndex = 0;
+      canvas.setAttribute("role", "application");
+      if (start !== null && starts.length > 1) {
+        const caption = document.createElement("figcaption");
+        caption.textContent = `from ${start}`;
+        figure.append(caption);
+      }
+      figure.append(canvas);
+      box.append(figure);
+      const panel: Panel = { chart: new Chart(canvas), start, places: new Map(), cells: [], lines: [] };
+      this.listenTo(canvas, panel);
+      sizes.observe(canvas);
+      return panel;
+    });
+  }
+
+  draw(): void {
+    const { choice, results } = this;
+    if (!results || choice.view === "figures") return;
+    const colours = ink();
+    const x = results.parameter(choice.x);
+    const empty = this.points.length === 0;
+    element("empty").hidden = !empty;
+    element("charts").hidden = empty;
+    this.showLegend();
+    if (empty || !x) return;
+    const value = results.quantities.find(({ name }) => name === choice.value)?.label ?? "";
+    const other = results.parameter(choice.other)?.label ?? "";
+    for (const panel of this.panels) {
+      const { chart } = panel;
+      const name = choice.view === "heat" ? `Map of ${value}` : `Curves of ${value}`;
+      chart.canvas.setAttribute("aria-label", `${name} against ${x.label}; arrow keys go from point to point, Enter opens the run`);
+      if (choice.view === "heat") {
+        const own = this.points.filter(({ start }) => start === panel.start);
+        const rows = this.members().filter((it): it is Value => it !== null);
+        const longest = Math.max(...rows.map((row) => (typeof row === "number" ? written(row) : row).length));
+        const left = Math.min(150, Math.max(42, 7 * longest + 14));
+        chart.begin(across(this.points), [0, 1], [x.label, other], colours, { left, scaled: false });
+        panel.cells = drawHeat(chart, own, rows, this.scale(), this.chosen, colours);
+        panel.lines = rows.map((row) => own.filter((point) => point.other === row));
+      } else {
+        const curves = this.curves();
+        const room = 0.03 * (across(this.points)[1] - across(this.points)[0]);
+        const places = this.points.map((point) => point.x);
+        const ends: [number, number] = [Math.min(...places) - room, Math.max(...places) + room];
+        chart.begin(ends, extent(this.points, choice.logarithmic), [x.label, value], colours, { left: 52, logarithmic: choice.logarithmic });
+        panel.places = drawCurves(chart, curves, this.chosen, colours);
+        panel.lines = curves.map(({ points }) => points);
+      }
+    }
+    this.showTip();
+    this.showPoint();
+    this.drawn += 1;
+  }
+
+  private curves(): Curve[] {
+    return curvesOf(this.points, this.members(), this.results?.starts ?? [], isDark());
+  }
+
+  private scale(): Scale {
+    const values = this.points.map(({ value }) => value);
+    return { from: Math.min(...values), to: Math.max(...values), logarithmic: this.choice.logarithmic };
+  }
+
+  private showLegend(): void {
+    const box = element("legend");
+    box.replaceChildren();
+    const { results, choice } = this;
+    if (!results || this.points.length === 0) return;
+    const value = results.quantities.find(({ name }) => name === choice.value)?.label ?? "";
+    const head = document.createElement("h2");
+    box.append(head);
+    if (choice.view === "heat") {
+      head.textContent = value;
+      const { from, to, logarithmic } = this.scale();
+      const bar = document.createElement("div");
+      bar.className = "bar";
+      bar.style.background = `linear-gradient(90deg, ${Array.from({ length: 12 }, (_, k) => css(colourAt(LIGHTNESS, k / 11))).join(",")})`;
+      const ends = document.createElement("div");
+      ends.className = "ends";
+      const middle = logarithmic ? Math.sqrt(from * to) : 0.5 * (from + to);
+      ends.append(...[from, middle, to].map((end) => Object.assign(document.createElement("span"), { textContent: written(end) })));
+      box.append(bar, ends);
+      return;
+    }
+    const family = results.parameter(choice.other);
+    head.textContent = family ? family.label : value;
+    const both = this.shownStarts().length > 1;
+    const item = (text: string, style: Style, dashed: boolean) => {
+      const line = document.createElement("div");
+      line.className = "item";
+      const canvas = document.createElement("canvas");
+      line.append(canvas, text);
+      box.append(line);
+      sample(canvas, style, dashed);
+    };
+    const curves = this.curves();
+    for (const member of family ? this.members() : []) {
+      const style = curves.find((curve) => curve.member === member)?.style;
+      if (style) item(typeof member === "number" ? written(member) : String(member), { ...style, open: !both && style.open }, !both && style.open);
+    }
+    const colour = ink().text;
+    if (both) for (const start of this.shownStarts()) item(`from ${start}`, { colour, mark: 0, open: start === "jammed" }, start === "jammed");
+    if (this.points.some(({ atLeast }) => atLeast)) {
+      const line = document.createElement("div");
+      line.className = "item note";
+      line.textContent = "↑ at least: runs ended before their transition";
+      box.append(line);
+    }
+  }
+
+  /** What a point says, in words. */
+  private facts(point: Point): [string, string][] {
+    const { results, choice } = this;
+    if (!results) return [];
+    const facts: [string, string][] = [[results.parameter(choice.x)?.label ?? choice.x, written(point.x, 4)]];
+    const other = results.parameter(choice.other);
+    if (other && point.other !== null)
+      facts.push([other.label, typeof point.other === "number" ? written(point.other, 4) : point.other]);
+    if (point.start) facts.push(["start", `from ${point.start}`]);
+    facts.push(["replicates", String(point.number)]);
+    if (point.atLeast) facts.push(["without a transition", String(point.censored)]);
+    return facts;
+  }
+
+  private shownValue(point: Point): string {
+    return (point.atLeast ? "at least " : "") + withError(point.value, point.atLeast ? NaN : point.error);
+  }
+
+  private showTip(): void {
+    const tip = element("tip");
+    const { chosen, within, results } = this;
+    tip.hidden = !chosen || !within;
+    if (!chosen || !within || !results) return;
+    const cell = within.cells.find(({ point }) => point === chosen);
+    const place = cell ? [cell.left + 0.5 * cell.width, cell.top + 0.3 * cell.height] : within.places.get(chosen);
+    if (!place) {
+      tip.hidden = true;
+      return;
+    }
+    element("tip-value").textContent = this.shownValue(chosen);
+    fill(element("tip-facts"), this.facts(chosen));
+    const run = results.typical(chosen, this.choice.value);
+    element("tip-open").textContent = run === null ? "the design of this table is not known: its runs cannot be watched" : this.touched ? "tap again to watch its run" : "click to watch its run";
+    const box = element("charts").getBoundingClientRect();
+    const canvas = within.chart.canvas.getBoundingClientRect();
+    const [x, y] = [canvas.left - box.left + place[0], canvas.top - box.top + place[1]];
+    const left = Math.min(box.width - tip.offsetWidth - 4, Math.max(4, x - 0.5 * tip.offsetWidth));
+    const above = y - tip.offsetHeight - 16;
+    tip.style.left = `${left}px`;
+    tip.style.top = `${above > 0 ? above : y + 20}px`;
+  }
+
+  private showPoint(): void {
+    const { chosen, results, choice } = this;
+    element("point").hidden = chosen === null;
+    element("hint").hidden = chosen !== null;
+    if (!chosen || !results) return;
+    element("point-value").textContent = this.shownValue(chosen);
+    fill(element("point-facts"), this.facts(chosen));
+    const runs = element("runs");
+    runs.replaceChildren(
+      ...chosen.rows.toSorted((one, other) => results.number("replicate", one) - results.number("replicate", other)).map((row) => {
+        const line = document.createElement("li");
+        const value = results.number(choice.value, row);
+        const text = `run ${Number(results.value("replicate", row) ?? 0) + 1}`;
+        const number = results.study.runs[row];
+        const name = document.createElement(number === null ? "span" : "a");
+        name.textContent = text;
+        if (name instanceof HTMLAnchorElement) name.href = this.address(number ?? 0);
+        const shown = document.createElement("span");
+        shown.textContent = Number.isFinite(value) ? written(value, 4) : "no transition";
+        line.append(name, shown);
+        return line;
+      }),
+    );
+  }
+
+  private address(run: number): string {
+    return `study/${this.choice.study}/run/${run}/`;
+  }
+
+  private watch(point: Point): void {
+    const run = this.results?.typical(point, this.choice.value) ?? null;
+    if (run !== null) location.assign(this.address(run));
+  }
+
+  private choose(point: Point | null, panel: Panel | null): void {
+    if (point === this.chosen && panel === this.within) return;
+    this.chosen = point;
+    this.within = panel;
+    this.draw();
+  }
+
+  private touched = false;
+
+  private listenTo(canvas: HTMLCanvasElement, panel: Panel): void {
+    const at = (event: PointerEvent | MouseEvent, reach: number): Point | null => {
+      const box = canvas.getBoundingClientRect();
+      const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+      const cell = panel.cells.find(({ left, top, width, height }) => x >= left && x < left + width && y >= top && y < top + height);
+      if (cell) return cell.point;
+      let [nearest, found]: [number, Point | null] = [reach, null];
+      for (const [point, place] of panel.places) {
+        const away = Math.hypot(place[0] - x, place[1] - y);
+        if (away < nearest) [nearest, found] = [away, point];
+      }
+      return found;
+    };
+    canvas.addEventListener("pointermove", (event) => {
+      if (event.pointerType === "touch") return;
+      this.touched = false;
+      const point = at(event, 16);
+      canvas.style.cursor = point && this.results?.typical(point, this.choice.value) !== null ? "pointer" : "default";
+      if (point) this.choose(point, panel);
+    });
+    canvas.addEventListener("pointerleave", () => (element("tip").hidden = true));
+    canvas.addEventListener("click", (event) => {
+      const touch = event instanceof PointerEvent && event.pointerType === "touch";
+      const point = at(event, touch ? 28 : 16);
+      // A finger does not hover: the first tap tells, the second opens.
+      const known = !touch || (point === this.chosen && this.touched);
+      this.touched = touch;
+      if (point && known) this.watch(point);
+      else this.choose(point, point && panel);
+    });
+    canvas.addEventListener("keydown", (event) => this.key(event, panel));
+    canvas.addEventListener("blur", () => (element("tip").hidden = true));
+  }
+
+  private key(event: KeyboardEvent, panel: Panel): void {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const { chosen } = this;
+    const steps: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+    if (event.key === "Enter" && chosen) this.watch(chosen);
+    else if (event.key === "Escape") this.choose(null, null);
+    else if (event.key in steps) this.choose(this.beside(panel, steps[event.key]), panel);
+    else return;
+    event.preventDefault();
+  }
+
+  /** The next point along its curve or row, or the nearest of the next one. */
+  private beside(panel: Panel, [along, up]: [number, number]): Point | null {
+    const lines = panel.lines.filter((line) => line.length > 0);
+    const line = lines.findIndex((it) => this.chosen !== null && it.includes(this.chosen));
+    const { chosen } = this;
+    if (line < 0 || !chosen) return lines.at(0)?.at(0) ?? null;
+    if (up !== 0) {
+      const next = lines[Math.min(lines.length - 1, Math.max(0, line + up))];
+      return next.toSorted((one, other) => Math.abs(one.x - chosen.x) - Math.abs(other.x - chosen.x))[0];
+    }
+    const place = lines[line].indexOf(chosen) + along;
+    return lines[line][Math.min(lines[line].length - 1, Math.max(0, place))];
+  }
+
+  private listen(): void {
+    const select = (id: string, change: (value: string) => void) => {
+      const box = element<HTMLSelectElement>(id);
+      box.onchange = () => {
+        change(box.value);
+        this.show();
+      };
+    };
+    select("value", (value) => (this.choice.value = value));
+    select("x", (value) => {
+      if (this.choice.other === value) this.choice.other = this.choice.x;
+      this.choice.x = value;
+    });
+    select("other", (value) => (this.choice.other = value));
+    select("start", (value) => (this.choice.start = value));
+    element<HTMLSelectElement>("study").onchange = ({ target }) => void this.open(Number((target as HTMLSelectElement).value));
+    const logarithmic = element<HTMLInputElement>("logarithmic");
+    logarithmic.onchange = () => {
+      this.choice.logarithmic = logarithmic.checked;
+      this.show();
+    };
+    for (const view of ["curves", "heat", "figures"] as const)
+      element(`view-${view}`).onclick = () => {
+        this.choice.view = view;
+        if (view === "heat" && this.choice.other === "none") this.choice.other = "";
+        this.show();
+      };
+    element("refresh").onclick = () => void this.refresh();
+    listenToLook(() => this.show());
+    window.addEventListener("hashchange", () => {
+      const before = this.choice.study;
+      this.read();
+      if (this.choice.study === before) this.show();
+      else void this.open(this.choice.study);
+    });
+  }
+
+  private say(text: string): void {
+    element("status").textContent = text;
+    element("status").hidden = text === "";
+  }
+
+  /** Keeps the choice in the address, so that one comes back to it. */
+  private write(): void {
+    const { study, view, value, x, other, start, logarithmic, fixed } = this.choice;
+    const parts = new URLSearchParams({ study: String(study), view, value, x, other, start });
+    if (logarithmic) parts.set("log", "1");
+    for (const [name, it] of fixed) parts.set(`at.${name}`, String(it));
+    history.replaceState(null, "", `#${parts}`);
+    sessionStorage.setItem("study", location.hash);
+  }
+
+  private read(): void {
+    const parts = new URLSearchParams(location.hash.slice(1));
+    const { choice } = this;
+    const view = parts.get("view");
+    choice.study = Math.max(0, Number.parseInt(parts.get("study") ?? "0", 10) || 0);
+    choice.view = view === "heat" || view === "figures" ? view : "curves";
+    for (const name of ["value", "x", "other", "start"] as const) choice[name] = parts.get(name) ?? choice[name];
+    choice.logarithmic = parts.get("log") === "1";
+    choice.fixed = new Map();
+    for (const [name, text] of parts) {
+      if (!name.startsWith("at.")) continue;
+      choice.fixed.set(name.slice(3), Number.isNaN(Number(text)) ? text : Number(text));
+    }
+  }
+
+  /** What tests look at. */
+  get measured() {
+    const places = this.panels.map(({ chart, cells, places }) => {
+      const { left, top } = chart.canvas.getBoundingClientRect();
+      const middles = cells.map((cell): [number, number] => [cell.left + 0.5 * cell.width, cell.top + 0.5 * cell.height]);
+      return [...middles, ...places.values()].map(([x, y]) => [left + x, top + y]);
+    });
+    return {
+      drawn: this.drawn,
+      points: this.points.length,
+      curves: this.results ? this.curves().length : 0,
+      places: places.flat(),
+      chosen: this.chosen && { x: this.chosen.x, value: this.chosen.value, number: this.chosen.number },
+    };
+  }
+}
+
+function options(id: string, all: { name: string; label: string }[], chosen: string): void {
+  const select = element<HTMLSelectElement>(id);
+  const same = select.options.length === all.length && all.every(({ name }, k) => select.options[k].value === name);
+  if (!same) select.replaceChildren(...all.map(({ name, label }) => new Option(label, name)));
+  select.value = chosen;
+}
+
+/** A mark on a piece of its line. */
+function sample(canvas: HTMLCanvasElement, style: Style, dashed: boolean): void {
+  const density = Math.min(3, devicePixelRatio);
+  [canvas.width, canvas.height] = [40 * density, 16 * density];
+  const context = canvas.getContext("2d");
+  if (!context) return;
+  context.scale(density, density);
+  context.strokeStyle = style.colour;
+  context.lineWidth = 1.6;
+  context.setLineDash(dashed ? [5, 4] : []);
+  context.beginPath();
+  context.moveTo(1, 8);
+  context.lineTo(39, 8);
+  context.stroke();
+  mark(context, 20, 8, 4, style, ink().back);
+}
+
+declare global {
+  interface Window {
+    study: StudyPage;
+  }
+}
+const sizes = new ResizeObserver(() => window.study?.draw());
+window.study = new StudyPage();
