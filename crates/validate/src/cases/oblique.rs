@@ -139,7 +139,7 @@ impl Experiment {
     }
 
     /// From a tangential impulse, as a part of mu times the normal one, and a restitution, for a rigid sphere.
-    fn from_impulse(&self, degrees: f64, part: f64, restitution: f64) -> Rebound {
+    fn after_impulse(&self, degrees: f64, part: f64, restitution: f64) -> Rebound {
         let (sin, cos) = libm::sincos(degrees.to_radians());
         let (lateral, normal) = (self.speed * sin, self.speed * cos);
         let impulse = part * FRICTION * (1.0 + restitution) * normal;
@@ -148,9 +148,14 @@ impl Experiment {
         self.rebound(degrees, velocity, 5.0 * impulse)
     }
 
-    /// Gross sliding: the tangential impulse is mu times the normal one.
+    /// Gross sliding: the tangential impulse is mu times the normal one, at the restitution of the normal speed.
     fn sliding(&self, degrees: f64) -> Rebound {
-        self.from_impulse(degrees, 1.0, RESTITUTION)
+        let normal = self.speed * libm::cos(degrees.to_radians());
+        let mut head_on = self.impact(0.0);
+        head_on.contact.friction = None;
+        head_on.sphere.velocity = DVec3::new(-normal, 0.0, 0.0);
+        let restitution = outcome(&head_on).velocity[0].x / normal;
+        self.after_impulse(degrees, 1.0, restitution)
     }
 
     /// Mindlin's contact without dissipation.
@@ -161,7 +166,7 @@ impl Experiment {
             normal_speed: 1e-3,
             slip_ratio: libm::tan(degrees.to_radians()),
         };
-        self.from_impulse(degrees, impact.impulse_ratio(), 1.0)
+        self.after_impulse(degrees, impact.impulse_ratio(), 1.0)
     }
 }
 
@@ -169,7 +174,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
     let experiment = Experiment::new();
     let angles = circumstances.extent.choose(
         vec![2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 60.0, 80.0],
-        evenly(2.0, 86.0, 43),
+        evenly(2.0, 86.0, 29),
     );
     let (mut simulated, mut integrated, mut mindlin) = (Vec::new(), Vec::new(), Vec::new());
     for angle in &angles {
@@ -184,7 +189,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
         .collect();
     let mut finding = Finding {
         paragraphs: vec![
-            "A sphere of 5 mm of aluminium oxide at 3.9 m/s, mu = 0.092, e = 0.98 (viscoelastic; A from the equation of motion). \
+            "A sphere of 5 mm of aluminium oxide at 3.9 m/s, mu = 0.092, e = 0.98 head-on (viscoelastic; A from the equation of motion). \
              r omega' is given over v; the angle of rebound is that of the surface where it touched. Beyond some 32 degrees the \
              contact slides throughout, and the closed form v_t' = v_t - mu (1 + e) v_n, omega' = 5 mu (1 + e) v_n/(2 r) holds \
              but for the arm of the friction, which is shorter than r by half the overlap (1e-3 here)."
@@ -239,12 +244,12 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
         (
             "r omega'/v, largest difference",
             largest(&|one, other| one.spin - other.spin),
-            0.03,
+            0.05,
         ),
         (
             "v_t'/v_t, largest difference",
             largest(&|one, other| one.tangential_restitution - other.tangential_restitution),
-            0.15,
+            0.1,
         ),
     ] {
         let check = Check::absolute(name, "all angles", 0.0, found, tolerance);
@@ -255,7 +260,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
     finding
         .checks
         .push(kernels_agree("15 degrees", &sticking, time_step)?);
-    for (angle, order) in [(15.0, [0.8, 2.4]), (60.0, [0.8, 2.6])] {
+    for (angle, order) in [(15.0, [0.8, 3.0]), (60.0, [1.5, 4.0])] {
         let impact = experiment.impact(angle);
         let expected = outcome(&impact).spin[0];
         finding.convergences.extend(convergences(
@@ -270,7 +275,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
         name: "oblique-impact",
         caption: "Tangential restitution, spin and angle of rebound against the angle of incidence, measured from the normal: \
                   engine, the equation of motion of the same law, Mindlin's contact (Maw et al.), and sliding throughout.",
-        drawing: drawing(&angles, &simulated, &integrated, &mindlin, &sliding)?,
+        drawing: drawing(&experiment, &angles, &simulated)?,
     });
     let errors = |from: usize| finding.convergences[from..from + 2].iter().collect();
     finding.figures.push(CaseFigure {
@@ -316,11 +321,9 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
 }
 
 fn drawing(
+    experiment: &Experiment,
     angles: &[f64],
     simulated: &[Rebound],
-    integrated: &[Rebound],
-    mindlin: &[Rebound],
-    sliding: &[Rebound],
 ) -> Result<Drawing, ValidateError> {
     type Read = fn(&Rebound) -> f64;
     let quantities: [(&str, Read); 3] = [
@@ -330,14 +333,21 @@ fn drawing(
         ("spin *rω*′/*v*", |r| r.spin),
         ("angle of rebound (degrees)", |r| r.angle),
     ];
-    // Sliding has a meaning where it opposes the slip to the end.
-    let slides = |i: usize| sliding[i].angle > -10.0;
+    let dense = evenly(1.0, 89.0, 89);
+    let over = |of: &dyn Fn(f64) -> Rebound| -> Vec<Rebound> {
+        dense.iter().map(|angle| of(*angle)).collect()
+    };
+    let integrated = over(&|angle| experiment.integrated(angle));
+    let mindlin = over(&|angle| experiment.mindlin(angle));
+    let sliding = over(&|angle| experiment.sliding(angle));
     let panels = quantities.iter().map(|(label, read)| {
         let values = |rebounds: &[Rebound]| -> Vec<f64> { rebounds.iter().map(read).collect() };
-        let slid: Vec<f64> = (0..angles.len())
-            .map(|i| {
-                if slides(i) {
-                    read(&sliding[i])
+        // Sliding throughout has a meaning where what is left of the slip is not far beyond zero.
+        let slid: Vec<f64> = sliding
+            .iter()
+            .map(|rebound| {
+                if rebound.angle > -10.0 {
+                    read(rebound)
                 } else {
                     f64::NAN
                 }
@@ -346,16 +356,16 @@ fn drawing(
         ChartPanel::new("angle of incidence (degrees)", label)
             .x_range(0.0..=90.0)
             .with(
-                Line::new("sliding throughout", angles, &slid)
+                Line::new("sliding throughout", &dense, &slid)
                     .tint(Tint::Grey)
                     .weight(2.4),
             )
             .with(
-                Line::new("Mindlin (Maw et al. 1976)", angles, &values(mindlin))
+                Line::new("Mindlin (Maw et al. 1976)", &dense, &values(&mindlin))
                     .pattern(Pattern::Dashed)
                     .tint(Tint::Vermillion),
             )
-            .with(Line::new("equation of motion", angles, &values(integrated)).tint(Tint::Black))
+            .with(Line::new("equation of motion", &dense, &values(&integrated)).tint(Tint::Black))
             .with(Points::new("engine", angles, &values(simulated)).series(0))
     });
     Ok(ChartFigure::grid(3, panels)

@@ -107,15 +107,16 @@ fn elastic_contact_time() -> f64 {
     .contact_time()
 }
 
-/// Mean restitution of two grains under the linear law at this step.
-pub(super) fn measured_at(damping: f64, time_step: f64) -> Result<f64, ValidateError> {
-    measured(&linear(damping).1, time_step)
+/// Mean restitution of two grains under the linear law with so many steps in a contact.
+pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64, ValidateError> {
+    let (law, impact) = linear(damping);
+    measured(&impact, law.contact_time(0.5), steps)
 }
 
-/// Mean restitution over places of the onset within a step.
-fn measured(impact: &Impact, time_step: f64) -> Result<f64, ValidateError> {
+/// Mean restitution over places of onset and end within a step.
+fn measured(impact: &Impact, contact_time: f64, steps: f64) -> Result<f64, ValidateError> {
     // Root mean square of e: its scatter is far below e.
-    error_of(impact, Means::USUAL, time_step, |rebound| {
+    error_of(impact, Means::USUAL, (contact_time, steps), |rebound| {
         restitution(impact, rebound.velocity)
     })
 }
@@ -138,7 +139,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
         circumstances.go_on()?;
         let (law, impact) = linear(linear_damping(wanted));
         let elastic = core::f64::consts::PI / 2.0_f64.sqrt();
-        let found = measured(&impact, elastic / FINE)?;
+        let found = measured(&impact, elastic, FINE)?;
         let expected = law.restitution(0.5);
         let check = Check::absolute(
             "restitution",
@@ -166,7 +167,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
         circumstances.go_on()?;
         let time = dissipation_time(wanted, contact_time, viscoelastic);
         let impact = viscoelastic(time);
-        let found = measured(&impact, contact_time / FINE)?;
+        let found = measured(&impact, contact_time, FINE)?;
         let expected = restitution(&impact, outcome(&impact).velocity);
         let check = Check::absolute(
             "restitution",

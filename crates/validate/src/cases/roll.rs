@@ -70,7 +70,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
             }
         }
     }
-    let thinned: Vec<&Instant> = usual.iter().step_by(50).collect();
+    let thinned: Vec<&Instant> = usual.iter().step_by(usual.len() / 24).collect();
     let of = |read: fn(&Instant) -> f64| thinned.iter().map(|i| read(i)).collect::<Vec<f64>>();
     finding.table = table([
         numbers("time", "t", "since the throw", of(|i| i.time)),
@@ -144,7 +144,11 @@ fn drawing(time: &[f64], velocity: &[f64], rolling: &[f64]) -> Result<Drawing, V
         )
         .with(Reference::horizontal(5.0 / 7.0).label("5/7"))
         .with(Points::new("velocity *v*", time, &scaled(velocity)).series(0))
-        .with(Points::new("spin *rω*", time, &scaled(rolling)).series(1));
+        .with(
+            Points::new("spin *rω*", time, &scaled(rolling))
+                .series(1)
+                .open(),
+        );
     Ok(ChartFigure::new(panel)
         .description(
             "Velocity falls and spin rises until both are 5/7 of the velocity at the start.",

@@ -16,7 +16,7 @@ use crate::finding::{Check, Convergence};
 pub(super) const STEPS_PER_CONTACT: [f64; 4] = [10.0, 20.0, 40.0, 80.0];
 /// The finest of them.
 pub(super) const FINE: f64 = 80.0;
-/// Places within a step at which spheres meet, over which errors are averaged.
+/// Places within a step at which spheres meet, and steps, over which errors are averaged.
 const PHASES: usize = 8;
 /// How the steps are called in documents.
 pub(super) const STEP_UNIT: &str = "t_c";
@@ -70,17 +70,21 @@ pub(super) fn hertz_stiffness(law: &ViscoelasticHertz, impact: &Impact) -> f64 {
     2.0 * law.young_modulus * impact.reduced_radius().sqrt() / (3.0 * (1.0 - nu * nu))
 }
 
-/// Root mean square, over places of the onset within a step, of a relative error.
+/// Root mean square of a relative error, over places of the onset within a step and over steps that fit between `steps` and
+/// one more of them into the contact.
+///
+/// Where it ends within a step matters as much as where it begins: with one step only, the two could cancel.
 pub(super) fn error_of(
     impact: &Impact,
     means: Means,
-    time_step: f64,
+    (contact_time, steps): (f64, f64),
     error: impl Fn(&Rebound) -> f64,
 ) -> Result<f64, ValidateError> {
     let mut sum = 0.0;
     for place in 0..PHASES {
-        let phase = (place as f64 + 0.5) / PHASES as f64;
-        sum += error(&impact.simulate(means, time_step, phase)?).powi(2);
+        let part = |number: usize| ((number % PHASES) as f64 + 0.5) / PHASES as f64;
+        let time_step = contact_time / (steps + part(3 * place));
+        sum += error(&impact.simulate(means, time_step, part(place))?).powi(2);
     }
     Ok((sum / PHASES as f64).sqrt())
 }
@@ -97,7 +101,7 @@ pub(super) fn convergences(
     for means in Means::INTEGRATORS {
         let mut errors = Vec::new();
         for steps in STEPS_PER_CONTACT {
-            errors.push(error_of(impact, means, contact_time / steps, &error)?);
+            errors.push(error_of(impact, means, (contact_time, steps), &error)?);
         }
         found.push(Convergence::new(
             quantity,

@@ -14,7 +14,7 @@ use crate::error::ValidateError;
 
 /// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
 ///
-/// The tube's wall stands outside and is never touched. The engine has no mirror: a few times a contact time the state is
+/// The tube's wall stands outside and is never touched. The engine has no mirror: every few contact times the state is
 /// taken out, the radial velocity of each grain that is outside and goes on outwards is reversed, and the simulation
 /// continued. Nothing is lost there, and the collisions are the engine's own.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct Gas {
 }
 
 /// Longest time between two looks at the mirror, over the duration of a contact.
-const LOOK: f64 = 3.0;
+const LOOK: f64 = 5.0;
 /// Distance of the places on which grains may stand at the start \[d\].
 const PLACES: f64 = 1.25;
 
@@ -105,7 +105,7 @@ impl Gas {
             friction: None,
         };
         let radius = self.radius();
-        let wall = far_away(2.0 * radius + 10.0, self.length);
+        let wall = far_away(radius + 3.0, self.length);
         let parameters = means.parameters(contact, time_step, 0.3);
         let mut simulation = Simulation::new(self.start(seed), wall.clone(), parameters);
         let look = (LOOK * self.law.contact_time(0.5) / time_step)

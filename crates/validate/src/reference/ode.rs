@@ -1,5 +1,8 @@
 //! Ordinary differential equations to high accuracy.
 
+/// A function of the state that happens where it rises through 0.
+type Event<'a, const N: usize> = &'a dyn Fn(&[f64; N]) -> f64;
+
 /// y' = f(y) from `start` until the first of `events` rises through 0, at most for `longest`; answers the time, the state
 /// and which event it was (`events.len()` where none happened).
 ///
@@ -9,7 +12,7 @@
 pub(crate) fn until<const N: usize>(
     f: impl Fn(&[f64; N]) -> [f64; N],
     start: [f64; N],
-    events: &[&dyn Fn(&[f64; N]) -> f64],
+    events: &[Event<'_, N>],
     tolerance: &[f64; N],
     [first_step, longest]: [f64; 2],
 ) -> (f64, [f64; N], usize) {
