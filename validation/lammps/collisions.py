@@ -20,7 +20,7 @@ STEPS = (0.05, 0.02, 0.01, 1e-3, 1e-4, 1e-5, 2e-6)
 TURN = np.linalg.qr(np.array([[1.0, 2.0, 0.5], [-0.3, 1.0, 1.7], [0.8, -0.6, 1.0]]))[0]
 # Speeds, and so overlaps, at which the place where slip velocities are taken makes no difference.
 TINY = 3e-7
-STICKY, SLIPPERY = Friction(0.3, 5.0), Friction(0.3, 0.3)
+STICKY, SLIPPERY = Friction(0.3, 5.0), Friction(0.3, 0.1)
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def _pair(
     """Two grains that touch, with velocities against each other, their lines `offset` apart."""
     second = np.array([offset, 0.0, np.sqrt(1 - offset**2)])
     velocity = np.array([0.0, 0.0, speed])
-    axis = np.array([0.2, 1.0, 0.3])
+    axis = np.array([0.2, -1.0, 0.3])
     positions = np.array([-second / 2, second / 2]) @ TURN + [0, 0, EMPTY.length / 2]
     spins = np.array([spin * axis, 0.4 * spin * axis]) @ TURN
     grains = Grains.of(positions, np.array([velocity, -velocity]) @ TURN, spins)
@@ -81,12 +81,12 @@ CASES = [
     _pair("head-on-3", "head-on, eta 0.5", Linear(0.5), 0.0, 0.1),
     _pair("oblique", "oblique at 30 degrees, eta 0.1", Linear(0.1), 0.5, 0.1),
     _wall("wall-static", "on the wall at rest, eta 0.1", 0.0, Linear(0.1), 12.0),
-    _wall("wall-moving", "on the moving wall, eta 0.00548", 0.05, Linear(5.48e-3), 40.0),
+    _wall("wall-moving", "on the moving wall, twice, eta 0.00548", 0.05, Linear(5.48e-3), 20.0),
     _pair("hertz", "Hertz, head-on, B 0.15", Hertz(0.15), 0.0, 0.05),
     _pair("hertz-oblique", "Hertz, oblique, B 0.15", Hertz(0.15), 0.5, 0.05),
     _pair("stick", "friction, sticks, tiny overlap", Linear(0.0, STICKY), 0.5, TINY, TINY),
     _pair("slip", "friction, slides, tiny overlap", Linear(0.0, SLIPPERY), 0.5, TINY, TINY),
-    _pair("slip-large", "friction, slides, overlap 0.06", Linear(0.0, SLIPPERY), 0.5, 0.1, 0.1),
+    _pair("stick-large", "friction, sticks, overlap 0.06", Linear(0.0, STICKY), 0.5, 0.1, 0.1),
     _pair("slip-damped", "friction, slides, tiny overlap, eta 0.1", Linear(0.1, SLIPPERY), 0.5, TINY, TINY),
     _pair("hertz-friction", "Hertz with friction, B 0.15, k_t 1, mu 0.5", Hertz(0.15, Friction(1.0, 0.5)), 0.5, 0.02, 0.05),
 ]

@@ -62,7 +62,7 @@ def _save(figure: Figure, path: Path) -> None:
 
 def draw_collisions(found: dict[str, Found], path: Path) -> None:
     """The difference from the exact collision against the length of a step."""
-    shown = [case for case in collisions.CASES if case.name in ("head-on-2", "hertz-oblique", "slip-large") and case.name in found]
+    shown = [case for case in collisions.CASES if case.name in ("head-on-2", "hertz-oblique", "stick-large") and case.name in found]
     with matplotlib.rc_context(STYLE):
         figure, grid = _figure(len(shown), 56.0, sharey=True, squeeze=False)
         for axes, case in zip(grid[0], shown, strict=True):
