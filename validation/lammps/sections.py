@@ -136,7 +136,7 @@ def of_statistics(name: str, found: Samples, points: list[Point], compared: dict
             if result.observable != apart:
                 agreeing.append(result)
         rows.append(row)
-    header = ["tube, start, periods"]
+    header = ["lattice or law, strain rate, width, start, periods"]
     for title in compared.values():
         header += [f"{title}, ours", "LAMMPS", "difference/error"]
     chi_squared = sum(result.deviation**2 for result in agreeing)
