@@ -62,7 +62,7 @@ def _save(figure: Figure, path: Path) -> None:
 
 def draw_collisions(found: dict[str, Found], path: Path) -> None:
     """The difference from the exact collision against the length of a step."""
-    shown = [case for case in collisions.CASES if case.name in ("head-on-2", "hertz-oblique", "slip-large") and case.name in found]
+    shown = [case for case in collisions.CASES if case.name in ("head-on-2", "hertz-oblique", "stick-large") and case.name in found]
     with matplotlib.rc_context(STYLE):
         figure, grid = _figure(len(shown), 56.0, sharey=True, squeeze=False)
         for axes, case in zip(grid[0], shown, strict=True):
@@ -110,7 +110,7 @@ def draw_chaos(found: dict[str, list[dict[str, list[float]]]], path: Path) -> No
             axes.set_visible(False)
         figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=len(PAIR_LABELS))
         for axes in grid[:, 0]:
-            axes.set_ylabel("distance of a grain in two runs [d]")
+            axes.set_ylabel("distance of two runs [d]")
         for axes in grid[-1]:
             axes.set_xlabel("time [t]")
         _save(figure, path)
@@ -147,9 +147,12 @@ def draw_stationary(found: Samples, path: Path) -> None:
                 chosen = [result for result in results if result.observable == observable]
                 _draw_means(above, chosen)
                 _draw_deviations(below, chosen)
-                above.set_ylabel(stationary.COMPARED[observable])
+                above.set_ylabel(stationary.COMPARED[observable].replace("J/Jmax", r"$J/J_\mathrm{max}$"))
                 above.set_title(titles[group])
                 below.set_xlabel("bottleneck w [d]")
+                widths = [point.width for point in points]
+                for axes in (above, below):
+                    axes.set_xlim(min(widths) - 0.02, max(widths) + 0.02)
                 if observable == "granular_temperature":
                     above.set_yscale("log")
         grid[0, 0].legend(loc="lower left")

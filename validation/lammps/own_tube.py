@@ -46,7 +46,8 @@ class OwnTube:
             "drive.width": tube.width,
             "drive.strain_rate": tube.strain_rate,
             "run.time_step": tube.time_step,
-            "run.duration": max(1, frames) * steps * tube.time_step,
+            # A static tube is sampled 200 times in a run, and a step must fit into that.
+            "run.duration": 200 * max(1, frames) * steps * tube.time_step,
         }
         command = [str(self.program), "frictionless", str(frames), str(steps), *words]
         command += [f"{key}={value}" for key, value in settings.items()]

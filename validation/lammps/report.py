@@ -49,7 +49,7 @@ def with_error(value: float, error: float) -> str:
     if not (math.isfinite(error) and error > 0):
         return f"{value:.4g}"
     digits = max(0, 1 - math.floor(math.log10(error)))
-    if digits > 6:
+    if digits > 4 and 0 < abs(value) < 0.01:
         exponent = math.floor(math.log10(abs(value)))
         scale = 10.0**-exponent
         return f"({with_error(value * scale, error * scale)}) x 1e{exponent}"

@@ -136,14 +136,13 @@ def of_statistics(name: str, found: Samples, points: list[Point], compared: dict
             if result.observable != apart:
                 agreeing.append(result)
         rows.append(row)
-    header = ["tube, start, periods"]
+    header = ["lattice or law, strain rate, width, start, periods"]
     for title in compared.values():
         header += [f"{title}, ours", "LAMMPS", "difference/error"]
     chi_squared = sum(result.deviation**2 for result in agreeing)
     probability = chance(chi_squared, len(agreeing))
-    runs = {program: min(len(samples[program]) for samples in found.values()) for program in (OURS, THEIRS)}
     words = (
-        f"\n{runs[OURS]} runs of ours and {runs[THEIRS]} of LAMMPS at each point. Chi squared over the "
+        f"\n{_numbers(found, OURS)} runs of ours and {_numbers(found, THEIRS)} of LAMMPS at each point. Chi squared over the "
         f"{len(agreeing)} differences of {_listed([compared[key] for key in compared if key != apart])}: {chi_squared:.1f}; "
         f"by chance it is larger in {100 * probability:.0f} % of cases.\n"
     )
@@ -162,6 +161,12 @@ def of_statistics(name: str, found: Samples, points: list[Point], compared: dict
         for run, sample in enumerate(samples)
     ]
     return Section(name, table(header, rows) + words, faults, columns, csv_rows)
+
+
+def _numbers(found: Samples, program: str) -> str:
+    """Of runs at a point, from the least to the largest."""
+    numbers = sorted({len(samples[program]) for samples in found.values()})
+    return " or ".join(map(str, numbers))
 
 
 def _listed(words: list[str]) -> str:

@@ -25,6 +25,9 @@ SMOOTH = Linear(5.48e-3)
 FRICTIONAL = Linear(0.0, Friction(0.3, 0.5))
 FRICTIONAL_HERTZ = Hertz(0.15, Friction(1.0, 0.5))
 VOLUME_FRACTION = 0.15
+# A round is one run of LAMMPS and four of ours at each point. Slow ones take two rounds, some minutes each.
+ROUNDS, SLOW_ROUNDS, QUICK_ROUNDS = 6, 2, 2
+RUNS_OF_A_ROUND = {OURS: 4, THEIRS: 1}
 
 
 @dataclass(frozen=True)
@@ -39,6 +42,8 @@ class Point:
     first_period: int
     last_period: int
     law: Law
+    # At most so many rounds of runs.
+    most_rounds: int
 
     @property
     def name(self) -> str:
@@ -55,11 +60,17 @@ class Point:
 
 
 def _line(
-    group: str, lattice: Lattice, law: Law, strain_rate: float, periods: tuple[int, int], starts: dict[str, tuple[float, ...]]
+    group: str,
+    lattice: Lattice,
+    law: Law,
+    strain_rate: float,
+    periods: tuple[int, int],
+    starts: dict[str, tuple[float, ...]],
+    most_rounds: int = ROUNDS,
 ) -> list[Point]:
     """Points of one lattice, law and strain rate, by the state that they start from."""
     return [
-        Point(group, lattice, strain_rate, width, start, *periods, law)
+        Point(group, lattice, strain_rate, width, start, *periods, law, most_rounds)
         for start, widths in starts.items()
         for width in widths
     ]
@@ -77,12 +88,9 @@ POINTS = [
 # The same in a coarse tube with friction between all spheres.
 FRICTIONAL_POINTS = [
     *_line("linear", COARSE, FRICTIONAL, 0.02, (6, 20), {"jammed": (2.0,), "rest": (2.75,)}),
-    *_line("linear", COARSE, FRICTIONAL, 0.002, (3, 8), {"jammed": (2.0,), "rest": (2.75,)}),
+    *_line("linear", COARSE, FRICTIONAL, 0.002, (3, 8), {"jammed": (2.0,), "rest": (2.75,)}, SLOW_ROUNDS),
     *_line("hertz", COARSE, FRICTIONAL_HERTZ, 0.005, (4, 10), {"jammed": (2.2,), "rest": (2.75,)}),
 ]
-# A round is one run of LAMMPS and four of ours at each point.
-ROUNDS, QUICK_ROUNDS = 6, 2
-RUNS_OF_A_ROUND = {OURS: 4, THEIRS: 1}
 QUICK_POINTS = ("coarse-0.05-2.75-rest", "coarse-0.05-2.85-rest")
 QUICK_FRICTIONAL_POINTS = ("linear-0.02-2.75-rest",)
 COMPARED = {
@@ -110,6 +118,8 @@ def measure(points: list[Point], rounds: int, own: OwnTube, store: Store) -> dic
     found: dict[str, dict[str, list[dict[str, float]]]] = {point.name: {OURS: [], THEIRS: []} for point in points}
     for turn in range(rounds):
         for point in points:
+            if turn >= point.most_rounds:
+                continue
             for program, runs in RUNS_OF_A_ROUND.items():
                 for run in range(runs):
                     seed = FIRST_SEED[program] + turn * runs + run
