@@ -159,7 +159,7 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         }
         let took = start.elapsed() - before;
         if took < PIECE {
-            piece = 2 * piece;
+            piece = piece.saturating_mul(2);
         }
         let steps = run.simulation().step() - first;
         if before > TRIAL / 2 {
@@ -206,6 +206,15 @@ fn contact_time(configuration: &Configuration) -> f64 {
     std::f64::consts::PI / (stiffest / reduced_mass).sqrt()
 }
 
+/// A time with three digits that say something, however short it is.
+fn span(time: f64) -> String {
+    if time < 0.01 {
+        format!("{time:.2e}")
+    } else {
+        format!("{time:.3}")
+    }
+}
+
 /// What looks doubtful in a configuration.
 #[must_use]
 pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
@@ -216,8 +225,10 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
         warnings.push(Warning {
             key: "run.time_step",
             message: format!(
-                "a step of {step:.3} is too long for a contact that lasts {contact_time:.3}: take {:.3} or less",
-                contact_time / STEPS_PER_CONTACT
+                "a step of {} is too long for a contact that lasts {}: take {} or less",
+                span(step),
+                span(contact_time),
+                span(contact_time / STEPS_PER_CONTACT)
             ),
         });
     }

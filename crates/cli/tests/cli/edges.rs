@@ -23,13 +23,12 @@ const ANY: &[(&[&str], Fate)] = &[
     (&["grains.number=0", "initial.state=jammed"], Runs),
     (&["grains.number=900_000_000_000"], Refused("grains.number")),
     (&["grains.number=20_000_000"], Refused("do not fit")),
-    (&["grains.number=3000"], Refused("do not fit")),
     (&["grains.volume_fraction=1e300"], Refused("at most 10")),
     (
         &["grains.number_density=nan"],
         Refused("grains.number_density"),
     ),
-    (&["grains.diameter_min=0.01"], Runs),
+    (&["grains.diameter_min=0.01"], Tried),
     (
         &["grains.diameter_min=0.01", "grains.diameter_max=0.01"],
         Runs,
@@ -48,7 +47,7 @@ const ANY: &[(&[&str], Fate)] = &[
     (&["run.time_step=100"], Tried),
     (&["run.time_step=1e300"], Refused("run.time_step")),
     (&["run.neighbour_skin=1e300"], Refused("run.neighbour_skin")),
-    (&["run.periods=1e300"], Refused("beyond reach")),
+    (&["run.periods=1e300"], Refused("run.periods")),
     (&["run.periods=nan"], Refused("run.periods")),
     (&["run.seed=18446744073709551616"], Refused("run.seed")),
     (&["tube.waves=0"], Refused("tube.waves")),
@@ -71,6 +70,7 @@ const ANY: &[(&[&str], Fate)] = &[
 
 /// Settings for a prescribed wall and the linear law.
 const STRAIN: &[(&[&str], Fate)] = &[
+    (&["grains.number=3000"], Refused("do not fit")),
     (&["tube.waves=1"], Runs),
     (&["tube.waves=1000"], Runs),
     // A straight tube, a tube that is closed, and one that is turned inside out.
@@ -125,6 +125,7 @@ const STRESS: &[(&[&str], Fate)] = &[
 ];
 
 fn try_all(preset: &str, tables: &[&[(&[&str], Fate)]]) {
+    let mut wrong = Vec::new();
     for &(settings, fate) in tables.iter().copied().flatten() {
         let place = Place::new();
         let is_set = |key: &str| settings.iter().any(|setting| setting.starts_with(key));
@@ -145,36 +146,32 @@ fn try_all(preset: &str, tables: &[&[(&[&str], Fate)]]) {
         let arguments: Vec<&str> = base.into_iter().chain(settings).collect();
         for command in [&["check"][..], &["run", "--out", "out"]] {
             let outcome = place.call(command.iter().chain(&arguments));
-            assert_fate(
-                &place,
-                &outcome,
-                fate,
-                &format!("{preset} {command:?} {all:?}"),
-            );
+            if let Err(what) = judge(&place, &outcome, fate) {
+                wrong.push(format!("{command:?} {all:?}: {what}"));
+            }
         }
     }
+    assert!(wrong.is_empty(), "{preset}: {wrong:#?}");
 }
 
-/// Asserts that a call ended as it may: with a documented code, no panic, and a message that says what to do.
-fn assert_fate(place: &Place, outcome: &Outcome, fate: Fate, name: &str) {
+/// Whether a call ended as it may: with a documented code, no panic, and a message that says what to do.
+fn judge(place: &Place, outcome: &Outcome, fate: Fate) -> Result<(), String> {
     let message = outcome.message();
-    assert!(!message.contains("panicked"), "{name}: {message}");
-    match (outcome.code, fate) {
-        (Some(0), Runs | Tried) => {}
-        (Some(1), Tried) => {
-            assert!(message.contains("diverged at step"), "{name}: {message}");
-            assert!(message.contains("help:"), "{name}: {message}");
-            assert!(place.path("out/state.checkpoint").is_file(), "{name}");
-        }
-        (Some(2), Refused(part)) => {
-            assert!(message.contains("error:"), "{name}: {message}");
-            assert!(message.contains("help:"), "{name}: {message}");
-            assert!(message.contains(part), "{name}: {part} is not in {message}");
-            assert!(!place.path("out").exists(), "{name}");
-        }
+    let state = place.path("out/state.checkpoint");
+    let is_right = match (outcome.code, fate) {
+        (Some(0), Runs | Tried) => true,
+        (Some(1), Tried) => message.contains("diverged at step") && state.is_file(),
+        (Some(2), Refused(part)) => message.contains(part) && !place.path("out").exists(),
         // A trial may as well be refused, where it says why.
-        (Some(2), Tried) => assert!(message.contains("help:"), "{name}: {message}"),
-        (code, _) => panic!("{name}: {code:?}, {fate:?}: {message}"),
+        (Some(2), Tried) => true,
+        _ => false,
+    };
+    let is_helpful =
+        outcome.code == Some(0) || message.contains("error:") && message.contains("help:");
+    if is_right && is_helpful && !message.contains("panicked") {
+        Ok(())
+    } else {
+        Err(format!("{:?} instead of {fate:?}: {message}", outcome.code))
     }
 }
 

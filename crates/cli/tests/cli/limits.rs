@@ -212,6 +212,7 @@ fn a_tube_for_which_there_is_no_memory_is_refused_in_words() {
         "grains.diameter_min=0.01",
         "grains.diameter_max=0.01",
         "tube.waves=200",
+        "run.periods=0.05",
     ];
     let small = small.iter().flat_map(|setting| ["--set", setting]);
     let small: Vec<&str> = ["run"]

@@ -33,7 +33,8 @@ pub struct Trajectory {
 /// What was written of a trajectory.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
 pub struct TrajectoryReport {
-    /// The files that readers open.
+    /// The files that readers open; what in a name is no text is written with marks in its place.
+    #[serde(serialize_with = "as_text")]
     pub files: Vec<PathBuf>,
     /// Frames.
     pub frames: u64,
@@ -41,6 +42,11 @@ pub struct TrajectoryReport {
     pub interval_steps: u64,
     /// Bytes of all files.
     pub bytes: u64,
+}
+
+/// Paths as JSON can hold them.
+fn as_text<S: serde::Serializer>(paths: &[PathBuf], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(paths.iter().map(|path| path.to_string_lossy()))
 }
 
 /// What would be written of a trajectory.
