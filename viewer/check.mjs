@@ -6,7 +6,7 @@
 // Debian's.
 import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -53,6 +53,16 @@ async function open(browser, address, options, ready = () => window.viewer?.meas
   // Without a graphics card a picture may take seconds where others use the machine as well.
   page.setDefaultTimeout(120000);
   const complaints = [];
+  // Files that are offered for download: this browser has nowhere to put them.
+  await page.addInitScript(() => {
+    window.offered = new Map();
+    const create = URL.createObjectURL;
+    URL.createObjectURL = (file) => {
+      const address = create(file);
+      window.offered.set(address, file);
+      return address;
+    };
+  });
   page.on("console", (message) => ["error", "warning"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(error.message));
   page.on("request", (request) => {
@@ -485,9 +495,13 @@ async function checkWeb(browser) {
     await page.click("#save");
     await until(page, () => document.getElementById("saved").open);
     const folder = join(runs, `from-web-${preset}`);
+    mkdirSync(folder);
     for (const link of ["#saved-toml", "#saved-state"]) {
-      const [file] = await Promise.all([page.waitForEvent("download"), page.click(link)]);
-      await file.saveAs(join(folder, file.suggestedFilename()));
+      const [name, bytes] = await page.evaluate(async (link) => {
+        const { download, href } = document.querySelector(link);
+        return [download, [...new Uint8Array(await window.offered.get(href).arrayBuffer())]];
+      }, link);
+      writeFileSync(join(folder, name), Uint8Array.from(bytes));
     }
     const resumed = spawnSync(program, ["run", "--quiet", "--resume", folder]);
     assert.equal(resumed.status, 0, String(resumed.stderr));

@@ -42,7 +42,7 @@ export function curvesOf(points: Point[], members: (Value | null)[], starts: str
   members.forEach((member, place) => {
     // Not to the ends of the scale, which are hard to see on one of the pages.
     const part = members.length > 1 ? place / (members.length - 1) : 0.25;
-    const colour = css(colourAt(LIGHTNESS, dark ? 0.35 + 0.65 * part : 0.78 * part));
+    const colour = css(colourAt(LIGHTNESS, dark ? 0.42 + 0.58 * part : 0.78 * part));
     for (const start of starts) {
       const own = points.filter((point) => point.other === member && point.start === start);
       if (own.length === 0) continue;

@@ -32,3 +32,11 @@ export function isDark(): boolean {
   const { look } = document.documentElement.dataset;
   return look === "dark" || (look !== "light" && matchMedia("(prefers-color-scheme: dark)").matches);
 }
+
+/** The options of a choice, made anew only where they are others. */
+export function options(id: string, all: { name: string; label: string }[], chosen: string): void {
+  const select = element<HTMLSelectElement>(id);
+  const same = select.options.length === all.length && all.every(({ name }, k) => select.options[k].value === name);
+  if (!same) select.replaceChildren(...all.map(({ name, label }) => new Option(label, name)));
+  select.value = chosen;
+}

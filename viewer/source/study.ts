@@ -1,28 +1,15 @@
+import { keep, read } from "./choice";
 import { Chart, ink, written } from "./charts";
-import { type Curve, curvesOf, drawCurves, extent, mark, type Style } from "./curves";
-import { css, colourAt } from "./fields";
+import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
-import { across, type Cell, drawHeat, LIGHTNESS, type Scale } from "./heat";
-import { element, fill, isDark, listenToLook } from "./page";
+import { across, type Cell, drawHeat, type Scale } from "./heat";
+import { showMarks, showScale } from "./legend";
+import { element, fill, isDark, listenToLook, options } from "./page";
 import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
 import { withError } from "./words";
 
 /** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
 const EACH = { growing: 4000, done: 15000 };
-
-type View = "curves" | "heat" | "figures";
-
-/** What is shown of a study, as the address keeps it. */
-interface Choice {
-  study: number;
-  view: View;
-  value: string;
-  x: string;
-  other: string;
-  start: string;
-  logarithmic: boolean;
-  fixed: Map<string, Value>;
-}
 
 /** A canvas with what can be pointed at in it. */
 interface Panel {
@@ -37,9 +24,7 @@ interface Panel {
 class StudyPage {
   private list: List = { studies: [], figures: [] };
   private results: Results | null = null;
-  private choice: Choice = {
-    study: 0, view: "curves", value: "", x: "", other: "", start: "both", logarithmic: false, fixed: new Map(),
-  };
+  private choice = read();
   private panels: Panel[] = [];
   private points: Point[] = [];
   private chosen: Point | null = null;
@@ -48,7 +33,6 @@ class StudyPage {
   private drawn = 0;
 
   constructor() {
-    this.read();
     this.listen();
     void this.begin();
   }
@@ -173,7 +157,7 @@ class StudyPage {
     this.regroup();
     this.layOut();
     this.draw();
-    this.write();
+    keep(this.choice);
   }
 
   private showFacts(): void {
@@ -337,50 +321,13 @@ class StudyPage {
   }
 
   private showLegend(): void {
-    const box = element("legend");
-    box.replaceChildren();
     const { results, choice } = this;
-    if (!results || this.points.length === 0) return;
+    const box = element("legend");
+    if (!results || this.points.length === 0) return box.replaceChildren();
     const value = results.quantities.find(({ name }) => name === choice.value)?.label ?? "";
-    const head = document.createElement("h2");
-    box.append(head);
-    if (choice.view === "heat") {
-      head.textContent = value;
-      const { from, to, logarithmic } = this.scale();
-      const bar = document.createElement("div");
-      bar.className = "bar";
-      bar.style.background = `linear-gradient(90deg, ${Array.from({ length: 12 }, (_, k) => css(colourAt(LIGHTNESS, k / 11))).join(",")})`;
-      const ends = document.createElement("div");
-      ends.className = "ends";
-      const middle = logarithmic ? Math.sqrt(from * to) : 0.5 * (from + to);
-      ends.append(...[from, middle, to].map((end) => Object.assign(document.createElement("span"), { textContent: written(end) })));
-      box.append(bar, ends);
-      return;
-    }
+    if (choice.view === "heat") return showScale(box, value, this.scale());
     const family = results.parameter(choice.other);
-    head.textContent = family ? family.label : value;
-    const both = this.shownStarts().length > 1;
-    const item = (text: string, style: Style, dashed: boolean) => {
-      const line = document.createElement("div");
-      line.className = "item";
-      const canvas = document.createElement("canvas");
-      line.append(canvas, text);
-      box.append(line);
-      sample(canvas, style, dashed);
-    };
-    const curves = this.curves();
-    for (const member of family ? this.members() : []) {
-      const style = curves.find((curve) => curve.member === member)?.style;
-      if (style) item(typeof member === "number" ? written(member) : String(member), { ...style, open: !both && style.open }, !both && style.open);
-    }
-    const colour = ink().text;
-    if (both) for (const start of this.shownStarts()) item(`from ${start}`, { colour, mark: 0, open: start === "jammed" }, start === "jammed");
-    if (this.points.some(({ atLeast }) => atLeast)) {
-      const line = document.createElement("div");
-      line.className = "item note";
-      line.textContent = "↑ at least: runs ended before their transition";
-      box.append(line);
-    }
+    showMarks(box, family?.label ?? value, this.curves(), this.points.some(({ atLeast }) => atLeast));
   }
 
   /** What a point says, in words. */
@@ -558,7 +505,7 @@ class StudyPage {
     listenToLook(() => this.show());
     window.addEventListener("hashchange", () => {
       const before = this.choice.study;
-      this.read();
+      this.choice = read();
       if (this.choice.study === before) this.show();
       else void this.open(this.choice.study);
     });
@@ -567,31 +514,6 @@ class StudyPage {
   private say(text: string): void {
     element("status").textContent = text;
     element("status").hidden = text === "";
-  }
-
-  /** Keeps the choice in the address, so that one comes back to it. */
-  private write(): void {
-    const { study, view, value, x, other, start, logarithmic, fixed } = this.choice;
-    const parts = new URLSearchParams({ study: String(study), view, value, x, other, start });
-    if (logarithmic) parts.set("log", "1");
-    for (const [name, it] of fixed) parts.set(`at.${name}`, String(it));
-    history.replaceState(null, "", `#${parts}`);
-    sessionStorage.setItem("study", location.hash);
-  }
-
-  private read(): void {
-    const parts = new URLSearchParams(location.hash.slice(1));
-    const { choice } = this;
-    const view = parts.get("view");
-    choice.study = Math.max(0, Number.parseInt(parts.get("study") ?? "0", 10) || 0);
-    choice.view = view === "heat" || view === "figures" ? view : "curves";
-    for (const name of ["value", "x", "other", "start"] as const) choice[name] = parts.get(name) ?? choice[name];
-    choice.logarithmic = parts.get("log") === "1";
-    choice.fixed = new Map();
-    for (const [name, text] of parts) {
-      if (!name.startsWith("at.")) continue;
-      choice.fixed.set(name.slice(3), Number.isNaN(Number(text)) ? text : Number(text));
-    }
   }
 
   /** What tests look at. */
@@ -609,30 +531,6 @@ class StudyPage {
       chosen: this.chosen && { x: this.chosen.x, value: this.chosen.value, number: this.chosen.number },
     };
   }
-}
-
-function options(id: string, all: { name: string; label: string }[], chosen: string): void {
-  const select = element<HTMLSelectElement>(id);
-  const same = select.options.length === all.length && all.every(({ name }, k) => select.options[k].value === name);
-  if (!same) select.replaceChildren(...all.map(({ name, label }) => new Option(label, name)));
-  select.value = chosen;
-}
-
-/** A mark on a piece of its line. */
-function sample(canvas: HTMLCanvasElement, style: Style, dashed: boolean): void {
-  const density = Math.min(3, devicePixelRatio);
-  [canvas.width, canvas.height] = [40 * density, 16 * density];
-  const context = canvas.getContext("2d");
-  if (!context) return;
-  context.scale(density, density);
-  context.strokeStyle = style.colour;
-  context.lineWidth = 1.6;
-  context.setLineDash(dashed ? [5, 4] : []);
-  context.beginPath();
-  context.moveTo(1, 8);
-  context.lineTo(39, 8);
-  context.stroke();
-  mark(context, 20, 8, 4, style, ink().back);
 }
 
 declare global {

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
-use peristalsis_configuration::ScheduledParameter;
+use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_run::{Run, RunError, RunFolder};
 
 use crate::course::{Course, thin};
@@ -314,12 +314,24 @@ impl Tube {
         }
     }
 
-    fn save(&mut self) -> Result<(), RunError> {
+    /// The configuration, of a run so long that there is something to go on with.
+    fn longer(&self) -> Configuration {
         let mut configuration = self.run.configuration().clone();
-        // So that there is something to go on with.
-        let taken = self.run.recorder().samples().len() as u64;
-        let more = 10 * u64::from(configuration.observe.samples_per_period);
-        configuration.run.samples = configuration.run.samples.max(taken + more);
+        // A static wave has no periods that could be added.
+        if configuration.run.periods.is_some() {
+            let each = u64::from(configuration.observe.samples_per_period);
+            let taken = self.run.recorder().samples().len() as u64;
+            let samples = configuration.run.samples.max(taken + 10 * each);
+            let periods = samples as f64 / each as f64;
+            configuration.run.duration *= samples as f64 / configuration.run.samples as f64;
+            configuration.run.samples = samples;
+            configuration.run.periods = Some(periods);
+        }
+        configuration
+    }
+
+    fn save(&mut self) -> Result<(), RunError> {
+        let configuration = self.longer();
         let toml = configuration.to_toml();
         let (folder, state) = match &self.labels.saves {
             Saves::Page => (None, Some(STANDARD.encode(self.run.to_checkpoint()?))),

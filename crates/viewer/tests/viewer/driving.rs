@@ -139,3 +139,16 @@ fn a_saved_state_goes_on_from_the_command_line() {
     let there = run.simulation().bodies().position[0].to_array();
     assert_eq!(there.map(|it| it as f32), onward.numbers[..3]);
 }
+
+#[test]
+fn a_state_beyond_the_end_of_its_run_has_something_to_go_on_with() {
+    let served = Served::new("frictionless", &["tube.waves=2", "run.periods=1"]);
+    let (mut client, _) = served.client();
+    client.send(r#"{"type":"seek","period":1.5}"#);
+    client.frame_with(|head| head["clock"].as_f64().unwrap() >= 1.5);
+    client.send(r#"{"type":"save"}"#);
+    let saved = client.notice();
+    assert_eq!(saved["type"], "saved", "{saved}");
+    let (_, run) = RunFolder::resume(&served.saves.join("tube-1")).unwrap();
+    assert_eq!(run.configuration().run.periods, Some(11.5));
+}
