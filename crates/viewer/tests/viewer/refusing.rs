@@ -276,6 +276,10 @@ fn requests_are_short_and_one_is_one() {
 }
 
 /// A WebSocket that is spoken by hand.
+#[allow(
+    clippy::unwrap_used,
+    reason = "a test fails where what it needs is missing"
+)]
 fn by_hand(served: &Served) -> TcpStream {
     let mut stream = served.connect();
     let request = format!(
