@@ -34,7 +34,6 @@ class Case:
     speed: float
     duration: float
     least_step: float = 2e-6
-    tolerance: float = TOLERANCE
 
     @property
     def with_wall(self) -> bool:
@@ -91,7 +90,7 @@ CASES = [
     _pair("slip-damped", "friction, slides, tiny overlap, eta 0.1", Linear(0.1, SLIPPERY), 0.5, TINY, TINY),
     _pair("hertz-friction", "Hertz with friction, B 0.15, k_t 1, mu 0.5", Hertz(0.15, Friction(1.0, 0.5)), 0.5, 0.02, 0.05),
 ]
-QUICK_LEAST_STEP = 1e-4
+QUICK_LEAST_STEP, QUICK_TOLERANCE = 1e-4, 5e-5
 
 
 # Values of a case: velocities and spins afterwards, by program (or the method of order 4, as read by it) and step.
@@ -145,8 +144,7 @@ class Outcome:
         """With each other, or, where they read the law differently, each with its own."""
         same = self.readings is None or self.readings < TOLERANCE
         differences = [self.between] if same else [self.ours or 0.0, self.theirs or 0.0]
-        # A step as long as those of a quick run leaves more.
-        return max(differences) < self.case.tolerance * max(1.0, self.step / 1e-5)
+        return max(differences) < (TOLERANCE if self.step < QUICK_LEAST_STEP else QUICK_TOLERANCE)
 
     @classmethod
     def of(cls, case: Case, found: Found) -> Outcome:

@@ -77,7 +77,7 @@ def draw_collisions(found: dict[str, Found], path: Path) -> None:
             axes.axhline(collisions.TOLERANCE, color=GREY, lw=0.4)
         grid[0, 0].set_ylabel("difference from the exact\nvelocity and spin after / speed")
         grid[0, 0].set_ylim(1e-9, 0.2)
-        grid[0, 0].legend(loc="lower right")
+        grid[0, -1].legend(loc="upper left")
         _save(figure, path)
 
 
