@@ -113,8 +113,7 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
              speed. 1/sqrt(T) grows linearly in time; its slope, divided by that of kinetic theory (contact value of Carnahan & \
              Starling, second Sonine coefficient, e as the engine's own collisions have it at this step), is 1. The error is \
              that of the mean over replicates; three of them and {:.1} % are allowed: soft grains touch for a while, \
-             in which their line of centres turns (in a gas at a volume fraction of 0.02 whose grains were five times as fast the \
-             rate was lower by 6 %). The engine has no fully periodic box: the gas is in a cylinder that is periodic along its axis \
+             in which their line of centres turns. The engine has no fully periodic box: the gas is in a cylinder that is periodic along its axis \
              and has a mirror for a side (the state is taken out and radial velocities of grains outside are reversed), which \
              takes no energy; theory is corrected for the collisions that grains beside the mirror lack.",
             100.0 * SYSTEMATIC
