@@ -198,7 +198,9 @@ fn shifted(original: &State) -> f64 {
         ..sphere
     });
     let number = |i: usize| numbers[i];
-    let place = |r: DVec3| r + f64::from(waves) * lattice.wavelength * DVec3::Z;
+    let (length, shift) = (lattice.length(), f64::from(waves) * lattice.wavelength);
+    // Within the tube: a wall sphere that has gone round it would pull at its tether.
+    let place = |r: DVec3| DVec3::new(r.x, r.y, (r.z + shift).rem_euclid(length));
     rigidly(original, &number, &place, &|v| v, &|s| s)
 }
 

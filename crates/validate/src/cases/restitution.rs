@@ -107,10 +107,19 @@ fn elastic_contact_time() -> f64 {
     .contact_time()
 }
 
-/// Mean restitution of two grains under the linear law with so many steps in a contact.
+/// Root mean square restitution of two grains under the linear law with exactly so many steps in a contact, over places of
+/// the onset within a step: what a gas of them has.
 pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64, ValidateError> {
+    const PLACES: usize = 16;
     let (law, impact) = linear(damping);
-    measured(&impact, law.contact_time(0.5), steps)
+    let time_step = law.contact_time(0.5) / steps;
+    let mut sum = 0.0;
+    for place in 0..PLACES {
+        let phase = (place as f64 + 0.5) / PLACES as f64;
+        let rebound = impact.simulate(Means::USUAL, time_step, phase)?;
+        sum += restitution(&impact, rebound.velocity).powi(2);
+    }
+    Ok((sum / PLACES as f64).sqrt())
 }
 
 /// Mean restitution over places of onset and end within a step.
