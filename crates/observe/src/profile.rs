@@ -212,8 +212,13 @@ impl WaveFrameProfile {
     /// Whether it can be a profile with so many bins and samples in a block.
     #[must_use]
     pub fn fits(&self, bins: usize, samples_per_block: u64) -> bool {
+        let first = samples_per_block.max(1);
+        // Blocks are doubled when there are many of them.
+        let doubled = self.block / first;
         self.bins == bins.max(1)
-            && self.block == samples_per_block.max(1)
+            && self.block.is_multiple_of(first)
+            && doubled.is_power_of_two()
+            && self.blocks.len() <= MOST_BLOCKS
             && self.in_last <= self.block
             && self.blocks.iter().all(|block| block.len() == self.bins)
     }
