@@ -110,7 +110,7 @@ fn check_row(check: &Check) -> String {
 fn convergence_table(group: &[Convergence]) -> String {
     let mut text = String::from("\n| relative error of | experiment |");
     for step in &group[0].steps {
-        text.push_str(&format!(" h = {} {} |", step_text(*step), group[0].unit));
+        text.push_str(&format!(" h = {step} {} |", group[0].unit));
     }
     text.push_str(" order | allowed | |\n|---|---|");
     text.push_str(&"---|".repeat(group[0].steps.len() + 3));
@@ -133,22 +133,6 @@ fn convergence_table(group: &[Convergence]) -> String {
         ));
     }
     text
-}
-
-/// A step: as a fraction where it is one.
-fn step_text(step: f64) -> String {
-    let inverse = 1.0 / step;
-    if (inverse - inverse.round()).abs() < 1e-9
-        && inverse > 1.5
-        && step != 0.1
-        && step != 0.05
-        && step != 0.025
-        && step != 0.0125
-    {
-        format!("1/{}", inverse.round())
-    } else {
-        format!("{step}")
-    }
 }
 
 /// Six digits that count.
