@@ -30,8 +30,8 @@ const ANY: &[(&[&str], Fate)] = &[
     ),
     (&["grains.diameter_min=0.01"], Tried),
     (
-        &["grains.diameter_min=0.01", "grains.diameter_max=0.01"],
-        Runs,
+        &["grains.diameter_min=0.1", "grains.diameter_max=0.1"],
+        Tried,
     ),
     (&["grains.diameter_max=100"], Refused("closes on itself")),
     (&["grains.diameter_min=1e-300"], Tried),

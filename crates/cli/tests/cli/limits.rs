@@ -215,7 +215,7 @@ fn a_tube_for_which_there_is_no_memory_is_refused_in_words() {
         "run.periods=0.05",
     ];
     let small = small.iter().flat_map(|setting| ["--set", setting]);
-    let small: Vec<&str> = ["run"]
+    let small: Vec<&str> = ["check"]
         .into_iter()
         .chain(SMALL.iter().copied())
         .chain(small)
