@@ -41,8 +41,8 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
     let estimate = &plan["estimate"];
     assert_eq!(estimate["points"], 4);
     assert_eq!(estimate["runs"], 12);
-    // 0.5 is halved three times, in two lines, by three replicates.
-    assert_eq!(estimate["refinement_runs"], 3 * 2 * 3);
+    // 0.5 in eighths has seven places between its ends, in two lines, by three replicates.
+    assert_eq!(estimate["refinement_runs"], 7 * 2 * 3);
     // 70 periods of 10 in steps of 0.05.
     assert_eq!(estimate["steps"], 12 * 14_000);
     assert_eq!(estimate["grain_steps"], 12.0 * 14_000.0 * 100.0);
