@@ -288,11 +288,13 @@ fn by_hand(served: &Served) -> TcpStream {
         served.base,
         served.host()
     );
-    stream.write_all(request.as_bytes()).unwrap();
+    stream
+        .write_all(request.as_bytes())
+        .expect("the server takes a request");
     let mut head = Vec::new();
     while !head.ends_with(b"\r\n\r\n") {
         let mut byte = [0];
-        stream.read_exact(&mut byte).unwrap();
+        stream.read_exact(&mut byte).expect("the server answers");
         head.push(byte[0]);
     }
     assert!(head.starts_with(b"HTTP/1.1 101"));
