@@ -5,6 +5,8 @@
 //! errors against the time step with their order, a table and figures. [`CASES`] are all of them; [`Validation`] works on
 //! them in turn and writes what was found. Nothing here prints or exits.
 
+#![forbid(unsafe_code)]
+
 mod case;
 mod cases;
 mod document;

@@ -51,7 +51,7 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
     place
         .call(["study", "plan", "study.toml"])
         .expect_code(0)
-        .shows(&["12: 4 points, 3 replicates each", "18 runs more", "disk"]);
+        .shows(&["12: 4 points, 3 replicates each", "42 runs more", "disk"]);
     assert_eq!(place.inventory(), before);
 }
 
