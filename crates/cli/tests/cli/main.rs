@@ -18,6 +18,7 @@ mod sources;
 mod streams;
 mod study;
 mod trajectories;
+mod validating;
 
 #[cfg(target_os = "linux")]
 mod paths;

@@ -1,0 +1,60 @@
+//! `peristalsis validate`.
+
+use crate::Place;
+
+#[test]
+fn cases_are_run_written_and_put_into_a_document() {
+    let place = Place::new();
+    let document = "before\n<!-- validate summary -->\nold\n<!-- /validate -->\n<!-- validate chain -->\n<!-- /validate -->\nafter\n";
+    std::fs::write(place.path("document.md"), document).unwrap();
+    let outcome = place
+        .call([
+            "validate",
+            "--quick",
+            "--only",
+            "chain",
+            "--out",
+            "out",
+            "--write",
+            "document.md",
+            "--json",
+        ])
+        .expect_code(0);
+    let found = outcome.json();
+    let cases = found["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), 1);
+    assert_eq!(cases[0]["name"], "chain");
+    assert_eq!(cases[0]["passed"], true, "{}", outcome.stdout);
+    assert!(place.path("out/validation.json").is_file() && place.path("out/chain.csv").is_file());
+    let written = std::fs::read_to_string(place.path("document.md")).unwrap();
+    assert!(
+        written.starts_with("before\n")
+            && written.ends_with("after\n")
+            && written.contains("| frequency |")
+    );
+}
+
+#[test]
+fn what_cannot_be_validated_is_said_before_the_work() {
+    let place = Place::new();
+    std::fs::write(place.path("document.md"), "no places\n").unwrap();
+    place
+        .call(["validate", "--only", "chains"])
+        .expect_code(2)
+        .says(&["chains", "slip-to-roll"]);
+    place
+        .call([
+            "validate",
+            "--quick",
+            "--only",
+            "chain",
+            "--write",
+            "document.md",
+        ])
+        .expect_code(2)
+        .says(&["document.md", "<!-- validate"]);
+    assert_eq!(
+        std::fs::read_to_string(place.path("document.md")).unwrap(),
+        "no places\n"
+    );
+}
