@@ -380,7 +380,7 @@ impl Tube {
         samples.map(move |(number, sample)| course.row_of(number, sample))
     }
 
-    /// What it looks like, as bytes ([`frame`](crate::frame)).
+    /// What it looks like, as the bytes of a message with a frame; `frame.rs` describes them.
     #[must_use]
     pub fn frame(&self) -> Vec<u8> {
         let simulation = self.run.simulation();
