@@ -239,11 +239,11 @@ def test_threads_see_whole_steps_and_the_interpreter_is_free() -> None:
     readers = [threading.Thread(target=look) for _ in range(3)]
     for reader in readers:
         reader.start()
-    sim.step(3000)
+    sim.step(60_000)  # many of the slices after which readers get their turn
     busy.set()
     for reader in readers:
         reader.join()
-    plain.step(3000)
+    plain.step(60_000)
     assert same(sim, plain)
     assert len(set(times)) > 2
 
