@@ -1,6 +1,7 @@
 """Executes the blocks of the book's pages in one fresh folder, in the order in which they stand.
 
-```sh runs in bash and must succeed, ```sh,fails must exit with 2; ```toml,file=NAME is written to NAME.
+```sh runs in bash and must succeed, ```sh,fails must exit with 2; ```toml,file=NAME is written to NAME; ```text is
+only shown (what waits for a person).
 """
 
 import os
@@ -21,10 +22,14 @@ with tempfile.TemporaryDirectory() as folder:
             sys.exit(f"{page} has no block")
         for kind, text in blocks:
             kind, *options = kind.split(",")
+            if kind == "text":
+                continue
             if kind == "toml":
                 name = next(option.removeprefix("file=") for option in options)
                 pathlib.Path(folder, name).write_text(text)
                 continue
+            if kind != "sh":
+                sys.exit(f"{page}: a block of {kind}: sh, toml or text is meant")
             done = subprocess.run(
                 ["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment, capture_output=True, text=True
             )

@@ -5,7 +5,7 @@ use peristalsis_run::{Warning, estimate, warnings};
 
 use crate::error::StudyError;
 use crate::plan::Plan;
-use crate::refinement::most_added_points;
+use crate::refinement::usual_added_points;
 use crate::specification::Specification;
 
 /// Points whose speed is measured; each takes about a second.
@@ -28,7 +28,7 @@ pub struct StudyEstimate {
     pub points: usize,
     /// Runs before refinement.
     pub runs: usize,
-    /// Most runs that refinement adds.
+    /// Runs that refinement adds where every change lies within one gap between points and runs differ all the way between.
     pub refinement_runs: usize,
     /// Steps of all runs before refinement, none of them ending early.
     pub steps: u64,
@@ -116,7 +116,7 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
     Ok(StudyEstimate {
         points: points.len(),
         runs: plan.runs().len(),
-        refinement_runs: most_added_points(study, plan) * study.replicates as usize,
+        refinement_runs: usual_added_points(study, plan) * study.replicates as usize,
         steps: points
             .iter()
             .map(|point| point.configuration.run.steps())

@@ -130,19 +130,23 @@ fn counts(plan: &Plan, found: &dyn Fn(&Identity) -> Option<Finding>) -> HashMap<
 }
 
 impl Line<'_> {
-    /// The neighbouring values on the way from the value at which all runs changed to that at which none did, or the reverse,
-    /// around the last change of the majority; that change alone where runs differ all the way to an end of the line.
+    /// Values of the points whose runs say something, with what they say.
+    fn known(&self, counts: &HashMap<usize, Count>) -> Vec<(f64, Count)> {
+        self.points
+            .iter()
+            .filter_map(|(value, point, _)| Some((*value, *counts.get(point)?)))
+            .filter(|(_, count)| count.majority().is_some())
+            .collect()
+    }
+
+    /// The neighbouring values on the way from the value at which all runs changed to that at which none did, or the
+    /// reverse, around the last change of the majority; that change alone where runs differ all the way to an end of the
+    /// line.
     fn undecided(&self, counts: &HashMap<usize, Count>) -> Vec<(f64, f64)> {
         let Some((lower, upper)) = self.bracket(counts) else {
             return Vec::new();
         };
-        let of = |(value, point, _): &(f64, usize, &Point)| Some((*value, *counts.get(point)?));
-        let known: Vec<(f64, Count)> = self
-            .points
-            .iter()
-            .filter_map(of)
-            .filter(|(_, count)| count.majority().is_some())
-            .collect();
+        let known = self.known(counts);
         let below = known
             .iter()
             .rposition(|(value, count)| *value <= lower && count.unanimity().is_some());
@@ -160,15 +164,10 @@ impl Line<'_> {
 
     /// The last two neighbouring values between which the majority changes, points that say nothing yet left out.
     fn bracket(&self, counts: &HashMap<usize, Count>) -> Option<(f64, f64)> {
-        let known: Vec<(f64, bool)> = self
-            .points
-            .iter()
-            .filter_map(|(value, point, _)| Some((*value, counts.get(point)?.majority()?)))
-            .collect();
-        known
+        self.known(counts)
             .windows(2)
             .rev()
-            .find(|pair| pair[0].1 != pair[1].1)
+            .find(|pair| pair[0].1.majority() != pair[1].1.majority())
             .map(|pair| (pair[0].0, pair[1].0))
     }
 }
@@ -215,8 +214,8 @@ pub fn brackets(
 /// any.
 ///
 /// Between the value at which all runs changed their flow and that at which none did, the gaps between points are halved
-/// until none is wider than the tolerance. A line of points is bisected only when all its runs have ended, so that the points added do not depend on the order in
-/// which runs end.
+/// until none is wider than the tolerance. A line of points is bisected only when all its runs have ended, so that the
+/// points added do not depend on the order in which runs end.
 ///
 /// # Errors
 /// What is wrong with the configuration of a new point.
@@ -264,10 +263,10 @@ pub fn refine(
     }
 }
 
-/// Most points that refinement adds where every line changes within one gap between its points and runs differ all the way
-/// between: for an estimate beforehand.
+/// Points that refinement adds where every line changes within one gap between its points and runs differ all the way
+/// between; more are added where runs differ over several gaps. For an estimate beforehand.
 #[must_use]
-pub(crate) fn most_added_points(study: &Specification, plan: &Plan) -> usize {
+pub(crate) fn usual_added_points(study: &Specification, plan: &Plan) -> usize {
     let Some(refine) = &study.refinement else {
         return 0;
     };

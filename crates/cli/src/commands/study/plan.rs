@@ -66,7 +66,7 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
     ));
     if estimate.refinement_runs > 0 {
         lines.push(format!(
-            "refinement        at most {} runs more",
+            "refinement        up to {} runs more, where each change lies within one gap",
             estimate.refinement_runs
         ));
     }
