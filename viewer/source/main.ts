@@ -475,6 +475,8 @@ class Page {
     listenToLook(() => this.redraw());
     new ResizeObserver(() => {
       this.scene?.resize();
+      // At once: a canvas of another size is empty.
+      this.scene?.draw(ink());
       this.chartsStale = true;
     }).observe(element("stage"));
     const sizes = new ResizeObserver(() => (this.chartsStale = true));

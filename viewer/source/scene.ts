@@ -157,8 +157,10 @@ export class Scene {
     this.orbit.update();
     if (!this.stale) this.sharpen();
     if (!this.stale || !this.frame) return;
-    this.stale = false;
     const begin = performance.now();
+    // Another size empties the canvas, so it comes before the picture.
+    this.keepUp(begin);
+    this.stale = false;
     this.backdrop(stageMiddle, stageEdge);
     (this.shared.rim.value as three.Color).setStyle(text, three.LinearSRGBColorSpace);
     this.shared.middle.value = this.middle;
@@ -173,7 +175,6 @@ export class Scene {
     if (this.wall !== "hidden") this.placeWall(this.frame);
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
-    this.keepUp(begin);
     this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
   }
 
