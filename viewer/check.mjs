@@ -509,6 +509,8 @@ async function checkWeb(browser) {
   }
   const { page: small, close } = await open(browser, address, phone);
   assert(!(await isTooWide(small)), "the page that computes by itself is wider than a phone");
+  const { height } = await small.locator("#title").boundingBox();
+  assert(height < 40, `the title takes ${height} pixels of a phone`);
   await small.locator("#play").click();
   await until(small, () => window.viewer.measured.clock > 0.3);
   await shoot(small, "web-phone");

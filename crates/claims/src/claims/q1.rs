@@ -130,8 +130,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 format!(" (none seen at {})", steady.join(", "))
             };
             format!(
-                "{lattice} lattice: {jump}{none}; {}",
-                turning(&rows, lattice)
+                "{lattice} lattice: {jump}{none}; {}; {}",
+                turning(&rows, lattice),
+                turning_of_half(&rows, lattice)
             )
         })
         .collect();
@@ -141,7 +142,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         found,
         &NEEDED,
     );
-    for row in &rows {
+    for row in rows.iter().filter(|row| row.jumps) {
         finding.quantities.push(Quantity {
             name: format!(
                 "critical width from rest, {} lattice, strain rate {}",
@@ -158,7 +159,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         caption: "Where the stationary flow falls most, from rest and from jammed, the height of the jump, and where it passes \
                   one half."
             .to_owned(),
-        head: ["lattice", "*ε̇*", "*w*_{c}", "*w*_{c}′", "height", "", "periods", "*J* = *J*_{max}/2"].map(str::to_owned).to_vec(),
+        head: ["lattice", "*ε̇*", "*w*_{c}", "*w*_{c}′", "height", "kind", "periods", "*J* = *J*_{max}/2"].map(str::to_owned).to_vec(),
         rows: rows
             .iter()
             .map(|row| {
@@ -216,6 +217,29 @@ fn turning(rows: &[Row], lattice: &str) -> String {
     }
 }
 
+/// The strain rate at which the flow passes one half in the widest tube, in words.
+fn turning_of_half(rows: &[Row], lattice: &str) -> String {
+    let halves: Vec<(f64, f64)> = rows
+        .iter()
+        .filter(|row| row.lattice == lattice)
+        .filter_map(|row| Some((row.strain_rate, row.half?)))
+        .collect();
+    let widest = halves
+        .iter()
+        .max_by(|one, other| one.1.total_cmp(&other.1))
+        .copied();
+    match (halves.first(), widest) {
+        (Some(slowest), Some(widest)) if widest.0 > slowest.0 => format!(
+            "the width at which *J* = *J*_{{max}}/2 does, below *ε̇* = {}: {} there, {} at {}",
+            widest.0,
+            number(widest.1, 3),
+            number(slowest.1, 3),
+            slowest.0
+        ),
+        _ => "nor does the width at which *J* = *J*_{max}/2".to_owned(),
+    }
+}
+
 /// The width at which a branch passes one half, between two points on a straight line.
 fn crossing_of_half(branch: &Branch) -> Option<f64> {
     branch
@@ -234,7 +258,7 @@ fn figure(rows: &[Row]) -> Result<ReportFigure, ClaimError> {
         .x_scale(Scale::Logarithmic);
     let mut height = ChartPanel::new(
         &label(Axis::StrainRate),
-        "height of the jump, Δ*J*/*J*_{max}",
+        "height of the largest fall, Δ*J*/*J*_{max}",
     )
     .x_scale(Scale::Logarithmic)
     .y_range(0.0..);
@@ -244,17 +268,22 @@ fn figure(rows: &[Row]) -> Result<ReportFigure, ClaimError> {
             continue;
         }
         let rate: Vec<f64> = of.iter().map(|row| row.strain_rate).collect();
-        let critical: Vec<f64> = of.iter().map(|row| row.critical.value).collect();
-        let error: Vec<f64> = of
-            .iter()
-            .map(|row| row.critical.interval_95.length() / 2.0)
-            .collect();
-        width = width.with(
-            Points::new(&format!("{lattice}, jump"), &rate, &critical)
-                .y_errors(&error)
+        // Where nothing jumps, the largest fall has no meaning.
+        let jumping: Vec<&Row> = of.iter().copied().filter(|row| row.jumps).collect();
+        if !jumping.is_empty() {
+            let column =
+                |of: fn(&Row) -> f64| jumping.iter().map(|row| of(row)).collect::<Vec<f64>>();
+            width = width.with(
+                Points::new(
+                    &format!("{lattice}, jump"),
+                    &column(|row| row.strain_rate),
+                    &column(|row| row.critical.value),
+                )
+                .y_errors(&column(|row| row.critical.interval_95.length() / 2.0))
                 .series(series)
                 .joined(),
-        );
+            );
+        }
         let half: Vec<f64> = of.iter().map(|row| row.half.unwrap_or(f64::NAN)).collect();
         if half.iter().any(|width| width.is_finite()) {
             width = width.with(
@@ -282,8 +311,8 @@ fn figure(rows: &[Row]) -> Result<ReportFigure, ClaimError> {
     }
     Ok(ReportFigure {
         name: "small-strain-rates".to_owned(),
-        caption: "Critical width (a), bars: bracket of the jump, open: where the stationary flow passes one half; and height \
-                  of the jump (b) against strain rate."
+        caption: "Critical width (a) where there is a jump, bars: its bracket, open: where the stationary flow passes one half; \
+                  and height of the largest fall (b) against strain rate."
             .to_owned(),
         drawing: ChartFigure::grid(2, [width, height])
             .width(Width::DoubleColumn)
