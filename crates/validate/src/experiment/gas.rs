@@ -15,7 +15,8 @@ use crate::error::ValidateError;
 /// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
 ///
 /// The tube's wall stands outside and is never touched. The engine has no mirror: every few contact times the state is
-/// taken out, the radial velocity of each grain that leaves is reversed, and the simulation continued. Nothing is lost there, and the collisions are the engine's own.
+/// taken out, the radial velocity of each grain that leaves is reversed, and the simulation continued. Nothing is lost
+/// there, and the collisions are the engine's own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gas {
     pub(crate) law: LinearSpringDashpot,
