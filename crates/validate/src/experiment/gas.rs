@@ -15,8 +15,8 @@ use crate::error::ValidateError;
 /// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
 ///
 /// The tube's wall stands outside and is never touched. The engine has no mirror: every few contact times the state is
-/// taken out, the radial velocity of each grain that is outside and goes on outwards is reversed, and the simulation
-/// continued. Nothing is lost there, and the collisions are the engine's own.
+/// taken out, the radial velocity of each grain that leaves is reversed, and the simulation continued. Nothing is lost
+/// there, and the collisions are the engine's own.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gas {
     pub(crate) law: LinearSpringDashpot,
@@ -28,10 +28,8 @@ pub(crate) struct Gas {
     pub(crate) temperature: f64,
 }
 
-/// Longest time between two looks at the mirror, over the duration of a contact.
+/// Time between two looks at the mirror, over the duration of a contact.
 const LOOK: f64 = 5.0;
-/// Distance of the places on which grains may stand at the start \[d\].
-const PLACES: f64 = 1.25;
 
 impl Gas {
     /// n \[1/d^3\]
@@ -44,31 +42,30 @@ impl Gas {
         (self.grains as f64 / (PI * self.density() * self.length)).sqrt()
     }
 
-    /// Grains on places drawn at random, with velocities of a normal distribution, brought to rest together and to the
-    /// temperature.
+    /// Grains put one after the other where there is room, with velocities of a normal distribution that neither drift along
+    /// the axis nor turn about it, brought to the temperature.
+    ///
+    /// The mirror keeps angular momentum about the axis: what there was would outlive all other motion.
     fn start(&self, seed: u64) -> Bodies {
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut uniform = move || (random.next_u64() >> 11) as f64 / 9_007_199_254_740_992.0;
         let radius = self.radius();
-        let across = (2.0 * radius / PLACES).floor() as i32;
-        let along = (self.length / PLACES).floor() as i32;
-        let mut places = Vec::new();
-        for x in 0..across {
-            for y in 0..across {
-                let centred = |i: i32| (f64::from(i) - 0.5 * f64::from(across - 1)) * PLACES;
-                if libm::hypot(centred(x), centred(y)) < radius {
-                    places.extend((0..along).map(|z| {
-                        DVec3::new(centred(x), centred(y), (f64::from(z) + 0.5) * PLACES)
-                    }));
-                }
+        let mut places: Vec<DVec3> = Vec::new();
+        while places.len() < self.grains {
+            let place = DVec3::new(
+                radius * (2.0 * uniform() - 1.0),
+                radius * (2.0 * uniform() - 1.0),
+                self.length * uniform(),
+            );
+            let is_free = |other: &DVec3| {
+                let mut apart = place - *other;
+                apart.z -= self.length * (apart.z / self.length).round();
+                apart.length_squared() > 1.0
+            };
+            if libm::hypot(place.x, place.y) < radius && places.iter().all(is_free) {
+                places.push(place);
             }
         }
-        // The first so many of a random order.
-        for i in 0..self.grains {
-            let other = i + (uniform() * (places.len() - i) as f64) as usize;
-            places.swap(i, other);
-        }
-        places.truncate(self.grains);
         let mut bodies = Bodies::grains_at_rest(places, vec![1.0; self.grains]);
         let mut normal = || {
             let (size, angle) = (uniform().max(f64::MIN_POSITIVE), uniform());
@@ -80,6 +77,15 @@ impl Gas {
         let mean = bodies.velocity.iter().sum::<DVec3>() / self.grains as f64;
         for velocity in &mut bodies.velocity {
             *velocity -= mean;
+        }
+        let (mut momentum, mut inertia) = (0.0, 0.0);
+        for (place, velocity) in bodies.position.iter().zip(&bodies.velocity) {
+            momentum += place.x * velocity.y - place.y * velocity.x;
+            inertia += place.x * place.x + place.y * place.y;
+        }
+        let spin = DVec3::new(0.0, 0.0, momentum / inertia);
+        for (place, velocity) in bodies.position.iter().zip(&mut bodies.velocity) {
+            *velocity -= spin.cross(*place);
         }
         let scale = (self.temperature / temperature(&bodies)).sqrt();
         for velocity in &mut bodies.velocity {
@@ -119,7 +125,7 @@ impl Gas {
             circumstances.go_on()?;
             for _ in 0..looks {
                 simulation.advance(look)?;
-                simulation = reflected(simulation, radius)?;
+                simulation = reflected(simulation, radius, 0.5 * time_step * look as f64)?;
             }
             course.push([simulation.time(), temperature(simulation.bodies())]);
         }
@@ -127,11 +133,14 @@ impl Gas {
     }
 }
 
-/// The simulation with the grains outside turned back.
-fn reflected(simulation: Simulation, radius: f64) -> Result<Simulation, ValidateError> {
+/// The simulation with the grains turned back that will be outside in a time `ahead`.
+///
+/// Half of the time between two looks: so the mirror stands where it should in the mean.
+fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulation, ValidateError> {
     let leaves = |position: &DVec3, velocity: &DVec3| {
         let outward = position.x * velocity.x + position.y * velocity.y;
-        position.x * position.x + position.y * position.y > radius * radius && outward > 0.0
+        let place = *position + ahead * *velocity;
+        place.x * place.x + place.y * place.y > radius * radius && outward > 0.0
     };
     let bodies = simulation.bodies();
     let mut grains = bodies.position.iter().zip(&bodies.velocity);
