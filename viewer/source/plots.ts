@@ -41,8 +41,8 @@ export function drawLoop(chart: Chart, film: Film, averages: number[], tube: Wel
   const range = (tube.control === "strain" ? tube.ranges.width : tube.ranges.force_amplitude) ?? [0, 1];
   let [least, most] = [-0.05, 1.05];
   for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
-  const seen = rows.map((row) => row.amplitude);
-  let [from, to] = [Math.min(...seen.slice(-4000), Infinity), Math.max(...seen.slice(-4000), -Infinity)];
+  let [from, to] = [Infinity, -Infinity];
+  for (const { amplitude } of rows) [from, to] = [Math.min(from, amplitude), Math.max(to, amplitude)];
   const room = Math.max(0.12 * (range[1] - range[0]), 0.15 * (to - from));
   [from, to] = rows.length ? [from - room, to + room] : range;
   const name = tube.control === "strain" ? "width w / d" : "force amplitude";
