@@ -102,7 +102,7 @@ def ensemble(program, runs, quick):
 
 def threads(program, runs, quick):
     """One run of 100,000 grains."""
-    waves, periods = (500, 1) if quick else (5000, 1)
+    waves, periods = (500, 1) if quick else (5000, 3)
     arguments = tube(waves, periods, "drive.width=2.7")
     ratios, speeds, grains = [], [], 0
     for _ in range(runs):
