@@ -36,7 +36,7 @@ if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
         --out "$scratch/elastic" --csv
     cargo run --locked --quiet -- run --quiet --preset frictionless --set drive.strain_rate=0 --set run.duration=20 \
         --out "$scratch/static" --csv
-    "$scratch/venv/bin/pip" install --quiet pyarrow
+    "$scratch/venv/bin/pip" install --quiet --no-cache-dir pyarrow
     "$scratch/venv/bin/python" tests/python/read_tables.py "$scratch/run" "$scratch/elastic" "$scratch/static"
 else
     step "skipped: tables, as pyarrow reads them (python3 makes no virtual environment here)"

@@ -236,7 +236,7 @@ fn turning_of_half(rows: &[Row], lattice: &str) -> String {
             number(slowest.1, 3),
             slowest.0
         ),
-        _ => "nor does the width at which *J* = *J*_{max}/2".to_owned(),
+        _ => "the width at which *J* = *J*_{max}/2 is not seen to".to_owned(),
     }
 }
 
