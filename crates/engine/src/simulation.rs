@@ -17,7 +17,7 @@ use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;
-use crate::wall::contacts::{WallContact, for_each_contact, for_each_smooth_contact};
+use crate::wall::contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 use crate::wall::memory::WallMemory;
 
 /// How a simulation is computed.
@@ -294,19 +294,31 @@ impl Simulation {
     /// The forces are those of the last step but for the velocities, which the integrator has corrected since.
     pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
         let System { bodies, wall, .. } = &self.system;
-        let normal = self.system.parameters.contact.normal;
-        let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
-        if let (Some(pool), Wall::Prescribed(wall)) = (pool, wall) {
-            match normal {
-                Normal::Linear(law) => for_each_smooth_contact(law, bodies, wall, pool, visit),
-                Normal::Hertz(law) => for_each_smooth_contact(law, bodies, wall, pool, visit),
-            }
-            return;
-        }
-        match normal {
+        match self.system.parameters.contact.normal {
             Normal::Linear(normal) => self.memory.visit(normal, bodies, wall, visit),
             Normal::Hertz(normal) => self.memory.visit(normal, bodies, wall, visit),
         }
+    }
+
+    /// Adds up what contacts of grains with the wall are, as [`Simulation::for_each_wall_contact`] visits them, piece by
+    /// piece of the grains: `begin` gives what the sums of a piece begin with, pieces counted from 0, and `add` adds a
+    /// contact to them. There is one piece at least; pieces, and so all sums, are the same for any number of threads.
+    pub fn add_up_wall_contacts<S: Send>(
+        &self,
+        begin: impl Fn(usize) -> S + Sync,
+        add: impl Fn(&mut S, WallContact) + Sync,
+    ) -> Vec<S> {
+        let System { bodies, wall, .. } = &self.system;
+        if let (Wall::Prescribed(wall), Memory::Smooth(_)) = (wall, &self.memory) {
+            let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
+            return match self.system.parameters.contact.normal {
+                Normal::Linear(law) => add_up_smooth_contacts(law, bodies, wall, pool, begin, add),
+                Normal::Hertz(law) => add_up_smooth_contacts(law, bodies, wall, pool, begin, add),
+            };
+        }
+        let mut sums = begin(0);
+        self.for_each_wall_contact(|contact| add(&mut sums, contact));
+        vec![sums]
     }
 
     /// All contacts as they are now, with their forces; grain by grain.

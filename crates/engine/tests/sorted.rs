@@ -307,13 +307,16 @@ fn threads_that_share_the_sorting_of_a_long_tube_do_not_change_a_bit() {
             .compute_with(Instructions::widest(), threads)
             .unwrap();
         simulation.advance(60).unwrap();
-        let mut contacts = Vec::new();
-        simulation.for_each_wall_contact(|contact| contacts.push(contact));
-        (simulation.snapshot(), contacts)
+        let mut one_by_one = Vec::new();
+        simulation.for_each_wall_contact(|contact| one_by_one.push(contact));
+        let in_pieces = simulation.add_up_wall_contacts(|_| Vec::new(), Vec::push);
+        assert!(in_pieces.len() > 1);
+        assert!(in_pieces.concat() == one_by_one);
+        (simulation.snapshot(), in_pieces)
     };
     let expected = end_with(1);
     let (snapshot, contacts) = &expected;
-    assert_eq!(contacts.len() as u64, snapshot.tally.wall_contacts);
+    assert_eq!(contacts.concat().len() as u64, snapshot.tally.wall_contacts);
     let through_the_seam = snapshot.bodies.turns.iter().filter(|&&turns| turns != 0);
     assert!(through_the_seam.count() > 3);
     for threads in [2, 3] {

@@ -49,6 +49,15 @@ struct WallSums {
 }
 
 impl WallSums {
+    fn add(&mut self, other: &Self) {
+        self.normal += other.normal;
+        self.tangential += other.tangential;
+        self.outward += other.outward;
+        self.axial_velocity += other.axial_velocity;
+        self.spheres += other.spheres;
+        self.looks += other.looks;
+    }
+
     /// Mean axial velocity of the wall's spheres; a prescribed wall has none.
     fn velocity(&self) -> f64 {
         if self.spheres > 0.0 {
@@ -70,12 +79,7 @@ impl Sums {
             (other.least_radius, other.largest_radius),
             other.looks,
         );
-        self.wall.normal += other.wall.normal;
-        self.wall.tangential += other.wall.tangential;
-        self.wall.outward += other.wall.outward;
-        self.wall.axial_velocity += other.wall.axial_velocity;
-        self.wall.spheres += other.wall.spheres;
-        self.wall.looks += other.wall.looks;
+        self.wall.add(&other.wall);
     }
 
     /// Adds a grain whose velocity is `velocity`, z along the wave.
@@ -285,18 +289,33 @@ impl WaveFrameProfile {
         for sums in last.iter_mut() {
             sums.wall.looks += f64::from(lattice.waves);
         }
-        simulation.for_each_wall_contact(|contact| {
+        // The first piece goes on from the sums so far: where it is the only one, nothing is rounded once more.
+        let so_far: Vec<WallSums> = last.iter().map(|sums| sums.wall).collect();
+        let begin = |piece| match piece {
+            0 => so_far.clone(),
+            _ => vec![WallSums::default(); bins],
+        };
+        let of_pieces = simulation.add_up_wall_contacts(begin, |sums, contact| {
             let point = contact.point;
             let bin = bin_of(heading * point.z / lattice.wavelength - cycles, bins);
             let from_axis = (point.x * point.x + point.y * point.y).sqrt();
             let force = contact.normal_force + contact.tangential_force;
-            let sums = &mut last[bin].wall;
+            let sums = &mut sums[bin];
             sums.normal += heading * contact.normal_force.z;
             sums.tangential += heading * contact.tangential_force.z;
             if from_axis > 0.0 {
                 sums.outward -= (force.x * point.x + force.y * point.y) / from_axis;
             }
         });
+        for (piece, of_piece) in of_pieces.iter().enumerate() {
+            for (sums, of_piece) in last.iter_mut().zip(of_piece) {
+                if piece == 0 {
+                    sums.wall = *of_piece;
+                } else {
+                    sums.wall.add(of_piece);
+                }
+            }
+        }
         if matches!(wall, Wall::Elastic(_)) {
             let bodies = simulation.bodies();
             let spheres = bodies.grains..bodies.number();

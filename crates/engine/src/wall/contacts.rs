@@ -62,33 +62,43 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     }
 }
 
-/// Grains whose contacts a thread works out at a time.
-const PIECE: usize = 256;
-/// Pieces whose contacts are kept until they are visited.
-const PIECES: usize = 16;
+/// Grains whose contacts are added up by themselves.
+const PIECE: usize = 2048;
 
-/// The same for smooth grains in a prescribed tube: worked out by threads, visited by this one in the same order.
-pub(crate) fn for_each_smooth_contact<N: NormalLaw>(
+/// The same for smooth grains in a prescribed tube, added up piece by piece of the grains, by threads where there are any.
+/// Pieces do not depend on threads, so that sums do not either.
+pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     normal: N,
     bodies: &Bodies,
     wall: &PrescribedWall,
-    pool: &ThreadPool,
-    mut visit: impl FnMut(WallContact),
-) {
+    pool: Option<&ThreadPool>,
+    begin: impl Fn(usize) -> S + Sync,
+    add: impl Fn(&mut S, WallContact) + Sync,
+) -> Vec<S> {
     let tangential = Frictionless;
     let law = ContactLaw { normal, tangential };
-    // Room that is used again and again: to ask for it takes longer than to fill it.
-    let mut of_pieces = vec![Vec::new(); PIECES];
-    for first in (0..bodies.grains).step_by(PIECES * PIECE) {
-        let find = |(piece, found): (usize, &mut Vec<WallContact>)| {
-            let begin = (first + piece * PIECE).min(bodies.grains);
-            let grains = begin..(begin + PIECE).min(bodies.grains);
-            found.clear();
-            let note = |contact| found.push(contact);
-            touch_prescribed(&law, bodies, wall, grains, |_, _| (), note);
-        };
-        pool.install(|| of_pieces.par_iter_mut().enumerate().for_each(find));
-        of_pieces.iter().flatten().copied().for_each(&mut visit);
+    let of_piece = |piece: usize| {
+        let grains = piece * PIECE..((piece + 1) * PIECE).min(bodies.grains);
+        let mut sums = begin(piece);
+        touch_prescribed(
+            &law,
+            bodies,
+            wall,
+            grains,
+            |_, _| (),
+            |contact| {
+                add(&mut sums, contact);
+            },
+        );
+        sums
+    };
+    let pieces = 0..bodies.grains.div_ceil(PIECE).max(1);
+    match pool {
+        Some(pool) => pool.install(|| {
+            let pieces = pieces.into_par_iter().with_max_len(1);
+            pieces.map(of_piece).collect()
+        }),
+        None => pieces.map(of_piece).collect(),
     }
 }
 

@@ -116,7 +116,7 @@ impl Sorted {
         };
         if pool.is_some() {
             let tiles = tiles[..used].par_iter_mut();
-            tiles.with_min_len(AT_A_TIME).for_each(one);
+            tiles.with_max_len(AT_A_TIME).for_each(one);
         } else {
             tiles[..used].iter_mut().for_each(one);
         }

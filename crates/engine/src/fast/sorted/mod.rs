@@ -49,8 +49,10 @@ pub use self::order::Sorting;
 /// Grains in a tile, a multiple of the number of lanes.
 const TILE: usize = 128;
 
-/// Tiles that a thread takes at a time, at least.
+/// Tiles that a thread takes at a time: few, so that threads end together, for one that waits long falls asleep.
 const AT_A_TIME: usize = 8;
+/// The same where there is little to do with each.
+const OF_LIGHT_WORK: usize = 4 * AT_A_TIME;
 
 /// Grains in the order of z, with all that their motion needs.
 #[derive(Clone, Debug)]
@@ -332,9 +334,9 @@ impl Sorted {
         let mut tally = Tally::default();
         if pool.is_some() {
             let work = of_tiles.par_iter_mut().zip(&*tiles);
-            work.with_min_len(AT_A_TIME).for_each(one);
+            work.with_max_len(AT_A_TIME).for_each(one);
             let stretches = force.par_tiles().zip(&*reached_by).enumerate();
-            let stretches = stretches.with_min_len(AT_A_TIME);
+            let stretches = stretches.with_max_len(OF_LIGHT_WORK);
             stretches.for_each(|(stretch, (force, reached_by))| {
                 instructions.run(AddUp {
                     first: stretch * TILE,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::columns::{Columns, ColumnsMut};
 use super::order::NOWHERE;
-use super::{AT_A_TIME, Sorted, TILE};
+use super::{OF_LIGHT_WORK, Sorted, TILE};
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
 use crate::integrate::Runaway;
@@ -80,7 +80,7 @@ impl Sorted {
                 .zip(acceleration.par_tiles())
                 .zip(force.par_tiles())
                 .zip(origin.par_chunks(TILE))
-                .with_min_len(AT_A_TIME)
+                .with_max_len(OF_LIGHT_WORK)
                 .map(work)
                 .for_each(|work| instructions.run(work));
         } else {
