@@ -89,6 +89,8 @@ pub struct ElasticWall {
     directions: Vec<(f64, f64)>,
     /// Each bond once: for each sphere its next on the ring and its two on the ring above.
     bonds: Vec<[u32; 3]>,
+    /// Ring of each sphere, and half steps to it around the ring.
+    places: Vec<(u32, u32)>,
     /// Whether spheres so many rings and half steps apart may touch.
     far: Vec<bool>,
     /// Radial force that balances the springs of the reference tube; the same for all spheres.
@@ -110,6 +112,13 @@ impl ElasticWall {
                 (libm::cos(angle), libm::sin(angle))
             })
             .collect();
+        let places = spheres
+            .clone()
+            .map(|index| {
+                let sphere = lattice.sphere(index);
+                (sphere.ring, lattice.half_steps(sphere))
+            })
+            .collect();
         let bonds = spheres
             .map(|index| {
                 let around = lattice.neighbours(lattice.sphere(index));
@@ -124,6 +133,7 @@ impl ElasticWall {
             parameters,
             directions,
             bonds,
+            places,
             far,
             balance: 0.0,
             cycles: 0.0,
@@ -227,12 +237,9 @@ impl ElasticWall {
     #[must_use]
     pub fn may_touch(&self, one: usize, other: usize) -> bool {
         let lattice = &self.parameters.lattice;
-        let (one, other) = (lattice.sphere(one), lattice.sphere(other));
+        let (one, other) = (self.places[one], self.places[other]);
         let turn = 2 * lattice.spheres_per_ring;
-        let (rings, steps) = (
-            one.ring.abs_diff(other.ring),
-            lattice.half_steps(one).abs_diff(lattice.half_steps(other)),
-        );
+        let (rings, steps) = (one.0.abs_diff(other.0), one.1.abs_diff(other.1));
         let rings = rings.min(lattice.rings() - rings);
         let steps = steps.min(turn - steps);
         self.far[(rings * turn + steps) as usize]

@@ -48,9 +48,10 @@ impl Default for Scratch {
     }
 }
 
-/// The list is made for so many skins; what comes within one is chosen from it, again and again, and looked at in each
-/// step.
-const WHOLE: f64 = 3.0;
+/// The list is made for so many skins.
+const LISTED: f64 = 1.5;
+/// What comes within so many is chosen from it, again and again, and looked at in each step.
+const CHOSEN: f64 = 0.5;
 
 /// What an advance moves.
 pub(crate) struct Course<'a> {
@@ -140,19 +141,19 @@ fn move_through<N: NormalLaw, T: Remember>(
             evaluate(law, &mut bodies, course.wall, &mut contacts, 0.0).contact_energy
         });
         course.wall.move_to(time);
-        if travelled.exceeds(skin) {
+        if travelled.exceeds(CHOSEN * skin) {
             spheres.store_places(course.bodies);
             let (places, turns) = (&course.bodies.position, &course.bodies.turns);
-            if !contacts.pairs.covers(places, turns, length, skin) {
+            if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
                 pairs.store::<T>(&mut contacts.pairs);
-                contacts.rebuild(course.bodies, course.wall, WHOLE * skin);
+                contacts.rebuild(course.bodies, course.wall, LISTED * skin);
                 pairs.load::<T>(&contacts.pairs, course.bodies);
             }
             instructions.run(Prune {
                 pairs,
                 spheres,
                 length,
-                skin,
+                skin: CHOSEN * skin,
             });
             travelled = Travel::default();
         }
