@@ -28,9 +28,11 @@ pub struct Neighbours<H> {
 #[derive(Clone, Debug, Default)]
 struct Scratch<H> {
     cells: Cells,
+    late_cells: Cells,
     start: Vec<u32>,
     partner: Vec<u32>,
     history: Vec<H>,
+    remembered: Vec<(u32, u32)>,
 }
 
 /// What decides which pairs are listed.
@@ -74,6 +76,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     pub fn row(&mut self, i: usize) -> (&[u32], &mut [H]) {
         let range = self.start[i] as usize..self.start[i + 1] as usize;
         (&self.partner[range.clone()], &mut self.history[range])
+    }
+
+    /// Number of pairs in the first so many rows.
+    pub(crate) fn pairs_above(&self, rows: usize) -> usize {
+        self.start[rows] as usize
     }
 
     /// Number of rows: spheres when the list was made.
@@ -164,35 +171,36 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     ) {
         let Scratch {
             cells,
+            late_cells,
             start,
             partner,
             history,
+            remembered,
         } = &mut self.scratch;
-        cells.sort(position, rule);
+        cells.sort(position, 0, rule);
+        late_cells.sort(position, rule.admits_all_below.min(position.len()), rule);
+        remembered.clear();
         start.clear();
         partner.clear();
         start.push(0);
         Instructions::widest().run(Search {
             cells,
+            late_cells,
             position,
             rule,
             old: (&self.start, &self.partner, &self.history),
             start,
             partner,
+            remembered,
         });
         // Only what is remembered need be moved.
         history.clear();
         history.resize(partner.len(), H::default());
-        for i in 0..position.len().min(self.start.len() - 1) {
-            let old = self.start[i] as usize..self.start[i + 1] as usize;
-            let new = start[i] as usize..start[i + 1] as usize;
-            for at in old {
-                if self.history[at] != H::default() {
-                    let to = partner[new.clone()].binary_search(&self.partner[at]);
-                    history[new.start + to.expect("what is remembered is listed")] =
-                        self.history[at];
-                }
-            }
+        for &(row, at) in &*remembered {
+            let (row, at) = (row as usize, at as usize);
+            let new = start[row] as usize..start[row + 1] as usize;
+            let to = partner[new.clone()].binary_search(&self.partner[at]);
+            history[new.start + to.expect("what is remembered is listed")] = self.history[at];
         }
         core::mem::swap(&mut self.start, start);
         core::mem::swap(&mut self.partner, partner);

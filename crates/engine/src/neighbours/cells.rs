@@ -79,7 +79,7 @@ fn axial_cells(cell: u32, along: u32) -> impl Iterator<Item = u32> {
     beside.into_iter().flatten()
 }
 
-/// Spheres in the order of their cells.
+/// Spheres in the order of their cells; in a cell by their numbers.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Cells {
     grid: Grid,
@@ -96,18 +96,22 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Counting sort of the spheres into cells at least as wide as the farthest pair.
+    /// Counting sort of the spheres from number `first` on into cells at least as wide as the farthest pair of all.
     pub(super) fn sort<F: Fn(usize, usize) -> bool>(
         &mut self,
         position: &[DVec3],
+        first: usize,
         rule: &PairRule<'_, F>,
     ) {
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
         let cutoff = largest_diameter + rule.skin;
         self.grid = Grid::new(position, cutoff, rule.length, rule.half_width + cutoff);
         let (grid, start) = (&self.grid, &mut self.start);
+        let spheres = position.len() - first;
         self.cell_of.clear();
-        let cells = position.iter().map(|&p| grid.index(grid.cell(p)) as u32);
+        let cells = position[first..]
+            .iter()
+            .map(|&p| grid.index(grid.cell(p)) as u32);
         self.cell_of.extend(cells);
         start.clear();
         start.resize(grid.cells() + 1, 0);
@@ -121,15 +125,13 @@ impl Cells {
         }
         // Filling backwards brings each cell's end down to its start.
         self.number.clear();
-        self.number.resize(position.len() + LANES, 0);
+        self.number.resize(spheres + LANES, 0);
         for (sphere, &cell) in self.cell_of.iter().enumerate().rev() {
             let place = &mut start[cell as usize];
             *place -= 1;
-            self.number[*place as usize] = sphere as u32;
+            self.number[*place as usize] = (first + sphere) as u32;
         }
-        let filled = self.number[..position.len()]
-            .iter()
-            .map(|&number| number as usize);
+        let filled = self.number[..spheres].iter().map(|&number| number as usize);
         for (column, of) in [
             (&mut self.x, (|p: DVec3| p.x) as fn(DVec3) -> f64),
             (&mut self.y, |p| p.y),
@@ -137,12 +139,12 @@ impl Cells {
         ] {
             column.clear();
             column.extend(filled.clone().map(|sphere| of(position[sphere])));
-            column.resize(position.len() + LANES, 0.0);
+            column.resize(spheres + LANES, 0.0);
         }
         self.radius.clear();
         self.radius
             .extend(filled.map(|sphere| 0.5 * rule.diameter[sphere]));
-        self.radius.resize(position.len() + LANES, 0.0);
+        self.radius.resize(spheres + LANES, 0.0);
         self.number_in_lanes.clear();
         self.number_in_lanes
             .extend(self.number.iter().map(|&number| f64::from(number)));
@@ -151,13 +153,18 @@ impl Cells {
 
 /// The search for the pairs of a rule, row by row.
 pub(super) struct Search<'a, H, F: Fn(usize, usize) -> bool> {
+    /// All spheres.
     pub(super) cells: &'a Cells,
+    /// Those alone of whose pairs not all are admitted, in the same grid.
+    pub(super) late_cells: &'a Cells,
     pub(super) position: &'a [DVec3],
     pub(super) rule: &'a PairRule<'a, F>,
     /// Rows, partners and histories of the list before.
     pub(super) old: (&'a [u32], &'a [u32], &'a [H]),
     pub(super) start: &'a mut Vec<u32>,
     pub(super) partner: &'a mut Vec<u32>,
+    /// Row and place of each pair of the list before that remembers a contact.
+    pub(super) remembered: &'a mut Vec<(u32, u32)>,
 }
 
 impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H, F> {
@@ -167,17 +174,25 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
     fn run<M: Machine>(self) {
         let Self {
             cells,
+            late_cells,
             position,
             rule,
             old: (old_start, old_partner, old_history),
             start,
             partner,
+            remembered,
         } = self;
         let grid = &cells.grid;
         partner.resize(partner.capacity().max(64 * LANES), 0);
         let mut end = 0;
         for (i, &centre) in position.iter().enumerate() {
             let begin = end;
+            // Partners have larger numbers.
+            let cells = if i < rule.admits_all_below {
+                cells
+            } else {
+                late_cells
+            };
             let [cx, cy, cz] = grid.cell(centre);
             let (first_x, last_x) = (cx.saturating_sub(1), (cx + 1).min(grid.across - 1));
             let place = LaneVector::<M>::new(
@@ -235,8 +250,11 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
             let near = end;
             if i + 1 < old_start.len() {
                 for at in old_start[i] as usize..old_start[i + 1] as usize {
-                    let remembers = old_history[at] != H::default();
-                    if remembers && !partner[begin..near].contains(&old_partner[at]) {
+                    if old_history[at] == H::default() {
+                        continue;
+                    }
+                    remembered.push((i as u32, at as u32));
+                    if !partner[begin..near].contains(&old_partner[at]) {
                         partner[end] = old_partner[at];
                         end += 1;
                         if end + LANES > partner.len() {

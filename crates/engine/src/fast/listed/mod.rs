@@ -49,7 +49,7 @@ impl Default for Scratch {
 }
 
 /// The list is made for so many skins.
-const LISTED: f64 = 1.5;
+const LISTED: f64 = 2.5;
 /// What comes within so many is chosen from it, again and again, and looked at in each step.
 const CHOSEN: f64 = 0.5;
 

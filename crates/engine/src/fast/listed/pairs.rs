@@ -3,6 +3,8 @@
 //! One pass over the listed pairs writes down which of them touch; the law is then evaluated for those only, in lanes,
 //! in the order of the list. What touches does not depend on what else is listed, so neither do the results.
 
+use core::ops::Range;
+
 use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, Frictionless, NormalLaw};
 use peristalsis_physics::real::Real;
 
@@ -31,15 +33,25 @@ impl Flat {
         self.reach.clear();
     }
 
-    fn append(&mut self, i: u32, partners: &[u32], diameter: &[f64]) {
-        let size = diameter[i as usize];
-        self.first.extend(partners.iter().map(|_| i));
-        self.second.extend_from_slice(partners);
-        self.reach.extend(
-            partners
+    /// The pairs of some rows of a list.
+    fn load<H: Copy + Default + PartialEq>(
+        &mut self,
+        list: &Neighbours<H>,
+        rows: Range<usize>,
+        diameter: &[f64],
+    ) {
+        self.clear();
+        for i in rows {
+            let (size, partners) = (diameter[i], list.partners(i));
+            let whole = self.first.len() + partners.len();
+            self.first.resize(whole, i as u32);
+            self.second.extend_from_slice(partners);
+            let reaches = partners
                 .iter()
-                .map(|&j| 0.5 * (size + diameter[j as usize])),
-        );
+                .map(|&j| 0.5 * (size + diameter[j as usize]));
+            self.reach.extend(reaches);
+        }
+        self.fill_up();
     }
 
     fn fill_up(&mut self) {
@@ -113,8 +125,10 @@ pub(super) struct Pairs {
     /// For each of them the evaluation, counted round, at which it last touched.
     stamp: Vec<u8>,
     now: u8,
-    /// The pairs of `grains` that touched at the last evaluation.
+    /// The pairs of `grains` that touched at the last evaluation: those that remember anything.
     touched: Vec<u32>,
+    /// Those that did so when they were taken from the rows.
+    loaded: Vec<u32>,
     touching: Vec<u32>,
 }
 
@@ -125,37 +139,34 @@ impl Pairs {
         list: &Neighbours<T::History<f64>>,
         bodies: &Bodies,
     ) {
-        self.grains.list.clear();
-        self.wall.list.clear();
-        for i in 0..list.rows() {
-            let rows = if i < bodies.grains {
-                &mut self.grains
-            } else {
-                &mut self.wall
-            };
-            rows.list
-                .append(i as u32, list.partners(i), &bodies.diameter);
-        }
-        let histories = &list.histories()[..self.grains.list.first.len()];
-        self.grains.list.fill_up();
-        self.wall.list.fill_up();
+        let (grains, diameter) = (bodies.grains.min(list.rows()), &bodies.diameter[..]);
+        self.grains.list.load(list, 0..grains, diameter);
+        self.wall.list.load(list, grains..list.rows(), diameter);
         self.histories.clear();
         self.touched.clear();
         self.stamp.clear();
         if T::ROTATES {
-            self.histories.extend(histories.iter().map(T::pack));
-            let remembered = histories.iter().enumerate();
-            let remembered =
-                remembered.filter(|(_, history)| **history != T::History::<f64>::default());
-            self.touched.extend(remembered.map(|(k, _)| k as u32));
+            let histories = &list.histories()[..list.pairs_above(grains)];
+            self.histories.resize(histories.len(), Packed::default());
+            for (k, history) in histories.iter().enumerate() {
+                if *history != T::History::<f64>::default() {
+                    self.histories[k] = T::pack(history);
+                    self.touched.push(k as u32);
+                }
+            }
             self.stamp.resize(histories.len(), self.now.wrapping_sub(1));
         }
+        self.loaded.clone_from(&self.touched);
     }
 
     /// Writes the histories back to the rows.
     pub(super) fn store<T: Remember>(&self, list: &mut Neighbours<T::History<f64>>) {
-        for (history, packed) in list.histories_mut().iter_mut().zip(&self.histories) {
-            *history = T::unpack(packed);
+        let histories = list.histories_mut();
+        for &k in &self.loaded {
+            histories[k as usize] = T::History::<f64>::default();
+        }
+        for &k in &self.touched {
+            histories[k as usize] = T::unpack(&self.histories[k as usize]);
         }
     }
 }
