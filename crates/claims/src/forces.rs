@@ -22,7 +22,7 @@ pub(crate) const FOR_A_VERDICT: Statistics = Statistics {
 pub(crate) const WHAT_COUNTS: &str = "Only runs that average over 50 periods of a flow which no longer drifts count for a verdict, and only forces that have \
      such runs from both starts.";
 
-/// Fraction of grains outside the tube beyond which a strain rate is left out: another system flows then.
+/// Fraction of grains outside the tube beyond which a force is left out: another system flows then.
 pub(crate) const MOST_ESCAPED: f64 = 0.05;
 
 /// Points of a branch that are continued to the jump by a straight line.
@@ -85,6 +85,10 @@ pub(crate) struct ForceLine {
     pub(crate) rest: ForceBranch,
     /// From jammed.
     pub(crate) jammed: ForceBranch,
+    /// Forces left out since from either start more than [`MOST_ESCAPED`] of the grains are outside, ascending.
+    pub(crate) leaking: Vec<f64>,
+    /// Largest fraction of grains outside at a force, those left out included.
+    pub(crate) escaped: f64,
     /// How much is behind it.
     pub(crate) statistics: Statistics,
 }
@@ -108,6 +112,18 @@ fn by_force<'a>(runs: impl Iterator<Item = &'a Run>, start: Start) -> Vec<Vec<&'
     runs.sort_by(|one, other| one.force().total_cmp(&other.force()));
     runs.chunk_by(|one, other| one.force() == other.force())
         .map(<[&Run]>::to_vec)
+        .collect()
+}
+
+/// Force and mean fraction of grains outside, for each force and start.
+fn escaped_at<'a>(runs: impl Iterator<Item = &'a Run> + Clone) -> Vec<(f64, f64)> {
+    [Start::Rest, Start::Jammed]
+        .into_iter()
+        .flat_map(|start| by_force(runs.clone(), start))
+        .map(|group| {
+            let sum: f64 = group.iter().map(|run| run.escaped_fraction()).sum();
+            (group[0].force(), sum / group.len() as f64)
+        })
         .collect()
 }
 
@@ -216,34 +232,30 @@ impl ForceLine {
                     runs.iter()
                         .filter(move |run| run.strain_rate == strain_rate)
                 };
+                let outside = escaped_at(here());
+                let mut leaking: Vec<f64> = outside
+                    .iter()
+                    .filter(|(_, escaped)| *escaped > MOST_ESCAPED)
+                    .map(|(force, _)| *force)
+                    .collect();
+                leaking.sort_by(f64::total_cmp);
+                leaking.dedup();
+                let tight = || here().filter(|run| !leaking.contains(&run.force()));
                 Self {
                     strain_rate,
-                    rest: ForceBranch::of(here(), Start::Rest),
-                    jammed: ForceBranch::of(here(), Start::Jammed),
-                    statistics: behind(here().collect()),
+                    rest: ForceBranch::of(tight(), Start::Rest),
+                    jammed: ForceBranch::of(tight(), Start::Jammed),
+                    statistics: behind(tight().collect()),
+                    escaped: outside.iter().map(|one| one.1).fold(0.0, f64::max),
+                    leaking,
                 }
             })
             .collect()
     }
 
-    /// Largest fraction of grains outside at a force.
-    pub(crate) fn escaped(&self) -> f64 {
-        self.rest
-            .points
-            .iter()
-            .chain(&self.jammed.points)
-            .map(|point| point.escaped)
-            .fold(0.0, f64::max)
-    }
-
     /// Whether no flow on it is stationary.
     pub(crate) fn is_empty(&self) -> bool {
         self.rest.points.is_empty() && self.jammed.points.is_empty()
-    }
-
-    /// Whether the tube holds its grains.
-    pub(crate) fn is_tight(&self) -> bool {
-        self.escaped() <= MOST_ESCAPED
     }
 
     /// Forces with both flows: from jammed faster than from rest by more than a jump's least height and many errors.

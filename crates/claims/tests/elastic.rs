@@ -441,6 +441,24 @@ fn strain_rates_at_which_grains_leave_are_not_judged() {
 }
 
 #[test]
+fn forces_at_which_grains_leave_are_left_out() {
+    // Without the force at which they leave, and jam, nothing is left of the jump.
+    let mut evidence = empty();
+    let runs = SOURCE.branches(&[4.01e-3]).into_iter().map(|mut run| {
+        if run.force() > 0.004 {
+            run.escaped = 80;
+        }
+        run
+    });
+    evidence.add_runs("elastic-branches", runs.collect());
+    let finding = examine("S3", &evidence);
+    let row = &finding.tables[0].rows[0];
+    assert_eq!(row[8], "unclear");
+    assert_eq!(row[7], "0.07 (left out: 0.0045, 0.005, 0.0055, 0.0065)");
+    assert!(!finding.summary.contains("0.00401"), "{}", finding.summary);
+}
+
+#[test]
 fn back_flow_is_seen_and_its_absence_too() {
     let finding = find("S4", SOURCE);
     assert!((value(&finding, "strain rate 0.00401") + 0.05).abs() < 0.01);

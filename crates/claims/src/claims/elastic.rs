@@ -24,12 +24,9 @@ pub(super) fn branch_runs(evidence: &Evidence) -> Result<Vec<Run>, ClaimError> {
     Ok(runs)
 }
 
-/// The lines that are judged: those of tubes that hold their grains, with points on them.
+/// The lines that are judged: those with points on them, stationary flows of grains that stay in the tube.
 pub(super) fn judged(lines: &[ForceLine]) -> Vec<&ForceLine> {
-    lines
-        .iter()
-        .filter(|line| line.is_tight() && !line.is_empty())
-        .collect()
+    lines.iter().filter(|line| !line.is_empty()).collect()
 }
 
 /// Label of an axis, in the units of Hertz contacts.
@@ -42,7 +39,7 @@ pub(super) fn rate_text(rate: f64) -> String {
     format!("{rate}")
 }
 
-/// Colours for the strain rates of some lines, whether or not they are tight.
+/// Colours for the strain rates of some lines, whether or not they are judged.
 pub(super) fn rate_colours(lines: &[ForceLine]) -> ColourScale {
     let ends = lines
         .iter()

@@ -100,7 +100,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     found.paragraphs.push(format!(
         "A jump is a rise between forces 0.0005 apart by more than {LEAST_JUMP} when both sides are continued to its middle by straight \
          lines, or a force at which grains that began jammed flow faster by more than that than those that began at rest; both by four \
-         of their errors. Strain rates at which more than {} per cent of the grains leave the tube are listed and not judged.",
+         of their errors. Forces at which more than {} per cent of the grains leave the tube are left out, and listed.",
         number(100.0 * MOST_ESCAPED, 0)
     ));
     found.weaknesses.push(
@@ -123,6 +123,7 @@ fn vanishing(jumping: &[f64], smooth: &[f64]) -> Option<Uncertain> {
 fn flows(runs: &[Run], line: &ForceLine) -> Vec<f64> {
     runs.iter()
         .filter(|run| run.strain_rate == line.strain_rate && run.is_stationary())
+        .filter(|run| !line.leaking.contains(&run.force()))
         .map(|run| run.flow_rate_ratio)
         .filter(|ratio| ratio.is_finite())
         .collect()
@@ -160,9 +161,9 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                 ),
                 dip_test(&flows, bootstrap)
                     .map_or_else(|_| none(), |test| number(test.probability, 3)),
-                number(line.escaped(), 2),
+                outside(line),
                 match line.kind() {
-                    _ if !line.is_tight() => "leaks",
+                    _ if line.is_empty() && !line.leaking.is_empty() => "leaks",
                     Kind::Jump => "jump",
                     Kind::Smooth => "smooth",
                     Kind::Unclear => "unclear",
@@ -174,13 +175,23 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
     ReportTable {
         caption: "Where the stationary flow rises most, from rest and from jammed (bracket in *f*^{P}); height of that rise; width of the \
                   window of forces with both flows; peaks of *J*/*J*_{max} over all forces and both starts (two normal peaks against one) and the \
-                  probability of so deep a dip with one peak (Hartigan); largest part of the grains outside."
+                  probability of so deep a dip with one peak (Hartigan); largest part of the grains outside, and the forces left out for it."
             .to_owned(),
         head: ["*ε̇*", "rise, from rest", "from jammed", "height", "window", "peaks", "dip", "outside", "kind"]
             .map(str::to_owned)
             .to_vec(),
         rows,
     }
+}
+
+/// Largest fraction of grains outside at a force, and the forces left out for that.
+fn outside(line: &ForceLine) -> String {
+    let escaped = number(line.escaped, 2);
+    if line.leaking.is_empty() || line.is_empty() {
+        return escaped;
+    }
+    let forces: Vec<String> = line.leaking.iter().map(f64::to_string).collect();
+    format!("{escaped} (left out: {})", forces.join(", "))
 }
 
 /// Both branches at each strain rate, and the height of the rise against the strain rate.

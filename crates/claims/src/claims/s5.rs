@@ -151,7 +151,7 @@ fn figure(
         .filter_map(|line| {
             let with = frictional
                 .iter()
-                .find(|other| other.strain_rate == line.strain_rate && other.is_tight())?;
+                .find(|other| other.strain_rate == line.strain_rate)?;
             Some((*line, with))
         })
         .collect();

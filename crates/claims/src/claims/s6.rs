@@ -115,7 +115,6 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let lines = ForceLine::all_of(branches);
     let mut frictional: Vec<Flow<'_>> = lines
         .iter()
-        .filter(|line| line.is_tight())
         .flat_map(|line| {
             let forces = line.rest.points.iter().map(|point| point.force);
             forces.map(|force| (line.strain_rate, force))
