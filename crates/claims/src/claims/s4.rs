@@ -72,10 +72,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .filter_map(|(line, forces)| {
             let lowest = lowest(line)?;
             Some(format!(
-                "at *ε̇* = {} for *f*^{{P}} {} (down to {})",
+                "at *ε̇* = {} for *f*^{{P}} {} (down to {} at {})",
                 rate_text(line.strain_rate),
                 range(forces),
-                with_error(lowest.mean, lowest.error)
+                with_error(lowest.mean, lowest.error),
+                lowest.force
             ))
         })
         .collect();
