@@ -8,7 +8,7 @@ mod cells;
 
 use glam::DVec3;
 
-use self::cells::{Cells, Search};
+use self::cells::{Cells, Grid, Search};
 use crate::fast::machine::Instructions;
 
 /// Rows of partners with a value of type `H` beside each pair.
@@ -177,8 +177,10 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             history,
             remembered,
         } = &mut self.scratch;
-        cells.sort(position, 0, rule);
-        late_cells.sort(position, rule.admits_all_below.min(position.len()), rule);
+        let grid = Grid::of(position, rule);
+        cells.sort(grid, position, rule.diameter, 0);
+        let late = rule.admits_all_below.min(position.len());
+        late_cells.sort(grid, position, rule.diameter, late);
         remembered.clear();
         start.clear();
         partner.clear();

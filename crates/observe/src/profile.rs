@@ -307,14 +307,14 @@ impl WaveFrameProfile {
                 sums.outward -= (force.x * point.x + force.y * point.y) / from_axis;
             }
         });
-        for (piece, of_piece) in of_pieces.iter().enumerate() {
-            for (sums, of_piece) in last.iter_mut().zip(of_piece) {
-                if piece == 0 {
-                    sums.wall = *of_piece;
-                } else {
-                    sums.wall.add(of_piece);
-                }
+        let together = of_pieces.into_iter().reduce(|mut all, of_piece| {
+            for (sums, of_piece) in all.iter_mut().zip(&of_piece) {
+                sums.add(of_piece);
             }
+            all
+        });
+        for (sums, wall) in last.iter_mut().zip(together.into_iter().flatten()) {
+            sums.wall = wall;
         }
         if matches!(wall, Wall::Elastic(_)) {
             let bodies = simulation.bodies();

@@ -9,8 +9,8 @@ use crate::fast::machine::{Machine, Work};
 
 /// Rectangular cells of a tube, at least `cutoff` wide; beyond the outermost cells across the tube a sphere belongs to
 /// the nearest, so that one that has escaped is still found.
-#[derive(Clone, Debug, Default)]
-struct Grid {
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Grid {
     across: u32,
     along: u32,
     half_width: f64,
@@ -22,6 +22,16 @@ struct Grid {
 const MOST_CELLS_ACROSS: f64 = 256.0;
 
 impl Grid {
+    /// Cells at least as wide as the farthest pair of a rule.
+    pub(super) fn of<F: Fn(usize, usize) -> bool>(
+        position: &[DVec3],
+        rule: &PairRule<'_, F>,
+    ) -> Self {
+        let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
+        let cutoff = largest_diameter + rule.skin;
+        Self::new(position, cutoff, rule.length, rule.half_width + cutoff)
+    }
+
     fn new(position: &[DVec3], cutoff: f64, length: f64, usual_half_width: f64) -> Self {
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
@@ -96,16 +106,9 @@ pub(super) struct Cells {
 }
 
 impl Cells {
-    /// Counting sort of the spheres from number `first` on into cells at least as wide as the farthest pair of all.
-    pub(super) fn sort<F: Fn(usize, usize) -> bool>(
-        &mut self,
-        position: &[DVec3],
-        first: usize,
-        rule: &PairRule<'_, F>,
-    ) {
-        let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
-        let cutoff = largest_diameter + rule.skin;
-        self.grid = Grid::new(position, cutoff, rule.length, rule.half_width + cutoff);
+    /// Counting sort of the spheres from number `first` on into the cells of a grid.
+    pub(super) fn sort(&mut self, grid: Grid, position: &[DVec3], diameter: &[f64], first: usize) {
+        self.grid = grid;
         let (grid, start) = (&self.grid, &mut self.start);
         let spheres = position.len() - first;
         self.cell_of.clear();
@@ -143,7 +146,7 @@ impl Cells {
         }
         self.radius.clear();
         self.radius
-            .extend(filled.map(|sphere| 0.5 * rule.diameter[sphere]));
+            .extend(filled.map(|sphere| 0.5 * diameter[sphere]));
         self.radius.resize(spheres + LANES, 0.0);
         self.number_in_lanes.clear();
         self.number_in_lanes

@@ -80,16 +80,8 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     let of_piece = |piece: usize| {
         let grains = piece * PIECE..((piece + 1) * PIECE).min(bodies.grains);
         let mut sums = begin(piece);
-        touch_prescribed(
-            &law,
-            bodies,
-            wall,
-            grains,
-            |_, _| (),
-            |contact| {
-                add(&mut sums, contact);
-            },
-        );
+        let visit = |contact| add(&mut sums, contact);
+        touch_prescribed(&law, bodies, wall, grains, |_, _| (), visit);
         sums
     };
     let pieces = 0..bodies.grains.div_ceil(PIECE).max(1);
