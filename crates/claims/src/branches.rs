@@ -1,6 +1,6 @@
 //! The two branches of the stationary flow and the jump between them.
 
-use peristalsis_analysis::{Jump, Uncertain, jump_height};
+use peristalsis_analysis::{Interval, Jump, Uncertain, jump_height};
 
 use crate::finding::Statistics;
 use crate::runs::{Run, Start};
@@ -63,14 +63,18 @@ impl Drop {
     }
 }
 
-/// A number of which only two bounds are known; its error is that of a uniform distribution between them.
+/// A number of which only two bounds are known: its error is that of a uniform distribution between them, which is the 68 per
+/// cent interval as well, so that it reads the same everywhere; the bounds are the 95 per cent interval.
 pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
-    let interval = peristalsis_analysis::Interval { lower, upper };
+    let (value, error) = (0.5 * (lower + upper), (upper - lower) / 12_f64.sqrt());
     Uncertain {
-        value: 0.5 * (lower + upper),
-        error: (upper - lower) / 12_f64.sqrt(),
-        interval_68: interval,
-        interval_95: interval,
+        value,
+        error,
+        interval_68: Interval {
+            lower: value - error,
+            upper: value + error,
+        },
+        interval_95: Interval { lower, upper },
     }
 }
 

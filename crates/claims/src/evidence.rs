@@ -14,6 +14,8 @@ use crate::runs::Run;
 pub struct StudyResults {
     /// Where the products of the runs are; `None` for rows from elsewhere.
     store: Option<Store>,
+    /// Where those are that were computed again for their products.
+    again: Option<Store>,
     /// Finished runs in the order of the axes.
     pub runs: Vec<Run>,
     /// The same with every column; `None` where only the runs were given.
@@ -29,11 +31,11 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Adds the results of a study.
+    /// Adds the results of a study; `again` holds products of runs of which `store` has only imported rows.
     ///
     /// # Errors
     /// Errors of reading the store.
-    pub fn add(&mut self, store: Store) -> Result<(), ClaimError> {
+    pub fn add(&mut self, store: Store, again: Option<Store>) -> Result<(), ClaimError> {
         let survey = store.survey()?;
         let table = store.rows()?;
         let runs = Run::all_of(&table)?;
@@ -42,6 +44,7 @@ impl Evidence {
             survey.study.name,
             StudyResults {
                 store: Some(store),
+                again,
                 runs,
                 table: Some(table),
                 missing,
@@ -68,6 +71,7 @@ impl Evidence {
     fn insert(&mut self, name: &str, runs: Vec<Run>, table: Option<Table>) {
         let results = StudyResults {
             store: None,
+            again: None,
             runs,
             table,
             missing: 0,
@@ -137,14 +141,14 @@ impl StudyResults {
     }
 
     fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
-        let (Some(store), Ok(identity)) = (&self.store, run.identity.parse()) else {
+        let Ok(identity) = run.identity.parse() else {
             return Ok(None);
         };
-        let path = store.run_folder(identity).join(name);
-        if !path.is_file() {
-            return Ok(None);
-        }
-        Ok(Some(parquet::read(&path)?))
+        let stores = [&self.store, &self.again].into_iter().flatten();
+        let path = stores
+            .map(|store| store.run_folder(identity).join(name))
+            .find(|path| path.is_file());
+        Ok(path.map(|path| parquet::read(&path)).transpose()?)
     }
 
     /// J/Jmax averaged over each period of a run; `None` where only its row was imported.

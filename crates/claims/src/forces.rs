@@ -19,8 +19,8 @@ pub(crate) const FOR_A_VERDICT: Statistics = Statistics {
 };
 
 /// What counts for a verdict, a sentence for reports.
-pub(crate) const WHAT_COUNTS: &str = "Only runs that average over 50 periods of a flow which no longer drifts count for a verdict, and only forces that have \
-     such runs from both starts.";
+pub(crate) const WHAT_COUNTS: &str = "What a verdict takes is counted in runs that average over 50 periods of a flow which no longer drifts, at forces that have \
+     such runs from both starts; tables and figures show all stationary flows.";
 
 /// Fraction of grains outside the tube beyond which a force is left out: another system flows then.
 pub(crate) const MOST_ESCAPED: f64 = 0.05;
@@ -171,10 +171,11 @@ impl ForceBranch {
         self.points.iter().find(|point| point.force == force)
     }
 
-    /// Where it rises most from one force to the next; `None` with a single one.
+    /// Where it rises most from one force to the next; `None` where it rises nowhere by more than the error.
     pub(crate) fn rise(&self) -> Option<Rise> {
         self.points
             .windows(2)
+            .filter(|pair| pair[1].mean - pair[0].mean > pair[1].error.hypot(pair[0].error))
             .max_by(|one, other| {
                 (one[1].mean - one[0].mean).total_cmp(&(other[1].mean - other[0].mean))
             })
@@ -253,6 +254,11 @@ impl ForceLine {
             .collect()
     }
 
+    /// The points from rest, then those from jammed.
+    pub(crate) fn points(&self) -> impl Iterator<Item = &ForcePoint> {
+        self.rest.points.iter().chain(&self.jammed.points)
+    }
+
     /// Whether no flow on it is stationary.
     pub(crate) fn is_empty(&self) -> bool {
         self.rest.points.is_empty() && self.jammed.points.is_empty()
@@ -278,10 +284,7 @@ impl ForceLine {
     pub(crate) fn window(&self) -> Option<(f64, f64)> {
         let both = self.both();
         let (first, last) = (*both.first()?, *both.last()?);
-        let forces = || {
-            let points = self.rest.points.iter().chain(&self.jammed.points);
-            points.map(|point| point.force)
-        };
+        let forces = || self.points().map(|point| point.force);
         let before = forces()
             .filter(|force| *force < first)
             .fold(f64::NEG_INFINITY, f64::max);
@@ -328,10 +331,7 @@ impl ForceLine {
 
     /// Whether it reaches from unjammed to jammed flow.
     fn spans(&self) -> bool {
-        let means = || {
-            let points = self.rest.points.iter().chain(&self.jammed.points);
-            points.map(|point| point.mean)
-        };
+        let means = || self.points().map(|point| point.mean);
         means().any(|mean| mean < SPAN.0) && means().any(|mean| mean > SPAN.1)
     }
 

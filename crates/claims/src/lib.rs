@@ -31,4 +31,4 @@ pub use reproduction::{
     Event, Examination, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
 };
 pub use runs::{Lattice, Run, Start};
-pub use studies::{STUDIES, Size, StudyFile};
+pub use studies::{Products, STUDIES, Size, StudyFile};

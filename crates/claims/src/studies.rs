@@ -20,6 +20,17 @@ impl Size {
     }
 }
 
+/// Of which runs claims need more than the row: time series, profile, flow of the waves or spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Products {
+    /// Of none.
+    NotNeeded,
+    /// Of the first replicate of each point, for figures.
+    OfFirst,
+    /// Of all, for the analysis.
+    OfAll,
+}
+
 /// A study in both sizes; both have the same name, and so share a store and the runs that they have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct StudyFile {
@@ -27,6 +38,8 @@ pub struct StudyFile {
     pub name: &'static str,
     /// Path of the full design within the repository.
     pub path: &'static str,
+    /// Whose products the claims need. Runs of which only the row is there, as it was imported, are computed for them.
+    pub products: Products,
     quick: &'static str,
     full: &'static str,
 }
@@ -43,9 +56,16 @@ impl StudyFile {
         Self {
             name,
             path,
+            products: Products::NotNeeded,
             quick,
             full,
         }
+    }
+
+    /// The same, with products that claims need.
+    #[must_use]
+    pub const fn needing(self, products: Products) -> Self {
+        Self { products, ..self }
     }
 
     /// The text of the study file.
@@ -67,12 +87,12 @@ impl StudyFile {
 /// Both files of a study by its name.
 macro_rules! study {
     ($name:literal) => {
-        StudyFile {
-            name: $name,
-            path: concat!("studies/", $name, ".toml"),
-            quick: include_str!(concat!("../../../studies/quick/", $name, ".toml")),
-            full: include_str!(concat!("../../../studies/", $name, ".toml")),
-        }
+        StudyFile::new(
+            $name,
+            concat!("studies/", $name, ".toml"),
+            include_str!(concat!("../../../studies/quick/", $name, ".toml")),
+            include_str!(concat!("../../../studies/", $name, ".toml")),
+        )
     };
 }
 
@@ -83,7 +103,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("branches-fine"),
     study!("branches-coarse"),
     study!("flow-in-time"),
-    study!("second-moment"),
+    study!("second-moment").needing(Products::OfAll),
     study!("jam-lifetime"),
     study!("density-fine"),
     study!("density-coarse"),
@@ -97,19 +117,19 @@ pub const STUDIES: &[StudyFile] = &[
     study!("length"),
     study!("method-fine"),
     study!("method-coarse"),
-    study!("back-flow"),
+    study!("back-flow").needing(Products::OfFirst),
     study!("two-by-two-stress"),
     study!("two-by-two-strain"),
     study!("small-speed-size"),
     study!("sweep-up"),
     study!("sweep-down"),
-    study!("pumping-frictionless"),
-    study!("pumping-frictional"),
-    study!("elastic-flow"),
+    study!("pumping-frictionless").needing(Products::OfFirst),
+    study!("pumping-frictional").needing(Products::OfFirst),
+    study!("elastic-flow").needing(Products::OfFirst),
     study!("elastic-branches"),
     study!("elastic-extremes"),
-    study!("elastic-yielding"),
+    study!("elastic-yielding").needing(Products::OfFirst),
     study!("elastic-frictionless"),
     study!("elastic-sensitivity"),
-    study!("unjammed-frictionless"),
+    study!("unjammed-frictionless").needing(Products::OfFirst),
 ];

@@ -473,11 +473,17 @@ fn back_flow_is_seen_and_its_absence_too() {
         .verdict,
         Verdict::Differs
     );
+    // Where both flows exist the slow one counts.
+    assert!(
+        find("S4", SOURCE).summary.contains("0.005"),
+        "{}",
+        find("S4", SOURCE).summary
+    );
     // Negative from one start only is none.
     let mut evidence = empty();
     let mut runs = SOURCE.branches(&RATES);
     for run in runs.iter_mut().filter(|run| run.start == Start::Jammed) {
-        run.flow_rate_ratio = run.flow_rate_ratio.max(0.0);
+        run.flow_rate_ratio = 0.0;
     }
     evidence.add_runs("elastic-branches", runs);
     assert_eq!(examine("S4", &evidence).verdict, Verdict::Differs);
@@ -512,6 +518,23 @@ fn two_unjammed_flows_are_compared_by_throat_and_belly() {
     };
     let finding = examine("S6", &SOURCE.evidence(alike));
     assert_eq!(finding.verdict, Verdict::Differs, "{}", finding.summary);
+    // Temperatures count by their ratio.
+    for (ratio, verdict) in [(1.5, Verdict::Differs), (3.0, Verdict::Reproduced)] {
+        let mut evidence = SOURCE.evidence(alike);
+        let mut warm = evidence
+            .study("unjammed-frictionless")
+            .unwrap()
+            .runs
+            .clone();
+        for (name, value) in warm.iter_mut().flat_map(|run| &mut run.axes) {
+            if name == "belly_granular_temperature" {
+                *value *= ratio;
+            }
+        }
+        evidence.add_runs("unjammed-frictionless", warm);
+        let finding = examine("S6", &evidence);
+        assert_eq!(finding.verdict, verdict, "{}", finding.summary);
+    }
 }
 
 /// Runs of one setting: its keys, and the tube that it makes.

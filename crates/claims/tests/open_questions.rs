@@ -439,6 +439,46 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
     assert_eq!(alone.verdict, Verdict::Open);
 }
 
+/// What a reproduction has that was stopped early.
+#[test]
+fn a_pump_of_which_little_is_known_is_no_error() {
+    let whole = pump(0.062);
+    let thinned = |keep: &dyn Fn(usize) -> bool, last: &dyn Fn(&mut BTreeMap<String, f64>)| {
+        let rows = whole.rows.iter().enumerate();
+        let mut rows: Vec<_> = rows
+            .filter(|(place, _)| keep(*place))
+            .map(|(_, row)| row.clone())
+            .collect();
+        rows.iter_mut().for_each(|row| last(&mut row.1));
+        Rows { rows }
+    };
+    let unchanged = |_: &mut BTreeMap<String, f64>| {};
+    for place in [0, 1, 8, 26, 27, 53] {
+        let one = thinned(&|other| other == place, &unchanged);
+        examine("Q9", &[("pumping-frictional", &one)]);
+        let pair = [
+            ("pumping-frictionless", &whole),
+            ("pumping-frictional", &one),
+        ];
+        examine("Q9", &pair);
+    }
+    // Without load only, and grains that are driven back everywhere.
+    let free = thinned(&|place| place % 27 < 3, &unchanged);
+    examine("Q9", &[("pumping-frictional", &free)]);
+    let back = thinned(&|place| place > 3, &|row| {
+        row.insert("flow_rate_ratio".to_owned(), -0.2);
+        row.insert("axial_dispersion".to_owned(), f64::NAN);
+    });
+    examine("Q9", &[("pumping-frictional", &back)]);
+    examine(
+        "Q9",
+        &[
+            ("pumping-frictionless", &whole),
+            ("pumping-frictional", &back),
+        ],
+    );
+}
+
 /// Runs that jam below a critical width of each method.
 fn methods(critical: impl Fn(f64, bool) -> f64) -> Rows {
     let mut rows = Rows::default();

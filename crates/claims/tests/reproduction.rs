@@ -11,8 +11,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use peristalsis_claims::{
-    Claim, ClaimError, Event, Evidence, Finding, ImportedRuns, Outcome, Reproduction, Size,
-    Statistics, StudyFile, Verdict, chosen,
+    Claim, ClaimError, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Reproduction,
+    Size, Statistics, StudyFile, Verdict, chosen,
 };
 use peristalsis_study::{Effort, Ending, Store};
 
@@ -249,6 +249,51 @@ fn runs_in_tables_need_not_be_computed_again() {
     // A file that was named must be a table of runs.
     for name in ["long-timing.csv", "notes.txt", "none.csv"] {
         assert!(quick.import(&[tables.join(name)]).is_err(), "{name}");
+    }
+}
+
+#[test]
+fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, tables) = (folder.path().join("first"), folder.path().join("tables"));
+    run(&prepared(&first, Size::Full));
+    let store = Store::open(&first.join("stores/short")).unwrap();
+    store.export(&tables, false).unwrap();
+    // Runs of two widths that have a time series in the end.
+    for (products, expected) in [
+        (Products::NotNeeded, 0),
+        (Products::OfFirst, 2),
+        (Products::OfAll, 4),
+    ] {
+        let with_series = |evidence: &Evidence| {
+            let results = evidence.study("short")?;
+            let mut number = 0;
+            for run in &results.runs {
+                number += usize::from(results.series(run)?.is_some());
+            }
+            let mut finding = count(evidence, "short")?;
+            finding.summary = format!("{number} of {}", results.runs.len());
+            Ok(finding)
+        };
+        let claims = [claim("F2", &["short"], with_series)];
+        let studies = [STUDIES[1].needing(products)];
+        let second = folder.path().join(format!("{products:?}"));
+        let prepared = Reproduction::prepare(&second, Size::Full, &claims, &studies).unwrap();
+        let import = prepared.import(std::slice::from_ref(&tables)).unwrap();
+        assert_eq!(import.studies[0].found, 4);
+        // Without any time the rows are enough for what needs no more.
+        let stopped = prepared.run(EFFORT, &|| true, &mut |_| {});
+        assert_eq!(summaries(&stopped), ["0 of 4"]);
+        let mut fractions = Vec::new();
+        let outcome = prepared.run(EFFORT, &|| false, &mut |event| {
+            if let Event::Progress(stage) = event {
+                fractions.push(stage.fraction);
+            }
+        });
+        assert_eq!(outcome.ending, Ending::Complete);
+        assert_eq!(summaries(&outcome), [format!("{expected} of 4")]);
+        assert_eq!(outcome.studies[0].done, 4);
+        assert!(fractions.is_sorted(), "{fractions:?}");
     }
 }
 

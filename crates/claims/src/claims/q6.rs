@@ -375,19 +375,19 @@ fn table(samples: &Samples<'_>) -> ReportTable {
         })
         .collect();
     ReportTable {
-        caption: "Flow, axial forces of the wall on the grains of a wavelength (10^{−3} *Y d*^2), by normal forces and by friction, \
+        caption: "Flow, axial forces of the wall on the grains of a wavelength (*F*/*Yd*^{2}), by normal forces and by friction, \
                   in front and rear and in throat and bulge, and mean axial velocities of grains and of wall spheres in the throat, \
-                  against friction, axial tether (*Y d*) and strain rate (10^{−3}/*t*^{\\*})."
+                  against friction, axial tether (*Y d*) and strain rate (1/*t*^{\\*})."
             .to_owned(),
         head: [
             "*μ*_{s}",
             "tether",
-            "*ε̇*",
+            "10^{3}*ε̇*",
             "*J*/*J*_{max}",
-            "normal: front, rear",
-            "friction: front, rear",
-            "normal: throat, bulge",
-            "friction: throat, bulge",
+            "10^{3}*F*, normal: front, rear",
+            "10^{3}*F*, friction: front, rear",
+            "10^{3}*F*, normal: throat, bulge",
+            "10^{3}*F*, friction: throat, bulge",
             "grains, *v_z*/*c*",
             "wall, *v_z*/*c*",
         ]

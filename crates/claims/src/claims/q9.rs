@@ -142,6 +142,15 @@ impl<'a> Characteristic<'a> {
             .max_by(|one, other| one.1.value.total_cmp(&other.1.value))
     }
 
+    /// Whether the largest efficiency is at the smallest pressure rise that was tried, so that it may be larger below.
+    fn best_is_at_the_edge(&self) -> bool {
+        let mut loaded = self.points.iter().filter(|point| point.pressure > 0.0);
+        loaded
+            .next()
+            .zip(self.best())
+            .is_some_and(|(first, (best, _))| best.pressure <= first.pressure)
+    }
+
     /// The working point against the largest pressure that still has flow along the wave.
     fn last(&self) -> Option<&Working<'a>> {
         self.points
@@ -241,7 +250,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     if pumps.is_empty() {
         return Ok(Finding::nothing(
-            "No runs yet.",
+            "No runs of the sine yet.",
             Statistics::default(),
             &NEEDED,
         ));
@@ -294,6 +303,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
          too far in one step; the largest back pressures may be missing."
             .to_owned(),
     );
+    let at_the_edge: Vec<&str> = pumps
+        .iter()
+        .filter(|pump| pump.sine().is_some_and(Characteristic::best_is_at_the_edge))
+        .map(|pump| pump.model.name)
+        .collect();
+    if !at_the_edge.is_empty() {
+        finding.weaknesses.push(format!(
+            "The largest efficiency is at the smallest pressure rise that was tried, and may be larger below it: {}.",
+            at_the_edge.join("; ")
+        ));
+    }
     finding.figures = figures::all(&pumps)?;
     Ok(finding)
 }
@@ -373,10 +393,10 @@ fn table(pumps: &[Pump<'_>]) -> ReportTable {
             "Δ*p*_{0}",
             "*η*",
             "at Δ*p*",
-            "residence",
-            "at best",
-            "*D*/*cλ*",
-            "at best",
+            "residence, free",
+            "at largest *η*",
+            "*D*/*cλ*, free",
+            "*D*/*cλ*, at largest *η*",
         ]
         .map(str::to_owned)
         .to_vec(),

@@ -11,7 +11,7 @@ use crate::branches::mean_and_error;
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
 use crate::forces::{CLEAR, ForceLine, together};
 use crate::runs::Run;
 use crate::text::{number, with_error};
@@ -111,7 +111,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut found = finding(
         verdict,
         format!("*J*/*J*_{{max}} is {}.", words.join(", ")),
-        together(judged(&lines).into_iter()),
+        statistics(&lines, &scenes),
     );
     for scene in &scenes {
         found.quantities.push(Quantity {
@@ -124,13 +124,36 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         });
     }
     found.paragraphs.push(
-        "The source gives pictures and no numbers. What is compared is the direction of the flow: along the wave at the largest force, \
+        "The source gives pictures of one strain rate and no numbers; forces and strain rates behind the verdict are those of the \
+         branches (S3), of which these flows are part. What is compared is the direction of the flow: along the wave at the largest force, \
          where the jam lasts, and for grains without friction; against it at the smaller forces, where the jam has given way."
             .to_owned(),
     );
+    let drifting: Vec<String> = scenes
+        .iter()
+        .filter(|scene| scene.runs.iter().any(|run| !run.is_stationary()))
+        .map(Scene::name)
+        .collect();
+    if !drifting.is_empty() {
+        found.weaknesses.push(format!(
+            "The flow still drifts in some of the runs at {}.",
+            drifting.join(", ")
+        ));
+    }
     found.tables.extend(against_the_wave(study, &scenes)?);
     found.figures.extend(snapshots(study, &scenes)?);
     Ok(found)
+}
+
+/// The pictures are of one strain rate: forces and strain rates are those of the branches, whose flows these are; replicates
+/// the fewest of branches and pictures.
+fn statistics(lines: &[ForceLine], scenes: &[Scene<'_>]) -> Statistics {
+    let branches = together(judged(lines).into_iter());
+    let of_pictures = scenes.iter().map(|scene| scene.runs.len());
+    Statistics {
+        replicates: of_pictures.fold(branches.replicates, usize::min),
+        ..branches
+    }
 }
 
 /// Which part of the grains moves against the wave in each picture.
@@ -260,7 +283,7 @@ fn snapshots(
         })
         .collect();
     Ok(Some(ReportFigure {
-        name: "snapshots".to_owned(),
+        name: "flow-fields".to_owned(),
         caption: format!(
             "The flow after {} periods from jammed, *n* = 0.710, *ε̇* = 4.01 × 10^{{−3}}: grains in front of and behind the axis, \
              coloured by their axial velocity over the wave's speed, blue against the wave and red along it; the wave runs to the \

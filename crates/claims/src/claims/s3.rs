@@ -104,6 +104,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         number(100.0 * MOST_ESCAPED, 0)
     ));
     found.weaknesses.push(
+        "Peaks and dip are of runs at chosen forces: where these lie far apart, a smooth rise leaves a gap as well."
+            .to_owned(),
+    );
+    found.weaknesses.push(
         "A continuous transition and a small jump that the distance of the forces hides look the same: the table gives the bracket."
             .to_owned(),
     );
@@ -151,8 +155,11 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                 line.window().map_or_else(none, |(least, largest)| {
                     if largest.is_finite() {
                         format!("{} … {}", number(least, 4), number(largest, 4))
-                    } else {
+                    } else if least > 0.0 {
                         format!("> {}", number(least, 4))
+                    } else {
+                        // One force, the last that was tried.
+                        "> 0".to_owned()
                     }
                 }),
                 two_peaks(&flows).map_or_else(
@@ -205,12 +212,12 @@ fn branches(lines: &[ForceLine], tight: &[&ForceLine]) -> Result<ReportFigure, C
             flow = flow.with(jammed.open());
         }
     }
-    if let Some(line) = tight.iter().rfind(|line| !line.both().is_empty()) {
+    let windows = tight.iter().rev().filter_map(|line| {
         let both = line.both();
-        let (first, last) = (both[0], both[both.len() - 1]);
-        if last > first {
-            flow = flow.with(Window::new("", first, last));
-        }
+        Some((*both.first()?, *both.last()?))
+    });
+    if let Some((first, last)) = windows.into_iter().find(|(first, last)| last > first) {
+        flow = flow.with(Window::new("", first, last));
     }
     let mut panels = vec![flow.title("filled: from rest, open: from jammed")];
     if tight.iter().any(|line| line.height().is_some()) {
@@ -239,7 +246,7 @@ fn branches(lines: &[ForceLine], tight: &[&ForceLine]) -> Result<ReportFigure, C
     Ok(ReportFigure {
         name: "branches".to_owned(),
         caption: "Stationary *J*/*J*_{max} against the force from rest (filled) and from jammed (open) at several strain rates; shaded: \
-                  both flows exist at the largest of them that has such forces. Right: distance of both flows where both exist, else how high the \
+                  both flows exist, at the largest of them that has several such forces. Right: distance of both flows where both exist, else how high the \
                   flow rises at once between two forces, both sides continued."
             .to_owned(),
         drawing: ChartFigure::grid(2, panels)
@@ -285,7 +292,7 @@ fn peaks(runs: &[Run], tight: &[&ForceLine]) -> Result<Option<ReportFigure>, Cla
         return Ok(None);
     }
     Ok(Some(ReportFigure {
-        name: "two-peaks".to_owned(),
+        name: "peaks-against-force".to_owned(),
         caption: "Stationary *J*/*J*_{max} of all runs from both starts and at all forces, at the smallest and the largest strain rate of \
                   those with most runs: a jump leaves a gap, a smooth rise none but those between its forces."
             .to_owned(),

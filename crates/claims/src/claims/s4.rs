@@ -11,7 +11,7 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
-use crate::forces::{ForceLine, ForcePoint, together};
+use crate::forces::{ForceLine, ForcePoint, LEAST_JUMP, together};
 use crate::text::{number, with_error};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -26,27 +26,33 @@ pub(super) const CLAIM: Claim = Claim {
 /// Part of *J*max from which on a flow against the wave is more than none.
 const LEAST_FLOW: f64 = 0.01;
 
-/// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed.
+/// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
+/// jam lasts there.
 pub(super) fn negative(line: &ForceLine) -> Vec<f64> {
     line.rest
         .points
         .iter()
         .filter(|rest| rest.is_below(-LEAST_FLOW))
         .filter(|rest| {
-            line.jammed
-                .at(rest.force)
-                .is_none_or(|jammed| jammed.is_below(-LEAST_FLOW))
+            line.jammed.at(rest.force).is_none_or(|jammed| {
+                jammed.is_below(-LEAST_FLOW) || jammed.mean > rest.mean + LEAST_JUMP
+            })
         })
         .map(|rest| rest.force)
         .collect()
 }
 
+/// Whether the flow of a line is negative at larger forces only, and not at its smallest.
+fn only_beyond(line: &ForceLine) -> bool {
+    let smallest = line.points().map(|point| point.force).reduce(f64::min);
+    negative(line)
+        .first()
+        .is_some_and(|first| Some(*first) > smallest)
+}
+
 /// The point of the strongest flow against the wave, of both starts.
 pub(super) fn lowest(line: &ForceLine) -> Option<ForcePoint> {
-    line.rest
-        .points
-        .iter()
-        .chain(&line.jammed.points)
+    line.points()
         .copied()
         .min_by(|one, other| one.mean.total_cmp(&other.mean))
 }
@@ -119,9 +125,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     found.tables.push(table(&tight));
     found.paragraphs.push(format!(
-        "A flow counts as negative where its mean is below −{LEAST_FLOW} by four of its errors from either start. Errors are those of \
+        "A flow counts as negative where its mean is below −{LEAST_FLOW} by four of its errors from rest, and from jammed as well unless \
+         the jam lasts there. Errors are those of \
          the scatter over replicates, of the blocks of one run where there is but one."
     ));
+    let beyond: Vec<String> = tight
+        .iter()
+        .filter(|line| only_beyond(line))
+        .map(|line| rate_text(line.strain_rate))
+        .collect();
+    if !beyond.is_empty() {
+        found.weaknesses.push(format!(
+            "The claim says small forces: at *ε̇* = {} the smallest that were tried carry the grains along, and only larger ones turn \
+             the flow round.",
+            beyond.join(", ")
+        ));
+    }
     found.figures.push(ReportFigure {
         name: "back-flow".to_owned(),
         caption: "Stationary *J*/*J*_{max} below the transition, from rest (filled) and from jammed (open): below the dotted line grains \
@@ -166,13 +185,7 @@ fn below_transition(
 fn table(tight: &[&ForceLine]) -> ReportTable {
     let mut rows = Vec::new();
     for line in tight {
-        let mut forces: Vec<f64> = line
-            .rest
-            .points
-            .iter()
-            .chain(&line.jammed.points)
-            .map(|point| point.force)
-            .collect();
+        let mut forces: Vec<f64> = line.points().map(|point| point.force).collect();
         forces.sort_by(f64::total_cmp);
         forces.dedup();
         for force in forces {

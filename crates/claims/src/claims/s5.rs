@@ -44,11 +44,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     let frictional = ForceLine::all_of(&branch_runs(evidence)?);
     let backward = tight.iter().any(|line| !negative(line).is_empty());
-    let points = || {
-        tight
-            .iter()
-            .flat_map(|line| line.rest.points.iter().chain(&line.jammed.points))
-    };
+    let points = || tight.iter().flat_map(|line| line.points());
     let never = points().all(|point| point.mean + NOT_BACK > SURE * point.error);
     let verdict = match (backward, never) {
         (true, _) => Verdict::Differs,

@@ -5,6 +5,7 @@ use peristalsis_figures::chart::{
     Band, ChartFigure, ChartPanel, LegendPlace, Line as Curve, Reference,
 };
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
+use std::ops::Range;
 
 use super::elastic::{finding, is_frictionless, judged, label, nothing, rate_text};
 use crate::branches::mean_and_error;
@@ -30,6 +31,8 @@ pub(super) const CLAIM: Claim = Claim {
 const UNJAMMED: f64 = 0.2;
 /// Differences of velocities, in parts of c, and of densities, in parts of the mean, count from here on.
 const LEAST_DIFFERENCE: f64 = 0.05;
+/// Temperatures differ from this ratio on.
+const LEAST_RATIO: f64 = 2.0;
 
 /// Name and symbol of a number, and its value in a run.
 type Number = (&'static str, &'static str, fn(&Run) -> f64);
@@ -37,8 +40,8 @@ type Number = (&'static str, &'static str, fn(&Run) -> f64);
 /// The numbers that are compared, each of one run, free of units.
 const NUMBERS: [Number; 6] = [
     (
-        "density in the throat over that in the belly",
-        "*n*_{throat}/*n*_{belly}",
+        "grains per length in the throat over those in the belly",
+        "*n*_{1,throat}/*n*_{1,belly}",
         |run| column(run, "throat_density") / column(run, "belly_density"),
     ),
     ("axial velocity in the throat", "*v*_{throat}/*c*", |run| {
@@ -57,8 +60,22 @@ const NUMBERS: [Number; 6] = [
     }),
     ("flow rate", "*J*/*J*_{max}", |run| run.flow_rate_ratio),
 ];
-/// How many of them decide whether two flows differ: density and velocities.
-const DECIDING: usize = 3;
+/// Those that decide by their difference whether two flows differ, density and velocities, and by their ratio, temperatures.
+const BY_DIFFERENCE: Range<usize> = 0..3;
+const BY_RATIO: Range<usize> = 3..5;
+
+/// In what two flows differ.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// In density or velocity.
+    Differ,
+    /// In temperature only.
+    DifferInTemperature,
+    /// In none of them.
+    Agree,
+    /// The errors do not allow to say, or are not known.
+    Unknown,
+}
 
 fn column(run: &Run, name: &str) -> f64 {
     run.axis(name).unwrap_or(f64::NAN)
@@ -93,20 +110,30 @@ impl<'a> Flow<'a> {
         Uncertain::normal(mean, error)
     }
 
-    /// Whether density or velocities differ from those of another flow; `None` where the errors do not allow to say, or are not
-    /// known.
-    fn differs(&self, other: &Self) -> Option<bool> {
+    /// In what it differs from another flow.
+    fn beside(&self, other: &Self) -> Outcome {
         let mut known = true;
-        for (_, _, value) in &NUMBERS[..DECIDING] {
-            let (one, two) = (self.mean(*value), other.mean(*value));
-            let difference = (one.value - two.value).abs();
-            let error = one.error.hypot(two.error);
-            if error.is_finite() && difference > LEAST_DIFFERENCE.max(CLEAR * error) {
-                return Some(true);
-            }
-            known &= error.is_finite() && error < LEAST_DIFFERENCE;
+        let mut any = |numbers: Range<usize>, scale: fn(f64) -> f64, least: f64| {
+            NUMBERS[numbers].iter().any(|(_, _, value)| {
+                let (one, two) = (self.mean(*value), other.mean(*value));
+                let difference = (scale(one.value) - scale(two.value)).abs();
+                // To first order, so that that of a logarithm is the relative one.
+                let scaled =
+                    |mean: &Uncertain| (scale(mean.value + mean.error) - scale(mean.value)).abs();
+                let error = scaled(&one).hypot(scaled(&two));
+                known &= error.is_finite() && error < least;
+                error.is_finite() && difference > least.max(CLEAR * error)
+            })
+        };
+        if any(BY_DIFFERENCE, |value| value, LEAST_DIFFERENCE) {
+            Outcome::Differ
+        } else if any(BY_RATIO, f64::ln, LEAST_RATIO.ln()) {
+            Outcome::DifferInTemperature
+        } else if known {
+            Outcome::Agree
+        } else {
+            Outcome::Unknown
         }
-        known.then_some(false)
     }
 }
 
@@ -158,14 +185,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     if frictional.is_empty() || frictionless.is_empty() {
         return Ok(nothing("No unjammed flow of both models yet."));
     }
-    let outcomes: Vec<Option<bool>> = frictional
+    let pairs: Vec<(&Flow<'_>, &Flow<'_>, Outcome)> = frictional
         .iter()
-        .flat_map(|one| frictionless.iter().map(|other| one.differs(other)))
+        .flat_map(|one| {
+            frictionless
+                .iter()
+                .map(move |other| (one, other, one.beside(other)))
+        })
         .collect();
-    let number_of = |outcome: Option<bool>| outcomes.iter().filter(|one| **one == outcome).count();
-    let verdict = if number_of(Some(true)) == outcomes.len() {
+    let number_of = |outcome| pairs.iter().filter(|pair| pair.2 == outcome).count();
+    let (differ, warmer) = (
+        number_of(Outcome::Differ),
+        number_of(Outcome::DifferInTemperature),
+    );
+    let verdict = if differ + warmer == pairs.len() {
         Verdict::Reproduced
-    } else if number_of(Some(false)) == outcomes.len() {
+    } else if number_of(Outcome::Agree) == pairs.len() {
         Verdict::Differs
     } else {
         Verdict::Open
@@ -173,13 +208,23 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut found = finding(
         verdict,
         format!(
-            "Density or velocity in throat or belly differ in {} of {} pairs of an unjammed flow of either model, and agree in {}.",
-            number_of(Some(true)),
-            outcomes.len(),
-            number_of(Some(false)),
+            "Density or velocity in throat or belly differ in {differ} of {} pairs of an unjammed flow of either model, temperature \
+             only in {warmer}; {} agree.",
+            pairs.len(),
+            number_of(Outcome::Agree),
         ),
         together(judged(&lines).into_iter()),
     );
+    for (one, other, outcome) in &pairs {
+        let alike = match outcome {
+            Outcome::DifferInTemperature => "differ in temperature only",
+            Outcome::Agree => "agree",
+            Outcome::Differ | Outcome::Unknown => continue,
+        };
+        found
+            .weaknesses
+            .push(format!("These two {alike}: {}; {}.", one.name, other.name));
+    }
     // At the smallest force of the source's rate where there is one, else at the first.
     let shown = frictional
         .iter()
@@ -206,9 +251,14 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
          grains, *c*(*m*/*k*)^{1/2}/*d* ≈ 0.2, with *k* the stiffness of a Hertz contact of overlap 0.1 *d*; the larger one is the \
          source's. Lengths are over the wavelength, densities over their mean, velocities over *c*, temperatures over *mc*^{2} (*m* that \
          of the largest grain). The prescribed tube is as wide as it must be for unjammed flow. Throat and belly are the fifths of the \
-         wavelength about the narrowest and the widest place."
+         wavelength about the narrowest and the widest place. The density is that along the tube, *n*_{1}, grains per length: in a \
+         steady state *n*_{1}(*c* − *v*) is the same everywhere, so that it follows from the velocities."
             .to_owned(),
     );
+    found.paragraphs.push(format!(
+        "Two flows differ where densities (in parts of the mean) or velocities (in parts of *c*) are apart by more than \
+         {LEAST_DIFFERENCE}, or temperatures by more than a factor {LEAST_RATIO}, and by more than {CLEAR} errors."
+    ));
     found.weaknesses.push(
         "An elastic wall takes the amplitude that force and grains give it: the amplitudes of the two tubes cannot be matched as long as \
          both flows are to be unjammed."
@@ -335,7 +385,7 @@ fn profiles(
         return Ok(None);
     }
     let labels = [
-        "density, *n*_{1}*L*/*N*".to_owned(),
+        "grains per length, *n*_{1}*L*/*N*".to_owned(),
         label(Axis::AxialVelocity),
         "temperature, *T*_{g}/*mc*^{2}".to_owned(),
     ];

@@ -7,20 +7,22 @@ mod order;
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use peristalsis_study::{Board, Effort, Ending, Specification, Store, StudyError, work_on};
+use peristalsis_study::{Board, Effort, Ending, Specification, State, Store, StudyError, work_on};
 
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::studies::{Size, StudyFile};
+use crate::studies::{Products, Size, StudyFile};
 pub use examination::Examination;
 pub use import::{Import, ImportedRuns};
 
 /// Folder of the stores below that of the results.
 const STORES: &str = "stores";
+/// What the name of a store ends in where runs are computed again of which only rows were imported.
+const AGAIN: &str = "-again";
 
 /// Claims with the studies that they need, each in a store of its own.
 ///
@@ -30,6 +32,7 @@ pub struct Reproduction {
     size: Size,
     claims: Vec<Claim>,
     works: Vec<Work>,
+    stores: PathBuf,
 }
 
 /// A study and where its runs are kept.
@@ -38,6 +41,56 @@ struct Work {
     file: StudyFile,
     study: Specification,
     store: Result<Store, StudyError>,
+}
+
+impl Work {
+    /// The part of the study whose products the claims need, with a store of its own, where the study's store has rows without
+    /// them; `None` where nothing is wanting.
+    fn again(&self, stores: &Path) -> Result<Option<(Specification, Store)>, StudyError> {
+        let replicates = match self.file.products {
+            Products::NotNeeded => return Ok(None),
+            Products::OfFirst => 1,
+            Products::OfAll => self.study.replicates,
+        };
+        let Ok(store) = &self.store else {
+            return Ok(None);
+        };
+        let survey = store.survey()?;
+        let is_bare = |identity| {
+            survey.state(identity) == State::Done && !store.run_folder(identity).is_dir()
+        };
+        let runs = survey.plan.runs().iter();
+        if !runs
+            .into_iter()
+            .any(|run| run.replicate < replicates && is_bare(run.identity))
+        {
+            return Ok(None);
+        }
+        let study = self.study.with_replicates(replicates)?;
+        let store = Store::create(&stores.join(format!("{}{AGAIN}", self.file.name)), &study)?;
+        Ok(Some((study, store)))
+    }
+}
+
+/// One go at a study: all of it, or the part that is computed again.
+struct Pass<'a> {
+    study: &'a Specification,
+    store: &'a Store,
+    load: Load,
+}
+
+impl<'a> Pass<'a> {
+    fn of(study: &'a Specification, store: &'a Store) -> Self {
+        // A study that cannot be read takes no time.
+        let load = store.survey().map_or_else(
+            |_| Load::default(),
+            |survey| Load {
+                all: survey.work(),
+                left: survey.work_left(),
+            },
+        );
+        Self { study, store, load }
+    }
 }
 
 /// What there is to tell of a reproduction in progress.
@@ -175,6 +228,7 @@ impl Reproduction {
             size,
             claims: claims.to_vec(),
             works,
+            stores,
         })
     }
 
@@ -204,8 +258,8 @@ impl Reproduction {
 /// A reproduction on its way.
 struct Course<'a> {
     reproduction: &'a Reproduction,
-    /// Work of each study and the part of it that is left, in grains times steps.
-    loads: Vec<Load>,
+    /// Stores of what is computed again, by the name of the study.
+    again: BTreeMap<&'static str, Store>,
     /// Why a study could not be worked on or read, by name.
     failures: BTreeMap<&'static str, String>,
     /// Studies whose results are in the evidence, or cannot be.
@@ -214,6 +268,7 @@ struct Course<'a> {
     examinations: BTreeMap<&'static str, Examination>,
 }
 
+/// Work and the part of it that is left, in grains times steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
     all: f64,
@@ -222,26 +277,34 @@ struct Load {
 
 impl<'a> Course<'a> {
     fn of(reproduction: &'a Reproduction) -> Self {
-        let load = |work: &Work| {
-            let survey = work.store.as_ref().ok()?.survey().ok()?;
-            Some(Load {
-                all: survey.work(),
-                left: survey.work_left(),
-            })
-        };
         Self {
             reproduction,
-            // A study that cannot be read takes no time.
-            loads: reproduction
-                .works
-                .iter()
-                .map(|work| load(work).unwrap_or_default())
-                .collect(),
+            again: BTreeMap::new(),
             failures: BTreeMap::new(),
             ended: Vec::new(),
             evidence: Evidence::default(),
             examinations: BTreeMap::new(),
         }
+    }
+
+    /// Finds which studies are computed again in part.
+    fn look_for_bare_rows(
+        &mut self,
+        watch: &mut dyn FnMut(Event<'_>),
+    ) -> Vec<Option<(Specification, Store)>> {
+        let reproduction = self.reproduction;
+        let mut found = Vec::new();
+        for work in &reproduction.works {
+            let again = work.again(&reproduction.stores).unwrap_or_else(|error| {
+                self.fail(work.file.name, error.to_string(), watch);
+                None
+            });
+            if let Some((_, store)) = &again {
+                self.again.insert(work.file.name, store.clone());
+            }
+            found.push(again);
+        }
+        found
     }
 
     /// Works on the studies until all have ended or it is time to stop.
@@ -253,47 +316,69 @@ impl<'a> Course<'a> {
     ) -> Ending {
         let begin = Instant::now();
         let works = &self.reproduction.works;
-        let costs: Vec<f64> = self.loads.iter().map(|load| load.left).collect();
+        let again = self.look_for_bare_rows(watch);
+        let passes: Vec<Vec<Pass<'_>>> = works
+            .iter()
+            .zip(&again)
+            .map(|(work, again)| {
+                let whole = work.store.as_ref().ok().map(|store| (&work.study, store));
+                let part = again.as_ref().map(|(study, store)| (study, store));
+                let both = whole.into_iter().chain(part);
+                both.map(|(study, store)| Pass::of(study, store)).collect()
+            })
+            .collect();
+        let sum = |of: fn(&Load) -> f64, passes: &[Pass<'_>]| -> f64 {
+            passes.iter().map(|pass| of(&pass.load)).sum()
+        };
+        let left = |passes: &[Pass<'_>]| sum(|load| load.left, passes);
+        let costs: Vec<f64> = passes.iter().map(|passes| left(passes)).collect();
         let names: Vec<&str> = works.iter().map(|work| work.file.name).collect();
         let order = order::cheapest_claims_first(&self.reproduction.claims, &names, &costs);
-        let total: f64 = self.loads.iter().map(|load| load.all).sum();
+        let total: f64 = passes
+            .iter()
+            .map(|passes| sum(|load| load.all, passes))
+            .sum();
         let left_before: f64 = costs.iter().sum();
         for (turn, &place) in order.iter().enumerate() {
             let work = &works[place];
-            let is_complete = costs[place] == 0.0;
-            let limit = effort
-                .limit
-                .map(|limit| limit.saturating_sub(begin.elapsed()));
-            if !is_complete {
-                if stop() {
-                    return Ending::Stopped;
-                }
-                if limit.is_some_and(|limit| limit.is_zero()) {
-                    return Ending::TimeUp;
-                }
-            }
             let others_left: f64 = order[turn + 1..].iter().map(|place| costs[*place]).sum();
-            let load = self.loads[place];
-            let mut show = |board: &Board| {
-                let left = others_left + load.all * (1.0 - board.fraction);
-                let gained = left_before - left;
-                watch(Event::Progress(Stage {
-                    study: work.file.name,
-                    number: turn + 1,
-                    of: order.len(),
-                    board,
-                    fraction: if total > 0.0 { 1.0 - left / total } else { 1.0 },
-                    left: (gained > 0.0).then(|| begin.elapsed().mul_f64(left.max(0.0) / gained)),
-                }));
-            };
-            let ending = match &work.store {
-                Ok(store) => {
-                    let effort = Effort { limit, ..effort };
-                    work_on(store, &work.study, effort, stop, &mut show)
-                        .map_err(|error| error.to_string())
-                }
+            let mut ending = match &work.store {
+                Ok(_) => Ok(Ending::Complete),
                 Err(error) => Err(error.to_string()),
             };
+            for (number, pass) in passes[place].iter().enumerate() {
+                let limit = effort
+                    .limit
+                    .map(|limit| limit.saturating_sub(begin.elapsed()));
+                if pass.load.left > 0.0 {
+                    if stop() {
+                        return Ending::Stopped;
+                    }
+                    if limit.is_some_and(|limit| limit.is_zero()) {
+                        return Ending::TimeUp;
+                    }
+                }
+                let later_left = others_left + left(&passes[place][number + 1..]);
+                let mut show = |board: &Board| {
+                    let left = later_left + pass.load.all * (1.0 - board.fraction);
+                    let gained = left_before - left;
+                    watch(Event::Progress(Stage {
+                        study: work.file.name,
+                        number: turn + 1,
+                        of: order.len(),
+                        board,
+                        fraction: if total > 0.0 { 1.0 - left / total } else { 1.0 },
+                        left: (gained > 0.0)
+                            .then(|| begin.elapsed().mul_f64(left.max(0.0) / gained)),
+                    }));
+                };
+                let effort = Effort { limit, ..effort };
+                ending = work_on(pass.store, pass.study, effort, stop, &mut show)
+                    .map_err(|error| error.to_string());
+                if ending != Ok(Ending::Complete) {
+                    break;
+                }
+            }
             match ending {
                 Ok(Ending::Complete) => {}
                 Ok(ending) => return ending,
@@ -340,7 +425,7 @@ impl<'a> Course<'a> {
         let outcome = match &work.store {
             Ok(store) => self
                 .evidence
-                .add(store.clone())
+                .add(store.clone(), self.again.get(work.file.name).cloned())
                 .map_err(|error| error.to_string()),
             Err(error) => Err(error.to_string()),
         };

@@ -53,6 +53,8 @@ pub struct Specification {
     text: String,
     /// Where `file` names the base in `text`, quotes included.
     file_span: Option<std::ops::Range<usize>>,
+    /// Where `replicates` is given in `text`.
+    replicates_span: Option<std::ops::Range<usize>>,
 }
 
 /// What every run builds on.
@@ -118,7 +120,7 @@ impl Specification {
         let axes = axes(&table, &mut problems);
         let refinement = refinement(&table, &axes, &mut problems);
         problems.check()?;
-        let named = document::entry(&table, "file");
+        let span_of = |key| document::entry(&table, key).map(|entry| entry.item.origin.span());
         let base = Base {
             preset: text_of(&table, "preset"),
             file: match text_of(&table, "file") {
@@ -154,11 +156,35 @@ impl Specification {
             states: states(&table),
             base,
             text: text.to_owned(),
-            file_span: named.map(|entry| entry.item.origin.span()),
+            file_span: span_of("file"),
+            replicates_span: span_of("replicates"),
         };
         study.check_size(&table)?;
         crate::plan::Plan::of(&study)?;
         Ok(study)
+    }
+
+    /// The same study with so many replicates of each point.
+    ///
+    /// # Errors
+    /// [`StudyError::Configuration`] where so many are not allowed.
+    pub fn with_replicates(&self, replicates: u32) -> Result<Self, StudyError> {
+        let line = format!("replicates = {replicates}\n");
+        let text = match &self.replicates_span {
+            Some(span) => format!(
+                "{}{replicates}{}",
+                &self.text[..span.start],
+                &self.text[span.end..]
+            ),
+            None => line + &self.text,
+        };
+        Self::from_toml(&self.name, &text, |name| {
+            Ok(self
+                .base
+                .file
+                .clone()
+                .unwrap_or_else(|| (name.to_owned(), String::new())))
+        })
     }
 
     /// The file's text with its base under another name: what a store keeps beside a copy of the base.

@@ -117,7 +117,7 @@ fn causes(samples: &Samples<'_>) -> Result<ReportFigure, ClaimError> {
         }
     }
     Ok(ReportFigure {
-        name: "back-flow".to_owned(),
+        name: "cause-of-back-flow".to_owned(),
         caption: format!(
             "Flow at *f*^{{P}} = 0.002 *Y d*^2 from rest against (a) friction, (b) the axial tether of the wall, (c) the strain rate; \
              (d) axial force of the wall on the grains of a wavelength. What is not varied is *μ*_{{s}} = {}, a tether of {} *Y d* \
@@ -211,7 +211,7 @@ fn balance(
         .clone()
         .with(Note::corner(Corner::BottomLeft, "wave →"));
     Ok(Some(ReportFigure {
-        name: "back-flow-balance".to_owned(),
+        name: "axial-balance".to_owned(),
         caption: "Radius of the tube, axial velocities of grains and wall, and axial force of the wall on the grains per length of \
                   tube, along normals of contacts and by friction, in the wave frame. The wave runs to the right: the front of the \
                   throat is at its right, and grains go through the picture from right to left."

@@ -29,18 +29,18 @@ pub(super) fn of_ladders(ladders: &[Ladder<'_>]) -> ReportTable {
         })
         .collect();
     ReportTable {
-        caption: "By strain rate (10^{−3}/*t*^{\\*}) and length: the largest rise of the flow between two neighbouring forces and \
-                  where (10^{−3} *Y d*^2), and the largest product of the variance of the period averages of *J*/*J*_{max} and the \
+        caption: "By strain rate (1/*t*^{\\*}) and length: the largest rise of the flow between two neighbouring forces and \
+                  where (*Y d*^2), and the largest product of the variance of the period averages of *J*/*J*_{max} and the \
                   number of waves, and where."
             .to_owned(),
         head: [
-            "*ε̇*",
+            "10^{3}*ε̇*",
             "waves",
             "forces",
             "rise",
-            "at *f*^{P}",
+            "at 10^{3}*f*^{P}",
             "variance × waves",
-            "at *f*^{P}",
+            "largest at 10^{3}*f*^{P}",
         ]
         .map(str::to_owned)
         .to_vec(),
@@ -57,9 +57,9 @@ pub(super) fn of_loops(loops: &[Loop]) -> ReportTable {
     };
     ReportTable {
         caption: "Sweeps of the force: where the flow passes to fast on the way up and to slow on the way down, and the width of the \
-                  loop (10^{−3} *Y d*^2); sweeps that did not pass, up and down."
+                  loop (all in 10^{−3} *Y d*^2); sweeps that did not pass, up and down."
             .to_owned(),
-        head: ["*ε̇*", "periods", "up", "down", "loop", "not passed"].map(str::to_owned).to_vec(),
+        head: ["10^{3}*ε̇*", "periods", "10^{3}*f*^{P} up", "down", "loop", "not passed"].map(str::to_owned).to_vec(),
         rows: loops
             .iter()
             .map(|one| {

@@ -105,7 +105,10 @@ fn with_series(
         .flat_map(|one| &one.points)
         .map(|point| point.pressure)
         .fold(0.0, f64::max);
-    panel = panel.x_range(-0.02 * largest..=1.04 * largest);
+    if largest > 0.0 {
+        panel = panel.x_range(-0.02 * largest..=1.04 * largest);
+    }
+    let mut is_empty = true;
     for one in &pump.characteristics {
         let known: Vec<(f64, Mean)> = one
             .points
@@ -124,6 +127,11 @@ fn with_series(
             .series(series.unwrap_or(0))
             .joined();
         panel = panel.with(points);
+        is_empty = false;
+    }
+    if is_empty {
+        // An empty panel has a range to itself, whatever its scale.
+        panel = panel.y_range(0.01..=1.0);
     }
     panel
 }
