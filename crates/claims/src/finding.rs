@@ -31,12 +31,13 @@ impl Verdict {
     }
 }
 
-/// How much is behind a finding, each number the least over the parts that are compared.
+/// How much is behind a finding: strain rates and runs of the parts that are compared together, the fewest widths and
+/// replicates of any.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Statistics {
     /// Strain rates.
     pub strain_rates: usize,
-    /// Widths at each; forces under stress control.
+    /// Widths at each; forces under stress control, or what else is varied.
     pub widths: usize,
     /// Replicates of each point.
     pub replicates: usize,
@@ -127,7 +128,7 @@ pub struct Finding {
     pub statistics: Statistics,
     /// What a verdict would take.
     pub needed: Statistics,
-    /// What is varied at each strain rate, one word: "width" or "force".
+    /// What is varied at each strain rate: "width", "force", "back pressure".
     pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,
