@@ -93,6 +93,67 @@ fn is_split(ratios: &[f64]) -> bool {
     ratios.windows(2).any(|pair| pair[1] - pair[0] > SPLIT)
 }
 
+/// The runs at one point of a branch that no longer drift.
+pub(crate) struct Stationary<'a> {
+    pub(crate) runs: Vec<&'a Run>,
+    /// Mean of J/Jmax.
+    pub(crate) mean: f64,
+    /// Its standard error from their scatter; from the blocks of the run where there is but one.
+    pub(crate) error: f64,
+    /// Fraction of the grains outside, mean.
+    pub(crate) escaped: f64,
+}
+
+impl<'a> Stationary<'a> {
+    /// Of all runs at the point; `None` where none has a flow, or most still drift.
+    pub(crate) fn of(all: &[&'a Run]) -> Option<Self> {
+        let runs: Vec<&Run> = all
+            .iter()
+            .copied()
+            .filter(|run| run.is_stationary() && run.flow_rate_ratio.is_finite())
+            .collect();
+        if runs.is_empty() || 2 * runs.len() < all.len() {
+            return None;
+        }
+        let ratios: Vec<f64> = runs.iter().map(|run| run.flow_rate_ratio).collect();
+        let (mean, error) = mean_and_error(&ratios);
+        let escaped: f64 = runs.iter().map(|run| run.escaped_fraction()).sum();
+        Some(Self {
+            mean,
+            error: if error.is_finite() {
+                error
+            } else {
+                runs[0].flow_rate_ratio_error
+            },
+            escaped: escaped / runs.len() as f64,
+            runs,
+        })
+    }
+}
+
+/// The jump between the points (place, mean, error) next to it on either side, both continued to it as straight lines; `None`
+/// where a side is missing.
+pub(crate) fn jump_between(
+    upper: &[(f64, f64, f64)],
+    lower: &[(f64, f64, f64)],
+    place: Uncertain,
+) -> Option<Jump> {
+    let columns = |points: &[(f64, f64, f64)]| -> [Vec<f64>; 3] {
+        [
+            points.iter().map(|point| point.0).collect(),
+            points.iter().map(|point| point.1).collect(),
+            points.iter().map(|point| point.2).collect(),
+        ]
+    };
+    let ([x, mean, error], below) = (columns(upper), columns(lower));
+    jump_height(
+        [&x, &mean, &error],
+        [&below[0], &below[1], &below[2]],
+        place,
+    )
+    .ok()
+}
+
 impl Branch {
     /// The branch that some runs of one tube at one strain rate show; those that still drift are left out, and with them
     /// widths at which most do. A width at which chance leads some replicates to each of the two flows is on neither
@@ -105,25 +166,15 @@ impl Branch {
         let points = runs
             .chunk_by(|one, other| one.width == other.width)
             .filter_map(|all| {
-                let group: Vec<&&Run> = all.iter().filter(|run| run.is_stationary()).collect();
-                if 2 * group.len() < all.len() {
-                    return None;
-                }
-                let ratios: Vec<f64> = group.iter().map(|run| run.flow_rate_ratio).collect();
-                if is_split(&ratios) {
-                    return None;
-                }
-                let (mean, mut error) = mean_and_error(&ratios);
-                if !error.is_finite() {
-                    error = group[0].flow_rate_ratio_error;
-                }
-                Some(BranchPoint {
-                    width: group[0].width,
-                    mean,
-                    error,
+                let stationary = Stationary::of(all)?;
+                let runs = stationary.runs.iter();
+                let ratios: Vec<f64> = runs.map(|run| run.flow_rate_ratio).collect();
+                (!is_split(&ratios)).then_some(BranchPoint {
+                    width: all[0].width,
+                    mean: stationary.mean,
+                    error: stationary.error,
                     runs: all.len(),
-                    escaped: group.iter().map(|run| run.escaped_fraction()).sum::<f64>()
-                        / group.len() as f64,
+                    escaped: stationary.escaped,
                 })
             })
             .collect();
@@ -189,38 +240,22 @@ impl Branch {
     /// The jump at the largest fall, both sides continued to it as straight lines; `None` where a side is missing.
     pub(crate) fn jump(&self) -> Option<Jump> {
         let drop = self.drop()?;
-        let column = |points: &[&BranchPoint], value: fn(&BranchPoint) -> f64| -> Vec<f64> {
-            points.iter().map(|point| value(point)).collect()
-        };
-        let side = |points: Vec<&BranchPoint>| {
-            [
-                column(&points, |point| point.width),
-                column(&points, |point| point.mean),
-                // Replicates that agree to all digits still have an error.
-                column(&points, |point| point.error.max(1e-3)),
-            ]
-        };
-        let below: Vec<&BranchPoint> = self
+        let split = self
             .points
-            .iter()
-            .filter(|point| point.width <= drop.before)
-            .collect();
-        let upper = side(below[below.len().saturating_sub(CONTINUED)..].to_vec());
-        let lower = side(
-            self.points
-                .iter()
-                .filter(|point| point.width >= drop.after)
-                .take(CONTINUED)
-                .collect(),
-        );
-        let columns = |side: &'_ [Vec<f64>; 3]| [side[0].clone(), side[1].clone(), side[2].clone()];
-        let (upper, lower) = (columns(&upper), columns(&lower));
-        jump_height(
-            [&upper[0], &upper[1], &upper[2]],
-            [&lower[0], &lower[1], &lower[2]],
+            .partition_point(|point| point.width <= drop.before);
+        let (below, beyond) = self.points.split_at(split);
+        // Replicates that agree to all digits still have an error.
+        let side = |points: &[BranchPoint]| -> Vec<(f64, f64, f64)> {
+            let points = points.iter();
+            points
+                .map(|point| (point.width, point.mean, point.error.max(1e-3)))
+                .collect()
+        };
+        jump_between(
+            &side(&below[below.len().saturating_sub(CONTINUED)..]),
+            &side(&beyond[..beyond.len().min(CONTINUED)]),
             drop.width(),
         )
-        .ok()
     }
 
     /// Whether the fall is a jump: high, and by many of its errors.

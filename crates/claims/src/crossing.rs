@@ -35,18 +35,5 @@ pub(crate) fn grouped<T: Copy, K: PartialOrd + Copy>(
 
 /// How much is behind some runs that differ in width and replicate.
 pub(crate) fn behind(runs: &[&Run]) -> Statistics {
-    let mut widths: Vec<f64> = runs.iter().map(|run| run.width).collect();
-    widths.sort_by(f64::total_cmp);
-    let replicates = widths
-        .chunk_by(|one, other| one == other)
-        .map(<[f64]>::len)
-        .min()
-        .unwrap_or(0);
-    widths.dedup();
-    Statistics {
-        strain_rates: 1,
-        widths: widths.len(),
-        replicates,
-        runs: runs.len(),
-    }
+    Statistics::at_one_rate(runs.iter().map(|run| run.width))
 }

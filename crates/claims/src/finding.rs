@@ -54,6 +54,22 @@ impl Statistics {
         runs: 320,
     };
 
+    /// What is behind runs at one strain rate, from what is varied in each.
+    pub(crate) fn at_one_rate(varied: impl Iterator<Item = f64>) -> Self {
+        let mut varied: Vec<f64> = varied.collect();
+        varied.sort_by(f64::total_cmp);
+        let runs = varied.len();
+        let same = |one: &f64, other: &f64| one == other;
+        let replicates = varied.chunk_by(same).map(<[f64]>::len).min().unwrap_or(0);
+        varied.dedup();
+        Self {
+            strain_rates: 1,
+            widths: varied.len(),
+            replicates,
+            runs,
+        }
+    }
+
     /// What is behind several parts that are compared: their strain rates and runs together, and the fewest widths and
     /// replicates of any; nothing where there is no part.
     #[must_use]

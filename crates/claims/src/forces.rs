@@ -1,8 +1,8 @@
 //! The stationary flow of the stress-controlled tube against the force amplitude, from both starts.
 
-use peristalsis_analysis::{Jump, Uncertain, jump_height};
+use peristalsis_analysis::{Jump, Uncertain};
 
-use crate::branches::{bracket, mean_and_error};
+use crate::branches::{Stationary, bracket, jump_between};
 use crate::finding::Statistics;
 use crate::runs::{Run, Start};
 
@@ -140,26 +140,13 @@ impl ForceBranch {
         let points = by_force(runs, start)
             .into_iter()
             .filter_map(|all| {
-                let group: Vec<&Run> = all
-                    .iter()
-                    .copied()
-                    .filter(|run| run.is_stationary() && run.flow_rate_ratio.is_finite())
-                    .collect();
-                if group.is_empty() || 2 * group.len() < all.len() {
-                    return None;
-                }
-                let ratios: Vec<f64> = group.iter().map(|run| run.flow_rate_ratio).collect();
-                let (mean, mut error) = mean_and_error(&ratios);
-                if !error.is_finite() {
-                    error = group[0].flow_rate_ratio_error;
-                }
+                let stationary = Stationary::of(&all)?;
                 Some(ForcePoint {
-                    force: group[0].force(),
-                    mean,
-                    error: error.max(LEAST_ERROR),
-                    counted: group.iter().filter(|run| counts(run)).count(),
-                    escaped: group.iter().map(|run| run.escaped_fraction()).sum::<f64>()
-                        / group.len() as f64,
+                    force: all[0].force(),
+                    mean: stationary.mean,
+                    error: stationary.error.max(LEAST_ERROR),
+                    counted: stationary.runs.iter().filter(|run| counts(run)).count(),
+                    escaped: stationary.escaped,
                 })
             })
             .collect();
@@ -192,24 +179,17 @@ impl ForceBranch {
             .points
             .partition_point(|point| point.force <= rise.before);
         let (below, beyond) = self.points.split_at(split);
-        let column = |points: &[ForcePoint], value: fn(&ForcePoint) -> f64| -> Vec<f64> {
-            points.iter().map(value).collect()
+        let side = |points: &[ForcePoint]| -> Vec<(f64, f64, f64)> {
+            let points = points.iter();
+            points
+                .map(|point| (point.force, point.mean, point.error))
+                .collect()
         };
-        let side = |points: &[ForcePoint]| {
-            [
-                column(points, |point| point.force),
-                column(points, |point| point.mean),
-                column(points, |point| point.error),
-            ]
-        };
-        let lower = side(&below[below.len().saturating_sub(CONTINUED)..]);
-        let upper = side(&beyond[..beyond.len().min(CONTINUED)]);
-        jump_height(
-            [&upper[0], &upper[1], &upper[2]],
-            [&lower[0], &lower[1], &lower[2]],
+        jump_between(
+            &side(&beyond[..beyond.len().min(CONTINUED)]),
+            &side(&below[below.len().saturating_sub(CONTINUED)..]),
             bracket(rise.before, rise.after),
         )
-        .ok()
     }
 
     /// Columns force, mean and error, for figures.

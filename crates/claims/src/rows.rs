@@ -102,13 +102,7 @@ pub(crate) fn mean_of(rows: &[Row<'_>], value: impl Fn(&Row<'_>) -> (f64, f64)) 
 
 /// How much is behind some rows of one strain rate that differ in a control, which counts as the width, and in the replicate.
 pub(crate) fn behind<'a>(rows: &[Row<'a>], control: impl Fn(&Row<'a>) -> f64) -> Statistics {
-    let groups = by(rows, control);
-    Statistics {
-        strain_rates: 1,
-        widths: groups.len(),
-        replicates: groups.iter().map(|one| one.1.len()).min().unwrap_or(0),
-        runs: rows.len(),
-    }
+    Statistics::at_one_rate(rows.iter().map(control))
 }
 
 #[cfg(test)]

@@ -171,22 +171,9 @@ impl<'a> Outcome<'a> {
     }
 
     fn statistics(&self) -> Statistics {
-        let mut forces: Vec<f64> = self
-            .frictional(Start::Rest)
-            .map(|run| run.force())
-            .collect();
-        forces.sort_by(f64::total_cmp);
-        let replicates = forces
-            .chunk_by(|one, other| one == other)
-            .map(<[f64]>::len)
-            .min()
-            .unwrap_or(0);
-        forces.dedup();
         Statistics {
-            strain_rates: 1,
-            widths: forces.len(),
-            replicates,
             runs: self.runs.len(),
+            ..Statistics::at_one_rate(self.frictional(Start::Rest).map(|run| run.force()))
         }
     }
 }
