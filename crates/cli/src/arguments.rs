@@ -109,7 +109,7 @@ pub(crate) struct RunArguments {
     /// Print the summary as JSON on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,
-    /// No progress on standard error.
+    /// No progress on standard error: warnings and errors only.
     #[arg(long, short)]
     pub(crate) quiet: bool,
 }

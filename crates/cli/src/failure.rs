@@ -203,8 +203,8 @@ impl Failure {
                     folder.join("config.toml").display()
                 ))
             }
-            Self::Run(RunError::Engine(EngineError::Diverged { .. })) => {
-                Some("take a shorter run.time_step, or softer or fewer grains".to_owned())
+            Self::Run(error @ RunError::Engine(EngineError::Diverged { .. })) => {
+                error.against_divergence().map(str::to_owned)
             }
             Self::Claim(ClaimError::NoSuchClaim { known, .. }) => {
                 Some(format!("claims: {}", known.join(", ")))

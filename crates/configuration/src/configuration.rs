@@ -6,7 +6,7 @@ use crate::options::{
     DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
     WaveDirection, Waveform,
 };
-use crate::schedule::Schedule;
+use crate::schedule::{Schedule, ScheduledParameter};
 use crate::units::Units;
 
 /// Everything that determines one run; what is alternative in TOML is resolved to one value.
@@ -130,15 +130,21 @@ impl Tube {
         u64::from(self.spheres_per_ring) * u64::from(self.rings_per_wave) * u64::from(self.waves)
     }
 
-    /// Mean distance of lattice neighbours in the straight tube \[d\]: a sphere has two neighbours in its ring and four
-    /// in the rings beside it.
+    /// Distances of lattice neighbours in the straight tube \[d\]: those in a ring, and those in rings side by side.
     #[must_use]
-    pub fn mean_neighbour_distance(&self) -> f64 {
+    pub fn neighbour_distances(&self) -> [f64; 2] {
         let spacing = self.wavelength / f64::from(self.rings_per_wave);
         let half_turn = PI / f64::from(self.spheres_per_ring);
         let in_ring = 2.0 * self.radius * libm::sin(half_turn);
         let chord = 2.0 * self.radius * libm::sin(0.5 * half_turn);
-        let between = (chord * chord + spacing * spacing).sqrt();
+        [in_ring, (chord * chord + spacing * spacing).sqrt()]
+    }
+
+    /// Mean distance of lattice neighbours in the straight tube \[d\]: a sphere has two neighbours in its ring and four
+    /// in the rings beside it.
+    #[must_use]
+    pub fn mean_neighbour_distance(&self) -> f64 {
+        let [in_ring, between] = self.neighbour_distances();
         (2.0 * in_ring + 4.0 * between) / 6.0
     }
 }
@@ -166,6 +172,30 @@ impl Drive {
     #[must_use]
     pub fn period(&self) -> Option<f64> {
         (self.strain_rate > 0.0).then(|| 1.0 / self.strain_rate)
+    }
+
+    /// A parameter's own value, which its schedule may lead elsewhere; `None` for the amplitude of the other control.
+    #[must_use]
+    pub fn own(&self, parameter: ScheduledParameter) -> Option<f64> {
+        match (parameter, self.control) {
+            (ScheduledParameter::StrainRate, _) => Some(self.strain_rate),
+            (ScheduledParameter::Width, Control::Strain { width }) => Some(width),
+            (
+                ScheduledParameter::ForceAmplitude,
+                Control::Stress {
+                    force_amplitude, ..
+                },
+            ) => Some(force_amplitude),
+            _ => None,
+        }
+    }
+
+    /// The schedule of a parameter, if it has one.
+    #[must_use]
+    pub fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
+        self.schedules
+            .iter()
+            .find(|schedule| schedule.parameter == parameter)
     }
 }
 
@@ -303,6 +333,29 @@ impl Configuration {
     #[must_use]
     pub fn wave_speed(&self) -> f64 {
         self.drive.strain_rate * self.tube.wavelength
+    }
+
+    /// The same run under a constant drive that is as hard on the grains as the schedules ever become: the least width, the
+    /// largest force amplitude and the fastest wave that the run reaches. Without schedules it is the run itself.
+    #[must_use]
+    pub fn at_its_hardest(&self) -> Self {
+        let mut hardest = self.clone();
+        let periods = self.run.periods.unwrap_or(0.0);
+        for schedule in hardest.drive.schedules.drain(..) {
+            let (least, most) = schedule.range(periods);
+            match (schedule.parameter, &mut hardest.drive.control) {
+                (ScheduledParameter::StrainRate, _) => hardest.drive.strain_rate = most,
+                (ScheduledParameter::Width, Control::Strain { width }) => *width = least,
+                (
+                    ScheduledParameter::ForceAmplitude,
+                    Control::Stress {
+                        force_amplitude, ..
+                    },
+                ) => *force_amplitude = most,
+                _ => {}
+            }
+        }
+        hardest
     }
 
     /// Mean mass of a grain: that of its mean cubed diameter \[m\].

@@ -156,7 +156,7 @@ pub(crate) struct DriveKeys {
     /// How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude grows from nothing
     /// within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to = 2.6, end = 100 } or
     /// { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, in which "course" instead of "steps"
-    /// goes from value to value in straight lines, or a list of such tables.
+    /// goes from value to value in straight lines, or a list of such tables, not an empty one.
     #[schemars(extend("default" = "sudden"))]
     pub(crate) schedule: Option<ScheduleKeys>,
     /// Length of the ramp of schedule = "ramp", in wave periods.
@@ -307,7 +307,7 @@ pub(crate) struct ObserveKeys {
     /// Samples of the time series in one wave period; a static run has 200 samples in all.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000, "default" = defaults::SAMPLES_PER_PERIOD))]
     pub(crate) samples_per_period: Option<u32>,
-    /// Bins of the profiles over one wavelength.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000, "default" = defaults::PROFILE_BINS))]
     pub(crate) profile_bins: Option<u32>,
     /// Part of the run, at its end, that late means and profiles are taken over.
@@ -335,7 +335,8 @@ pub(crate) struct UnitsKeys {
     /// Young's modulus, what contact.young_modulus stands for: it fixes the unit of time, sqrt(m/(Y d)) for Y = 1.
     #[schemars(extend("x-unit" = "Pa", "exclusiveMinimum" = 0, "maximum" = 1e15))]
     pub(crate) young_modulus: Option<f64>,
-    /// Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and drive.wave_speed.
+    /// Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and drive.wave_speed, with which the wave in SI
+    /// follows stiffness or young_modulus.
     #[schemars(extend("x-unit" = "Hz", "minimum" = 0, "maximum" = 1e9))]
     pub(crate) wave_frequency: Option<f64>,
 }

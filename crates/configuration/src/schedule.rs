@@ -118,6 +118,20 @@ impl Schedule {
         }
     }
 
+    /// Least and largest value from the start to a time in periods.
+    #[must_use]
+    pub fn range(&self, periods: f64) -> (f64, f64) {
+        let knots = self.knots();
+        let within = knots
+            .iter()
+            .filter(|(time, _)| *time > 0.0 && *time < periods);
+        let ends = [self.value(0.0), self.value(periods)];
+        within.map(|knot| knot.1).chain(ends).fold(
+            (f64::INFINITY, f64::NEG_INFINITY),
+            |(least, most), value| (least.min(value), most.max(value)),
+        )
+    }
+
     /// Value at a time in periods.
     #[must_use]
     pub fn value(&self, periods: f64) -> f64 {
@@ -173,6 +187,8 @@ mod tests {
             assert_eq!(ramp.value(time), value, "at {time}");
         }
         assert_eq!(ramp.knots(), [(1.0, 3.0), (5.0, 2.0)]);
+        assert_eq!(ramp.range(9.0), (2.0, 3.0));
+        assert_eq!(ramp.range(3.0), (2.5, 3.0), "it ends under way");
     }
 
     #[test]
@@ -236,5 +252,15 @@ mod tests {
             steps.knots(),
             [(1.0, 2.5), (1.0, 3.0), (2.0, 3.0), (2.0, 4.0)]
         );
+        for (periods, range) in [(0.5, (2.5, 2.5)), (1.0, (2.5, 3.0)), (9.0, (2.5, 4.0))] {
+            assert_eq!(steps.range(periods), range, "up to {periods}");
+        }
+        let at_once = Schedule {
+            form: ScheduleForm::Steps {
+                steps: vec![(0.0, 3.0)],
+            },
+            ..steps
+        };
+        assert_eq!(at_once.range(9.0), (3.0, 3.0), "its own value never holds");
     }
 }

@@ -3,7 +3,8 @@
 use std::f64::consts::PI;
 
 use peristalsis_configuration::{
-    Configuration, ConfigurationError, ProblemKind, Sources, Waveform,
+    Configuration, ConfigurationError, ProblemKind, ScheduledParameter, SourceFile, Sources,
+    Waveform,
 };
 
 fn read(preset: &str, overrides: &[&str]) -> Result<Configuration, ConfigurationError> {
@@ -125,6 +126,24 @@ fn half_of_the_units_and_two_rates_are_refused() {
     let partial = problem("frictionless", &BEADS[..2]);
     assert_eq!(partial.kind, ProblemKind::Missing);
     assert!(partial.message.contains("units.stiffness"), "{partial:?}");
+    // The stiffness goes with the law that it belongs to, and what takes its place is said.
+    let text = "preset = \"frictionless\"\nunits.grain_diameter = 1e-3\nunits.density = 1e3\nunits.stiffness = 1.0\n";
+    let overrides = ["contact.law=hertz".to_owned()];
+    let error = Configuration::from_sources(&Sources {
+        file: Some(SourceFile {
+            name: "beads.toml",
+            text,
+        }),
+        preset: None,
+        overrides: &overrides,
+    })
+    .expect_err("a stiffness under the Hertz law");
+    let said = error.to_string();
+    assert!(
+        said.contains("need units.young_modulus as well")
+            && said.contains("in place of units.stiffness, which is not used"),
+        "{said}"
+    );
     let alone = problem("frictionless", &["units.wave_frequency=1"]);
     assert_eq!(alone.key.as_deref(), Some("units.wave_frequency"));
     assert!(alone.message.contains("units.grain_diameter"), "{alone:?}");
@@ -141,4 +160,23 @@ fn half_of_the_units_and_two_rates_are_refused() {
     let one_rate = text.replace("drive.strain_rate = 0.1\n", "");
     let instance = serde_json::to_value(one_rate.parse::<toml::Table>().unwrap()).unwrap();
     assert!(validator.is_valid(&instance));
+}
+
+#[test]
+fn the_hardest_drive_is_what_the_schedules_reach_within_the_run() {
+    let schedules = "drive.schedule=[{form='ramp', parameter='width', from=3.0, to=2.0, end=20}, \
+                     {form='steps', parameter='strain_rate', at=[0, 5, 50], values=[0.02, 0.1, 9.0]}]";
+    let led = configuration("frictionless", &["run.periods=10", schedules]);
+    let hardest = led.at_its_hardest();
+    assert!(hardest.drive.schedules.is_empty());
+    // Half of the ramp, and the second of the steps.
+    assert_eq!(hardest.drive.own(ScheduledParameter::Width), Some(2.5));
+    assert_eq!(hardest.drive.strain_rate, 0.1);
+    let plain = configuration("frictional", &[]);
+    assert_eq!(plain.at_its_hardest(), plain);
+    let pressed = "drive.schedule={form='ramp', from=0.002, to=0.005, end=2}";
+    let hardest = configuration("frictional", &[pressed]).at_its_hardest();
+    let force = hardest.drive.own(ScheduledParameter::ForceAmplitude);
+    assert_eq!(force, Some(0.005));
+    assert_eq!(hardest.drive.own(ScheduledParameter::Width), None);
 }

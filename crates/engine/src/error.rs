@@ -4,18 +4,21 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum EngineError {
-    /// A grain moved further than its contacts can follow: the step is too long or the forces too strong.
+    /// A sphere moved further than its contacts can follow: the step is too long or the forces too strong.
     #[error(
-        "diverged at step {step} (t = {time}): grain {grain} moved {displacement} in one step, more than the {limit} \
-         that keeps contacts from being passed over"
+        "diverged at step {step} (t = {time}): {} moved {displacement} in one step, more than the {limit} that keeps contacts \
+         from being passed over",
+        sphere(*grain, *grains)
     )]
     Diverged {
         /// Step at whose end it was found.
         step: u64,
         /// Time at the end of that step \[t\].
         time: f64,
-        /// Number of the grain.
+        /// Number of the grain; from `grains` on it is a sphere of an elastic wall.
         grain: usize,
+        /// How many grains there are.
+        grains: usize,
         /// How far it moved in that step \[d\]; not finite where its position is lost.
         displacement: f64,
         /// The bound \[d\].
@@ -66,4 +69,12 @@ pub enum EngineError {
         /// What the system says.
         reason: String,
     },
+}
+
+/// A moving sphere in words: grains come first, then those of an elastic wall, which count from 0 again.
+fn sphere(number: usize, grains: usize) -> String {
+    match number.checked_sub(grains) {
+        None => format!("grain {number}"),
+        Some(of_wall) => format!("wall sphere {of_wall}"),
+    }
 }

@@ -472,6 +472,7 @@ impl System {
             step: self.step,
             time: self.time(),
             grain: runaway.body,
+            grains: self.bodies.grains,
             displacement: runaway.displacement,
             limit: self.limit,
         }
@@ -639,12 +640,14 @@ impl WithLaw for Advance<'_> {
             } = system;
             *step += 1;
             let time = *step as f64 * time_step;
+            let grains = bodies.grains;
             integrator
                 .before_forces(bodies, past, time_step, *limit)
                 .map_err(|runaway| EngineError::Diverged {
                     step: *step,
                     time,
                     grain: runaway.body,
+                    grains,
                     displacement: runaway.displacement,
                     limit: *limit,
                 })?;

@@ -276,6 +276,7 @@ fn an_absurd_time_step_stops_with_step_and_grain() {
             grain,
             displacement,
             limit,
+            ..
         } = stopped.clone()
         else {
             panic!("{stopped}");

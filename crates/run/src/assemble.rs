@@ -226,12 +226,7 @@ fn schedule(
     parameter: ScheduledParameter,
     constant: f64,
 ) -> Schedule {
-    let Some(scheduled) = configuration
-        .drive
-        .schedules
-        .iter()
-        .find(|schedule| schedule.parameter == parameter)
-    else {
+    let Some(scheduled) = configuration.drive.schedule(parameter) else {
         return Schedule::constant(constant);
     };
     // Schedules are in periods of the drive's own strain rate.
@@ -245,14 +240,15 @@ fn schedule(
 }
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
-/// pressure rise; the second is missing where the clear bore closes. `None` under stress control, where the width
-/// follows a schedule, for a static wave and for waveforms other than the sine.
+/// pressure rise, whatever the body force, for the load of a fluid counts against a viscosity, which grains do not have; the
+/// second is missing where the clear bore closes. `None` under stress control, where the width follows a schedule, for a
+/// static wave and for waveforms other than the sine.
 #[must_use]
 pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
-    let schedules = &configuration.drive.schedules;
-    let changes = schedules
-        .iter()
-        .any(|schedule| schedule.parameter == ScheduledParameter::Width);
+    let changes = configuration
+        .drive
+        .schedule(ScheduledParameter::Width)
+        .is_some();
     let sine = configuration.drive.waveform == configuration::Waveform::Sine;
     if changes || !sine || configuration.drive.period().is_none() {
         return None;

@@ -115,3 +115,21 @@ pub enum RunError {
         source: peristalsis_figures::FigureError,
     },
 }
+
+impl RunError {
+    /// What to do about a run that diverged; `None` for other errors.
+    #[must_use]
+    pub fn against_divergence(&self) -> Option<&'static str> {
+        match self {
+            Self::Engine(EngineError::Diverged { grain, grains, .. }) if grain >= grains => Some(
+                "take a shorter run.time_step, heavier spheres of the wall (wall.sphere_mass), or less of what acts on them: \
+                 wall.keep.axial and the other tethers, wall.drag, wall.spring_damping, wall.spring_stiffness, \
+                 drive.force_amplitude",
+            ),
+            Self::Engine(EngineError::Diverged { .. }) => {
+                Some("take a shorter run.time_step, or softer or fewer grains")
+            }
+            _ => None,
+        }
+    }
+}

@@ -2,12 +2,13 @@
 
 use std::time::{Duration, Instant};
 
-use peristalsis_configuration::{Configuration, Control};
-use peristalsis_engine::{EngineError, Wall};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
+use peristalsis_engine::Wall;
 use peristalsis_physics::contact::{Normal, NormalLaw};
 
 use crate::RunError;
 use crate::assemble::{contact_model, walls};
+use crate::holding;
 use crate::leaking;
 use crate::run::Run;
 use crate::si::SiEstimate;
@@ -32,6 +33,16 @@ pub struct Warning {
     pub key: &'static str,
     /// What is to be expected.
     pub message: String,
+}
+
+impl Warning {
+    /// The same, said of a circumstance.
+    fn under(self, circumstance: &str) -> Self {
+        Self {
+            message: format!("{circumstance} {}", self.message),
+            ..self
+        }
+    }
 }
 
 /// What would run.
@@ -59,7 +70,7 @@ pub struct Estimate {
     pub steps: u64,
     /// Duration of a usual contact \[t\].
     pub contact_time: f64,
-    /// J/Jmax of a Newtonian fluid in this tube.
+    /// J/Jmax of a Newtonian fluid in this tube, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
     /// The same in SI, where the units are said.
     pub si: Option<SiEstimate>,
@@ -86,7 +97,22 @@ pub fn estimate(
         .map(|request| trajectory::estimate(request, configuration, &trial.run, trial.scale))
         .transpose()?;
     let mut warnings = warnings(configuration);
-    warnings.extend(trial.divergence);
+    // What the schedules lead to is tried as well; a tube that cannot be packed as it becomes later is no fault.
+    let later = if configuration.drive.schedules.is_empty() {
+        None
+    } else {
+        self::trial(&configuration.at_its_hardest()).ok()
+    };
+    let (divergence, overlap) = match later {
+        None => (trial.divergence, softness::overlap_warning(&trial.run)),
+        Some(later) => (
+            trial.divergence.or(later.divergence.map(in_the_end)),
+            softness::overlap_warning(&trial.run)
+                .or_else(|| softness::overlap_warning(&later.run).map(in_the_end)),
+        ),
+    };
+    warnings.extend(divergence);
+    warnings.extend(overlap.map(|warning| warning.under("in a short trial")));
     Ok(Estimate {
         grains: configuration.grains.number,
         wall_spheres: configuration.tube.wall_spheres(),
@@ -109,6 +135,11 @@ pub fn estimate(
         trajectory,
         warnings,
     })
+}
+
+/// A warning of what drive.schedule comes to.
+fn in_the_end(warning: Warning) -> Warning {
+    warning.under("with the drive at the hardest that drive.schedule comes to,")
 }
 
 /// What a trial showed.
@@ -145,17 +176,15 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
     let start = Instant::now();
     while start.elapsed() < TRIAL && !run.is_complete() {
         let (before, first) = (start.elapsed(), run.simulation().step());
-        match run.advance_at_most(piece) {
-            Err(RunError::Engine(error @ EngineError::Diverged { .. })) => {
-                divergence = Some(Warning {
-                    key: "run.time_step",
-                    message: format!(
-                        "a short trial {error}; take a shorter step, or softer or fewer grains"
-                    ),
-                });
-                break;
-            }
-            outcome => outcome?,
+        if let Err(error) = run.advance_at_most(piece) {
+            let Some(advice) = error.against_divergence() else {
+                return Err(error);
+            };
+            divergence = Some(Warning {
+                key: "run.time_step",
+                message: format!("a short trial {error}; {advice}"),
+            });
+            break;
         }
         let took = start.elapsed() - before;
         if took < PIECE {
@@ -235,17 +264,28 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     if let Some(units) = &configuration.units {
         warnings.extend(softness::warning(configuration, units));
     }
+    warnings.extend(holding::warnings(configuration));
+    warnings.extend(prescribed_wall_warnings(configuration));
+    warnings.extend(unfinished_schedule(configuration));
+    warnings
+}
+
+/// What looks doubtful in a prescribed wall where its drive is at its hardest.
+fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let hardest = configuration.at_its_hardest();
     // An elastic wall, which may be large, is not made for nothing.
-    if let Control::Strain { .. } = configuration.drive.control
-        && let Wall::Prescribed(wall) = walls(configuration)
+    if let Control::Strain { .. } = hardest.drive.control
+        && let Wall::Prescribed(wall) = walls(&hardest)
     {
         let wave = wall.wave();
-        warnings.extend(leaking::warning(configuration, wave, wall.lattice()));
+        warnings.extend(leaking::warning(&hardest, wave, wall.lattice()));
         let opening =
             2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;
         if opening <= 0.0 {
+            let led = configuration.drive.schedule(ScheduledParameter::Width);
             warnings.push(Warning {
-                key: "drive.width",
+                key: led.map_or("drive.width", |_| "drive.schedule"),
                 message: format!(
                     "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
                      are squeezed through the wall"
@@ -254,4 +294,20 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
         }
     }
     warnings
+}
+
+/// That the run ends before a schedule has come to its last value.
+fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
+    let periods = configuration.run.periods?;
+    let schedules = configuration.drive.schedules.iter();
+    let rest = schedules
+        .map(|schedule| schedule.rest())
+        .fold(0.0, f64::max);
+    (rest > periods).then(|| Warning {
+        key: "drive.schedule",
+        message: format!(
+            "it goes on until {rest} periods, and the run ends after {periods}: take a longer run (run.periods) or a shorter \
+             schedule"
+        ),
+    })
 }

@@ -21,7 +21,8 @@ pub struct Pumping {
     pub useful_power: f64,
     /// Its standard error.
     pub useful_power_error: f64,
-    /// Efficiency: useful power over that of wall or drive.
+    /// Efficiency: useful power over that of wall or drive; NaN unless both are positive, for then nothing is pumped. Above 1
+    /// stored energy was spent.
     pub efficiency: f64,
     /// Its standard error, that of (useful power) - (efficiency) (wall power) over the mean wall power.
     pub efficiency_error: f64,
@@ -38,7 +39,11 @@ impl Pumping {
             |value: fn(&Sample) -> f64| late.iter().map(value).sum::<f64>() / late.len() as f64;
         let useful_power = -mean(|sample| sample.body_power);
         let wall_power = mean(|sample| sample.wall_power);
-        let efficiency = useful_power / wall_power;
+        let efficiency = if useful_power > 0.0 && wall_power > 0.0 {
+            useful_power / wall_power
+        } else {
+            f64::NAN
+        };
         let beyond = |sample: &Sample| -sample.body_power - efficiency * sample.wall_power;
         Some(Self {
             body_force,
@@ -46,7 +51,7 @@ impl Pumping {
             useful_power,
             useful_power_error: error_of(late.iter().map(|sample| sample.body_power)),
             efficiency,
-            efficiency_error: error_of(late.iter().map(beyond)) / wall_power.abs(),
+            efficiency_error: error_of(late.iter().map(beyond)) / wall_power,
         })
     }
 }
@@ -91,12 +96,42 @@ pub(crate) fn axial_dispersion(late: &[Sample], dispersion: &AxialDispersion) ->
 
 #[cfg(test)]
 mod tests {
+    use peristalsis_configuration::Sources;
+
     use super::*;
 
     fn samples(value: impl Fn(f64) -> Sample) -> Vec<Sample> {
         (0..40_u32)
             .map(|step| value(0.5 * f64::from(step)))
             .collect()
+    }
+
+    #[test]
+    fn only_a_pump_that_pumps_has_an_efficiency() {
+        let overrides = ["drive.body_force=-0.001".to_owned()];
+        let configuration = Configuration::from_sources(&Sources {
+            file: None,
+            preset: Some("frictionless"),
+            overrides: &overrides,
+        })
+        .unwrap();
+        let pumping = |useful_power: f64, wall_power: f64| {
+            let late = samples(|_| Sample {
+                body_power: -useful_power,
+                wall_power,
+                ..Sample::default()
+            });
+            Pumping::of(&configuration, &late).unwrap()
+        };
+        let pumped = pumping(0.2, 0.8);
+        assert!((pumped.efficiency - 0.25).abs() < 1e-12);
+        assert!(pumped.efficiency_error.abs() < 1e-12);
+        // Of an assisting force, of grains driven back, of a wall that stands still or takes power out.
+        for (useful_power, wall_power) in [(-0.2, 0.8), (0.2, 0.0), (0.2, -0.8), (-0.2, -0.8)] {
+            let none = pumping(useful_power, wall_power);
+            assert!(none.efficiency.is_nan() && none.efficiency_error.is_nan());
+            assert!((none.useful_power - useful_power).abs() < 1e-12);
+        }
     }
 
     #[test]

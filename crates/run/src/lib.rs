@@ -10,6 +10,7 @@ mod assemble;
 mod error;
 mod estimate;
 mod folder;
+mod holding;
 mod late;
 mod leaking;
 mod local_flow;
@@ -42,6 +43,7 @@ pub use portrait::{Aspect, Eye, Field, Look, Place, Portrait, WallLook, Writing}
 pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use si::{SiEstimate, SiSummary};
+pub use softness::overlap_warning;
 pub use stopping::Stopping;
 pub use summary::{Status, Summary, ThresholdTime};
 pub use tables::{profile_table, snapshot_table, timeseries_table, waves_table};

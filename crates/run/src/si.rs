@@ -17,7 +17,7 @@ pub struct SiSummary {
     pub pressure_rise_pa: Option<f64>,
     /// Pressure on the wall \[Pa\].
     pub wall_pressure_pa: f64,
-    /// Largest pressure on the wall over the phases of the wave \[Pa\].
+    /// Largest pressure on the wall over the phases of the wave, each a bin of the profile wide \[Pa\].
     pub wall_pressure_largest_pa: f64,
     /// Time of the transition \[s\].
     pub transition_time_s: Option<f64>,
@@ -64,29 +64,32 @@ pub struct SiEstimate {
     pub unit_pressure_pa: f64,
     /// Unit of power \[W\].
     pub unit_power_w: f64,
-    /// c/lambda \[Hz\].
+    /// c/lambda of `drive.strain_rate` \[Hz\].
     pub wave_frequency_hz: f64,
     /// c \[m/s\].
     pub wave_speed_m_per_s: f64,
+    /// c/lambda of the fastest wave that `drive.schedule` comes to \[Hz\].
+    pub fastest_wave_frequency_hz: f64,
     /// Length of the run \[s\].
     pub duration_s: f64,
     /// Step taken \[s\].
     pub time_step_s: f64,
-    /// What goes through a section in a second if all grains go with the wave, Jmax m \[kg/s\].
+    /// What goes through a section in a second if all grains go with the fastest wave, Jmax m \[kg/s\].
     pub largest_mass_flow_rate_kg_per_s: f64,
     /// Body force along the wave \[m/s^2\].
     pub body_force_m_per_s2: f64,
     /// Pressure rise over a wavelength that it stands for \[Pa\].
     pub pressure_rise_pa: f64,
-    /// Overlap over diameter of two grains that meet at the speed of the wave.
+    /// Overlap over diameter of two grains that meet at the speed of the fastest wave.
     pub overlap_at_wave_speed: f64,
 }
 
 impl SiEstimate {
     pub(crate) fn of(configuration: &Configuration, units: &Units) -> Self {
         let time = units.time();
-        let speed = configuration.wave_speed();
-        let most = configuration.grains.number as f64 * speed / configuration.tube.length();
+        let hardest = configuration.at_its_hardest();
+        let grains = configuration.grains.number as f64;
+        let most = grains * hardest.wave_speed() / configuration.tube.length();
         Self {
             unit_mass_kg: units.mass(),
             unit_length_m: units.length(),
@@ -94,7 +97,8 @@ impl SiEstimate {
             unit_pressure_pa: units.pressure(),
             unit_power_w: units.power(),
             wave_frequency_hz: configuration.drive.strain_rate / time,
-            wave_speed_m_per_s: speed * units.velocity(),
+            wave_speed_m_per_s: configuration.wave_speed() * units.velocity(),
+            fastest_wave_frequency_hz: hardest.drive.strain_rate / time,
             duration_s: configuration.run.duration * time,
             time_step_s: configuration.run.time_step * time,
             largest_mass_flow_rate_kg_per_s: most
@@ -102,7 +106,7 @@ impl SiEstimate {
                 * units.mass_flow(),
             body_force_m_per_s2: configuration.drive.body_force * units.velocity() / time,
             pressure_rise_pa: configuration.pressure_rise() * units.pressure(),
-            overlap_at_wave_speed: crate::softness::overlap_at_wave_speed(configuration),
+            overlap_at_wave_speed: crate::softness::overlap_at_wave_speed(&hardest),
         }
     }
 }

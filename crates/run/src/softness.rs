@@ -1,8 +1,11 @@
 //! Whether grains as soft, or as hard, as the units in SI make them can be what was meant.
 
-use peristalsis_configuration::{Configuration, Elasticity, NormalLaw, Units};
+use peristalsis_configuration::{
+    Configuration, Control, Elasticity, NormalLaw, ScheduledParameter, Units,
+};
 
 use crate::estimate::Warning;
+use crate::run::Run;
 
 /// Overlap over diameter up to which a soft sphere passes for a solid grain.
 const LARGEST_OVERLAP: f64 = 0.1;
@@ -36,53 +39,271 @@ pub(crate) fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
     overlap / diameter
 }
 
-/// What looks doubtful in the softness that units in SI make.
+/// What looks doubtful in the softness that units in SI make of the fastest wave.
+///
+/// Advice keeps the wave's frequency: without `units.wave_frequency` the wave in SI follows the elasticity, so that the
+/// overlap, which is a function of the strain rate alone, and the steps of a period would stay as they are.
 pub(crate) fn warning(configuration: &Configuration, units: &Units) -> Option<Warning> {
-    let overlap = overlap_at_wave_speed(configuration);
-    let (key, elasticity, name, unit) = match units.elasticity {
-        Elasticity::Stiffness { stiffness, .. } => {
-            ("units.stiffness", stiffness, "stiffness", "N/m")
-        }
-        Elasticity::YoungModulus { young_modulus, .. } => {
-            ("units.young_modulus", young_modulus, "modulus", "Pa")
-        }
-    };
-    // How the overlap falls with elasticity and grows with speed: xi ~ k^(-1/2) c, xi ~ Y^(-2/5) c^(4/5).
-    let (per_elasticity, per_speed) = match units.elasticity {
-        Elasticity::Stiffness { .. } => (0.5, 1.0),
-        Elasticity::YoungModulus { .. } => (0.4, 0.8),
-    };
-    let elasticity_for =
-        |wanted: f64| elasticity * libm::pow(overlap / wanted, 1.0 / per_elasticity);
-    let frequency = configuration.drive.strain_rate / units.time();
-    let speed = configuration.wave_speed() * units.velocity();
+    let hardest = configuration.at_its_hardest();
+    let overlap = overlap_at_wave_speed(&hardest);
+    let Material {
+        key,
+        value,
+        name,
+        unit,
+        per_speed,
+    } = Material::of(units);
+    let strain_rate = hardest.drive.strain_rate;
+    // A schedule's strain rates follow the elasticity in any case.
+    let is_led = configuration
+        .drive
+        .schedule(ScheduledParameter::StrainRate)
+        .is_some();
+    // What is said must be right as it is said: with three digits, the frequency above the one that there is.
+    let frequency = three_digits(strain_rate / units.time(), f64::ceil);
+    let faster = frequency * units.time() / strain_rate;
+    // xi ~ (k^(-1/2) c) under the linear law, (Y^(-1/2) c)^(4/5) under the Hertz law.
+    let value_for =
+        |wanted: f64| value * libm::pow(overlap / wanted, 2.0 / per_speed) * faster * faster;
     if overlap > LARGEST_OVERLAP {
+        let speed = hardest.wave_speed() * units.velocity();
+        let slower = libm::pow(LARGEST_OVERLAP / overlap, 1.0 / per_speed) * strain_rate;
+        let slower = three_digits(slower, f64::floor);
+        let harder = three_digits(value_for(LARGEST_OVERLAP), f64::ceil);
+        let what = if is_led {
+            format!("strain rates of {slower:.2e} or less in drive.schedule")
+        } else {
+            format!(
+                "drive.strain_rate = {slower:.2e} or less, or a {name} of {harder:.2e} {unit} or more with \
+                 units.wave_frequency = {frequency:.2e}, for without it the wave in SI becomes faster with the {name} and \
+                 the overlap stays{}",
+                scaled_with(configuration, name, value / harder)
+            )
+        };
         return Some(Warning {
             key,
             message: format!(
                 "two grains that meet at the wave's speed, {speed:.3e} m/s, overlap by {:.0} % of a diameter, which no solid \
-                 grain does: take a {name} of {:.2e} {unit} or more, or a wave of {:.2e} Hz or less, for at most {:.0} %",
+                 grain does: for at most {:.0} % take {what}",
                 100.0 * overlap,
-                elasticity_for(LARGEST_OVERLAP),
-                frequency * libm::pow(LARGEST_OVERLAP / overlap, 1.0 / per_speed),
                 100.0 * LARGEST_OVERLAP,
             ),
         });
     }
     let steps = configuration.drive.period()? / configuration.run.time_step;
-    if steps > MOST_STEPS_PER_PERIOD && overlap < SMALL_OVERLAP {
-        let softer = elasticity_for(SMALL_OVERLAP);
+    if steps > MOST_STEPS_PER_PERIOD && overlap < SMALL_OVERLAP && !is_led {
+        let softer = three_digits(value_for(SMALL_OVERLAP), f64::ceil);
         // The unit of time grows as elasticity^(-1/2).
-        let fewer = steps * (softer / elasticity).sqrt();
+        let fewer = steps * (softer / value).sqrt();
         return Some(Warning {
             key,
             message: format!(
                 "at this {name} a period of the wave takes {steps:.1e} steps. The flow of hard grains hardly depends on \
-                 their {name} while overlaps stay small: {softer:.2e} {unit} still keeps that of two grains that meet at the \
-                 wave's speed at {:.0} % of a diameter, and takes {fewer:.1e} steps a period (check with a harder run)",
+                 their {name} while overlaps stay small: {softer:.2e} {unit}, with units.wave_frequency = {frequency:.2e}, \
+                 still keeps that of two grains that meet at the wave's speed at {:.0} % of a diameter, and takes {fewer:.1e} \
+                 steps a period (check with a harder run){}",
                 100.0 * SMALL_OVERLAP,
+                scaled_with(configuration, name, value / softer)
             ),
         });
     }
     None
+}
+
+/// That grains overlapped by more, when they were packed or since, than solid ones do, where the units are said in SI.
+#[must_use]
+pub fn overlap_warning(run: &Run) -> Option<Warning> {
+    let configuration = run.configuration();
+    let units = configuration.units.as_ref()?;
+    let diameter = configuration.grains.diameter_max;
+    let packed = run.packing().largest_overlap / diameter;
+    let overlap = packed.max(run.simulation().ledger().largest_overlap / diameter);
+    if overlap <= LARGEST_OVERLAP {
+        return None;
+    }
+    let Material { key, name, .. } = Material::of(units);
+    let from_the_start = if packed > LARGEST_OVERLAP {
+        format!(", and by {:.0} % as they were packed", 100.0 * packed)
+    } else {
+        String::new()
+    };
+    Some(Warning {
+        key,
+        message: format!(
+            "grains overlapped by up to {:.0} % of a diameter, one another or the wall{from_the_start}, where soft spheres \
+             pass for solid grains up to {:.0} %: take a larger {name} (with units.wave_frequency, or the wave becomes \
+             faster with it), fewer grains, a wider tube or a weaker drive",
+            100.0 * overlap,
+            100.0 * LARGEST_OVERLAP
+        ),
+    })
+}
+
+/// What the units say of the grains' elasticity.
+struct Material {
+    key: &'static str,
+    /// In SI.
+    value: f64,
+    name: &'static str,
+    unit: &'static str,
+    /// Power with which the overlap grows with the speed.
+    per_speed: f64,
+}
+
+impl Material {
+    fn of(units: &Units) -> Self {
+        match units.elasticity {
+            Elasticity::Stiffness { stiffness, .. } => Self {
+                key: "units.stiffness",
+                value: stiffness,
+                name: "stiffness",
+                unit: "N/m",
+                per_speed: 1.0,
+            },
+            Elasticity::YoungModulus { young_modulus, .. } => Self {
+                key: "units.young_modulus",
+                value: young_modulus,
+                name: "modulus",
+                unit: "Pa",
+                per_speed: 0.8,
+            },
+        }
+    }
+}
+
+/// That forces given in our units are another multiple of the elasticity when it changes; nothing where there are none.
+fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String {
+    let mut keys = Vec::new();
+    if configuration.drive.body_force != 0.0 {
+        keys.push("drive.body_force");
+    }
+    if let Control::Stress { .. } = configuration.drive.control {
+        keys.extend([
+            "drive.force_amplitude",
+            "wall.spring_stiffness",
+            "the tethers of wall.keep",
+        ]);
+    }
+    match keys.as_slice() {
+        [] => String::new(),
+        keys => format!(
+            "; what is in units of the {name} ({}) is then multiplied by {factor:.3e} to stay what it is in SI",
+            keys.join(", ")
+        ),
+    }
+}
+
+/// A positive number with three significant digits, as `towards` rounds whole numbers.
+fn three_digits(value: f64, towards: fn(f64) -> f64) -> f64 {
+    let unit = libm::pow(10.0, value.log10().floor() - 2.0);
+    let digits = towards(value / unit);
+    // A neighbour by rounding of the quotient alone is the number itself.
+    let nearest = (value / unit).round();
+    let near = (value / unit - nearest).abs() < 1e-9 * nearest;
+    (if near { nearest } else { digits }) * unit
+}
+
+#[cfg(test)]
+mod tests {
+    use peristalsis_configuration::Sources;
+
+    use super::*;
+    use crate::estimate::warnings;
+
+    fn configuration(preset: &str, overrides: &[String]) -> Configuration {
+        Configuration::from_sources(&Sources {
+            file: None,
+            preset: Some(preset),
+            overrides,
+        })
+        .unwrap()
+    }
+
+    fn said(preset: &str, overrides: &[String]) -> Option<String> {
+        warnings(&configuration(preset, overrides))
+            .into_iter()
+            .find(|warning| warning.key.starts_with("units."))
+            .map(|warning| warning.message)
+    }
+
+    /// The number that follows `words` in a text.
+    fn number_after(text: &str, words: &str) -> String {
+        let (_, rest) = text.split_once(words).unwrap_or_else(|| panic!("{text}"));
+        rest.split([' ', ',', ';']).next().unwrap().to_owned()
+    }
+
+    #[test]
+    fn who_follows_the_advice_is_rid_of_the_warning() {
+        for (preset, elasticity, words) in [
+            ("frictional", "units.young_modulus=1e6", "modulus of "),
+            ("frictionless", "units.stiffness=1", "stiffness of "),
+        ] {
+            let beads = [
+                "units.grain_diameter=2e-3",
+                "units.density=1200",
+                elasticity,
+            ]
+            .map(str::to_owned)
+            .to_vec();
+            let with = |more: &[String]| [&beads[..], more].concat();
+            let soft = said(preset, &beads).expect(preset);
+            let strain_rate = number_after(&soft, "drive.strain_rate = ");
+            let slow = [format!("drive.strain_rate={strain_rate}")];
+            assert_eq!(said(preset, &with(&slow)), None);
+            let name = elasticity.split('=').next().unwrap();
+            let hard = [
+                format!("{name}={}", number_after(&soft, words)),
+                format!(
+                    "units.wave_frequency={}",
+                    number_after(&soft, "units.wave_frequency = ")
+                ),
+            ];
+            assert_eq!(said(preset, &with(&hard)), None);
+            // Hardly harder than needed.
+            let overlap = overlap_at_wave_speed(&configuration(preset, &with(&hard)));
+            assert!(overlap > 0.98 * LARGEST_OVERLAP, "{overlap}");
+        }
+        assert_eq!(three_digits(0.1, f64::floor), 0.1);
+        assert!((three_digits(2.8567e6, f64::ceil) - 2.86e6).abs() < 1.0);
+    }
+
+    #[test]
+    fn a_softer_modulus_takes_the_forces_of_the_drive_with_it() {
+        let glass = [
+            "units.grain_diameter=1e-3",
+            "units.density=2500",
+            "units.young_modulus=6e10",
+            "units.wave_frequency=1",
+            "drive.force_amplitude=1e-9",
+            "grains.number=2",
+        ]
+        .map(str::to_owned);
+        let said = said("frictional", &glass).unwrap();
+        let softer: f64 = number_after(&said, "overlaps stay small: ")
+            .parse()
+            .unwrap();
+        let factor: f64 = number_after(&said, "multiplied by ").parse().unwrap();
+        assert!((factor * softer / 6e10 - 1.0).abs() < 1e-3, "{said}");
+        assert!(said.contains("drive.force_amplitude"), "{said}");
+    }
+
+    #[test]
+    fn the_fastest_wave_of_a_schedule_counts() {
+        let beads = [
+            "units.grain_diameter=1e-3",
+            "units.density=2500",
+            "units.stiffness=1",
+            "drive.strain_rate=0.01",
+        ]
+        .map(str::to_owned);
+        assert_eq!(said("frictionless", &beads), None);
+        let led =
+            "drive.schedule={form='ramp', parameter='strain_rate', from=0.01, to=0.05, end=10}";
+        let led = [&beads[..], &[led.to_owned()]].concat();
+        let said = said("frictionless", &led).unwrap();
+        assert!(
+            said.contains("35 %") && said.contains("drive.schedule"),
+            "{said}"
+        );
+    }
 }

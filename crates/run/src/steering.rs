@@ -1,6 +1,6 @@
 //! Driving a run while it goes on.
 
-use peristalsis_configuration::{Control, Schedule, ScheduledParameter};
+use peristalsis_configuration::{Schedule, ScheduledParameter};
 
 use crate::error::RunError;
 use crate::run::Run;
@@ -13,20 +13,9 @@ impl Run {
     /// control.
     #[must_use]
     pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {
-        let drive = &self.configuration().drive;
-        let constant = match (parameter, drive.control) {
-            (ScheduledParameter::StrainRate, _) => drive.strain_rate,
-            (ScheduledParameter::Width, Control::Strain { width }) => width,
-            (
-                ScheduledParameter::ForceAmplitude,
-                Control::Stress {
-                    force_amplitude, ..
-                },
-            ) => force_amplitude,
-            _ => return None,
-        };
+        let own = self.configuration().drive.own(parameter)?;
         let schedule = self.schedule(parameter);
-        Some(schedule.map_or(constant, |schedule| schedule.value(self.soonest())))
+        Some(schedule.map_or(own, |schedule| schedule.value(self.soonest())))
     }
 
     /// Whether a parameter of the drive stays what it is.
@@ -121,8 +110,7 @@ impl Run {
     }
 
     fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
-        let mut schedules = self.configuration().drive.schedules.iter();
-        schedules.find(|schedule| schedule.parameter == parameter)
+        self.configuration().drive.schedule(parameter)
     }
 
     /// When the next course can begin, in periods: between two steps, so that no step sees half of it.

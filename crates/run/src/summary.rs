@@ -4,11 +4,13 @@ use peristalsis_analysis::mean_with_error;
 use peristalsis_observe::{Sample, WallFault, WavePart};
 
 use crate::assemble::newtonian_reference;
+use crate::estimate::{Warning, warnings};
 use crate::late::{Pumping, Residence, axial_dispersion, error_of};
 use crate::local_flow::LocalFlow;
 use crate::recorder::THRESHOLDS;
 use crate::run::Run;
 use crate::si::SiSummary;
+use crate::softness::overlap_warning;
 use crate::trajectory::TrajectoryReport;
 use crate::{REVISION, VERSION};
 
@@ -66,7 +68,7 @@ pub struct Summary {
     pub transition_threshold: f64,
     /// tau \[t\] at other thresholds.
     pub transition_times: Vec<ThresholdTime>,
-    /// J/Jmax of a Newtonian fluid in this tube, phi = b/a.
+    /// J/Jmax of a Newtonian fluid in this tube, phi = b/a, without load whatever the body force.
     pub newtonian_flow_rate_ratio: Option<f64>,
     /// The same for the clear bore, phi = b/(a - d/2).
     pub newtonian_flow_rate_ratio_clear_bore: Option<f64>,
@@ -122,7 +124,7 @@ pub struct Summary {
     pub front_tangential_force_error: f64,
     /// Late mean of the pressure on the wall \[m/(d t^2)\].
     pub wall_pressure: f64,
-    /// Largest late mean of it over the phases of the wave.
+    /// Largest late mean of it over the phases of the wave, each a bin of the profile wide (`observe.profile_bins`).
     pub wall_pressure_largest: f64,
     /// Mean time that a grain takes through the tube's length, N/J of the late means (Little's law) \[t\]; missing where
     /// the flow does not go along the wave.
@@ -140,7 +142,7 @@ pub struct Summary {
     pub bottleneck: f64,
     /// The flow where the tube is narrowest.
     pub throat: LocalFlow,
-    /// The flow where it is widest.
+    /// The flow where it is widest; where it is that over a flat stretch, in the middle of it.
     pub belly: LocalFlow,
     /// Periods that late means are over.
     pub late_periods: f64,
@@ -166,6 +168,8 @@ pub struct Summary {
     pub si: Option<SiSummary>,
     /// What went wrong with an elastic wall: when, where, and the likely cause.
     pub wall_diagnosis: Vec<String>,
+    /// What looks doubtful in the configuration, and in what came of it.
+    pub warnings: Vec<Warning>,
     /// What was written of its trajectory, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trajectory: Option<TrajectoryReport>,
@@ -287,6 +291,10 @@ impl Summary {
                 .wall_faults()
                 .iter()
                 .map(WallFault::in_words)
+                .collect(),
+            warnings: warnings(configuration)
+                .into_iter()
+                .chain(overlap_warning(run))
                 .collect(),
             si: None,
             trajectory: None,

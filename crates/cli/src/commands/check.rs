@@ -5,8 +5,8 @@ use std::process::ExitCode;
 use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
-use crate::commands::print;
 use crate::commands::trajectory::{request, size};
+use crate::commands::{print, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -45,27 +45,35 @@ fn in_words(estimate: &Estimate) -> String {
             ),
         },
         format!(
-            "steps             {} of {:.5} t (a contact lasts about {:.2} t)",
-            estimate.steps, estimate.time_step, estimate.contact_time
+            "steps             {} of {} t (a contact lasts about {} t)",
+            estimate.steps,
+            significant(estimate.time_step, 4),
+            significant(estimate.contact_time, 3)
         ),
     ];
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
         lines.push(format!(
-            "Newtonian fluid   J/Jmax = {ratio:.4} in this tube"
+            "Newtonian fluid   J/Jmax = {ratio:.4} in this tube, without load"
         ));
     }
     if let Some(si) = &estimate.si {
+        let fastest = if si.fastest_wave_frequency_hz == si.wave_frequency_hz {
+            String::new()
+        } else {
+            let fastest = significant(si.fastest_wave_frequency_hz, 4);
+            format!(", by the schedule up to {fastest} Hz")
+        };
         lines.push(format!(
-            "in SI             d = {:.3e} m, m = {:.3e} kg, t = {:.3e} s; a wave of {:.4} Hz, {:.3e} m/s",
+            "in SI             d = {:.3e} m, m = {:.3e} kg, t = {:.3e} s; a wave of {} Hz, {:.3e} m/s{fastest}",
             si.unit_length_m,
             si.unit_mass_kg,
             si.unit_time_s,
-            si.wave_frequency_hz,
+            significant(si.wave_frequency_hz, 4),
             si.wave_speed_m_per_s
         ));
         lines.push(format!(
-            "                  {:.3} s in steps of {:.2e} s; at most {:.3e} kg/s; unit of pressure {:.3e} Pa, of power {:.3e} W",
-            si.duration_s,
+            "                  {} s in steps of {:.2e} s; at most {:.3e} kg/s; unit of pressure {:.3e} Pa, of power {:.3e} W",
+            significant(si.duration_s, 4),
             si.time_step_s,
             si.largest_mass_flow_rate_kg_per_s,
             si.unit_pressure_pa,

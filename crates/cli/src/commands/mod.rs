@@ -15,6 +15,8 @@ pub(crate) mod view;
 
 use std::io::Write;
 
+use peristalsis_run::Warning;
+
 use crate::failure::Failure;
 
 /// Prints a line on standard error; where nobody reads it, it is lost, which no run should end for.
@@ -31,5 +33,48 @@ fn print(text: &str) -> Result<(), Failure> {
     {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Output(error)),
         _ => Ok(()),
+    }
+}
+
+/// Prints a warning on standard error: no progress, so that it is said in quiet runs as well.
+fn warn(warning: &Warning) {
+    say(&format!("warning: {}: {}", warning.key, warning.message));
+}
+
+/// A number with so many significant digits, plain where that reads well and with a power of ten elsewhere.
+fn significant(value: f64, digits: usize) -> String {
+    let after_the_first = digits - 1;
+    let scientific = format!("{value:.after_the_first$e}");
+    let power = scientific
+        .split_once('e')
+        .and_then(|(_, power)| power.parse::<i32>().ok());
+    match power {
+        Some(power @ -3..6) => {
+            let decimals = usize::try_from(after_the_first as i32 - power).unwrap_or(0);
+            format!("{value:.decimals$}")
+        }
+        _ => scientific,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::significant;
+
+    #[test]
+    fn numbers_keep_their_digits_however_small_they_are() {
+        for (value, text) in [
+            (43.7012, "43.70"),
+            (2.2e-5, "2.200e-5"),
+            (0.0123456, "0.01235"),
+            (0.99999, "1.000"),
+            (123456.7, "123457"),
+            (1.234567e7, "1.235e7"),
+            (0.0, "0.000"),
+            (-0.5, "-0.5000"),
+        ] {
+            assert_eq!(significant(value, 4), text);
+        }
+        assert_eq!(significant(f64::NAN, 4), "NaN");
     }
 }

@@ -6,12 +6,13 @@ use std::time::{Duration, Instant};
 
 use peristalsis_engine::Instructions;
 use peristalsis_run::{
-    Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written, warnings,
+    Pumping, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
+    overlap_warning, warnings,
 };
 
 use crate::arguments::{InstructionSet, RunArguments};
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{print, say};
+use crate::commands::{print, say, warn};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
 use crate::sources::{configuration, locate, name};
@@ -64,6 +65,9 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         print(&summary.to_json())?;
     } else {
         print(&in_words(&run, &summary))?;
+    }
+    if let Some(warning) = overlap_warning(&run) {
+        warn(&warning);
     }
     if let Some(report) = &summary.trajectory {
         tell(arguments, &format!("trajectory: {}", in_one_line(report)));
@@ -141,10 +145,7 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     // Before the work of packing, and again when the folder is made.
     RunFolder::check(&path)?;
     for warning in warnings(&configuration) {
-        tell(
-            arguments,
-            &format!("warning: {}: {}", warning.key, warning.message),
-        );
+        warn(&warning);
     }
     if configuration.grains.number > SLOW_PACKING {
         tell(
@@ -153,6 +154,9 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
         );
     }
     let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
+    if let Some(warning) = overlap_warning(&run) {
+        warn(&warning);
+    }
     let folder = RunFolder::create(&path, run.configuration())?;
     Ok((folder, run))
 }
@@ -303,18 +307,31 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         ),
     };
     if let Some(newtonian) = summary.newtonian_flow_rate_ratio {
-        flow.push_str(&format!(" (a Newtonian fluid: {newtonian:.4})"));
+        // The load of a fluid counts against its viscosity, which grains do not have.
+        let load = if summary.pumping.is_some() {
+            " without load"
+        } else {
+            ""
+        };
+        flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian:.4})"));
     }
     if let Some(pumping) = &summary.pumping {
         flow.push_str(&format!(
-            "\nagainst a pressure rise of {:.3e} m/(d t^2) a wavelength: useful power {:.3e}, efficiency {:.4} ± {:.4}",
-            pumping.pressure_rise, pumping.useful_power, pumping.efficiency, pumping.efficiency_error
+            "\nagainst a pressure rise of {:.3e} m/(d t^2) a wavelength: useful power {:.3e}, {}",
+            pumping.pressure_rise,
+            pumping.useful_power,
+            efficiency(pumping)
         ));
     }
     if let Some(si) = &summary.si {
         flow.push_str(&format!(
-            "\nin SI: {:.3e} kg/s, wall power {:.3e} W, pressure on the wall {:.3e} Pa (at most {:.3e})",
-            si.mass_flow_rate_kg_per_s, si.wall_power_w, si.wall_pressure_pa, si.wall_pressure_largest_pa
+            "\nin SI: {:.3e} kg/s, wall power {:.3e} W, pressure on the wall {:.3e} Pa (at most {:.3e} averaged over \
+             1/{} of a wavelength)",
+            si.mass_flow_rate_kg_per_s,
+            si.wall_power_w,
+            si.wall_pressure_pa,
+            si.wall_pressure_largest_pa,
+            configuration.observe.profile_bins
         ));
     }
     let mut text = format!(
@@ -332,4 +349,54 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         text.push_str(&format!("the wall: {diagnosis}\n"));
     }
     text
+}
+
+/// The efficiency, or why there is none.
+fn efficiency(pumping: &Pumping) -> String {
+    let Pumping {
+        efficiency,
+        efficiency_error,
+        useful_power,
+        ..
+    } = pumping;
+    if efficiency.is_nan() {
+        return if *useful_power > 0.0 {
+            "efficiency – (the wall gives no power: stored energy is spent)".to_owned()
+        } else {
+            "efficiency – (the grains do not go against the body force)".to_owned()
+        };
+    }
+    let beyond = if *efficiency > 1.0 {
+        " (above 1: stored energy is spent; run longer)"
+    } else {
+        ""
+    };
+    if efficiency_error.is_finite() {
+        format!("efficiency {efficiency:.4} ± {efficiency_error:.4}{beyond}")
+    } else {
+        format!("efficiency {efficiency:.4}{beyond}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_efficiency_is_said_where_there_is_one() {
+        let said = |useful_power: f64, efficiency: f64| {
+            super::efficiency(&Pumping {
+                body_force: -0.1,
+                pressure_rise: 0.1,
+                useful_power,
+                useful_power_error: 0.0,
+                efficiency,
+                efficiency_error: 0.01,
+            })
+        };
+        assert_eq!(said(1.0, 0.25), "efficiency 0.2500 ± 0.0100");
+        assert!(said(1.0, 1.5).contains("stored energy is spent; run longer"));
+        assert!(said(1.0, f64::NAN).starts_with("efficiency – (the wall"));
+        assert!(said(-1.0, f64::NAN).starts_with("efficiency – (the grains"));
+    }
 }

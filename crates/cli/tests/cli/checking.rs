@@ -233,18 +233,24 @@ fn unphysical_softness_is_warned_of_with_what_to_do() {
         let warnings = estimate["warnings"].as_array().unwrap().clone();
         warnings
             .iter()
-            .find(|warning| warning["key"] == "units.stiffness")
+            .filter(|warning| warning["key"] == "units.stiffness")
             .map(|warning| warning["message"].as_str().unwrap().to_owned())
+            .find(|message| !message.contains("in a short trial"))
     };
-    // c = 0.5: xi = 0.5/sqrt(2), far above a tenth; k (0.3536/0.1)^2 = 12.5 N/m would do.
+    // c = 0.5: xi = 0.5/sqrt(2), far above a tenth; k (0.3536/0.1)^2 = 12.5 N/m would do at 43.70 Hz, and 12.56 at 43.8.
     let soft = message(&[]).unwrap();
-    assert!(
-        soft.contains("35 %") && soft.contains("1.25e1 N/m"),
-        "{soft}"
-    );
+    for part in [
+        "35 %",
+        "1.26e1 N/m",
+        "units.wave_frequency = 4.38e1",
+        "drive.strain_rate = 1.41e-2",
+    ] {
+        assert!(soft.contains(part), "{part} is not in {soft}");
+    }
     // c = 0.1: xi = 0.0707.
     assert_eq!(message(&["--set", "drive.strain_rate=0.01"]), None);
-    // A thousandth of a Hertz: 1e3/(1.144e-3 0.05) steps, and xi = 1.144e-6 10/sqrt(2) d: (8.09e-6/0.01)^2 = 6.5e-7 N/m.
+    // A thousandth of a Hertz: 1e3/(1.144e-3 0.05) steps, and xi = 1.144e-6 10/sqrt(2) d: (8.0901e-6/0.01)^2 = 6.545e-7
+    // N/m.
     let hard = message(&[
         "--set",
         "units.wave_frequency=1e-3",
@@ -255,7 +261,121 @@ fn unphysical_softness_is_warned_of_with_what_to_do() {
     ])
     .unwrap();
     assert!(
-        hard.contains("1.7e7 steps") && hard.contains("6.54e-7 N/m"),
+        hard.contains("1.7e7 steps") && hard.contains("6.55e-7 N/m"),
         "{hard}"
+    );
+}
+
+/// Keys and messages of what `check` warns of.
+fn warnings(arguments: &[&str]) -> Vec<(String, String)> {
+    let estimate = check(arguments);
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    let warnings = estimate["warnings"].as_array().unwrap().iter();
+    warnings
+        .map(|warning| (text(&warning["key"]), text(&warning["message"])))
+        .collect()
+}
+
+#[test]
+fn a_schedule_is_warned_of_for_what_it_leads_to() {
+    for (preset, settings, key, part) in [
+        (
+            "frictionless-fine",
+            &[
+                "drive.schedule={form='ramp', from=2.75, to=0.99, end=2}",
+                "grains.number=5",
+            ][..],
+            "drive.schedule",
+            "closes on itself",
+        ),
+        (
+            "frictionless-fine",
+            &["drive.schedule={form='ramp', parameter='strain_rate', from=0.05, to=0.2, end=2}"],
+            "tube.rings_per_wave",
+            "as fast as the wave",
+        ),
+        (
+            "frictional",
+            &[
+                "drive.schedule={form='ramp', from=0.004, to=50, end=2}",
+                "tube.waves=2",
+            ],
+            "run.time_step",
+            "diverged",
+        ),
+        (
+            "frictionless",
+            &[
+                "drive.schedule=ramp",
+                "drive.ramp_periods=100",
+                "run.periods=10",
+            ],
+            "drive.schedule",
+            "until 100 periods, and the run ends after 10",
+        ),
+    ] {
+        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+        let arguments: Vec<&str> = ["--preset", preset].into_iter().chain(settings).collect();
+        let found = warnings(&arguments);
+        assert!(
+            found
+                .iter()
+                .any(|(of, message)| of == key && message.contains(part)),
+            "{arguments:?}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn the_fastest_wave_of_a_schedule_is_the_one_in_si() {
+    let led = "drive.schedule={form='ramp', parameter='strain_rate', from=0.01, to=0.1, end=4}";
+    let arguments = [&["--preset", "frictionless", "--set", led][..], &BEADS].concat();
+    let si = &check(&arguments)["si"];
+    let time = (PI / 6.0 * 2500.0 * 1e-9).sqrt();
+    close(&si["wave_frequency_hz"], 0.05 / time);
+    close(&si["fastest_wave_frequency_hz"], 0.1 / time);
+    // Jmax = N c/L with c = 1.
+    close(&si["largest_mass_flow_rate_kg_per_s"], 2.03 * time);
+    close(&si["overlap_at_wave_speed"], 0.5_f64.sqrt());
+}
+
+#[test]
+fn small_numbers_in_si_keep_their_digits() {
+    let slow = [
+        "--preset",
+        "frictionless",
+        "--set",
+        "drive.strain_rate=1e-6",
+    ];
+    let settings = ["--set", "units.stiffness=1e-4", "--set", "run.periods=1"];
+    let more = ["--set", "run.time_step=1"];
+    let arguments = [&slow[..], &BEADS[..4], &settings, &more].concat();
+    let said = Place::new()
+        .call(["check"].iter().chain(&arguments))
+        .expect_code(0)
+        .stdout;
+    // 1e-6/(0.11441 s)
+    assert!(said.contains("a wave of 8.740e-6 Hz"), "{said}");
+}
+
+#[test]
+fn a_tube_that_is_overfilled_is_warned_of_by_the_overlaps_that_a_trial_shows() {
+    let settings = [
+        "--preset",
+        "frictionless",
+        "--set",
+        "grains.volume_fraction=0.5",
+        "--set",
+        "drive.strain_rate=0.001",
+        "--set",
+        "tube.waves=2",
+    ];
+    let found = warnings(&[&settings[..], &BEADS].concat());
+    let (key, message) = &found[0];
+    assert_eq!(key, "units.stiffness");
+    assert!(
+        message.starts_with("in a short trial grains overlapped by up to")
+            && message.contains("as they were packed"),
+        "{message}"
     );
 }

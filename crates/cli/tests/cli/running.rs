@@ -203,7 +203,9 @@ fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
 fn pumping_and_si_are_in_the_summary() {
     let place = Place::new();
     let settings = [
-        "drive.body_force=-0.01",
+        "drive.body_force=-0.001",
+        "drive.width=2.4",
+        "initial.state=jammed",
         "units.grain_diameter=1e-3",
         "units.density=2500",
         "units.stiffness=1",
@@ -221,7 +223,7 @@ fn pumping_and_si_are_in_the_summary() {
             .unwrap_or_else(|| panic!("{pointer} in {summary:#}"))
     };
     // Useful power is that of the flow against the force: -g J L, grains of mass 1 in a tube of 20 d.
-    let useful = 0.01 * number("/flow_rate") * 20.0;
+    let useful = 0.001 * number("/flow_rate") * 20.0;
     assert!(
         (number("/pumping/useful_power") / useful - 1.0).abs() < 1e-6,
         "{useful}"
@@ -242,10 +244,76 @@ fn pumping_and_si_are_in_the_summary() {
     );
     close(
         number("/si/pressure_rise_pa"),
-        20.0 * 0.01 * 10.0 / (20.0 * std::f64::consts::PI * 2.25) * 1000.0,
+        20.0 * 0.001 * 10.0 / (20.0 * std::f64::consts::PI * 2.25) * 1000.0,
     );
     assert!(
         number("/wall_pressure") > 0.0
             && number("/wall_pressure_largest") >= number("/wall_pressure")
     );
+}
+
+#[test]
+fn softness_that_the_run_shows_and_how_pressures_are_averaged_are_said() {
+    let place = Place::new();
+    let settings = [
+        "drive.body_force=-0.01",
+        "units.grain_diameter=1e-3",
+        "units.density=2500",
+        "units.stiffness=1",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments: Vec<&str> = ["--out", "results"].into_iter().chain(settings).collect();
+    place
+        .run_small(&arguments)
+        .expect_code(0)
+        .says(&["warning: units.stiffness: grains overlapped by up to"])
+        .shows(&[
+            "averaged over 1/50 of a wavelength",
+            "(a Newtonian fluid without load: ",
+        ]);
+    let summary = read_json(&place.path("results/summary.json"));
+    let warnings = summary["warnings"].as_array().unwrap();
+    assert!(warnings.iter().any(|warning| {
+        let message = warning["message"].as_str().unwrap();
+        message.starts_with("grains overlapped by up to")
+    }));
+}
+
+#[test]
+fn an_efficiency_is_null_where_nothing_is_pumped() {
+    let place = Place::new();
+    let settings = [
+        "drive.body_force=-0.01",
+        "drive.wave_speed=0",
+        "run.duration=20",
+        "grains.number=20",
+        "tube.waves=2",
+    ];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = ["run", "--preset", "frictionless", "--out", "still"];
+    place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(0)
+        .shows(&["efficiency – ("]);
+    place
+        .run_small(&["--out", "helped", "--set", "drive.body_force=0.01"])
+        .expect_code(0)
+        .shows(&["the grains do not go against the body force"]);
+    for folder in ["still", "helped"] {
+        let summary = read_json(&place.path(folder).join("summary.json"));
+        assert_eq!(summary["pumping"]["efficiency"], Value::Null, "{folder}");
+        assert_eq!(summary["pumping"]["efficiency_error"], Value::Null);
+    }
+}
+
+#[test]
+fn a_wall_that_diverges_is_named_as_the_wall() {
+    let place = Place::new();
+    let settings = ["wall.drag=1e3", "tube.waves=2", "grains.number=100"];
+    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let arguments = ["run", "--preset", "frictional", "--out", "results"];
+    place
+        .call(arguments.into_iter().chain(settings))
+        .expect_code(1)
+        .says(&["wall sphere ", "wall.drag", "wall.sphere_mass"]);
 }

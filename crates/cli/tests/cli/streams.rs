@@ -3,7 +3,7 @@
 use std::io::Read;
 use std::process::Stdio;
 
-use crate::{Outcome, Place, SMALL};
+use crate::{Outcome, Place, SMALL, read_json};
 
 fn plain(text: &str) -> bool {
     text.chars()
@@ -39,6 +39,14 @@ fn quiet_is_quiet_and_errors_are_not() {
     let outcome = place.run_small(&["--out", "results", "-q"]).expect_code(2);
     assert!(plain(&outcome.stderr), "{:?}", outcome.stderr);
     outcome.says(&["holds another run"]);
+    // A warning is no progress.
+    let outcome = place
+        .run_small(&["--out", "doubtful", "-q", "--set", "run.time_step=0.2"])
+        .expect_code(0)
+        .says(&["warning: run.time_step"]);
+    assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
+    let summary = read_json(&place.path("doubtful/summary.json"));
+    assert_eq!(summary["warnings"][0]["key"], "run.time_step");
 }
 
 #[test]

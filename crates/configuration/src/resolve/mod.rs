@@ -12,7 +12,7 @@ use serde::de::DeserializeOwned;
 use crate::configuration::{Configuration, Contact, Friction, Initial, NormalLaw, Observe, Wall};
 use crate::contract;
 use crate::defaults;
-use crate::document::{self, Node, Table};
+use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
 use crate::keys::{ContactKeys, Keys, ObserveKeys};
 use crate::layers::{self, ALTERNATIVES, list};
@@ -423,10 +423,4 @@ fn observe(keys: &ObserveKeys) -> Observe {
             .transition_threshold
             .unwrap_or(defaults::TRANSITION_THRESHOLD),
     }
-}
-
-/// Whether a key holds a list of tables or one table.
-fn is_table(context: &Context<'_>, key: &str) -> bool {
-    document::entry(context.table, key)
-        .is_some_and(|entry| matches!(entry.item.node, Node::Table(_) | Node::Array(_)))
 }

@@ -1,11 +1,13 @@
 //! Schedules of the drive: by name or as tables, each checked at all times.
 
-use super::{Context, is_table};
+use super::Context;
 use crate::configuration::{Control, Drive, Tube};
-use crate::error::ProblemKind;
+use crate::document::{self, Item, Node};
+use crate::error::{Problem, ProblemKind};
 use crate::keys::{DriveKeys, ScheduleKeys, ScheduleTableKeys};
 use crate::options::{ScheduleFormName, ScheduleName, ScheduledParameterName};
 use crate::schedule::{Schedule, ScheduleForm, ScheduledParameter};
+use crate::source::Origin;
 
 const KEY: &str = "drive.schedule";
 
@@ -45,28 +47,101 @@ pub(super) fn schedules(
         Some(ScheduleKeys::One(table)) => vec![table.clone()],
         Some(ScheduleKeys::Several(tables)) => tables.clone(),
     };
-    if drive.strain_rate == 0.0 && !tables.is_empty() {
-        refuse(
-            context,
-            "a schedule counts in wave periods, and a static wave has none".into(),
-        );
-        return None;
+    let whole = Written {
+        item: document::entry(context.table, KEY).map(|entry| &entry.item),
+        index: None,
+    };
+    if tables.is_empty() {
+        let message = "the list is empty".to_owned();
+        return refuse(context, drive, &[(whole, Part::Whole)], message);
     }
-    let scope = Scope { drive, tube };
-    let schedules: Option<Vec<Schedule>> = tables
+    if drive.strain_rate == 0.0 {
+        let message = "a schedule counts in wave periods, and a static wave has none".to_owned();
+        return refuse(context, drive, &[(whole, Part::Whole)], message);
+    }
+    let schedules: Option<Vec<(Schedule, Written<'_>)>> = tables
         .iter()
-        .map(|table| scope.schedule(table, context))
+        .enumerate()
+        .map(|(index, keys)| {
+            let scope = Scope {
+                drive,
+                tube,
+                written: whole.nth(index),
+            };
+            Some((scope.schedule(keys, context)?, scope.written))
+        })
         .collect();
     let mut schedules = schedules?;
-    schedules.sort_by_key(|schedule| schedule.parameter);
-    if schedules
+    schedules.sort_by_key(|(schedule, _)| schedule.parameter);
+    let twice = schedules
         .windows(2)
-        .any(|pair| pair[0].parameter == pair[1].parameter)
-    {
-        refuse(context, "two schedules for one parameter".into());
-        return None;
+        .find(|pair| pair[0].0.parameter == pair[1].0.parameter);
+    if let Some([(_, first), (_, second)]) = twice {
+        let message = "two schedules for one parameter".to_owned();
+        let places = [(*second, Part::Whole), (*first, Part::Whole)];
+        return refuse(context, drive, &places, message);
     }
-    Some(schedules)
+    Some(
+        schedules
+            .into_iter()
+            .map(|(schedule, _)| schedule)
+            .collect(),
+    )
+}
+
+/// A schedule as it is written: by name, as a table, or as one of a list.
+#[derive(Clone, Copy)]
+struct Written<'a> {
+    item: Option<&'a Item>,
+    index: Option<usize>,
+}
+
+/// A part of a schedule as it is written.
+#[derive(Clone, Copy)]
+enum Part {
+    Whole,
+    Key(&'static str),
+    /// One of the values of a key, from 0 on.
+    Of(&'static str, usize),
+}
+
+impl<'a> Written<'a> {
+    /// The schedule of a number in a list; what is no list is its own only schedule.
+    fn nth(self, index: usize) -> Self {
+        match self.item.map(|item| &item.node) {
+            Some(Node::Array(items)) => Self {
+                item: items.get(index).or(self.item),
+                index: Some(index),
+            },
+            _ => self,
+        }
+    }
+
+    /// Full name of a part, and where it stands; that of the whole where the part is not written.
+    fn place(self, part: Part) -> (String, Option<&'a Origin>) {
+        let path = match self.index {
+            Some(index) => format!("{KEY}[{index}]"),
+            None => KEY.to_owned(),
+        };
+        let (key, index) = match part {
+            Part::Whole => ("", None),
+            Part::Key(key) => (key, None),
+            Part::Of(key, index) => (key, Some(index)),
+        };
+        let value = match self.item.map(|item| &item.node) {
+            Some(Node::Table(table)) => table.get(key).map(|entry| &entry.item),
+            _ => None,
+        };
+        let Some(value) = value else {
+            return (path, self.item.map(|item| &item.origin));
+        };
+        match (&value.node, index) {
+            (Node::Array(items), Some(index)) if index < items.len() => {
+                (format!("{path}.{key}[{index}]"), Some(&items[index].origin))
+            }
+            _ => (format!("{path}.{key}"), Some(&value.origin)),
+        }
+    }
 }
 
 fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTableKeys> {
@@ -90,24 +165,47 @@ fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTab
     })
 }
 
-fn refuse(context: &mut Context<'_>, message: String) {
-    let example = if is_table(context, KEY) {
-        "for example drive.schedule = { form = \"ramp\", parameter = \"width\", from = 3.0, to = 2.6, start = 0, end = 100 } or { form = \"steps\", parameter = \"width\", at = [0, 100], values = [2.9, 2.7] }"
-    } else {
-        "drive.schedule = \"sudden\" keeps the drive constant"
+/// Reports a problem with parts of schedules, the first being to blame; always `None`.
+fn refuse<T>(
+    context: &mut Context<'_>,
+    drive: &Drive,
+    parts: &[(Written<'_>, Part)],
+    message: String,
+) -> Option<T> {
+    let example = match drive.control {
+        Control::Strain { .. } => {
+            "for example drive.schedule = { form = \"ramp\", parameter = \"width\", from = 3.0, to = 2.6, start = 0, end = 100 } \
+             or { form = \"steps\", parameter = \"width\", at = [0, 100], values = [2.9, 2.7] }; drive.schedule = \"sudden\" \
+             keeps the drive constant"
+        }
+        Control::Stress { .. } => {
+            "for example drive.schedule = { form = \"ramp\", parameter = \"force_amplitude\", from = 0.003, to = 0.006, start = \
+             0, end = 20 } or { form = \"steps\", parameter = \"force_amplitude\", at = [0, 20], values = [0.003, 0.006] }; \
+             drive.schedule = \"sudden\" keeps the drive constant"
+        }
     };
-    context.refuse(
-        ProblemKind::Inconsistent,
-        &[KEY],
-        format!("{KEY}: {message}"),
-        example.into(),
-    );
+    let places: Vec<(String, Option<&Origin>)> = parts
+        .iter()
+        .map(|(written, part)| written.place(*part))
+        .collect();
+    let key = &places[0].0;
+    let mut problem = Problem::new(ProblemKind::Inconsistent, format!("{key}: {message}"))
+        .key(key)
+        .help(example);
+    for (key, origin) in &places {
+        if let Some(origin) = origin {
+            problem = problem.at(origin, key);
+        }
+    }
+    context.problems.push(places[0].1, problem);
+    None
 }
 
 /// What a schedule is resolved against.
 struct Scope<'a> {
     drive: &'a Drive,
     tube: &'a Tube,
+    written: Written<'a>,
 }
 
 /// A scheduled parameter as it is written, and what it resolves to.
@@ -123,6 +221,16 @@ struct Target {
 }
 
 impl Scope<'_> {
+    /// Reports a problem with a part of this schedule; always `None`.
+    fn refuse<T>(
+        &self,
+        context: &mut Context<'_>,
+        part: Part,
+        message: impl Into<String>,
+    ) -> Option<T> {
+        refuse(context, self.drive, &[(self.written, part)], message.into())
+    }
+
     fn schedule(&self, keys: &ScheduleTableKeys, context: &mut Context<'_>) -> Option<Schedule> {
         let target = self.target(keys, context)?;
         let form = match keys.form {
@@ -174,18 +282,12 @@ impl Scope<'_> {
                 LARGEST,
             ),
             (Name::ForceAmplitude, Control::Strain { .. }) => {
-                refuse(
-                    context,
-                    "force_amplitude belongs to drive.control = \"stress\"".into(),
-                );
-                return None;
+                let message = "force_amplitude belongs to drive.control = \"stress\"";
+                return self.refuse(context, Part::Key("parameter"), message);
             }
             (Name::Width | Name::Amplitude, Control::Stress { .. }) => {
-                refuse(
-                    context,
-                    "the width belongs to drive.control = \"strain\"".into(),
-                );
-                return None;
+                let message = "the width belongs to drive.control = \"strain\"";
+                return self.refuse(context, Part::Key("parameter"), message);
             }
         };
         Some(Target {
@@ -198,11 +300,16 @@ impl Scope<'_> {
     }
 
     /// A value as written, in the unit of the resolved parameter.
-    fn resolved(&self, value: f64, target: &Target, context: &mut Context<'_>) -> Option<f64> {
+    fn resolved(
+        &self,
+        value: f64,
+        part: Part,
+        target: &Target,
+        context: &mut Context<'_>,
+    ) -> Option<f64> {
         if value > target.most {
             let (name, most) = (word(target.written), target.most);
-            refuse(context, format!("{name} = {value} is above {most}"));
-            return None;
+            return self.refuse(context, part, format!("{name} = {value} is above {most}"));
         }
         Some(match target.written {
             ScheduledParameterName::Amplitude => 2.0 * (self.tube.radius - value),
@@ -218,31 +325,26 @@ impl Scope<'_> {
         target: &Target,
         context: &mut Context<'_>,
     ) -> Option<ScheduleForm> {
-        if keys.at.is_some() || keys.values.is_some() {
-            refuse(
-                context,
-                "a ramp takes from, to, start and end, not at and values".into(),
-            );
-            return None;
+        let of_points = [("at", &keys.at), ("values", &keys.values)];
+        if let Some((key, _)) = of_points.iter().find(|(_, given)| given.is_some()) {
+            let message = "a ramp takes from, to, start and end, not at and values";
+            return self.refuse(context, Part::Key(key), message);
         }
         let Some(end) = keys.end else {
-            refuse(context, "a ramp needs its end, in wave periods".into());
-            return None;
+            let message = "a ramp needs its end, in wave periods";
+            return self.refuse(context, Part::Whole, message);
         };
         let start = keys.start.unwrap_or(0.0) + 0.0;
         if end <= start {
-            refuse(
-                context,
-                format!("the ramp ends at {end}, not after its start at {start}"),
-            );
-            return None;
+            let message = format!("the ramp ends at {end}, not after its start at {start}");
+            return self.refuse(context, Part::Key("end"), message);
         }
         let from = match keys.from {
-            Some(value) => self.resolved(value, target, context)?,
+            Some(value) => self.resolved(value, Part::Key("from"), target, context)?,
             None => target.nothing,
         };
         let to = match keys.to {
-            Some(value) => self.resolved(value, target, context)?,
+            Some(value) => self.resolved(value, Part::Key("to"), target, context)?,
             None => target.own,
         };
         Some(ScheduleForm::Ramp {
@@ -267,31 +369,36 @@ impl Scope<'_> {
             }
             _ => ("steps take", "steps need", 1, ""),
         };
-        let all_equal = |times: &[f64]| times.iter().all(|time| *time == times[0]);
-        let of_a_ramp = [keys.from, keys.to, keys.start, keys.end];
-        if of_a_ramp.iter().any(Option::is_some) {
-            refuse(
-                context,
-                format!("{takes} at and values, not from, to, start or end"),
-            );
-            return None;
+        let of_a_ramp = [
+            ("from", keys.from),
+            ("to", keys.to),
+            ("start", keys.start),
+            ("end", keys.end),
+        ];
+        if let Some((key, _)) = of_a_ramp.iter().find(|(_, given)| given.is_some()) {
+            let message = format!("{takes} at and values, not from, to, start or end");
+            return self.refuse(context, Part::Key(key), message);
         }
         let (Some(at), Some(values)) = (&keys.at, &keys.values) else {
-            refuse(context, format!("{needs} both at and values"));
-            return None;
+            let message = format!("{needs} both at and values");
+            return self.refuse(context, Part::Whole, message);
         };
         if at.len() != values.len() {
-            let (times, values) = (at.len(), values.len());
-            refuse(context, format!("{times} times in at, but {values} values"));
-            return None;
+            let message = format!("{} times in at, but {} values", at.len(), values.len());
+            return self.refuse(context, Part::Key("values"), message);
         }
-        if at.windows(2).any(|pair| pair[0] > pair[1]) || at.windows(most + 1).any(all_equal) {
-            refuse(context, format!("the times in at do not ascend{but}"));
-            return None;
+        // Behind the one before, or behind as many equal ones as there may be.
+        let behind = |index: usize| {
+            at[index] < at[index - 1] || index >= most && at[index - most] == at[index]
+        };
+        if let Some(index) = (1..at.len()).find(|&index| behind(index)) {
+            let message = format!("the times in at do not ascend{but}");
+            return self.refuse(context, Part::Of("at", index), message);
         }
         let values: Option<Vec<f64>> = values
             .iter()
-            .map(|value| self.resolved(*value, target, context))
+            .enumerate()
+            .map(|(index, value)| self.resolved(*value, Part::Of("values", index), target, context))
             .collect();
         Some(at.iter().map(|time| time + 0.0).zip(values?).collect())
     }

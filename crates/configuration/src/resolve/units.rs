@@ -49,12 +49,25 @@ pub(super) fn units(
     let needed = [NEEDED[0], NEEDED[1], elastic_key];
     let given = |key: &&str| context.origin(key).is_some();
     let missing: Vec<&str> = needed.into_iter().filter(|key| !given(key)).collect();
+    // The other law's key may have been given below the choice of this law, and was dropped.
+    let instead = if missing == [elastic_key] {
+        match contact.normal {
+            NormalLaw::Linear { .. } => {
+                ": contact.law = \"linear\" takes it in place of units.young_modulus, which is not used there"
+            }
+            NormalLaw::Hertz { .. } => {
+                ": contact.law = \"hertz\" takes it in place of units.stiffness, which is not used there"
+            }
+        }
+    } else {
+        ""
+    };
     let mut keys = needed.into_iter().chain(["units.wave_frequency"]);
     let blamed = keys.find(given).unwrap_or(NEEDED[0]);
     context.refuse(
         ProblemKind::Missing,
         &[blamed],
-        format!("units in SI need {} as well", missing.join(" and ")),
+        format!("units in SI need {} as well{instead}", missing.join(" and ")),
         "length, mass and time follow from units.grain_diameter (m), units.density (kg/m^3) and units.stiffness (N/m; \
          contact.law = \"linear\") or units.young_modulus (Pa; \"hertz\"): give all three"
             .into(),

@@ -1,6 +1,6 @@
 //! What is wrong with values together: widths, lattices, sizes, times, schedules.
 
-use peristalsis_configuration::ProblemKind;
+use peristalsis_configuration::{Configuration, ProblemKind, Sources};
 
 use crate::{FILE, expect, only_problem, problem_with, read};
 
@@ -197,60 +197,97 @@ fn runs_beyond_reach() {
 
 #[test]
 fn schedules_are_checked_at_all_times() {
+    // The table, the key to blame, what stands there, and the message.
     let cases = [
-        ("form = 'ramp', to = 3.5, end = 2", "width = 3.5 is above 3"),
+        (
+            "form = 'ramp', to = 3.5, end = 2",
+            ".to",
+            "3.5",
+            "width = 3.5 is above 3",
+        ),
         (
             "form = 'ramp', parameter = 'amplitude', from = 1.6, end = 2",
+            ".from",
+            "1.6",
             "amplitude = 1.6 is above",
         ),
         (
             "form = 'ramp', start = 3, end = 3",
+            ".end",
+            "3",
             "not after its start at 3",
         ),
-        ("form = 'ramp'", "needs its end"),
-        ("form = 'ramp', at = [1], end = 2", "not at and values"),
+        ("form = 'ramp'", "", "{ form", "needs its end"),
+        (
+            "form = 'ramp', at = [1], end = 2",
+            ".at",
+            "[1]",
+            "not at and values",
+        ),
         (
             "form = 'steps', at = [0, 1], values = [2.5]",
+            ".values",
+            "[2.5]",
             "2 times in at, but 1 values",
         ),
         (
-            "form = 'steps', at = [1, 1], values = [2.5, 2.6]",
+            "form = 'steps', at = [0, 1, 1], values = [2.5, 2.6, 2.7]",
+            ".at[2]",
+            "1",
             "do not ascend",
         ),
         (
             "form = 'steps', at = [1], values = [9.0]",
+            ".values[0]",
+            "9.0",
             "width = 9 is above 3",
         ),
-        ("form = 'steps', at = [1]", "need both"),
+        ("form = 'steps', at = [1]", "", "{ form", "need both"),
         (
             "form = 'course', parameter = 'width', at = [0, 1], values = [2.7, 3.2]",
+            ".values[1]",
+            "3.2",
             "above",
         ),
         (
             "form = 'course', at = [0, 1], values = [2.7, 2.8], end = 2",
+            ".end",
+            "2",
             "a course takes at and values",
         ),
-        ("form = 'course', at = [0, 1]", "a course needs both"),
+        (
+            "form = 'course', at = [0, 1]",
+            "",
+            "{ form",
+            "a course needs both",
+        ),
         (
             "form = 'course', at = [1, 1, 1], values = [2.5, 2.6, 2.7]",
+            ".at[2]",
+            "1",
             "do not ascend (two may be equal)",
         ),
         (
             "form = 'ramp', parameter = 'force_amplitude', end = 2",
+            ".parameter",
+            "'force_amplitude'",
             "drive.control = \"stress\"",
         ),
     ];
-    for (table, message) in cases {
+    for (table, key, there, message) in cases {
         let schedule = format!("width = 2.75\nschedule = {{ {table} }}");
         let problem = problem_with("width = 2.75", &schedule);
         expect(
             &problem,
             ProblemKind::Inconsistent,
-            "drive.schedule",
+            &format!("drive.schedule{key}"),
             14,
-            "for example",
+            "for example drive.schedule = { form = \"ramp\", parameter = \"width\"",
         );
         assert!(problem.message.contains(message), "{problem}");
+        let label = &problem.labels[0];
+        let text = &label.source_text[label.span.clone()];
+        assert!(text.starts_with(there), "{there} is not at {text}");
     }
     let twice = "width = 2.75\nschedule = [{ form = 'ramp', end = 2 }, { form = 'ramp', parameter = 'amplitude', end = 3 }]";
     let problem = problem_with("width = 2.75", twice);
@@ -258,6 +295,11 @@ fn schedules_are_checked_at_all_times() {
         problem.message.contains("two schedules for one parameter"),
         "{problem}"
     );
+    assert_eq!(problem.key.as_deref(), Some("drive.schedule[1]"));
+    assert_eq!(problem.labels.len(), 2);
+    let problem = problem_with("width = 2.75", "width = 2.75\nschedule = []");
+    assert!(problem.message.contains("the list is empty"), "{problem}");
+    assert!(problem.help.unwrap().contains("\"sudden\""));
     let problem = problem_with("width = 2.75", "width = 2.75\nschedule = \"steps\"");
     expect(
         &problem,
@@ -298,5 +340,45 @@ fn schedules_are_checked_at_all_times() {
         "drive.schedule.at[0]",
         14,
         "0 or more",
+    );
+}
+
+#[test]
+fn a_schedule_of_its_own_table_is_pointed_at_by_its_key() {
+    let tables = "[[drive.schedule]]\nform = 'steps'\nparameter = 'strain_rate'\nat = [0, 5]\nvalues = [0.05, 0.1]\n\
+                  [[drive.schedule]]\nform = 'steps'\nat = [0, 5, 3]\nvalues = [2.7, 2.8, 2.9]\n[run]";
+    let problem = problem_with("[run]", tables);
+    // The first of the two tables stands at line 15.
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "drive.schedule[1].at[2]",
+        22,
+        "for example",
+    );
+    assert_eq!(problem.labels[0].line_and_column().1, 13);
+    let table = "[drive.schedule]\nform = 'ramp'\nend = 5\nto = 3.6\n[run]";
+    let problem = problem_with("[run]", table);
+    expect(
+        &problem,
+        ProblemKind::Inconsistent,
+        "drive.schedule.to",
+        18,
+        "width",
+    );
+}
+
+#[test]
+fn the_example_of_a_schedule_fits_the_control() {
+    let overrides = ["drive.schedule={form='ramp', parameter='width', end=2}".to_owned()];
+    let problem = only_problem(Configuration::from_sources(&Sources {
+        file: None,
+        preset: Some("frictional"),
+        overrides: &overrides,
+    }));
+    let help = problem.help.unwrap();
+    assert!(
+        help.contains("force_amplitude") && !help.contains("width"),
+        "{help}"
     );
 }
