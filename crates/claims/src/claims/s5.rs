@@ -13,7 +13,7 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
-use crate::forces::{ForceLine, together};
+use crate::forces::{ForceLine, ForcePoint, together};
 use crate::text::{number, with_error};
 
 pub(super) const CLAIM: Claim = Claim {
@@ -77,15 +77,19 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let with = frictional
             .iter()
             .find(|other| other.strain_rate == line.strain_rate);
+        let cell = |point: Option<&ForcePoint>| {
+            point.map_or("–".to_owned(), |point| {
+                with_error(point.mean, point.error)
+            })
+        };
         for point in &line.rest.points {
             let other = with.and_then(|with| with.rest.at(point.force));
             rows.push(vec![
                 rate_text(line.strain_rate),
                 format!("{}", point.force),
-                with_error(point.mean, point.error),
-                other.map_or("–".to_owned(), |other| {
-                    with_error(other.mean, other.error)
-                }),
+                cell(Some(point)),
+                cell(line.jammed.at(point.force)),
+                cell(other),
                 number(point.escaped, 3),
             ]);
             if let Some(other) = other {
@@ -110,10 +114,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         });
     }
     found.tables.push(ReportTable {
-        caption: "Stationary *J*/*J*_{max} from rest of frictionless grains, and of frictional ones at the same force and strain rate; \
-                  part of the frictionless grains outside."
+        caption: "Stationary *J*/*J*_{max} of frictionless grains from rest and from jammed (“–”: most runs still drift), and of \
+                  frictional ones from rest at the same force and strain rate; part of the frictionless grains outside, from rest."
             .to_owned(),
-        head: ["*ε̇*", "*f*^{P}", "frictionless", "frictional", "outside"]
+        head: ["*ε̇*", "*f*^{P}", "from rest", "from jammed", "frictional", "outside"]
             .map(str::to_owned)
             .to_vec(),
         rows,
