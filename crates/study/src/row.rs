@@ -2,7 +2,7 @@
 
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
-use peristalsis_run::{Pumping, Summary};
+use peristalsis_run::{Pumping, SiSummary, Summary};
 
 use crate::identity::Identity;
 use crate::plan::state_name;
@@ -165,6 +165,12 @@ const COLUMNS: &[RowColumn] = &[
     later("belly_density", "1/d", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.density)),
     later("belly_axial_velocity", "d/t", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.axial_velocity)),
     later("belly_granular_temperature", "m d^2/t^2", "the same where the tube is widest", |o| Cell::Real(o.summary.belly.granular_temperature)),
+    later("mass_flow_rate_si", "kg/s", "late mean flow J m; missing without the table units", |o| in_si(o, |si| Some(si.mass_flow_rate_kg_per_s))),
+    later("wall_power_si", "W", "wall_power in SI; missing without the table units", |o| in_si(o, |si| Some(si.wall_power_w))),
+    later("useful_power_si", "W", "useful_power in SI; missing without the table units", |o| in_si(o, |si| si.useful_power_w)),
+    later("pressure_rise_si", "Pa", "pressure_rise in SI; missing without the table units", |o| in_si(o, |si| si.pressure_rise_pa)),
+    later("wall_pressure_si", "Pa", "wall_pressure in SI; missing without the table units", |o| in_si(o, |si| Some(si.wall_pressure_pa))),
+    later("wall_pressure_largest_si", "Pa", "wall_pressure_largest in SI; missing without the table units", |o| in_si(o, |si| Some(si.wall_pressure_largest_pa))),
     column("version", "", Text, "version of the program", |o| Cell::Text(o.summary.version.into())),
     column("revision", "", Text, "revision of its source", |o| Cell::Text(o.summary.revision.into())),
 ];
@@ -179,6 +185,11 @@ fn status_name(summary: &Summary) -> &'static str {
 /// A number that only runs with a body force have.
 fn pumping(origin: &Origin<'_>, value: fn(&Pumping) -> f64) -> Cell {
     Cell::optional(origin.summary.pumping.as_ref().map(value))
+}
+
+/// A number in SI that only runs with the table `units` have.
+fn in_si(origin: &Origin<'_>, value: fn(&SiSummary) -> Option<f64>) -> Cell {
+    Cell::optional(origin.summary.si.as_ref().and_then(value))
 }
 
 fn width(configuration: &Configuration) -> Option<f64> {

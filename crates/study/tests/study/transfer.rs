@@ -36,6 +36,41 @@ fn imported_rows_are_finished_runs_and_the_table_is_the_same() {
 }
 
 #[test]
+fn rows_say_flow_pressure_and_power_in_si_where_units_are_given() {
+    let names = ["mass_flow_rate_si", "wall_power_si", "wall_pressure_si"];
+    let plain = Place::new(SMALL);
+    plain.complete();
+    let rows = plain.store().rows().unwrap();
+    for name in names {
+        assert!(rows.reals(name).unwrap().iter().all(|value| value.is_nan()));
+    }
+    let units = "[base.units]\ngrain_diameter = 1e-3\ndensity = 2500\nstiffness = 50\n[[axes]]";
+    let place = Place::new(&SMALL.replace("[[axes]]", units));
+    place.complete();
+    let rows = place.store().rows().unwrap();
+    // m = pi rho d^3/6, t = (m/k)^(1/2), power in m d^2/t^3 and pressure in m/(d t^2).
+    let mass = std::f64::consts::PI / 6.0 * 2500.0 * 1e-9;
+    let time = (mass / 50.0_f64).sqrt();
+    for (name, plain, unit) in [
+        ("mass_flow_rate_si", "flow_rate", mass / time),
+        ("wall_power_si", "wall_power", mass * 1e-6 / time.powi(3)),
+        (
+            "wall_pressure_si",
+            "wall_pressure",
+            mass / (1e-3 * time * time),
+        ),
+    ] {
+        let (found, plain) = (rows.reals(name).unwrap(), rows.reals(plain).unwrap());
+        for (found, plain) in found.iter().zip(plain) {
+            assert!(
+                (found / (plain * unit) - 1.0).abs() < 1e-9,
+                "{name}: {found}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_row_that_contradicts_its_run_is_refused_with_its_table() {
     let first = Place::new(SMALL);
     first.complete();
