@@ -1,7 +1,7 @@
 //! Profiles of the flow in the wave frame.
 
 use crate::axis::{Axis, Scale};
-use crate::colour::{AGAINST, ALONG, BLACK, BLUE, Colour, GREY, PURPLE};
+use crate::colour::{AGAINST, ALONG, BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE};
 use crate::drawing::{Drawing, Fill, Point, Rectangle, Stroke};
 use crate::error::FigureError;
 use crate::panel::{
@@ -10,7 +10,8 @@ use crate::panel::{
 use crate::series::{Profile, Sample, close_wavelength, extent, wavelength_range};
 use crate::style::{RIGHT_MARGIN, Width};
 
-/// Profiles along the wave at rest: panels for the tube, the density, the axial velocity and the granular temperature.
+/// Profiles along the wave at rest: panels for the tube, the density, the axial velocity and the granular temperature, and for
+/// pressure and shear on the wall where they are given.
 ///
 /// The axial velocity is positive and red along the wave, negative and blue against it. Errors are drawn as bars on up
 /// to 40 points and as a band on more.
@@ -28,12 +29,18 @@ pub struct ProfileFigure<'a> {
     pub temperature: Profile<'a>,
     /// Scale of the granular temperature.
     pub temperature_scale: Scale,
+    /// Pressure on the wall.
+    pub wall_pressure: Option<Profile<'a>>,
+    /// Shear on the wall, positive along the wave.
+    pub wall_shear: Option<Profile<'a>>,
     /// Width of the figure.
     pub width: Width,
 }
 
-/// Heights of the panels in points, from the tube to the temperature.
-const HEIGHTS: [f64; 4] = [48.0, 70.0, 70.0, 70.0];
+/// Heights of the panels in points: that of the tube, those of the flow, those of the wall.
+const TUBE_HEIGHT: f64 = 48.0;
+const FLOW_HEIGHT: f64 = 70.0;
+const WALL_HEIGHT: f64 = 55.0;
 const GAP: f64 = 5.0;
 /// Room for the letters of the panels at the right of their frames.
 const LETTER_SPACE: f64 = 15.0;
@@ -49,12 +56,30 @@ struct Quantity {
     axis: Axis,
 }
 
-impl Quantity {
-    /// The same with its lines carried over the ends of the wavelength.
-    fn closed(self) -> Self {
+/// How a profile is drawn.
+#[derive(Clone, Copy)]
+enum Kind {
+    Tube,
+    Signed,
+    /// With the name of its layer.
+    Curve(&'static str, Colour),
+}
+
+/// One panel.
+struct Row<'a> {
+    label: &'a str,
+    height: f64,
+    kind: Kind,
+    quantity: Quantity,
+}
+
+impl<'a> Row<'a> {
+    fn new(label: &'a str, height: f64, kind: Kind, quantity: Quantity) -> Self {
         Self {
-            pieces: close_wavelength(self.pieces),
-            ..self
+            label,
+            height,
+            kind,
+            quantity,
         }
     }
 }
@@ -80,68 +105,97 @@ impl ProfileFigure<'_> {
                 self.temperature.pieces("granular temperature")?,
             )?,
         };
-        let quantities = [wall, density, velocity, temperature];
-        let positions = quantities
+        let temperature_colour = PURPLE.towards(BLACK, 0.25);
+        let mut rows = vec![
+            Row::new(self.wall_radius.label, TUBE_HEIGHT, Kind::Tube, wall),
+            Row::new(
+                self.density.label,
+                FLOW_HEIGHT,
+                Kind::Curve("density", BLUE),
+                density,
+            ),
+            Row::new(
+                self.axial_velocity.label,
+                FLOW_HEIGHT,
+                Kind::Signed,
+                velocity,
+            ),
+            Row::new(
+                self.temperature.label,
+                FLOW_HEIGHT,
+                Kind::Curve("temperature", temperature_colour),
+                temperature,
+            ),
+        ];
+        for (profile, name, colour) in [
+            (&self.wall_pressure, "wall pressure", ORANGE),
+            (&self.wall_shear, "wall shear", GREEN),
+        ] {
+            if let Some(profile) = profile {
+                let quantity = linear(profile.pieces(name)?);
+                let kind = Kind::Curve(name, colour.towards(BLACK, 0.25));
+                rows.push(Row::new(profile.label, WALL_HEIGHT, kind, quantity));
+            }
+        }
+        let positions = rows
             .iter()
-            .flat_map(|quantity| quantity.pieces.iter().flatten());
+            .flat_map(|row| row.quantity.pieces.iter().flatten());
         let x = Axis::linear(wavelength_range(positions.map(|sample| sample.x)));
-        let [wall, density, velocity, temperature] = quantities.map(Quantity::closed);
-        let quantities = [&wall, &density, &velocity, &temperature];
+        for row in &mut rows {
+            row.quantity.pieces = close_wavelength(std::mem::take(&mut row.quantity.pieces));
+        }
 
         let width = self.width.points();
-        let left = quantities
-            .iter()
-            .zip(HEIGHTS)
-            .fold(0.0, |left: f64, (quantity, height)| {
-                left.max(left_margin(&quantity.axis, height))
-            });
+        let left = rows.iter().fold(0.0, |left: f64, row| {
+            left.max(left_margin(&row.quantity.axis, row.height))
+        });
         let right = right_margin(&x, width - left).max(RIGHT_MARGIN) + LETTER_SPACE;
         let mut top = title_space(self.title) + 4.0;
-        let panels = [0, 1, 2, 3].map(|place| {
-            let frame = Rectangle {
-                left,
-                top,
-                width: width - left - right,
-                height: HEIGHTS[place],
-            };
-            top = frame.bottom() + GAP;
-            Panel {
-                frame,
-                x,
-                y: quantities[place].axis,
-            }
-        });
+        let panels: Vec<Panel> = rows
+            .iter()
+            .map(|row| {
+                let frame = Rectangle {
+                    left,
+                    top,
+                    width: width - left - right,
+                    height: row.height,
+                };
+                top = frame.bottom() + GAP;
+                Panel {
+                    frame,
+                    x,
+                    y: row.quantity.axis,
+                }
+            })
+            .collect();
         let mut drawing = Drawing::new(
             width,
-            panels[3].frame.bottom() + BOTTOM_MARGIN + 3.0,
+            top - GAP + BOTTOM_MARGIN + 3.0,
             &format!("Profiles in the wave frame: {}", self.title),
         );
 
         draw_title(&mut drawing, self.title, width);
-        draw_tube(&mut drawing, &panels[0], &wall.pieces);
-        draw_curve(&mut drawing, &panels[1], "density", &density.pieces, BLUE);
-        draw_signed(&mut drawing, &panels[2], &velocity.pieces);
-        draw_curve(
-            &mut drawing,
-            &panels[3],
-            "temperature",
-            &temperature.pieces,
-            PURPLE.towards(BLACK, 0.25),
-        );
-        let names = [
-            self.wall_radius.label,
-            self.density.label,
-            self.axial_velocity.label,
-            self.temperature.label,
-        ];
-        for (place, panel) in panels.iter().enumerate() {
-            let x = (place == 3).then_some("position in the wave frame, (*z* − *ct*)/*λ*");
+        for (row, panel) in rows.iter().zip(&panels) {
+            let pieces = &row.quantity.pieces;
+            match row.kind {
+                Kind::Tube => draw_tube(&mut drawing, panel, pieces),
+                Kind::Signed => draw_signed(&mut drawing, panel, pieces),
+                Kind::Curve(name, colour) => {
+                    if panel.y.range().0 < 0.0 {
+                        panel.level(&mut drawing, name, 0.0, guide());
+                    }
+                    draw_curve(&mut drawing, panel, name, pieces, colour);
+                }
+            }
+        }
+        for (place, (row, panel)) in rows.iter().zip(&panels).enumerate() {
+            let is_last = place + 1 == rows.len();
             panel.draw_frame(
                 &mut drawing,
                 &Labels {
-                    x,
-                    y: names[place],
-                    letter: Some(['a', 'b', 'c', 'd'][place]),
+                    x: is_last.then_some("position in the wave frame, (*z* − *ct*)/*λ*"),
+                    y: row.label,
+                    letter: Some(['a', 'b', 'c', 'd', 'e', 'f'][place]),
                 },
             );
         }
@@ -377,6 +431,40 @@ mod tests {
             lines.iter().all(|(_, rise)| *rise < 0.0),
             "both fall: {lines:?}"
         );
+    }
+
+    #[test]
+    fn the_wall_has_panels_where_it_is_given() {
+        let position = [0.2, 0.5, 0.8];
+        let profile = |value| Profile {
+            position: &position,
+            value,
+            error: None,
+            label: "",
+        };
+        let plain = ProfileFigure {
+            wall_radius: profile(&[1.0, 2.0, 1.0]),
+            density: profile(&[0.1, 0.2, 0.1]),
+            axial_velocity: profile(&[0.8, 0.5, -0.2]),
+            temperature: profile(&[0.1, 0.2, 0.1]),
+            ..ProfileFigure::default()
+        };
+        let drawing = plain.draw().expect("drawable");
+        assert!(drawing.shapes("wall pressure").is_empty());
+        let with_wall = ProfileFigure {
+            wall_pressure: Some(profile(&[0.0, 0.3, 0.1])),
+            wall_shear: Some(profile(&[-0.1, 0.2, 0.0])),
+            ..plain
+        };
+        let drawing = with_wall.draw().expect("drawable");
+        let lines = |layer| {
+            let shapes = drawing.shapes(layer).into_iter();
+            shapes
+                .filter(|shape| matches!(shape, Shape::Line { .. }))
+                .count()
+        };
+        assert_eq!((lines("density"), lines("wall pressure")), (1, 1));
+        assert!(lines("wall shear") >= 1);
     }
 
     #[test]

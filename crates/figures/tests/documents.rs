@@ -72,6 +72,8 @@ fn profiles() -> Drawing {
         axial_velocity: profile(&wave, "*v_z*/*c*"),
         temperature: profile(&positive, "temperature"),
         temperature_scale: Scale::Logarithmic,
+        wall_pressure: Some(profile(&positive, "*p*/*Y*")),
+        wall_shear: Some(profile(&wave, "*τ*/*Y*")),
         width: Width::SingleColumn,
     };
     figure.draw().expect("a valid figure")

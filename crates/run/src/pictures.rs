@@ -1,6 +1,6 @@
 //! The figures of a run.
 
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter, Waveform};
 use peristalsis_figures::{
     Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Palette, Profile,
     ProfileFigure, Scale, Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack,
@@ -9,7 +9,7 @@ use peristalsis_figures::{
 use peristalsis_observe::TubeShape;
 
 use crate::error::RunError;
-use crate::portrait::time_unit;
+use crate::portrait::{pressure_unit, time_unit};
 use crate::run::Run;
 use crate::spheres::{SeenSphere, seen_spheres};
 use crate::summary::Summary;
@@ -82,13 +82,27 @@ fn title(configuration: &Configuration) -> String {
         ),
     };
     format!(
-        "{control},  *ε\u{307}* = {},  {density},  *N* = {}",
+        "{control},  *ε\u{307}* = {},  {density},  {}",
         value(
             ScheduledParameter::StrainRate,
             configuration.drive.strain_rate
         ),
-        configuration.grains.number
+        particular(configuration)
+            .unwrap_or_else(|| format!("*N* = {}", configuration.grains.number))
     )
+}
+
+/// What sets a run apart from most: its waveform, its body force.
+fn particular(configuration: &Configuration) -> Option<String> {
+    let waveform = match configuration.drive.waveform {
+        Waveform::Sine => None,
+        Waveform::Bolus => Some("bolus".to_owned()),
+        Waveform::Roller => Some("roller".to_owned()),
+    };
+    let force = configuration.drive.body_force;
+    let force = (force != 0.0).then(|| format!("*g* = {force}").replace('-', "−"));
+    let words: Vec<String> = waveform.into_iter().chain(force).collect();
+    (!words.is_empty()).then(|| words.join(",  "))
 }
 
 /// A drive parameter as a title shows it: its value, or the first and the last of its schedule.
@@ -97,11 +111,7 @@ fn scheduled_value(
     parameter: ScheduledParameter,
     constant: f64,
 ) -> String {
-    let schedules = &configuration.drive.schedules;
-    match schedules
-        .iter()
-        .find(|schedule| schedule.parameter == parameter)
-    {
+    match configuration.drive.schedule(parameter) {
         Some(schedule) => {
             let last = configuration.run.periods.unwrap_or(f64::INFINITY);
             format!("{} to {}", schedule.value(0.0), schedule.value(last))
@@ -200,7 +210,18 @@ fn profile(run: &Run) -> Result<Drawing, FigureError> {
         column(&|bin| bin.temperature.0),
         column(&|bin| bin.temperature.1),
     );
+    let pressure = (
+        column(&|bin| bin.wall_pressure.0),
+        column(&|bin| bin.wall_pressure.1),
+    );
+    let shear = (
+        column(&|bin| bin.wall_shear.0),
+        column(&|bin| bin.wall_shear.1),
+    );
+    let is_known = pressure.0.iter().any(|value| value.is_finite());
     let title = title(configuration);
+    let unit = pressure_unit(configuration);
+    let (pressure_label, shear_label) = (format!("*p*{unit}"), format!("*τ*{unit}"));
     let panel = |value, error, label| Profile {
         position: &position,
         value,
@@ -214,6 +235,8 @@ fn profile(run: &Run) -> Result<Drawing, FigureError> {
         axial_velocity: panel(&velocity.0, Some(&velocity.1), "*v_z*/*c*"),
         temperature: panel(&temperature.0, Some(&temperature.1), "*T*_{g}"),
         temperature_scale: Scale::Linear,
+        wall_pressure: is_known.then(|| panel(&pressure.0, Some(&pressure.1), &pressure_label)),
+        wall_shear: is_known.then(|| panel(&shear.0, Some(&shear.1), &shear_label)),
         width: Width::SingleColumn,
     }
     .draw()

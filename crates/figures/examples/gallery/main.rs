@@ -216,6 +216,8 @@ fn profile(bins: usize, temperature_scale: Scale) -> Result<Drawing, Box<dyn Err
             "temperature, *θ*/*c*^2",
         ),
         temperature_scale,
+        wall_pressure: None,
+        wall_shear: None,
         width: Width::SingleColumn,
     };
     Ok(figure.draw()?)

@@ -14,7 +14,7 @@ use crate::run::Run;
 
 use self::field::Coloured;
 pub use self::field::Field;
-pub(crate) use self::words::time_unit;
+pub(crate) use self::words::{pressure_unit, time_unit};
 
 /// From where a tube is looked at; the wave always runs to the right, or towards the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,6 +15,14 @@ pub(crate) fn time_unit(configuration: &Configuration) -> &'static str {
     }
 }
 
+/// What makes a number of a pressure, in markup.
+pub(crate) fn pressure_unit(configuration: &Configuration) -> &'static str {
+    match configuration.contact.normal {
+        NormalLaw::Linear { .. } => " *d*/*k*",
+        NormalLaw::Hertz { .. } => "/*Y*",
+    }
+}
+
 /// Wavelengths that the wave has run.
 pub(super) fn cycles(frame: &Frame) -> f64 {
     frame.value("period").unwrap_or(0.0)
