@@ -613,6 +613,20 @@ fn settings_are_named_and_counted() {
         finding.summary
     );
     assert_eq!(finding.verdict, Verdict::Open);
+    // A leak at one force leaves that force out, not the setting.
+    let mut leaks = runs.clone();
+    for run in leaks.iter_mut().filter(|run| run.force() == 0.0065) {
+        run.escaped = 200;
+    }
+    let mut at_one = empty();
+    at_one.add_runs("elastic-sensitivity", leaks);
+    let finding = examine("Q10", &at_one);
+    assert!(
+        finding.summary.contains("4 hold their grains"),
+        "{}",
+        finding.summary
+    );
+    assert!(finding.tables[0].rows[0][5].ends_with("(left out: 0.0065)"));
     // With enough settings there is an answer.
     for stiffness in [0.013, 0.014, 0.015] {
         runs.extend(of_setting(SOURCE, &[("wall.spring_stiffness", stiffness)]));
@@ -624,6 +638,16 @@ fn settings_are_named_and_counted() {
 #[test]
 fn the_full_designs_allow_verdicts() {
     let study = |name: &str| STUDIES.iter().find(|study| study.name == name).unwrap();
+    let file = study("elastic-sensitivity");
+    let specification =
+        Specification::from_toml(file.path, file.text(Size::Full), |_| unreachable!()).unwrap();
+    let plan = Plan::of(&specification).unwrap();
+    let with_friction = plan.points().iter().filter(|point| {
+        let friction = point.configuration.contact.friction.as_ref();
+        friction.is_some_and(|friction| friction.kinetic_friction > 0.0)
+    });
+    // Eight settings, five forces, two states.
+    assert!(with_friction.count() >= 8 * 5 * 2 && specification.replicates >= 2);
     for name in ["elastic-branches", "elastic-frictionless"] {
         let file = study(name);
         let specification =
