@@ -367,6 +367,18 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     // Without sweeps the question stays open.
     let alone = examine("Q8", &[("small-speed-size", &ladders(|_| 0.02))]);
     assert_eq!(alone.verdict, Verdict::Open);
+    // So it does without lengths, but the sweeps are told and drawn; and with a fluctuation that is not known.
+    let (up, down) = (sweeps(2.0, 7.0, |_| 5.0), sweeps(7.0, 2.0, |_| 4.0));
+    let swept = examine("Q8", &[("sweep-up", &up), ("sweep-down", &down)]);
+    assert_eq!(swept.verdict, Verdict::Open);
+    assert!(swept.summary.contains("1.0 ± "), "{}", swept.summary);
+    assert_eq!((swept.figures.len(), swept.tables.len()), (1, 1));
+    let drifting = ladders(|_| f64::NAN);
+    let drifting = examine("Q8", &[("small-speed-size", &drifting), ("sweep-up", &up)]);
+    assert_eq!(
+        (drifting.verdict, drifting.figures.len()),
+        (Verdict::Open, 1)
+    );
 }
 
 /// A pump whose flow falls as 1 - (p/p0)^2 and whose efficiency is largest, 0.6, at p0/2.

@@ -214,7 +214,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         evidence.study("sweep-down")?.rows(),
     );
     let loops = loops(&up, &down);
-    let mut rates: Vec<f64> = ladders.iter().map(|one| one.rate).collect();
+    let of_ladders = ladders.iter().map(|one| one.rate);
+    let mut rates: Vec<f64> = of_ladders.chain(loops.iter().map(|one| one.rate)).collect();
+    rates.sort_by(f64::total_cmp);
     rates.dedup();
     let statistics = Statistics {
         strain_rates: rates.len(),
@@ -224,7 +226,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 .map(|one| behind(&one.rows, |row| row.number("force_amplitude"))),
         )
     };
-    if ladders.is_empty() {
+    if rates.is_empty() {
         return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
     }
     let words: Vec<String> = rates
@@ -252,7 +254,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding.varied = "force";
     finding.quantities = quantities(&rates, &ladders, &loops);
-    finding.tables.push(tables::of_ladders(&ladders));
+    if !ladders.is_empty() {
+        finding.tables.push(tables::of_ladders(&ladders));
+    }
     if !loops.is_empty() {
         finding.tables.push(tables::of_loops(&loops));
     }
@@ -274,7 +278,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     );
     finding
         .figures
-        .push(figures::figure(&rates, &ladders, &loops)?);
+        .extend(figures::figure(&rates, &ladders, &loops)?);
     Ok(finding)
 }
 
@@ -315,10 +319,17 @@ fn words(rate: f64, ladders: &[Ladder<'_>], loops: &[Loop]) -> String {
             widths.join(", ")
         )
     };
+    let rises = if rises.is_empty() {
+        "no rise between two forces is known yet".to_owned()
+    } else {
+        format!(
+            "the largest rise between two forces is {}",
+            rises.join(", ")
+        )
+    };
     format!(
-        "At *ε̇* = {} × 10^{{−3}}/*t*^{{\\*}} the largest rise between two forces is {}; {sweeps}",
-        number(1e3 * rate, 2),
-        rises.join(", ")
+        "At *ε̇* = {} × 10^{{−3}}/*t*^{{\\*}} {rises}; {sweeps}",
+        number(1e3 * rate, 2)
     )
 }
 

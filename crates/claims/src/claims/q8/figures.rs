@@ -17,7 +17,7 @@ pub(super) fn figure(
     rates: &[f64],
     ladders: &[Ladder<'_>],
     loops: &[Loop],
-) -> Result<ReportFigure, ClaimError> {
+) -> Result<Option<ReportFigure>, ClaimError> {
     let mut panels = Vec::new();
     let title = |rate: f64| {
         format!(
@@ -26,20 +26,24 @@ pub(super) fn figure(
         )
     };
     let force = "force amplitude, 10^{3}*f*^{P}/*Yd*^{2}";
-    for rate in rates {
+    let flows = if ladders.is_empty() { &[] } else { rates };
+    for rate in flows {
         let panel = ChartPanel::new(force, &Axis::FlowRateRatio.label(Units::Hertz))
             .title(&title(*rate))
             .with(Reference::horizontal(0.0));
         panels.push(with_lengths(panel, *rate, ladders, |rung| Some(rung.flow)));
     }
-    for rate in rates {
+    for rate in flows {
         let panel =
             ChartPanel::new(force, "fluctuation, (*L*/*λ*) *χ_J*").y_scale(Scale::Logarithmic);
         panels.push(with_lengths(panel, *rate, ladders, |rung| {
             rung.fluctuation.filter(|mean| mean.value > 0.0)
         }));
     }
-    for rate in rates {
+    let swept = loops
+        .iter()
+        .any(|one| one.up.is_some() || one.down.is_some());
+    for rate in if swept { rates } else { &[] } {
         let mut here: Vec<&Loop> = loops.iter().filter(|one| one.rate == *rate).collect();
         here.sort_by(|one, other| one.periods.total_cmp(&other.periods));
         let mut panel = ChartPanel::new(
@@ -48,6 +52,7 @@ pub(super) fn figure(
         )
         .title(&title(*rate))
         .x_scale(Scale::Logarithmic);
+        let mut is_empty = true;
         for (series, (name, value)) in [
             (
                 "force raised",
@@ -65,16 +70,15 @@ pub(super) fn figure(
             if !known.is_empty() {
                 let points = points(name, &known, THOUSAND).series(3 + series);
                 panel = panel.with(if series == 1 { points.open() } else { points });
+                is_empty = false;
             }
         }
-        if here
-            .iter()
-            .any(|one| one.up.is_some() || one.down.is_some())
-        {
-            panels.push(panel);
-        }
+        panels.push(if is_empty { empty(panel) } else { panel });
     }
-    Ok(ReportFigure {
+    if panels.is_empty() {
+        return Ok(None);
+    }
+    Ok(Some(ReportFigure {
         name: "small-speed".to_owned(),
         caption: format!(
             "Stationary flow from rest and its fluctuation (variance of the period averages times the number of waves) against the \
@@ -87,7 +91,12 @@ pub(super) fn figure(
             .legend(LegendPlace::Below)
             .description("Flow, fluctuation and loops of sweeps at two strain rates.")
             .draw()?,
-    })
+    }))
+}
+
+/// A panel without data, with ranges to itself.
+fn empty(panel: ChartPanel) -> ChartPanel {
+    panel.x_range(1.0..=10.0).y_range(0.01..=1.0)
 }
 
 /// A series for each length.
@@ -98,6 +107,7 @@ fn with_lengths(
     value: impl Fn(&Rung) -> Option<Mean>,
 ) -> ChartPanel {
     let here = ladders.iter().filter(|one| one.rate == rate);
+    let mut is_empty = true;
     for (series, ladder) in here.enumerate() {
         let known: Vec<(f64, Mean)> = ladder
             .points
@@ -113,9 +123,10 @@ fn with_lengths(
             } else {
                 points
             });
+            is_empty = false;
         }
     }
-    panel
+    if is_empty { empty(panel) } else { panel }
 }
 
 /// Points with errors, joined; ordinates times a factor.
