@@ -5,6 +5,7 @@ use peristalsis_analysis::{Jump, Uncertain};
 use crate::branches::{Stationary, bracket, jump_between};
 use crate::finding::Statistics;
 use crate::runs::{Run, Start};
+use crate::text::number;
 
 /// Periods of stationary flow that a run must have behind its late mean to count for a verdict.
 pub(crate) const STATIONARY_PERIODS: f64 = 50.0;
@@ -116,7 +117,7 @@ fn by_force<'a>(runs: impl Iterator<Item = &'a Run>, start: Start) -> Vec<Vec<&'
 }
 
 /// Force and mean fraction of grains outside, for each force and start.
-fn escaped_at<'a>(runs: impl Iterator<Item = &'a Run> + Clone) -> Vec<(f64, f64)> {
+pub(crate) fn escaped_at<'a>(runs: impl Iterator<Item = &'a Run> + Clone) -> Vec<(f64, f64)> {
     [Start::Rest, Start::Jammed]
         .into_iter()
         .flat_map(|start| by_force(runs.clone(), start))
@@ -125,6 +126,28 @@ fn escaped_at<'a>(runs: impl Iterator<Item = &'a Run> + Clone) -> Vec<(f64, f64)
             (group[0].force(), sum / group.len() as f64)
         })
         .collect()
+}
+
+/// Forces, ascending, at which from either start more than [`MOST_ESCAPED`] of the grains are outside, from [`escaped_at`].
+pub(crate) fn leaking(escaped: &[(f64, f64)]) -> Vec<f64> {
+    let mut forces: Vec<f64> = escaped
+        .iter()
+        .filter(|(_, escaped)| *escaped > MOST_ESCAPED)
+        .map(|(force, _)| *force)
+        .collect();
+    forces.sort_by(f64::total_cmp);
+    forces.dedup();
+    forces
+}
+
+/// Largest fraction of grains outside, and the forces left out for that, in words.
+pub(crate) fn outside(escaped: f64, left_out: &[f64]) -> String {
+    let escaped = number(escaped, 2);
+    if left_out.is_empty() {
+        return escaped;
+    }
+    let forces: Vec<String> = left_out.iter().map(f64::to_string).collect();
+    format!("{escaped} (left out: {})", forces.join(", "))
 }
 
 /// Whether a run counts for a verdict.
@@ -214,13 +237,7 @@ impl ForceLine {
                         .filter(move |run| run.strain_rate == strain_rate)
                 };
                 let outside = escaped_at(here());
-                let mut leaking: Vec<f64> = outside
-                    .iter()
-                    .filter(|(_, escaped)| *escaped > MOST_ESCAPED)
-                    .map(|(force, _)| *force)
-                    .collect();
-                leaking.sort_by(f64::total_cmp);
-                leaking.dedup();
+                let leaking = leaking(&outside);
                 let tight = || here().filter(|run| !leaking.contains(&run.force()));
                 Self {
                     strain_rate,

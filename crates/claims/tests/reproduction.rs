@@ -281,6 +281,11 @@ fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
         let prepared = Reproduction::prepare(&second, Size::Full, &claims, &studies).unwrap();
         let import = prepared.import(std::slice::from_ref(&tables)).unwrap();
         assert_eq!(import.studies[0].found, 4);
+        // A folder that an interrupted run left before its row was imported holds no products.
+        let store = Store::open(&second.join("stores/short")).unwrap();
+        for run in store.survey().unwrap().plan.runs() {
+            fs::create_dir_all(store.run_folder(run.identity)).unwrap();
+        }
         // Without any time the rows are enough for what needs no more.
         let stopped = prepared.run(EFFORT, &|| true, &mut |_| {});
         assert_eq!(summaries(&stopped), ["0 of 4"]);

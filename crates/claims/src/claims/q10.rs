@@ -9,7 +9,7 @@ use crate::crossing::grouped;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
-use crate::forces::{ForceBranch, LEAST_JUMP, MOST_ESCAPED};
+use crate::forces::{ForceBranch, LEAST_JUMP, escaped_at, leaking, outside};
 use crate::runs::{Run, Start};
 use crate::text::{number, with_error};
 
@@ -105,22 +105,15 @@ struct Outcome<'a> {
 
 impl<'a> Outcome<'a> {
     fn of(name: String, runs: Vec<&'a Run>) -> Self {
-        let mut tight = Vec::new();
-        for (_, group) in grouped(runs.iter().copied(), |run| {
-            (run.force(), is_frictionless(run))
-        }) {
-            let outside = |start| {
-                let ones: Vec<f64> = group
-                    .iter()
-                    .filter(|run| run.start == start)
-                    .map(|run| run.escaped_fraction())
-                    .collect();
-                ones.iter().sum::<f64>() / ones.len().max(1) as f64
-            };
-            if outside(Start::Rest).max(outside(Start::Jammed)) <= MOST_ESCAPED {
-                tight.extend(group);
-            }
-        }
+        // Grains with friction and without fill the tube differently: one kind may stay where the other leaves.
+        let leaking = [false, true].map(|frictionless| {
+            let kind = runs.iter().copied();
+            let kind = kind.filter(move |run| is_frictionless(run) == frictionless);
+            leaking(&escaped_at(kind))
+        });
+        let is_tight =
+            |run: &&Run| !leaking[usize::from(is_frictionless(run))].contains(&run.force());
+        let tight: Vec<&Run> = runs.iter().copied().filter(is_tight).collect();
         let frictional = || tight.iter().copied().filter(|run| !is_frictionless(run));
         Self {
             rest: ForceBranch::of(frictional(), Start::Rest),
@@ -138,7 +131,7 @@ impl<'a> Outcome<'a> {
     }
 
     /// Forces at which they do not.
-    fn leaking(&self) -> Vec<f64> {
+    fn left_out(&self) -> Vec<f64> {
         let forces = grouped(self.runs.iter().copied(), |run| run.force());
         forces
             .into_iter()
@@ -320,7 +313,7 @@ fn table(outcomes: &[Outcome<'_>]) -> ReportTable {
                 outcome
                     .frictionless()
                     .map_or_else(none, |flow| format!("{forward}: {}", number(flow, 2))),
-                outside(outcome),
+                outside(outcome.escaped(), &outcome.left_out()),
             ]
         })
         .collect();
@@ -340,16 +333,6 @@ fn table(outcomes: &[Outcome<'_>]) -> ReportTable {
         .to_vec(),
         rows,
     }
-}
-
-/// Largest part of the grains outside, and the forces left out for it.
-fn outside(outcome: &Outcome<'_>) -> String {
-    let escaped = number(outcome.escaped(), 2);
-    let leaking: Vec<String> = outcome.leaking().iter().map(f64::to_string).collect();
-    if leaking.is_empty() {
-        return escaped;
-    }
-    format!("{escaped} (left out: {})", leaking.join(", "))
 }
 
 /// Small panels, one a setting: both branches against the force.

@@ -14,7 +14,7 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
-use crate::forces::{ForceLine, Kind, LEAST_JUMP, MOST_ESCAPED, together};
+use crate::forces::{ForceLine, Kind, LEAST_JUMP, MOST_ESCAPED, outside, together};
 use crate::runs::Run;
 use crate::text::{estimate, number};
 
@@ -168,7 +168,11 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
                 ),
                 dip_test(&flows, bootstrap)
                     .map_or_else(|_| none(), |test| number(test.probability, 3)),
-                outside(line),
+                // A line that leaks all along is called so in its last column.
+                outside(
+                    line.escaped,
+                    if line.is_empty() { &[] } else { &line.leaking },
+                ),
                 match line.kind() {
                     _ if line.is_empty() && !line.leaking.is_empty() => "leaks",
                     Kind::Jump => "jump",
@@ -189,16 +193,6 @@ fn table(runs: &[Run], lines: &[ForceLine]) -> ReportTable {
             .to_vec(),
         rows,
     }
-}
-
-/// Largest fraction of grains outside at a force, and the forces left out for that.
-fn outside(line: &ForceLine) -> String {
-    let escaped = number(line.escaped, 2);
-    if line.leaking.is_empty() || line.is_empty() {
-        return escaped;
-    }
-    let forces: Vec<String> = line.leaking.iter().map(f64::to_string).collect();
-    format!("{escaped} (left out: {})", forces.join(", "))
 }
 
 /// Both branches at each strain rate, and the height of the rise against the strain rate.

@@ -56,14 +56,14 @@ impl Work {
             return Ok(None);
         };
         let survey = store.survey()?;
-        let is_bare = |identity| {
-            survey.state(identity) == State::Done && !store.run_folder(identity).is_dir()
-        };
-        let runs = survey.plan.runs().iter();
-        if !runs
-            .into_iter()
-            .any(|run| run.replicate < replicates && is_bare(run.identity))
-        {
+        let is_bare =
+            |identity| survey.state(identity) == State::Done && !store.holds_products(identity);
+        let mut needed = survey
+            .plan
+            .runs()
+            .iter()
+            .filter(|run| run.replicate < replicates);
+        if !needed.any(|run| is_bare(run.identity)) {
             return Ok(None);
         }
         let study = self.study.with_replicates(replicates)?;

@@ -169,14 +169,13 @@ impl Specification {
     /// # Errors
     /// [`StudyError::Configuration`] where so many are not allowed.
     pub fn with_replicates(&self, replicates: u32) -> Result<Self, StudyError> {
-        let line = format!("replicates = {replicates}\n");
         let text = match &self.replicates_span {
             Some(span) => format!(
                 "{}{replicates}{}",
                 &self.text[..span.start],
                 &self.text[span.end..]
             ),
-            None => line + &self.text,
+            None => format!("replicates = {replicates}\n{}", self.text),
         };
         Self::from_toml(&self.name, &text, |name| {
             Ok(self

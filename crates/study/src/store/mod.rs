@@ -158,6 +158,12 @@ impl Store {
         self.file(RUNS).join(identity.to_string())
     }
 
+    /// Whether the products of a finished run are here: of one that was imported there may be its row only.
+    #[must_use]
+    pub fn holds_products(&self, identity: Identity) -> bool {
+        self.run_files(identity).is_sealed()
+    }
+
     pub(crate) fn run_files(&self, identity: Identity) -> RunFiles {
         RunFiles::new(&self.file(RUNS), identity)
     }

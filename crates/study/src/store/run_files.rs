@@ -97,9 +97,14 @@ impl RunFiles {
         self.path.join(name)
     }
 
+    /// Whether its products were written to the end.
+    pub(crate) fn is_sealed(&self) -> bool {
+        self.file(SEAL).exists()
+    }
+
     /// What the files say; a run whose files have this stamp is taken to be as it was when its hashes were checked.
     pub(crate) fn verdict(&self, checked: Option<&str>) -> Verdict {
-        if self.file(SEAL).exists() {
+        if self.is_sealed() {
             return self.sealed(checked).unwrap_or_else(Verdict::Damaged);
         }
         if let Ok(text) = fs::read_to_string(self.file(FAILED)) {
