@@ -5,14 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
-use peristalsis_claims::ClaimError;
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
-use peristalsis_report::ReportError;
+use peristalsis_reproduce::ClaimError;
+use peristalsis_reproduce::report::ReportError;
+use peristalsis_reproduce::textbook::ValidateError;
 use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
-use peristalsis_validate::ValidateError;
 use peristalsis_viewer::ViewerError;
 
 use crate::commands::say;

@@ -3,10 +3,10 @@
 use std::process::ExitCode;
 use std::time::Duration;
 
-use peristalsis_claims::{
+use peristalsis_reproduce::report::{Report, plain_text};
+use peristalsis_reproduce::{
     CLAIMS, Event, Examination, Import, Outcome, Reproduction, STUDIES, Size, Stage, chosen,
 };
-use peristalsis_report::{Report, plain_text};
 use peristalsis_study::{Effort, Ending};
 
 use super::study::progress::{Display, Whole};

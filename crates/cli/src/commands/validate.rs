@@ -3,7 +3,9 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use peristalsis_validate::{CASES, Examination, Extent, ValidateError, Validation, chosen};
+use peristalsis_reproduce::textbook::{
+    CASES, Examination, Extent, ValidateError, Validation, chosen,
+};
 
 use crate::arguments::ValidateArguments;
 use crate::commands::{print, say};

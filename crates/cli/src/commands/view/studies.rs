@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use peristalsis_claims::{Size, StudyFile};
 use peristalsis_formats::{FormatError, Table, csv, parquet};
+use peristalsis_reproduce::{Size, StudyFile};
 use peristalsis_study::{Specification, StudyError};
 use peristalsis_viewer::{Figure, Study, ViewerError};
 

@@ -1,0 +1,144 @@
+//! The findings for programs.
+
+use crate::{Examination, Quantity, ReportTable, Statistics, Verdict};
+use serde::Serialize;
+
+use crate::report::files::{FigureFiles, figure_files, table_names};
+use crate::report::{Program, Report};
+
+/// Version of the layout of the file.
+const FORMAT: u32 = 1;
+
+#[derive(Serialize)]
+struct Document<'a> {
+    format: u32,
+    program: &'a Program,
+    size: &'static str,
+    claims: Vec<Claim<'a>>,
+}
+
+#[derive(Serialize)]
+struct Claim<'a> {
+    id: &'a str,
+    title: &'a str,
+    statement: &'a str,
+    source: &'a str,
+    verdict: Verdict,
+    summary: &'a str,
+    statistics: Statistics,
+    /// What `widths` counts.
+    varied: &'a str,
+    /// What a verdict takes.
+    needed: Statistics,
+    sufficient: bool,
+    failure: Option<&'a str>,
+    quantities: &'a [Quantity],
+    paragraphs: &'a [String],
+    weaknesses: &'a [String],
+    figures: Vec<Figure<'a>>,
+    tables: Vec<FiledTable<'a>>,
+    studies: Vec<Study<'a>>,
+}
+
+#[derive(Serialize)]
+struct Figure<'a> {
+    file: String,
+    caption: &'a str,
+}
+
+#[derive(Serialize)]
+struct FiledTable<'a> {
+    file: Option<String>,
+    #[serde(flatten)]
+    table: &'a ReportTable,
+}
+
+#[derive(Serialize)]
+struct Study<'a> {
+    name: &'a str,
+    path: &'a str,
+    runs: usize,
+    done: usize,
+    missing: usize,
+    failed: usize,
+    failure: Option<&'a str>,
+}
+
+/// The file's text.
+pub(crate) fn text(report: &Report) -> String {
+    let figures = figure_files(&report.examinations);
+    let document = Document {
+        format: FORMAT,
+        program: &report.program,
+        size: report.size.name(),
+        claims: report
+            .examinations
+            .iter()
+            .enumerate()
+            .map(|(place, examination)| claim(report, &figures, place, examination))
+            .collect(),
+    };
+    let mut text = serde_json::to_string_pretty(&document)
+        .expect("all keys are texts, and numbers that are not finite become null");
+    text.push('\n');
+    text
+}
+
+fn claim<'a>(
+    report: &'a Report,
+    figures: &FigureFiles<'_>,
+    place: usize,
+    examination: &'a Examination,
+) -> Claim<'a> {
+    let Examination {
+        claim,
+        finding,
+        failure,
+    } = examination;
+    Claim {
+        id: claim.id,
+        title: claim.title,
+        statement: claim.statement,
+        source: claim.source,
+        verdict: finding.verdict,
+        summary: &finding.summary,
+        statistics: finding.statistics,
+        varied: finding.varied,
+        needed: finding.needed,
+        sufficient: examination.is_sufficient(),
+        failure: failure.as_deref(),
+        quantities: &finding.quantities,
+        paragraphs: &finding.paragraphs,
+        weaknesses: &finding.weaknesses,
+        figures: figures
+            .names_of(place)
+            .zip(&finding.figures)
+            .map(|(name, figure)| Figure {
+                file: format!("figures/{name}.svg"),
+                caption: &figure.caption,
+            })
+            .collect(),
+        tables: table_names(examination)
+            .into_iter()
+            .zip(&finding.tables)
+            .map(|(name, table)| FiledTable {
+                file: name.map(|name| format!("tables/{name}")),
+                table,
+            })
+            .collect(),
+        studies: claim
+            .studies
+            .iter()
+            .filter_map(|name| report.study(name))
+            .map(|study| Study {
+                name: study.file.name,
+                path: study.file.path,
+                runs: study.runs,
+                done: study.done,
+                missing: study.missing(),
+                failed: study.failed,
+                failure: study.failure.as_deref(),
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,135 @@
+//! From findings to what a person reads: one page, one JSON file, figures and tables.
+//!
+//! [`Report`] holds the claims with what was found of them and the studies behind them; [`Report::html`] is a page that needs
+//! no other file, [`Report::json`] the same for programs, and [`Report::write`] puts both into a folder with every figure as
+//! SVG and PNG and every table as CSV. Nothing in them depends on when or how the runs were computed: the same runs give the
+//! same bytes. [`number`] writes numbers with errors as physicists do. Nothing here prints or exits.
+
+mod error;
+mod files;
+mod json;
+mod markup;
+pub mod number;
+mod page;
+mod picture;
+
+pub use error::ReportError;
+pub use markup::plain_text;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::{Examination, Outcome, Size, StudyOutcome};
+use peristalsis_formats::{atomic, csv};
+
+use self::files::{figure_files, table_files};
+
+/// The page.
+const PAGE: &str = "report.html";
+/// The same for programs.
+const JSON: &str = "claims.json";
+
+/// The program that made a report.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
+pub struct Program {
+    /// Its version.
+    pub version: String,
+    /// Revision of its source.
+    pub revision: String,
+    /// Version of the physics: runs of different ones are different.
+    pub physics_version: u32,
+}
+
+impl Program {
+    /// The program that this is part of.
+    #[must_use]
+    pub fn this() -> Self {
+        Self {
+            version: peristalsis_run::VERSION.to_owned(),
+            revision: peristalsis_run::REVISION.to_owned(),
+            physics_version: peristalsis_study::PHYSICS_VERSION,
+        }
+    }
+}
+
+/// The claims with what was found of them, and the studies behind them.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// Size of the designs.
+    pub size: Size,
+    /// The program that made it.
+    pub program: Program,
+    /// The claims in their order.
+    pub examinations: Vec<Examination>,
+    /// The studies behind them.
+    pub studies: Vec<StudyOutcome>,
+}
+
+impl Report {
+    /// The report of what this program found.
+    #[must_use]
+    pub fn of(size: Size, outcome: Outcome) -> Self {
+        Self {
+            size,
+            program: Program::this(),
+            examinations: outcome.examinations,
+            studies: outcome.studies,
+        }
+    }
+
+    /// A page that needs no other file, with every figure in it.
+    #[must_use]
+    pub fn html(&self) -> String {
+        page::page(self).into_string()
+    }
+
+    /// The findings for programs, as `docs/claims-json.md` describes them.
+    #[must_use]
+    pub fn json(&self) -> String {
+        json::text(self)
+    }
+
+    /// Writes `report.html`, `claims.json`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv` into a folder, each file
+    /// whole or not at all; answers the path of the page.
+    ///
+    /// # Errors
+    /// Errors of making folders and writing files, and of drawing pictures.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
+        let (figures, tables) = (figure_files(&self.examinations), table_files(self)?);
+        for folder in [
+            Some(folder.to_owned()),
+            (!figures.is_empty()).then(|| folder.join("figures")),
+            (!tables.is_empty()).then(|| folder.join("tables")),
+        ]
+        .into_iter()
+        .flatten()
+        {
+            fs::create_dir_all(&folder).map_err(|source| ReportError::Folder {
+                path: folder.clone(),
+                source,
+            })?;
+        }
+        for (name, figure) in figures.files() {
+            let path = folder.join("figures").join(name);
+            atomic::write(&path.with_extension("svg"), figure.drawing.svg().as_bytes())?;
+            let picture = figure.drawing.png().map_err(|source| ReportError::Figure {
+                name: name.to_owned(),
+                source,
+            })?;
+            atomic::write(&path.with_extension("png"), &picture)?;
+        }
+        for (name, table) in &tables {
+            csv::write(&folder.join("tables").join(name), table)?;
+        }
+        atomic::write(&folder.join(JSON), self.json().as_bytes())?;
+        // Last, so that the page never speaks of files that are not there.
+        let page = folder.join(PAGE);
+        atomic::write(&page, self.html().as_bytes())?;
+        Ok(page)
+    }
+
+    /// The study of this name.
+    pub(crate) fn study(&self, name: &str) -> Option<&StudyOutcome> {
+        self.studies.iter().find(|study| study.file.name == name)
+    }
+}

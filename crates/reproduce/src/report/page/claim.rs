@@ -1,0 +1,184 @@
+//! The section of a claim.
+
+use crate::{Examination, Quantity, ReportFigure, ReportTable};
+use maud::{Markup, html};
+
+use super::parts::{anchor, counts, number_of, study_anchor, verdict_badge};
+use crate::report::Report;
+use crate::report::markup::{plain_text, rich};
+use crate::report::number::{distance, interval, plain, with_error};
+use crate::report::picture::embedded;
+
+/// Width of a page's column in millimetres: a wider figure may take the whole width.
+const COLUMN: f64 = 120.0;
+
+/// All that is said of a claim.
+pub(super) fn section(report: &Report, place: usize, examination: &Examination) -> Markup {
+    let Examination {
+        claim,
+        finding,
+        failure,
+    } = examination;
+    let name = anchor(claim.id);
+    html! {
+        section.claim #(name) aria-labelledby={ (name) "-title" } {
+            header {
+                h2 id={ (name) "-title" } { span.id { (claim.id) } " " (rich(claim.title)) }
+                (verdict_badge(examination))
+            }
+            blockquote {
+                p { (rich(claim.statement)) }
+                @if !claim.source.is_empty() { footer { (rich(claim.source)) } }
+            }
+            @if let Some(failure) = failure {
+                p.failure role="note" { b { "This claim could not be examined. " } (failure) }
+            } @else {
+                p.lead { (rich(&finding.summary)) }
+                (statistics(examination))
+            }
+            @if !finding.quantities.is_empty() { (quantities(&finding.quantities)) }
+            @for (number, figure) in finding.figures.iter().enumerate() {
+                (drawing(claim.id, place, number, figure))
+            }
+            @for paragraph in &finding.paragraphs { p { (rich(paragraph)) } }
+            @for (number, one) in finding.tables.iter().enumerate() { (table(claim.id, number, one)) }
+            @if !finding.weaknesses.is_empty() {
+                aside.weaknesses {
+                    h3 { "What a critical reader should know" }
+                    ul { @for weakness in &finding.weaknesses { li { (rich(weakness)) } } }
+                }
+            }
+            @if !claim.studies.is_empty() {
+                p.meta.sources {
+                    "From "
+                    @for (place, study) in claim.studies.iter().filter_map(|name| report.study(name)).enumerate() {
+                        @if place > 0 { "; " }
+                        a href={ "#" (study_anchor(study.file.name)) } { (study.file.name) }
+                        " (" (counts(study)) ")"
+                    }
+                    "."
+                }
+            }
+        }
+    }
+}
+
+/// What is behind the finding, and whether it is enough.
+fn statistics(examination: &Examination) -> Markup {
+    let found = examination.finding.statistics;
+    let needed = examination.finding.needed;
+    html! {
+        @if found.runs == 0 {
+            p.statistics { "No finished runs yet." }
+        } @else {
+            p.statistics {
+                (number_of(found.strain_rates, "strain rate")) " × " (number_of(found.widths, examination.finding.varied)) " × "
+                (number_of(found.replicates, "replicate")) ", " (number_of(found.runs, "run")) " in all: "
+                @if examination.is_sufficient() { "enough for a verdict." }
+                @else {
+                    "too few for a verdict, which takes " (needed.strain_rates) " × " (needed.widths) " × " (needed.replicates) "."
+                }
+            }
+        }
+    }
+}
+
+fn quantities(quantities: &[Quantity]) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label="Numbers" {
+            table.quantities {
+                thead {
+                    tr {
+                        th scope="col" { "Quantity, and how it was got" }
+                        th.number scope="col" { "Ours" }
+                        th.number scope="col" { "95 % interval" }
+                        th.number scope="col" { "Source" }
+                        th.number scope="col" { "Difference" }
+                    }
+                }
+                tbody { @for quantity in quantities { (quantity_row(quantity)) } }
+            }
+        }
+    }
+}
+
+fn quantity_row(quantity: &Quantity) -> Markup {
+    let ours = quantity.ours.as_ref();
+    let none = || "–".to_owned();
+    let difference = ours
+        .zip(quantity.source)
+        .and_then(|(ours, source)| distance(ours, source));
+    html! {
+        tr {
+            th scope="row" {
+                @if !quantity.symbol.is_empty() { span.symbol { (rich(&quantity.symbol)) } " " }
+                span.what { (rich(&quantity.name)) @if !quantity.unit.is_empty() { " [" (rich(&quantity.unit)) "]" } }
+                @if !quantity.method.is_empty() { span.method { (rich(&quantity.method)) } }
+            }
+            (cell("Ours", html! {
+                @match ours { Some(ours) => b { (rich(&with_error(ours))) }, None => span.none { "not determined" } }
+            }))
+            (cell("95 % interval", rich(&ours.map_or_else(none, interval))))
+            (cell("Source", rich(&quantity.source.map_or_else(none, plain))))
+            (cell("Difference", rich(&difference.unwrap_or_else(none))))
+        }
+    }
+}
+
+/// A cell that names its column, for pages too narrow for columns.
+fn cell(column: &str, content: Markup) -> Markup {
+    html! { td.number data-label=(column) { span { (content) } } }
+}
+
+fn drawing(claim: &str, place: usize, number: usize, figure: &ReportFigure) -> Markup {
+    let wide = figure.drawing.width_millimetres() > COLUMN;
+    let prefix = format!("c{place}f{number}-");
+    html! {
+        figure.wide[wide] {
+            div.drawing { (embedded(&figure.drawing, &prefix, &plain_text(&figure.caption))) }
+            figcaption { b { "Figure " (claim) "." (number + 1) } " " (rich(&figure.caption)) }
+        }
+    }
+}
+
+fn table(claim: &str, number: usize, table: &ReportTable) -> Markup {
+    let caption = format!("{}-table-{}", anchor(claim), number + 1);
+    let numeric: Vec<bool> = (0..table.head.len())
+        .map(|column| {
+            let mut cells = table.rows.iter().filter_map(|row| row.get(column));
+            cells.all(|cell| is_number(cell))
+        })
+        .collect();
+    let is_numeric = |column: usize| numeric.get(column).copied().unwrap_or(false);
+    html! {
+        figure.table {
+            figcaption #(caption) { b { "Table " (claim) "." (number + 1) } " " (rich(&table.caption)) }
+            div.scroll tabindex="0" role="region" aria-labelledby=(caption) {
+                table aria-labelledby=(caption) {
+                    thead {
+                        tr {
+                            @for (column, head) in table.head.iter().enumerate() {
+                                th.number[is_numeric(column)] scope="col" { (rich(head)) }
+                            }
+                        }
+                    }
+                    tbody {
+                        @for row in &table.rows {
+                            tr {
+                                @for (column, cell) in row.iter().enumerate() {
+                                    td.number[is_numeric(column)] { (rich(cell)) }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Whether a cell is empty or begins like a number: a column of such cells is set to the right.
+fn is_number(cell: &str) -> bool {
+    let first = plain_text(cell).chars().next();
+    first.is_none_or(|first| first.is_ascii_digit() || "−+–-≤≥<>[(".contains(first))
+}

@@ -1,0 +1,195 @@
+//! The page: one HTML document with everything in it.
+
+mod claim;
+mod parts;
+mod studies;
+
+use crate::{Examination, Size, Statistics, Verdict};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::report::Report;
+use crate::report::markup::rich;
+use parts::{anchor, verdict_badge};
+
+const STYLE: &str = include_str!("style.css");
+const TITLE: &str = "Grains in a peristaltic tube";
+
+/// The whole page.
+pub(crate) fn page(report: &Report) -> Markup {
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                meta name="generator" content={ "peristalsis " (report.program.version) };
+                title { (TITLE) ": the claims examined" }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                a.skip href="#main" { "Skip to the claims" }
+                (navigation(report))
+                div.sheet {
+                    (masthead(report))
+                    main #main {
+                        (overview(report))
+                        @for (place, examination) in report.examinations.iter().enumerate() {
+                            (claim::section(report, place, examination))
+                        }
+                        (studies::section(report))
+                        (reading(report))
+                    }
+                    (colophon(report))
+                }
+            }
+        }
+    }
+}
+
+fn navigation(report: &Report) -> Markup {
+    html! {
+        nav.contents aria-label="Contents" {
+            p.contents-title { a href="#top" { "Contents" } }
+            ul {
+                li { a href="#overview" { "The claims at a glance" } }
+                @for examination in &report.examinations {
+                    li {
+                        a href={ "#" (anchor(examination.claim.id)) } {
+                            span.mark.(examination.finding.verdict.name()) aria-hidden="true" {}
+                            span.id { (examination.claim.id) }
+                            " "
+                            span { (rich(examination.claim.title)) }
+                        }
+                    }
+                }
+                @if !report.studies.is_empty() {
+                    li { a href="#studies" { "The studies" } }
+                }
+                li { a href="#reading" { "How to read this" } }
+            }
+        }
+    }
+}
+
+fn masthead(report: &Report) -> Markup {
+    let runs: usize = report.studies.iter().map(|study| study.done).sum();
+    let planned: usize = report.studies.iter().map(|study| study.runs).sum();
+    html! {
+        header #top {
+            p.kicker { "Reproduction report" }
+            h1 { (TITLE) }
+            p.subtitle { "The claims of the source, each with what our simulations say of it" }
+            dl.facts {
+                div { dt { "Design" } dd { (report.size.name()) } }
+                div { dt { "Finished runs" } dd { (runs) " of " (planned) } }
+                div { dt { "Program" } dd { "peristalsis " (report.program.version) } }
+                div { dt { "Revision" } dd { code { (report.program.revision) } } }
+                div { dt { "Physics" } dd { "version " (report.program.physics_version) } }
+            }
+            @if report.size == Size::Quick {
+                p.notice {
+                    "This is the " b { "quick" } " design: every figure, few runs. Its numbers show the way that an analysis takes, not its \
+                    outcome; verdicts need the full design ("
+                    code { "peristalsis reproduce --full" }
+                    ")."
+                }
+            }
+        }
+    }
+}
+
+/// All claims in one table.
+fn overview(report: &Report) -> Markup {
+    let number = |verdict: Verdict| {
+        let is = |examination: &&Examination| examination.finding.verdict == verdict;
+        report.examinations.iter().filter(is).count()
+    };
+    html! {
+        section #overview {
+            h2 { "The claims at a glance" }
+            @if report.examinations.is_empty() {
+                p { "No claim was examined." }
+            } @else {
+                p.tally {
+                    span { b { (number(Verdict::Reproduced)) } " reproduced" } " "
+                    span { b { (number(Verdict::Differs)) } " different" } " "
+                    span { b { (number(Verdict::Answered)) } " answered" } " "
+                    span { b { (number(Verdict::Open)) } " open" }
+                }
+                table.overview {
+                    thead { tr { th scope="col" { "Claim" } th scope="col" { "Verdict" } th scope="col" { "In short" } } }
+                    tbody {
+                        @for examination in &report.examinations {
+                            tr {
+                                th scope="row" {
+                                    a href={ "#" (anchor(examination.claim.id)) } {
+                                        span.id { (examination.claim.id) } " " (rich(examination.claim.title))
+                                    }
+                                }
+                                td { (verdict_badge(examination)) }
+                                td { (rich(&examination.finding.summary)) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// How numbers are written and verdicts given.
+fn reading(report: &Report) -> Markup {
+    let needed = Statistics::FOR_A_VERDICT;
+    html! {
+        section #reading {
+            h2 { "How to read this" }
+            dl.legend {
+                div {
+                    dt { "Numbers" }
+                    dd {
+                        "2.794(3) is 2.794 ± 0.003: one standard error in units of the last digits, two of them where the first is 1. "
+                        (rich("2.79^{+0.09}_{−0.03}"))
+                        " has different errors upward and downward; ∞ is a side that the runs leave open."
+                    }
+                }
+                div {
+                    dt { "Intervals" }
+                    dd { "The 95 % interval covers the truth in 95 of 100 repetitions. How each number and its interval were got stands beside it." }
+                }
+                div {
+                    dt { "Difference" }
+                    dd { "Ours minus the source's, in standard errors on that side." }
+                }
+                div {
+                    dt { "Verdicts" }
+                    dd {
+                        "A claim is " b { "reproduced" } " if it holds within our errors, and " b { "differs" } " if it does not; a question that the source left open is " b { "answered" } ". It is " b { "open" }
+                        " while there is too little to say, or if what we see is neither. A verdict takes "
+                        (needed.strain_rates) " strain rates, " (needed.widths) " widths at each and " (needed.replicates)
+                        " runs of each point, unless a claim says otherwise."
+                    }
+                }
+                div {
+                    dt { "Again" }
+                    dd {
+                        code { "peristalsis reproduce --" (report.size.name()) }
+                        " makes this page; the same program and runs give the same bytes. "
+                        code { "claims.json" } ", " code { "figures/" } " and " code { "tables/" } " beside it hold the same for programs and papers."
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn colophon(report: &Report) -> Markup {
+    html! {
+        footer {
+            p {
+                "Made by peristalsis " (report.program.version) ", revision " code { (report.program.revision) }
+                ". This file needs no other and sends no request."
+            }
+        }
+    }
+}

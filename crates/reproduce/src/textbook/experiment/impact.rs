@@ -1,0 +1,312 @@
+//! Impacts: of two grains, and of a grain on a plane.
+
+use glam::DVec3;
+use peristalsis_engine::{Bodies, Simulation, Wall};
+use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::wall::Lattice;
+
+use super::{Means, far_away, straight};
+use crate::textbook::error::ValidateError;
+
+/// Diameter of the wall's sphere that stands for a plane \[d\].
+///
+/// The engine knows no plane. Against this one the reduced radius of a grain of diameter d is less than its own radius by
+/// d/D, one part in ten thousand, which references are given too.
+pub(crate) const PLANE_DIAMETER: f64 = 1e4;
+
+/// A sphere before or after an impact. The normal of the contact is x, its plane y, spins are about z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Sphere {
+    pub(crate) diameter: f64,
+    pub(crate) mass: f64,
+    pub(crate) velocity: DVec3,
+    pub(crate) spin: f64,
+}
+
+impl Sphere {
+    /// A sphere of diameter 1 and mass 1.
+    pub(crate) fn unit(velocity: DVec3, spin: f64) -> Self {
+        Self {
+            diameter: 1.0,
+            mass: 1.0,
+            velocity,
+            spin,
+        }
+    }
+
+    pub(crate) fn inertia(&self) -> f64 {
+        self.mass * self.diameter * self.diameter / 10.0
+    }
+}
+
+/// What a sphere meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Partner {
+    /// Another grain, at the side of negative x.
+    Grain(Sphere),
+    /// A sphere of the wall, at rest and very large.
+    Plane,
+}
+
+/// A sphere that arrives at positive x, and its partner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Impact {
+    pub(crate) contact: ContactModel,
+    pub(crate) sphere: Sphere,
+    pub(crate) partner: Partner,
+}
+
+/// What came out of an impact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rebound {
+    /// Velocities after it; that of a plane is 0.
+    pub(crate) velocity: [DVec3; 2],
+    /// Spins about z after it.
+    pub(crate) spin: [f64; 2],
+    /// Time from touching to parting, found from the free flights before and after \[t\].
+    pub(crate) contact_time: f64,
+    /// Largest overlap, between steps by a cubic \[d\].
+    pub(crate) largest_overlap: f64,
+    /// Largest force on the sphere, between steps by a parabola \[m d/t^2\].
+    pub(crate) peak_force: f64,
+}
+
+/// More steps than any impact takes.
+const MOST_STEPS: u64 = 1 << 22;
+
+impl Impact {
+    /// Half the sum of diameters, of the grain's and its partner's \[d\].
+    pub(crate) fn reach(&self) -> f64 {
+        0.5 * (self.sphere.diameter + self.partner_diameter())
+    }
+
+    pub(crate) fn partner_diameter(&self) -> f64 {
+        match self.partner {
+            Partner::Grain(other) => other.diameter,
+            Partner::Plane => PLANE_DIAMETER,
+        }
+    }
+
+    /// d_i d_j/(2 (d_i + d_j)).
+    pub(crate) fn reduced_radius(&self) -> f64 {
+        let (one, other) = (self.sphere.diameter, self.partner_diameter());
+        one * other / (2.0 * (one + other))
+    }
+
+    /// m_i m_j/(m_i + m_j).
+    pub(crate) fn reduced_mass(&self) -> f64 {
+        match self.partner {
+            Partner::Grain(other) => {
+                self.sphere.mass * other.mass / (self.sphere.mass + other.mass)
+            }
+            Partner::Plane => self.sphere.mass,
+        }
+    }
+
+    /// v_i - v_j before the impact.
+    pub(crate) fn relative_velocity(&self) -> DVec3 {
+        match self.partner {
+            Partner::Grain(other) => self.sphere.velocity - other.velocity,
+            Partner::Plane => self.sphere.velocity,
+        }
+    }
+
+    /// Simulates the impact in steps of `time_step`, the spheres touching a fraction `phase` of a step after a step's
+    /// beginning.
+    ///
+    /// # Errors
+    /// Those of the engine, and spheres that do not part.
+    pub(crate) fn simulate(
+        &self,
+        means: Means,
+        time_step: f64,
+        phase: f64,
+    ) -> Result<Rebound, ValidateError> {
+        let lead = (1.0 + phase) * time_step;
+        let mut experiment = Experiment::new(self, means, time_step, lead);
+        let mut past = [experiment.look(); 3];
+        let mut answer = Rebound {
+            velocity: [DVec3::ZERO; 2],
+            spin: [0.0; 2],
+            contact_time: 0.0,
+            largest_overlap: 0.0,
+            peak_force: 0.0,
+        };
+        let mut met = false;
+        for step in 1..=MOST_STEPS {
+            experiment.simulation.advance(1)?;
+            past = [past[1], past[2], experiment.look()];
+            let [before, middle, now] = past;
+            if middle.overlap > 0.0 && middle.rate >= 0.0 && now.rate < 0.0 {
+                answer.largest_overlap = largest_of_cubic(middle, now, time_step);
+            }
+            if middle.force >= before.force && middle.force > now.force {
+                answer.peak_force = answer.peak_force.max(top_of_parabola(before, middle, now));
+            }
+            met |= now.overlap > 0.0;
+            if met && now.overlap <= 0.0 {
+                let parted = time_since_parting(now, self.reach());
+                answer.contact_time = step as f64 * time_step - parted - lead;
+                (answer.velocity, answer.spin) = experiment.motion();
+                return Ok(answer);
+            }
+        }
+        Err(ValidateError::NoRebound {
+            steps: MOST_STEPS,
+            time_step,
+        })
+    }
+}
+
+/// One instant of an impact.
+#[derive(Clone, Copy)]
+struct Look {
+    separation: DVec3,
+    relative_velocity: DVec3,
+    overlap: f64,
+    /// d overlap/dt.
+    rate: f64,
+    force: f64,
+}
+
+struct Experiment {
+    simulation: Simulation,
+    reach: f64,
+    /// Centre of the sphere that stands for a plane.
+    plane: Option<DVec3>,
+}
+
+impl Experiment {
+    /// The spheres `lead` before they touch.
+    fn new(impact: &Impact, means: Means, time_step: f64, lead: f64) -> Self {
+        let Impact {
+            contact,
+            sphere,
+            partner,
+        } = *impact;
+        let reach = impact.reach();
+        let skin = 0.3 * sphere.diameter;
+        let (wall, mut spheres, plane) = match partner {
+            Partner::Grain(other) => {
+                let length = 40.0 * reach;
+                let wall = far_away(100.0 * reach, length);
+                let centre = DVec3::new(0.0, 0.0, 0.5 * length);
+                let half = DVec3::new(0.5 * reach, 0.0, 0.0);
+                (
+                    wall,
+                    vec![(sphere, centre + half), (other, centre - half)],
+                    None,
+                )
+            }
+            Partner::Plane => {
+                let lattice = plane_lattice();
+                let wall = straight(lattice, reach);
+                let plane = plane_centre(&wall);
+                // The grain is near the axis, where its place has the finest grid of numbers.
+                let place = DVec3::new(plane.x + reach, plane.y, plane.z);
+                (wall, vec![(sphere, place)], Some(plane))
+            }
+        };
+        for (sphere, place) in &mut spheres {
+            *place -= lead * sphere.velocity;
+        }
+        let mut bodies = Bodies::grains_at_rest(
+            spheres.iter().map(|(_, place)| *place).collect(),
+            spheres.iter().map(|(sphere, _)| sphere.diameter).collect(),
+        );
+        for (i, (sphere, _)) in spheres.iter().enumerate() {
+            bodies.velocity[i] = sphere.velocity;
+            bodies.mass[i] = sphere.mass;
+            bodies.inertia[i] = sphere.inertia();
+            bodies.angular_velocity[i] = DVec3::new(0.0, 0.0, sphere.spin);
+        }
+        let parameters = means.parameters(contact, time_step, skin);
+        Self {
+            simulation: Simulation::new(bodies, wall, parameters),
+            reach,
+            plane,
+        }
+    }
+
+    fn look(&self) -> Look {
+        let bodies = self.simulation.bodies();
+        let (there, velocity) = match self.plane {
+            Some(centre) => (centre, DVec3::ZERO),
+            None => (bodies.position[1], bodies.velocity[1]),
+        };
+        let separation = bodies.position[0] - there;
+        let relative_velocity = bodies.velocity[0] - velocity;
+        let distance = separation.length();
+        Look {
+            separation,
+            relative_velocity,
+            overlap: self.reach - distance,
+            rate: -relative_velocity.dot(separation) / distance,
+            force: bodies.mass[0] * bodies.acceleration[0].length(),
+        }
+    }
+
+    fn motion(&self) -> ([DVec3; 2], [f64; 2]) {
+        let bodies = self.simulation.bodies();
+        let second = |vectors: &[DVec3]| vectors.get(1).copied().unwrap_or_default();
+        (
+            [bodies.velocity[0], second(&bodies.velocity)],
+            [
+                bodies.angular_velocity[0].z,
+                second(&bodies.angular_velocity).z,
+            ],
+        )
+    }
+}
+
+/// Two rings of one sphere each, too far apart for a grain to meet both.
+fn plane_lattice() -> Lattice {
+    Lattice {
+        spheres_per_ring: 1,
+        rings_per_wave: 2,
+        waves: 1,
+        wavelength: 4.0 * PLANE_DIAMETER,
+        sphere_diameter: PLANE_DIAMETER,
+    }
+}
+
+/// Centre of the sphere of the second ring, which stands at the side of negative x.
+fn plane_centre(wall: &Wall) -> DVec3 {
+    match wall {
+        Wall::Prescribed(wall) => wall.sphere_position(1),
+        Wall::Elastic(_) => unreachable!("the wall was made as a prescribed one"),
+    }
+}
+
+/// Largest value between two instants, of the cubic through values and rates.
+fn largest_of_cubic(from: Look, to: Look, time_step: f64) -> f64 {
+    let (p0, p1) = (from.overlap, to.overlap);
+    let (m0, m1) = (time_step * from.rate, time_step * to.rate);
+    let cubic = 2.0 * (p0 - p1) + m0 + m1;
+    let square = 3.0 * (p1 - p0) - 2.0 * m0 - m1;
+    // The root of the derivative 3 c s^2 + 2 q s + m0 where it falls through 0.
+    let root = (square * square - 3.0 * cubic * m0).max(0.0).sqrt();
+    let s = m0 / (root - square);
+    ((cubic * s + square) * s + m0) * s + p0
+}
+
+/// Top of the parabola through three forces at equal distances in time.
+fn top_of_parabola(before: Look, middle: Look, after: Look) -> f64 {
+    let slope = 0.5 * (after.force - before.force);
+    let curvature = after.force - 2.0 * middle.force + before.force;
+    if curvature < 0.0 {
+        middle.force - 0.5 * slope * slope / curvature
+    } else {
+        middle.force
+    }
+}
+
+/// How long ago spheres that fly apart touched last.
+fn time_since_parting(now: Look, reach: f64) -> f64 {
+    let along = now.separation.dot(now.relative_velocity);
+    let speed_squared = now.relative_velocity.length_squared();
+    let distance = now.separation.length();
+    let beyond = (distance - reach) * (distance + reach);
+    // The smaller root of |r - v t|^2 = reach^2, without a difference of like numbers.
+    beyond / (along + (along * along - speed_squared * beyond).max(0.0).sqrt())
+}

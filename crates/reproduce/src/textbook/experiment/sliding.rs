@@ -1,0 +1,88 @@
+//! A sphere thrown along a plane on which its weight presses it.
+
+use glam::DVec3;
+use peristalsis_engine::{Bodies, Parameters, Simulation};
+use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDashpot, Normal};
+use peristalsis_physics::wall::Lattice;
+
+use super::{Means, straight};
+use crate::textbook::error::ValidateError;
+
+/// Diameter of the sphere that stands for the plane \[d\]: a path of a few d inclines it by some 1e-5 only.
+const PLANE_DIAMETER: f64 = 1e6;
+
+/// A sphere of diameter and mass 1 on a plane; the body force g is its weight.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Throw {
+    pub(crate) normal: LinearSpringDashpot,
+    pub(crate) friction: CundallStrack,
+    /// g \[d/t^2\]
+    pub(crate) gravity: f64,
+    /// v_0 \[d/t\]
+    pub(crate) speed: f64,
+}
+
+/// The motion at one time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Instant {
+    pub(crate) time: f64,
+    /// Velocity of the centre \[d/t\].
+    pub(crate) velocity: f64,
+    /// Velocity at which the sphere would roll with its spin \[d/t\].
+    pub(crate) rolling: f64,
+}
+
+impl Throw {
+    /// Overlap under the weight \[d\].
+    pub(crate) fn overlap(&self) -> f64 {
+        self.gravity / self.normal.normal_stiffness
+    }
+
+    /// The motion at every step up to `duration`.
+    ///
+    /// # Errors
+    /// Those of the engine.
+    pub(crate) fn simulate(
+        &self,
+        means: Means,
+        time_step: f64,
+        duration: f64,
+    ) -> Result<Vec<Instant>, ValidateError> {
+        // A ring of one sphere (almost) on the axis: its top is a plane across the axis, along which the weight acts.
+        let lattice = Lattice {
+            spheres_per_ring: 1,
+            rings_per_wave: 2,
+            waves: 1,
+            wavelength: 4.0 * PLANE_DIAMETER,
+            sphere_diameter: PLANE_DIAMETER,
+        };
+        let off_axis = 1e-3;
+        let height = 0.5 * (1.0 + PLANE_DIAMETER) - self.overlap();
+        let mut bodies = Bodies::grains_at_rest(vec![DVec3::new(off_axis, 0.0, height)], vec![1.0]);
+        bodies.velocity[0] = DVec3::new(0.0, self.speed, 0.0);
+        let contact = ContactModel {
+            normal: Normal::Linear(self.normal),
+            friction: Some(self.friction),
+        };
+        let parameters = Parameters {
+            body_force: -self.gravity,
+            ..means.parameters(contact, time_step, 0.3)
+        };
+        let mut simulation = Simulation::new(bodies, straight(lattice, off_axis), parameters);
+        let arm = 0.5 * (1.0 - self.overlap());
+        let steps = (duration / time_step).round() as usize;
+        let mut instants = Vec::with_capacity(steps + 1);
+        for step in 0..=steps {
+            if step > 0 {
+                simulation.advance(1)?;
+            }
+            let bodies = simulation.bodies();
+            instants.push(Instant {
+                time: simulation.time(),
+                velocity: bodies.velocity[0].y,
+                rolling: -arm * bodies.angular_velocity[0].x,
+            });
+        }
+        Ok(instants)
+    }
+}

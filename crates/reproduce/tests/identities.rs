@@ -1,0 +1,53 @@
+//! Who the runs behind the claims are: identities and seeds of every study, against those on record. The rows in
+//! `validation/results` belong to these.
+//!
+//! `GOLDEN=write cargo test -p peristalsis-reproduce --test identities` writes the record anew: right where runs were added.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails where what it needs is missing"
+)]
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use peristalsis_reproduce::{STUDIES, Size};
+use peristalsis_study::{Plan, Specification, StudyError, seed};
+use sha2::{Digest, Sha256};
+
+#[test]
+fn runs_are_who_they_were() {
+    let mut found = String::new();
+    for study in STUDIES {
+        for size in [Size::Quick, Size::Full] {
+            let specification = Specification::from_toml(study.path, study.text(size), |name| {
+                Err(StudyError::Read {
+                    path: name.into(),
+                    source: std::io::Error::other("builds on a preset"),
+                })
+            });
+            let plan = Plan::of(&specification.unwrap()).unwrap();
+            let mut digest = Sha256::new();
+            for run in plan.runs() {
+                let seed = seed(&plan.configuration(run), run.replicate);
+                digest.update(format!("{} {seed}\n", run.identity));
+            }
+            let digest = &digest.finalize()[..8];
+            let digest: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+            let runs = plan.runs().len();
+            writeln!(
+                found,
+                "{digest} {}, {}, {runs} runs",
+                study.name,
+                size.name()
+            )
+            .unwrap();
+        }
+    }
+    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/identities.txt");
+    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
+        fs::write(&record, &found).unwrap();
+    }
+    assert_eq!(found, fs::read_to_string(&record).unwrap());
+}
