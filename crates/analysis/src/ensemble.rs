@@ -66,6 +66,20 @@ fn jackknife_error(without_one: &[f64]) -> f64 {
     ((replicas - 1.0) / replicas * scatter).sqrt()
 }
 
+/// Mean of independent values and its standard error.
+///
+/// `<x> = sum x/n`, error `(sum (x - <x>)^2/(n (n - 1)))^(1/2)`: NaN for a single value, both NaN for none.
+///
+/// ```
+/// assert_eq!(peristalsis_analysis::mean_and_error(&[1.0, 2.0, 3.0]).0, 2.0);
+/// ```
+pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let number = values.len() as f64;
+    let mean = mean_of(values);
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (number * (number - 1.0))).sqrt())
+}
+
 /// Mean and variance of independent values with their jackknife errors.
 ///
 /// The jackknife error of the variance holds for any distribution with a fourth moment. For transition times with their
@@ -220,6 +234,15 @@ mod tests {
     use super::*;
     use crate::synthetic::white_noise;
     use proptest::prelude::*;
+
+    #[test]
+    fn the_error_of_a_mean_is_that_of_independent_values() {
+        let (mean, error) = mean_and_error(&[1.0, 2.0, 3.0]);
+        assert_eq!(mean, 2.0);
+        assert!((error - (1.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+        assert!(mean_and_error(&[4.0]).1.is_nan());
+        assert!(mean_and_error(&[]).0.is_nan());
+    }
 
     #[test]
     fn moments_of_three_numbers_by_hand() {

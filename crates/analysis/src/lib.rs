@@ -67,7 +67,7 @@ pub use divergence::{
     LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
 };
 pub use ensemble::{
-    Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, moments,
+    Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, mean_and_error, moments,
     susceptibility_peak, transition_time_moments,
 };
 pub use ensembles::{WidthEnsemble, ensembles_by_width};
