@@ -16,7 +16,8 @@
 //! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
 //! | how does w_c depend on the strain rate? | [`fit_line`], [`fit_parabola`] |
 //!
-//! Numbers with uncertainties are [`Uncertain`]: value, standard error, and intervals of 68 and 95 per cent.
+//! Numbers with uncertainties are [`Uncertain`]: value, standard error, and intervals of 68 and 95 per cent. They display
+//! themselves as `2.794 ± 0.003`; [`number`] writes other numbers in the same way.
 
 #![forbid(unsafe_code)]
 
@@ -41,6 +42,7 @@ mod lifetime;
 mod line;
 mod logistic;
 mod mixture;
+pub mod number;
 mod numerics;
 mod period;
 mod regression;

@@ -250,8 +250,8 @@ fn divergence() -> Result<Finding, FigureError> {
             "Each run from rest gives a transition time *τ*, or none before its end: then it is *censored*, and not dropped. Near *w*_c \
              the longest times are cut off by the length of the runs, so the mean of those that did turn is too small. We therefore fit \
              the law *τ* = *A* (*w*_c − *w*)^{−*α*} to all runs at once by their censored likelihood.",
-            "The exponent is stable against the window of the fit: without the two widths next to *w*_c it is 1.06(5), without the two \
-             farthest 1.10(6).",
+            "The exponent is stable against the window of the fit: without the two widths next to *w*_c it is 1.06 ± 0.05, without the two \
+             farthest 1.10 ± 0.06.",
         ]),
         tables: vec![ReportTable {
             caption: "Mean transition time *τ* \\[(*m*/*k*)^{1/2}\\] at each width, Kaplan-Meier; in the last column the runs that \
@@ -259,10 +259,10 @@ fn divergence() -> Result<Finding, FigureError> {
                 .to_owned(),
             head: texts(["*w*/*d*", "*ε\u{307}* = 0.05", "*ε\u{307}* = 0.1", "*ε\u{307}* = 0.2", "censored"]),
             rows: vec![
-                texts(["2.545", "93(2)", "212(6)", "–", "0 of 30"]),
-                texts(["2.715", "188(7)", "671(31)", "–", "0 of 30"]),
-                texts(["2.805", "402(21)", "–", "–", "2 of 30"]),
-                texts(["2.850", "1.21(9) × 10^{3}", "–", "–", "7 of 30"]),
+                texts(["2.545", "93 ± 2", "212 ± 6", "–", "0 of 30"]),
+                texts(["2.715", "188 ± 7", "670 ± 30", "–", "0 of 30"]),
+                texts(["2.805", "400 ± 20", "–", "–", "2 of 30"]),
+                texts(["2.850", "1210 ± 90", "–", "–", "7 of 30"]),
             ],
         }],
         weaknesses: texts([
@@ -271,7 +271,7 @@ fn divergence() -> Result<Finding, FigureError> {
         ]),
         ..finding(
             Verdict::Open,
-            "The exponent is *α* = 1.084(41) at *ε\u{307}* = 0.1, where the source has 1; three strain rates and four replicates do not \
+            "The exponent is *α* = 1.08 ± 0.04 at *ε\u{307}* = 0.1, where the source has 1; three strain rates and four replicates do not \
              allow a verdict.",
             [3, 6, 4, 72],
         )
@@ -300,7 +300,7 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
         (
             finding(
                 Verdict::Differs,
-                "*J*/*J*_{max} jumps by 0.873(4) on the fine lattice, as the source says, but falls over a range of 0.06 *d* on the \
+                "*J*/*J*_{max} jumps by 0.873 ± 0.004 on the fine lattice, as the source says, but falls over a range of 0.06 *d* on the \
                  coarse one.",
                 [6, 12, 30, 4320],
             ),
@@ -316,7 +316,7 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
                 )],
                 ..finding(
                     Verdict::Differs,
-                    "*w*_c falls linearly, but with the slope −2.21(6) on the fine lattice.",
+                    "*w*_c falls linearly, but with the slope −2.21 ± 0.06 on the fine lattice.",
                     [6, 12, 30, 4320],
                 )
             },
@@ -332,7 +332,7 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
         (
             finding(
                 Verdict::Answered,
-                "It turns back: *w*_c is largest at *ε\u{307}* = 0.021(2).",
+                "It turns back: *w*_c is largest at *ε\u{307}* = 0.021 ± 0.002.",
                 [5, 8, 10, 400],
             ),
             None,

@@ -43,7 +43,7 @@ fn page_json_figures_and_tables_are_written() {
     assert_eq!(read("claims.json"), report.json());
     let table = read("tables/f2-1.csv");
     assert!(table.starts_with("\"w/d\",\"ε\u{307} = 0.05\","), "{table}");
-    assert!(table.contains("\"2.850\",\"1.21(9) × 10^3\""), "{table}");
+    assert!(table.contains("\"2.850\",\"1210 ± 90\""), "{table}");
     let quantities = read("tables/quantities.csv");
     let slope = quantities.lines().last().unwrap();
     assert!(slope.starts_with("\"F7\",\"slope, fine lattice\","));

@@ -2,11 +2,11 @@
 
 use crate::{Examination, Quantity, ReportFigure, ReportTable};
 use maud::{Markup, html};
+use peristalsis_analysis::number::{distance, interval, plain};
 
 use super::parts::{anchor, counts, number_of, study_anchor, verdict_badge};
 use crate::report::Report;
 use crate::report::markup::{plain_text, rich};
-use crate::report::number::{distance, interval, plain, with_error};
 use crate::report::picture::embedded;
 
 /// Width of a page's column in millimetres: a wider figure may take the whole width.
@@ -116,7 +116,7 @@ fn quantity_row(quantity: &Quantity) -> Markup {
                 @if !quantity.method.is_empty() { span.method { (rich(&quantity.method)) } }
             }
             (cell("Ours", html! {
-                @match ours { Some(ours) => b { (rich(&with_error(ours))) }, None => span.none { "not determined" } }
+                @match ours { Some(ours) => b { (rich(&ours.to_string())) }, None => span.none { "not determined" } }
             }))
             (cell("95 % interval", rich(&ours.map_or_else(none, interval))))
             (cell("Source", rich(&quantity.source.map_or_else(none, plain))))

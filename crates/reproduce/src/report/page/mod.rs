@@ -148,7 +148,7 @@ fn reading(report: &Report) -> Markup {
                 div {
                     dt { "Numbers" }
                     dd {
-                        "2.794(3) is 2.794 ± 0.003: one standard error in units of the last digits, two of them where the first is 1. "
+                        "2.794 ± 0.003 is a value with one standard error: in one digit, or in two where the first is 1. "
                         (rich("2.79^{+0.09}_{−0.03}"))
                         " has different errors upward and downward; ∞ is a side that the runs leave open."
                     }
