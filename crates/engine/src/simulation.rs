@@ -6,13 +6,15 @@ use peristalsis_physics::contact::{
     ContactLaw, ContactModel, CundallStrack, Frictionless, Normal, NormalLaw, TangentialHistory,
 };
 
+pub use peristalsis_physics::method::Kernel;
+
 use crate::bodies::Bodies;
 use crate::error::EngineError;
 use crate::fast;
 use crate::fast::machine::Instructions;
 use crate::fast::sorted::{Course, Sorted, Sorting};
 use crate::forces::{Contacts, add_body_force, evaluate};
-use crate::integrate::{Integrator, Past, Runaway};
+use crate::integrate::{Integrator, Past, Runaway, after_forces, before_forces};
 use crate::ledger::{Ledger, Tally};
 use crate::snapshot::{Snapshot, SnapshotView};
 use crate::touching::{Touching, touching};
@@ -35,17 +37,6 @@ pub struct Parameters {
     pub kernel: Kernel,
     /// Body force on the grains: force over mass along +z, the same at all times \[d/t^2\].
     pub body_force: f64,
-}
-
-/// Which kernel computes the forces. They agree up to rounding.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Kernel {
-    /// The fastest that serves the case at hand; the same bits on every set of instructions.
-    #[default]
-    Fast,
-    /// The plain one that the fast ones are tested against.
-    Reference,
 }
 
 /// Grains in a peristaltic tube, advanced in time.
@@ -641,16 +632,16 @@ impl WithLaw for Advance<'_> {
             *step += 1;
             let time = *step as f64 * time_step;
             let grains = bodies.grains;
-            integrator
-                .before_forces(bodies, past, time_step, *limit)
-                .map_err(|runaway| EngineError::Diverged {
+            before_forces(integrator, bodies, past, time_step, *limit).map_err(|runaway| {
+                EngineError::Diverged {
                     step: *step,
                     time,
                     grain: runaway.body,
                     grains,
                     displacement: runaway.displacement,
                     limit: *limit,
-                })?;
+                }
+            })?;
             bodies.fold(length);
             // A wall that jumps does work on the contacts that it finds: what they store after the jump but not before.
             let stored_before_jump = wall.move_without_jump(time - time_step, time).then(|| {
@@ -665,7 +656,7 @@ impl WithLaw for Advance<'_> {
             if let Some(stored) = stored_before_jump {
                 ledger.add_jump(after.contact_energy - stored);
             }
-            integrator.after_forces(bodies, past, time_step);
+            after_forces(integrator, bodies, past, time_step);
             ledger.add_step(tally, &after, time_step);
             *tally = after;
         }

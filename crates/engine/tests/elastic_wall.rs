@@ -8,7 +8,7 @@ use common::{
     INTEGRATORS, LINEAR, Numbers, elastic, elastic_parameters, momentum, with_wall_spheres,
 };
 use glam::DVec3;
-use peristalsis_engine::wall::{DriveAngle, ElasticParameters, Keep, NetForce};
+use peristalsis_engine::wall::{DriveAngle, ElasticParameters, NetForce, Tethers};
 use peristalsis_engine::{Bodies, Integrator, Simulation, Wall};
 use peristalsis_physics::wall::{Lattice, Schedule};
 
@@ -59,7 +59,7 @@ fn forces(simulation: &Simulation) -> Vec<DVec3> {
 fn the_balanced_tube_is_in_equilibrium() {
     for parameters in [elastic_parameters(), preset()] {
         // Each part of the mean would cancel in a straight tube anyway: it is left in.
-        let keep = Keep {
+        let keep = Tethers {
             net_force: NetForce::Free,
             ..parameters.keep
         };
@@ -80,7 +80,7 @@ fn the_balanced_tube_is_in_equilibrium() {
         assert!(fastest < 1e-9, "{fastest}");
 
         // Without the balance it shrinks: the springs are stretched.
-        let keep = Keep {
+        let keep = Tethers {
             balance: false,
             ..parameters.keep
         };
@@ -108,7 +108,7 @@ fn shaken(size: f64, seed: u64) -> impl Fn(&mut Bodies) {
 #[test]
 fn the_forces_are_the_slope_of_the_energy() {
     let mut parameters = undriven(elastic_parameters());
-    parameters.keep = Keep {
+    parameters.keep = Tethers {
         radial: 0.02,
         net_force: NetForce::Free,
         ..parameters.keep
@@ -198,7 +198,7 @@ fn a_removed_mean_force_leaves_the_momentum() {
             (NetForce::Free, false),
         ] {
             let parameters = elastic_parameters();
-            let keep = Keep {
+            let keep = Tethers {
                 net_force,
                 ..parameters.keep
             };
@@ -269,7 +269,7 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
         (DriveAngle::Reference, -1.0),
         (DriveAngle::Current, 1.0),
     ] {
-        let keep = Keep {
+        let keep = Tethers {
             balance: false,
             radial: 0.0,
             azimuthal: 0.0,
@@ -362,7 +362,7 @@ fn drag_and_dashpots_take_the_energy_out() {
 fn what_removes_the_mean_force_does_work_on_a_drifting_wall() {
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
         let parameters = undriven(elastic_parameters());
-        let keep = Keep {
+        let keep = Tethers {
             net_force,
             ..parameters.keep
         };

@@ -1,7 +1,7 @@
 //! The fast kernels against the reference, over every combination of laws, sizes, tube and integrator.
 
 use glam::DVec3;
-use peristalsis_engine::wall::{DriveAngle, ElasticParameters, Keep, NetForce, PrescribedWall};
+use peristalsis_engine::wall::{DriveAngle, ElasticParameters, NetForce, PrescribedWall, Tethers};
 use peristalsis_engine::{Instructions, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 use proptest::prelude::*;
@@ -179,7 +179,7 @@ fn where_no_normal_and_no_radius_has_a_direction() {
             lattice,
             mean_radius: 1.5,
             spring_stiffness: 0.0,
-            keep: Keep {
+            keep: Tethers {
                 net_force: NetForce::Free,
                 ..elastic_parameters().keep
             },

@@ -6,7 +6,7 @@ use common::{
     FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, packed, parameters,
     strained,
 };
-use peristalsis_engine::wall::{Keep, NetForce};
+use peristalsis_engine::wall::{NetForce, Tethers};
 use peristalsis_engine::{Bodies, Parameters, Simulation, Wall};
 
 const DURATION: f64 = 20.0;
@@ -76,7 +76,7 @@ fn under_stress_control_with_everything_on() {
     parameters.spring_damping = 0.01;
     parameters.drag = 0.005;
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
-        parameters.keep = Keep {
+        parameters.keep = Tethers {
             radial: 0.002,
             net_force,
             ..parameters.keep

@@ -2,7 +2,7 @@
 //! combination of laws, sizes, tube and integrator, by the fast kernels.
 
 use glam::DVec3;
-use peristalsis_engine::wall::{ElasticParameters, ElasticWall, Keep, PrescribedWall};
+use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Tethers};
 use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
     ContactModel, CundallStrack, LinearSpringDashpot, Normal, ViscoelasticHertz,
@@ -284,7 +284,7 @@ impl Units {
                     spring_damping: self.damping() * ours.spring_damping,
                     drag: self.damping() * ours.drag,
                     contact_range: self.length * ours.contact_range,
-                    keep: Keep {
+                    keep: Tethers {
                         radial: self.stiffness() * ours.keep.radial,
                         azimuthal: self.stiffness() * ours.keep.azimuthal,
                         axial: self.stiffness() * ours.keep.axial,

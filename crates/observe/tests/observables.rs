@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
@@ -330,7 +330,7 @@ fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
         spring_damping: 0.0,
         drag: 0.0,
         contact_range: 3.0,
-        keep: Keep {
+        keep: Tethers {
             balance: true,
             radial: 0.0,
             azimuthal: 0.1,

@@ -4,10 +4,14 @@
 //! types are `Copy` and carry their units in their documentation. A contact law sees a [`contact::Contact`], never
 //! particles, so that grain-grain and grain-wall contacts, every integrator and every kernel share one formula;
 //! the laws are written for any [`real::Real`], one number or several side by side.
+//!
+//! These types are the vocabulary of a configuration as well: a field's documentation, unit, range and default are
+//! those of its key, from which the reader, its errors and the schema follow.
 
 #![forbid(unsafe_code)]
 
 pub mod contact;
+pub mod method;
 pub mod newtonian;
 pub mod real;
 pub mod wall;

@@ -4,7 +4,7 @@ use peristalsis_configuration as configuration;
 use peristalsis_configuration::{Configuration, Control, NormalLaw, ScheduledParameter};
 use peristalsis_engine::initial::{InitialState, Packing, PackingReport, pack};
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
@@ -193,7 +193,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
             spring_damping: wall.spring_damping,
             drag: wall.drag,
             contact_range: wall.contact_range,
-            keep: Keep {
+            keep: Tethers {
                 balance: wall.keep.balance,
                 radial: wall.keep.radial,
                 azimuthal: wall.keep.azimuthal,

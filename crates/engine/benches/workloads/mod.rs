@@ -2,7 +2,7 @@
 
 use peristalsis_engine::initial::{InitialState, Packing, pack};
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{
     EngineError, Instructions, Integrator, Kernel, Parameters, Simulation, Wall,
@@ -225,7 +225,7 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
         spring_damping: 0.0,
         drag: 0.0,
         contact_range: 3.0,
-        keep: Keep {
+        keep: Tethers {
             balance: true,
             radial: 0.0,
             azimuthal: 0.1,

@@ -8,23 +8,14 @@ use peristalsis_physics::contact::Normal;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
+pub use peristalsis_physics::method::InitialState;
+
 use crate::bodies::Bodies;
 use crate::error::EngineError;
 use crate::wall::Wall;
 
 /// Largest mean overlap of touching grains, in units of the largest diameter, that still counts as fitting.
 pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
-
-/// How a run starts.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum InitialState {
-    /// Anywhere in the tube as it stands at t = 0, at rest: J = 0.
-    #[default]
-    Rest,
-    /// Gathered in the bellies of the tube, moving with the wave: J = Jmax.
-    Jammed,
-}
 
 /// What is to be packed.
 #[derive(Clone, Copy, Debug, PartialEq)]

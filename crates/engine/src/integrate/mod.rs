@@ -5,18 +5,9 @@ pub mod verlet;
 
 use glam::DVec3;
 
-use crate::bodies::Bodies;
+pub use peristalsis_physics::method::Integrator;
 
-/// Which integrator.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Integrator {
-    /// Velocity Verlet; forces see the velocity predicted at the end of the step. Order 2.
-    #[default]
-    Verlet,
-    /// Two-step Adams-Bashforth, as the source. Order 2.
-    AdamsBashforth,
-}
+use crate::bodies::Bodies;
 
 /// What an integrator remembers of the step before.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -34,27 +25,32 @@ pub(crate) struct Runaway {
     pub(crate) displacement: f64,
 }
 
-impl Integrator {
-    /// Moves positions to the end of the step and velocities to where the forces want them.
-    pub(crate) fn before_forces(
-        self,
-        bodies: &mut Bodies,
-        past: &mut Past,
-        time_step: f64,
-        limit: f64,
-    ) -> Result<(), Runaway> {
-        match self {
-            Self::Verlet => verlet::before_forces(bodies, past, time_step, limit),
-            Self::AdamsBashforth => adams_bashforth::before_forces(bodies, past, time_step, limit),
+/// Moves positions to the end of the step and velocities to where the forces want them.
+pub(crate) fn before_forces(
+    integrator: Integrator,
+    bodies: &mut Bodies,
+    past: &mut Past,
+    time_step: f64,
+    limit: f64,
+) -> Result<(), Runaway> {
+    match integrator {
+        Integrator::Verlet => verlet::before_forces(bodies, past, time_step, limit),
+        Integrator::AdamsBashforth => {
+            adams_bashforth::before_forces(bodies, past, time_step, limit)
         }
     }
+}
 
-    /// Brings velocities to the end of the step, now that the forces there are known.
-    pub(crate) fn after_forces(self, bodies: &mut Bodies, past: &Past, time_step: f64) {
-        match self {
-            Self::Verlet => verlet::after_forces(bodies, past, time_step),
-            Self::AdamsBashforth => {}
-        }
+/// Brings velocities to the end of the step, now that the forces there are known.
+pub(crate) fn after_forces(
+    integrator: Integrator,
+    bodies: &mut Bodies,
+    past: &Past,
+    time_step: f64,
+) {
+    match integrator {
+        Integrator::Verlet => verlet::after_forces(bodies, past, time_step),
+        Integrator::AdamsBashforth => {}
     }
 }
 

@@ -1,50 +1,13 @@
 //! A wall of mobile spheres joined by springs and driven by a travelling force: stress control.
 
 use glam::DVec3;
-use peristalsis_physics::wall::{Lattice, Schedule, WallSphere, Waveform};
+use peristalsis_physics::wall::{
+    DriveAngle, Lattice, NetForce, Schedule, Tethers, WallSphere, Waveform,
+};
 
 use crate::bodies::Bodies;
 use crate::ledger::Tally;
 use crate::neighbours::periodic;
-
-/// What becomes of the mean force on the wall.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum NetForce {
-    /// It acts.
-    Free,
-    /// The mean over all wall spheres is taken off each of them, at each step.
-    #[default]
-    Removed,
-    /// The mean over a ring is taken off each sphere of the ring, at each step.
-    RemovedPerRing,
-}
-
-/// f_keep: what keeps an elastic wall in place besides its springs.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Keep {
-    /// A constant force on each sphere that balances the springs in the reference tube.
-    pub balance: bool,
-    /// Stiffness of the tether to the reference point along the reference radius \[m/t^2\].
-    pub radial: f64,
-    /// Stiffness of the tether across radius and axis \[m/t^2\].
-    pub azimuthal: f64,
-    /// Stiffness of the tether along the axis \[m/t^2\].
-    pub axial: f64,
-    /// The mean force.
-    pub net_force: NetForce,
-}
-
-/// Along which direction the travelling force pushes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum DriveAngle {
-    /// The radius of the sphere's reference point.
-    #[default]
-    Reference,
-    /// The radius of the sphere's present place.
-    Current,
-}
 
 /// Parameters of an elastic wall; the lattice's triangles have springs along all their sides.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +29,7 @@ pub struct ElasticParameters {
     /// Wall spheres further apart than this in the reference tube touch like grains without friction \[d\].
     pub contact_range: f64,
     /// f_keep.
-    pub keep: Keep,
+    pub keep: Tethers,
     /// f^P(t) \[m d/t^2\].
     pub force_amplitude: Schedule,
     /// c(t)/lambda \[1/t\].
@@ -295,7 +258,7 @@ impl ElasticWall {
     }
 
     fn add_keep_and_drive(&self, bodies: &mut Bodies, tally: &mut Tally) {
-        let Keep {
+        let Tethers {
             radial,
             azimuthal,
             axial,

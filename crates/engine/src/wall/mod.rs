@@ -6,7 +6,8 @@ pub mod memory;
 pub mod prescribed;
 
 pub use contacts::WallContact;
-pub use elastic::{DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce};
+pub use elastic::{ElasticParameters, ElasticWall};
+pub use peristalsis_physics::wall::{DriveAngle, NetForce, Tethers};
 pub use prescribed::PrescribedWall;
 
 use peristalsis_physics::wall::Lattice;

@@ -9,7 +9,7 @@ pub(crate) mod states;
 use glam::DVec3;
 use peristalsis_engine::initial::{InitialState, Packing, pack};
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
@@ -123,7 +123,7 @@ pub(crate) fn elastic_parameters() -> ElasticParameters {
         spring_damping: 0.0,
         drag: 0.0,
         contact_range: 3.0,
-        keep: Keep {
+        keep: Tethers {
             balance: true,
             radial: 0.0,
             azimuthal: 0.1,

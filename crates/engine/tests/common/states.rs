@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, Keep, NetForce, PrescribedWall,
+    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
@@ -301,7 +301,7 @@ fn springy(numbers: &mut Numbers, time_step: f64) -> (Wall, f64) {
         spring_damping: numbers.perhaps(0.05),
         drag: numbers.perhaps(0.05),
         contact_range: numbers.between(1.2, 3.0),
-        keep: Keep {
+        keep: Tethers {
             balance: numbers.happens(0.5),
             radial: numbers.perhaps(0.1),
             azimuthal: numbers.perhaps(0.1),

@@ -1,16 +1,20 @@
 //! Hertz spring with viscoelastic dissipation: the normal law of the frictional model.
 
-use super::{NormalForce, NormalLaw};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Elasticity, NormalForce, NormalLaw};
 use crate::real::Real;
 
-/// How the dissipation time enters the viscoelastic force.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+/// How the dissipation time enters the viscoelastic force: f_n is proportional to xi^(3/2) - B sqrt(xi) v_n.
+///
+/// Standard is B = 3A/2 (Kuwabara & Kono 1987; Mueller & Poeschel, Phys. Rev. E 84, 021302 (2011)); the talk prints B = A.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum DissipationForm {
-    /// xi^(3/2) - A sqrt(xi) v_n, as the talk prints it.
+    /// As the talk prints it: xi^(3/2) - A sqrt(xi) v_n.
     Printed,
-    /// xi^(3/2) - (3/2) A sqrt(xi) v_n, the standard viscoelastic sphere (Kuwabara & Kono 1987; Mueller & Poeschel,
-    /// Phys. Rev. E 84, 021302 (2011)).
+    /// The standard viscoelastic sphere: 3/2 in front of A.
     #[default]
     Viscoelastic,
 }
@@ -23,16 +27,31 @@ pub enum DissipationForm {
 /// xi overlap \[d\], v_n positive when parting \[d/t\], R_ij = d_i d_j/(2 (d_i + d_j)) \[d\]. Stored energy
 /// (2/5) 2 Y sqrt(R_ij)/(3 (1 - nu^2)) xi^(5/2). While the bracket is negative the spheres part faster than the
 /// material recovers, and what is still stored counts as dissipated.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct ViscoelasticHertz {
-    /// Y \[m/(d t^2)\]
+    /// Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A sqrt(xi) v_n).
+    #[schemars(extend("x-unit" = "m d^-1 t^-2", "exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub young_modulus: f64,
-    /// nu, in (-1, 1/2\]
+    /// Poisson's ratio nu of the Hertz law.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = -1, "maximum" = 0.5))]
     pub poisson_ratio: f64,
-    /// A \[t\]
+    /// Dissipation time A of the Hertz law.
+    #[schemars(extend("x-unit" = "t", "minimum" = 0, "maximum" = 1e12))]
     pub dissipation_time: f64,
-    /// Factor in front of A.
+    /// Factor of the damping of the Hertz law: 1 as printed, 3/2 for the standard viscoelastic sphere.
     pub dissipation_form: DissipationForm,
+}
+
+impl Default for ViscoelasticHertz {
+    fn default() -> Self {
+        Self {
+            young_modulus: 1.0,
+            poisson_ratio: 0.5,
+            dissipation_time: 0.1,
+            dissipation_form: DissipationForm::Viscoelastic,
+        }
+    }
 }
 
 impl ViscoelasticHertz {
@@ -76,6 +95,10 @@ impl NormalLaw for ViscoelasticHertz {
 
     fn stiffness(&self, overlap: f64, reduced_radius: f64) -> f64 {
         1.5 * self.modulus() * (reduced_radius * overlap).sqrt()
+    }
+
+    fn elasticity(&self) -> Elasticity {
+        Elasticity::YoungModulus(self.young_modulus)
     }
 }
 

@@ -1,6 +1,9 @@
 //! Linear spring and dashpot: the contact law of the frictionless model.
 
-use super::{NormalForce, NormalLaw};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Elasticity, NormalForce, NormalLaw};
 use crate::real::Real;
 
 /// Normal contact force of two spheres, a spring and a dashpot in parallel.
@@ -15,12 +18,25 @@ use crate::real::Real;
 /// let law = LinearSpringDashpot { normal_stiffness: 1.0, normal_damping: 5.48e-3 };
 /// assert!((law.restitution(0.5) - 0.988).abs() < 5e-4);
 /// ```
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct LinearSpringDashpot {
-    /// k \[m/t^2\]
+    /// Stiffness k of the linear law, f_n = k xi - eta v_n.
+    #[schemars(extend("x-unit" = "m t^-2", "exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub normal_stiffness: f64,
-    /// eta \[m/t\]
+    /// Damping eta of the linear law.
+    #[schemars(extend("x-unit" = "m t^-1", "minimum" = 0, "maximum" = 1e12))]
     pub normal_damping: f64,
+}
+
+impl Default for LinearSpringDashpot {
+    /// Restitution 0.988 for two grains of diameter 1.
+    fn default() -> Self {
+        Self {
+            normal_stiffness: 1.0,
+            normal_damping: 5.48e-3,
+        }
+    }
 }
 
 impl LinearSpringDashpot {
@@ -72,6 +88,10 @@ impl NormalLaw for LinearSpringDashpot {
 
     fn stiffness(&self, _overlap: f64, _reduced_radius: f64) -> f64 {
         self.normal_stiffness
+    }
+
+    fn elasticity(&self) -> Elasticity {
+        Elasticity::Stiffness(self.normal_stiffness)
     }
 }
 

@@ -9,6 +9,9 @@ pub mod hertz;
 pub mod linear;
 pub mod tangential;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use crate::real::{Real, Vector};
 
 pub use hertz::{DissipationForm, ViscoelasticHertz};
@@ -80,6 +83,19 @@ pub trait NormalLaw: Copy + Sync {
 
     /// Slope d f_n/d xi of the elastic force at overlap xi and reduced radius R_ij: what limits the time step.
     fn stiffness(&self, overlap: f64, reduced_radius: f64) -> f64;
+
+    /// The parameter that scales the elastic force.
+    fn elasticity(&self) -> Elasticity;
+}
+
+/// The parameter that scales the elastic force of a normal law: the units of time and pressure follow from it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Elasticity {
+    /// Force over overlap \[m t^-2\].
+    Stiffness(f64),
+    /// Young's modulus \[m d^-1 t^-2\].
+    YoungModulus(f64),
 }
 
 /// A force in the plane of contact.
@@ -167,22 +183,35 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     }
 }
 
-/// The normal law of a simulation, chosen by name.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-#[serde(rename_all = "snake_case")]
+/// Normal contact law. It takes the keys that name it; friction goes with every law.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "law", rename_all = "snake_case")]
 pub enum Normal {
     /// Linear spring and dashpot.
     Linear(LinearSpringDashpot),
-    /// Hertz spring with viscoelastic dissipation.
+    /// Hertz spring with viscoelastic damping.
     Hertz(ViscoelasticHertz),
 }
 
+impl Normal {
+    /// The parameter that scales the elastic force.
+    #[must_use]
+    pub fn elasticity(&self) -> Elasticity {
+        match self {
+            Self::Linear(law) => law.elasticity(),
+            Self::Hertz(law) => law.elasticity(),
+        }
+    }
+}
+
 /// The contact model of a simulation: which laws, with which parameters.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ContactModel {
     /// Force along the line of centres.
+    #[serde(flatten)]
     pub normal: Normal,
     /// Force in the plane of contact; `None`: grains are smooth and do not rotate.
+    #[serde(flatten)]
     pub friction: Option<CundallStrack>,
 }
 

@@ -1,5 +1,8 @@
 //! Friction of two spheres: none, or a spring in the plane of contact that slides (Cundall & Strack).
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 use super::{Contact, TangentialForce, TangentialLaw};
 use crate::real::{Real, Vector};
 
@@ -23,17 +26,18 @@ impl TangentialLaw for Frictionless {
 }
 
 /// What becomes of the tangential displacement u while a contact slides.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+///
+/// `Spring` leaves what sliding friction can hold. `Balance` lets spring and dashpot together balance the sliding force.
+/// `Literal` is one way to read the source's words.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Sliding {
-    /// |u| is cut to mu_k f_n/k_t: the spring holds what sliding friction can hold, so that the energy lost is never
-    /// negative.
+    /// |u| is cut to mu_k f_n/k_t; the dissipation is never negative.
     #[default]
     Spring,
-    /// u = -(f_t + eta_t v_t)/k_t, the usual choice: spring and dashpot together balance the sliding force. It can
-    /// create spring energy at the onset of sliding.
+    /// u = -(f_t + eta_t v_t)/k_t: the common choice, which can create spring energy at onset.
     Balance,
-    /// u grows on while the contact slides, as the source's words can be read.
+    /// u grows on while the contact slides.
     Literal,
 }
 
@@ -46,18 +50,37 @@ pub enum Sliding {
 /// u is the tangential displacement since the contact began \[d\]: du/dt = v_t - (u . dn/dt) n, which keeps it in the
 /// plane of contact; where f_n vanishes u is forgotten. v_t = v_ij - (v_ij . n) n + n x (l_i omega_i + l_j omega_j)
 /// \[d/t\]. After Cundall & Strack, Geotechnique 29, 47 (1979).
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct CundallStrack {
-    /// k_t \[m/t^2\]
+    /// Tangential stiffness k_t, f_t = -k_t u - eta_t v_t below the Coulomb limit. Without effect while both frictions
+    /// are 0.
+    #[schemars(extend("x-unit" = "m t^-2", "exclusiveMinimum" = 0, "maximum" = 1e12))]
     pub tangential_stiffness: f64,
-    /// eta_t \[m/t\]
+    /// Tangential damping eta_t. Without effect while both frictions are 0.
+    #[schemars(extend("x-unit" = "m t^-1", "minimum" = 0, "maximum" = 1e12))]
     pub tangential_damping: f64,
-    /// mu_s
+    /// Static friction mu_s: a contact sticks while |f_t| < mu_s f_n. If only kinetic_friction is given, equal to it;
+    /// with both 0 grains are frictionless and do not rotate.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1e6))]
     pub static_friction: f64,
-    /// mu_k, at most mu_s
+    /// Kinetic friction mu_k, not above static_friction. If only static_friction is given, equal to it.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = 1e6))]
     pub kinetic_friction: f64,
-    /// What u does while the contact slides.
+    /// What becomes of the tangential displacement while a contact slides. Without effect while both frictions are 0.
     pub sliding: Sliding,
+}
+
+impl Default for CundallStrack {
+    fn default() -> Self {
+        Self {
+            tangential_stiffness: 1.0,
+            tangential_damping: 0.1,
+            static_friction: 0.0,
+            kinetic_friction: 0.0,
+            sliding: Sliding::Spring,
+        }
+    }
 }
 
 /// Memory of a frictional contact.

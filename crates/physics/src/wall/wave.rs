@@ -2,10 +2,13 @@
 
 use core::f64::consts::TAU;
 
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
 /// Which way the wave runs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Direction {
+pub enum WaveDirection {
     /// As the source writes it: towards -z under strain control, towards +z under stress control.
     #[default]
     Forward,
@@ -18,17 +21,21 @@ pub enum Direction {
 /// Every one has its throat, g = -1, at phase 3/4, so that the bottleneck's radius is a - b and its width 2 (a - b); s is
 /// the distance from there in cycles, |s| <= 1/2. They differ in the rest: the sine opens the tube as much as it narrows
 /// it, bolus and roller squeeze a quarter of a cycle to either side and leave a straight tube of radius a between.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+///
+/// - sine: g = sin(2 pi phase); mean 0.
+/// - bolus: g = -cos^2(2 pi s) for |s| < 1/4, else 0; mean -1/4.
+/// - roller: a parabola, the circle to lowest order of its curvature, and shoulders where the tube comes off it:
+///   g = s^2/(s0 s1) - 1 for |s| < s1, -(s0 - |s|)^2/(s0 (s0 - s1)) up to s0, else 0, with s0 = 1/4 and s1 = 1/5;
+///   mean -3/10.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Waveform {
-    /// g = sin(2 pi phase), mean 0
+    /// sin(2 pi phase): throats and bellies alike.
     #[default]
     Sine,
-    /// One smooth squeeze: g = -cos^2(2 pi s) for |s| < 1/4, else 0; mean -1/4.
+    /// One smooth squeeze, cos^2, over half of each wavelength; elsewhere the tube is straight, of radius a.
     Bolus,
-    /// A round roller that presses into the tube, to lowest order of its curvature a parabola, and shoulders where the tube
-    /// comes off it: g = s^2/(s0 s1) - 1 for |s| < s1, -(s0 - |s|)^2/(s0 (s0 - s1)) up to s0, else 0, with s0 = 1/4 and
-    /// s1 = 1/5; mean -3/10.
+    /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
     Roller,
 }
 
@@ -140,7 +147,7 @@ fn from_throat(phase: f64) -> f64 {
 /// +z
 ///
 /// a, b, z, lambda \[d\], to the centres of the wall spheres; c t/lambda in cycles.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RadiusWave {
     /// a \[d\]
     pub mean_radius: f64,

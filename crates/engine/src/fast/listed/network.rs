@@ -11,7 +11,8 @@ use super::waveform;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 use crate::ledger::Tally;
-use crate::wall::elastic::{DriveAngle, ElasticWall, NetForce};
+use crate::wall::elastic::ElasticWall;
+use crate::wall::{DriveAngle, NetForce};
 
 /// Three components of the spheres of a ring, sphere p at p + 1; before and after them stand copies of the last and
 /// first, which are their neighbours.

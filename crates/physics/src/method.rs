@@ -1,0 +1,39 @@
+//! Names of the ways to compute a run: how it starts, how the motion is stepped, which kernel adds up the forces.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the grains stand at t = 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum InitialState {
+    /// Spread over the tube, at rest: J = 0.
+    #[default]
+    Rest,
+    /// Gathered in the bellies and moving with the wave: J = Jmax.
+    Jammed,
+}
+
+/// How the equations of motion are stepped; each is of order 2.
+///
+/// Velocity Verlet gives velocity-dependent forces the velocity predicted at the end of the step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Integrator {
+    /// Velocity Verlet.
+    #[default]
+    Verlet,
+    /// Two-step Adams-Bashforth, the source's choice for the frictional model.
+    AdamsBashforth,
+}
+
+/// Which kernel computes the forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Kernel {
+    /// The fastest for the case at hand; the same bits on every machine.
+    #[default]
+    Fast,
+    /// The plain one that the fast ones are tested against; equal up to rounding.
+    Reference,
+}
