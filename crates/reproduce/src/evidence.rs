@@ -6,8 +6,8 @@ use peristalsis_formats::{Table, parquet};
 use peristalsis_study::Store;
 
 use crate::error::ClaimError;
-use crate::rows::{Row, rows_of};
-use crate::runs::Run;
+use crate::row::{Row, check, rows_of};
+use crate::runs::{Run, table_of};
 
 /// The results of one study.
 #[derive(Clone, Debug)]
@@ -18,8 +18,8 @@ pub struct StudyResults {
     again: Option<Store>,
     /// Finished runs in the order of the axes.
     pub runs: Vec<Run>,
-    /// The same with every column; `None` where only the runs were given.
-    table: Option<Table>,
+    /// The same as a table.
+    table: Table,
     /// Runs of the study that are not finished.
     pub missing: usize,
 }
@@ -38,6 +38,7 @@ impl Evidence {
     pub fn add(&mut self, store: Store, again: Option<Store>) -> Result<(), ClaimError> {
         let survey = store.survey()?;
         let table = store.rows()?;
+        check(&table)?;
         let runs = Run::all_of(&table)?;
         let missing = survey.plan.runs().len().saturating_sub(runs.len());
         self.studies.insert(
@@ -46,7 +47,7 @@ impl Evidence {
                 store: Some(store),
                 again,
                 runs,
-                table: Some(table),
+                table,
                 missing,
             },
         );
@@ -55,7 +56,8 @@ impl Evidence {
 
     /// Adds runs as the results of a study, without their time series.
     pub fn add_runs(&mut self, name: &str, runs: Vec<Run>) {
-        self.insert(name, runs, None);
+        let table = table_of(&runs);
+        self.insert(name, runs, table);
     }
 
     /// Adds a table of runs as the results of a study, without their time series.
@@ -63,12 +65,13 @@ impl Evidence {
     /// # Errors
     /// A column that every row has is missing or of another kind.
     pub fn add_table(&mut self, name: &str, table: Table) -> Result<(), ClaimError> {
+        check(&table)?;
         let runs = Run::all_of(&table)?;
-        self.insert(name, runs, Some(table));
+        self.insert(name, runs, table);
         Ok(())
     }
 
-    fn insert(&mut self, name: &str, runs: Vec<Run>, table: Option<Table>) {
+    fn insert(&mut self, name: &str, runs: Vec<Run>, table: Table) {
         let results = StudyResults {
             store: None,
             again: None,
@@ -91,9 +94,10 @@ impl Evidence {
 }
 
 impl StudyResults {
-    /// The finished runs with every column of their rows.
-    pub(crate) fn rows(&self) -> Vec<Row<'_>> {
-        self.table.as_ref().map(rows_of).unwrap_or_default()
+    /// The finished runs in the order of the axes.
+    #[must_use]
+    pub fn rows(&self) -> Vec<Row<'_>> {
+        rows_of(&self.table)
     }
 
     /// The late profile of the run of a row; `None` where it was not kept, or only its row was imported.
@@ -101,18 +105,14 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub(crate) fn profile_of(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
-        let identity = row.text("identity");
-        match self.runs.iter().find(|run| run.identity == identity) {
-            Some(run) => self.product(run, "profile.parquet"),
-            None => Ok(None),
-        }
+        self.profile(row)
     }
 
     /// The time series of a run; `None` where only its row was imported.
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn series(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+    pub fn series(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
         self.product(run, "timeseries.parquet")
     }
 
@@ -120,7 +120,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn waves(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+    pub fn waves(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
         self.product(run, "waves.parquet")
     }
 
@@ -128,7 +128,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn profile(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+    pub fn profile(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
         self.product(run, "profile.parquet")
     }
 
@@ -136,12 +136,12 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn snapshot(&self, run: &Run) -> Result<Option<Table>, ClaimError> {
+    pub fn snapshot(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
         self.product(run, "snapshot.parquet")
     }
 
-    fn product(&self, run: &Run, name: &str) -> Result<Option<Table>, ClaimError> {
-        let Ok(identity) = run.identity.parse() else {
+    fn product(&self, run: &impl Identified, name: &str) -> Result<Option<Table>, ClaimError> {
+        let Ok(identity) = run.identity().parse() else {
             return Ok(None);
         };
         let stores = [&self.store, &self.again].into_iter().flatten();
@@ -155,7 +155,7 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn period_averages(&self, run: &Run) -> Result<Option<Vec<f64>>, ClaimError> {
+    pub fn period_averages(&self, run: &impl Identified) -> Result<Option<Vec<f64>>, ClaimError> {
         let Some(table) = self.series(run)? else {
             return Ok(None);
         };
@@ -172,5 +172,29 @@ impl StudyResults {
             }
         }
         Ok(Some(averages))
+    }
+}
+
+/// A run by its name.
+pub trait Identified {
+    /// Its name.
+    fn identity(&self) -> &str;
+}
+
+impl Identified for Run {
+    fn identity(&self) -> &str {
+        &self.identity
+    }
+}
+
+impl Identified for Row<'_> {
+    fn identity(&self) -> &str {
+        Row::identity(self)
+    }
+}
+
+impl<T: Identified> Identified for &T {
+    fn identity(&self) -> &str {
+        (*self).identity()
     }
 }

@@ -6,6 +6,8 @@
 
 #![forbid(unsafe_code)]
 
+#[allow(dead_code, reason = "claims move to it one after the other")]
+mod branch;
 mod branches;
 mod claim;
 mod claims;
@@ -14,23 +16,33 @@ mod critical;
 mod crossing;
 mod error;
 mod evidence;
+#[allow(dead_code, reason = "claims move to it one after the other")]
+mod exhibit;
 mod finding;
 mod forces;
+#[allow(dead_code, reason = "claims move to it one after the other")]
+mod prose;
 pub mod report;
 mod reproduction;
+#[allow(dead_code, reason = "claims move to it one after the other")]
+mod row;
 mod rows;
 mod runs;
 mod studies;
 mod text;
 pub mod textbook;
+#[allow(dead_code, reason = "claims move to it one after the other")]
+mod thresholds;
 
 pub use claim::Claim;
 pub use claims::CLAIMS;
 pub use error::ClaimError;
 pub use evidence::{Evidence, StudyResults};
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+pub use prose::Prose;
 pub use reproduction::{
     Event, Examination, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
 };
-pub use runs::{Lattice, Run, Start};
+pub use row::{Lattice, Row, Start};
+pub use runs::Run;
 pub use studies::{Products, STUDIES, Size, StudyFile};

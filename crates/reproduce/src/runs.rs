@@ -17,52 +17,8 @@ const KEPT: [&str; 9] = [
     "belly_granular_temperature",
 ];
 
-/// Drift of J/Jmax between the halves of the late part beyond which a flow is in its transient.
-pub(crate) const MOST_DRIFT: f64 = 0.05;
-
-/// How the grains stood at t = 0.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Start {
-    /// J = 0.
-    Rest,
-    /// J = Jmax.
-    Jammed,
-}
-
-/// Arrangement of the wall spheres.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Lattice {
-    /// Spheres a ring.
-    pub spheres_per_ring: i64,
-    /// Rings a wavelength.
-    pub rings_per_wave: i64,
-}
-
-impl Lattice {
-    /// 24 x 26, nearly smooth.
-    pub const FINE: Self = Self {
-        spheres_per_ring: 24,
-        rings_per_wave: 26,
-    };
-    /// 12 x 14, rough.
-    pub const COARSE: Self = Self {
-        spheres_per_ring: 12,
-        rings_per_wave: 14,
-    };
-
-    /// "fine", "coarse", or the numbers.
-    #[must_use]
-    pub fn name(self) -> String {
-        match self {
-            Self::FINE => "fine".to_owned(),
-            Self::COARSE => "coarse".to_owned(),
-            Self {
-                spheres_per_ring,
-                rings_per_wave,
-            } => format!("{spheres_per_ring} × {rings_per_wave}"),
-        }
-    }
-}
+pub(crate) use crate::row::{Lattice, Start};
+pub(crate) use crate::thresholds::MOST_DRIFT;
 
 /// One finished run.
 #[derive(Clone, Debug, PartialEq)]
@@ -261,4 +217,81 @@ fn numbered(column: &Column, row: usize) -> Option<(String, f64)> {
         Values::Text(values) => Some((format!("{name}={}", values[row]), 1.0)),
         Values::Boolean(_) => None,
     }
+}
+
+/// A table of these runs.
+pub(crate) fn table_of(runs: &[Run]) -> Table {
+    let reals = |value: &dyn Fn(&Run) -> f64| Values::Real(runs.iter().map(value).collect());
+    let integers = |value: &dyn Fn(&Run) -> i64| Values::Integer(runs.iter().map(value).collect());
+    let texts = |value: &dyn Fn(&Run) -> String| Values::Text(runs.iter().map(value).collect());
+    let start = |run: &Run| {
+        if run.start == Start::Jammed {
+            "jammed"
+        } else {
+            "rest"
+        }
+        .to_owned()
+    };
+    let mut columns: Vec<(String, Values)> = Vec::new();
+    let mut add = |name: &str, values| columns.push((name.to_owned(), values));
+    add("identity", texts(&|run| run.identity.clone()));
+    add("initial_state", texts(&start));
+    add("width", reals(&|run| run.width));
+    add("strain_rate", reals(&|run| run.strain_rate));
+    add("volume_fraction", reals(&|run| run.volume_fraction));
+    add("radius", reals(&|run| run.radius));
+    add("wavelength", reals(&|run| run.wavelength));
+    add("time", reals(&|run| run.time));
+    add("flow_rate_ratio", reals(&|run| run.flow_rate_ratio));
+    add(
+        "flow_rate_ratio_error",
+        reals(&|run| run.flow_rate_ratio_error),
+    );
+    add(
+        "flow_rate_ratio_drift",
+        reals(&|run| run.flow_rate_ratio_drift),
+    );
+    add("transition_time", reals(&|run| run.transition_time));
+    add(
+        "transition_threshold",
+        reals(&|run| run.transition_threshold),
+    );
+    for place in 0..THRESHOLDS.len() {
+        let name = format!("transition_time_{}", 10 * (place + 1));
+        add(&name, reals(&|run| run.transition_times[place]));
+    }
+    add(
+        "spheres_per_ring",
+        integers(&|run| run.lattice.spheres_per_ring),
+    );
+    add(
+        "rings_per_wave",
+        integers(&|run| run.lattice.rings_per_wave),
+    );
+    add("grains", integers(&|run| run.grains));
+    add("waves", integers(&|run| run.waves));
+    add("escaped", integers(&|run| run.escaped));
+    add("replicate", integers(&|run| run.replicate));
+    let mut axes: Vec<&str> = runs
+        .iter()
+        .flat_map(|run| run.axes.iter().map(|(name, _)| name.as_str()))
+        .collect();
+    axes.sort_unstable();
+    axes.dedup();
+    for name in axes {
+        match name.split_once('=') {
+            Some((key, text)) => add(
+                key,
+                texts(&|run| run.axis(name).map_or(String::new(), |_| text.to_owned())),
+            ),
+            None => add(name, reals(&|run| run.axis(name).unwrap_or(f64::NAN))),
+        }
+    }
+    columns
+        .into_iter()
+        .fold(Table::builder(), |table, (name, values)| {
+            table.column(name, "", "", values)
+        })
+        .build()
+        .expect("each column has a value a run")
 }

@@ -11,8 +11,8 @@ use std::path::Path;
 use std::time::Duration;
 
 use peristalsis_reproduce::{
-    Claim, ClaimError, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Reproduction,
-    Size, Statistics, StudyFile, Verdict, chosen,
+    Claim, ClaimError, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Prose,
+    Reproduction, Size, Statistics, StudyFile, Verdict, chosen,
 };
 use peristalsis_study::{Effort, Ending, Store};
 
@@ -72,9 +72,7 @@ const fn claim(
 ) -> Claim {
     Claim {
         id,
-        title: "tested",
-        statement: "",
-        source: "",
+        prose: Prose::new("# tested\n"),
         studies,
         examine,
     }

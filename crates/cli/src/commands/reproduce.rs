@@ -172,7 +172,7 @@ fn summary(report: &Report) -> String {
                 "{:<4} {:<11} {}\n",
                 examination.claim.id,
                 examination.finding.verdict.name(),
-                plain_text(examination.claim.title)
+                plain_text(examination.claim.prose.title())
             )
         })
         .collect()

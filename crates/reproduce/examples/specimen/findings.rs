@@ -8,8 +8,8 @@ use peristalsis_figures::{
 };
 use peristalsis_reproduce::report::{Program, Report};
 use peristalsis_reproduce::{
-    Claim, ClaimError, Evidence, Examination, Finding, Quantity, ReportFigure, ReportTable, Size,
-    Statistics, StudyFile, StudyOutcome, Verdict,
+    Claim, ClaimError, Evidence, Examination, Finding, Prose, Quantity, ReportFigure, ReportTable,
+    Size, Statistics, StudyFile, StudyOutcome, Verdict,
 };
 
 const STUDY: &str = r#"# Transition times from rest as the bottleneck widens to the critical one.
@@ -46,15 +46,12 @@ fn unexamined(_: &Evidence) -> Result<Finding, ClaimError> {
 
 const fn claim(
     id: &'static str,
-    title: &'static str,
-    statement: &'static str,
+    markdown: &'static str,
     studies: &'static [&'static str],
 ) -> Claim {
     Claim {
         id,
-        title,
-        statement,
-        source: "talk, slides 14 to 18",
+        prose: Prose::new(markdown),
         studies,
         examine: unexamined,
     }
@@ -63,40 +60,40 @@ const fn claim(
 const CLAIMS: [Claim; 6] = [
     claim(
         "F1",
-        "Two kinds of flow",
-        "From rest, a wide bottleneck keeps a steady slow flow; in a narrow one an unsteady slow flow turns at a time *τ* into a \
-         steady fast one with *J* near *J*_{max}.",
+        "# Two kinds of flow\n\nSource: talk, slides 14 to 18\n\n\
+         From rest, a wide bottleneck keeps a steady slow flow; in a narrow one an unsteady slow flow turns at a time *τ* into a \
+         steady fast one with *J* near *J*_{max}.\n",
         &["divergence-fine"],
     ),
     claim(
         "F2",
-        "The transition time diverges",
-        "*τ* diverges as *w* → *w*_c from below: *τ* ~ (*w*_c − *w*)^{−1}.",
+        "# The transition time diverges\n\nSource: talk, slides 14 to 18\n\n\
+         *τ* diverges as *w* → *w*_c from below: *τ* ~ (*w*_c − *w*)^{−1}.\n",
         &["divergence-fine"],
     ),
     claim(
         "F6",
-        "The flow rate jumps",
-        "The stationary *J*/*J*_{max} against *w* jumps at *w*_c(*ε\u{307}*): a discontinuous transition, which peristalsis of a \
-         Newtonian fluid does not have.",
+        "# The flow rate jumps\n\nSource: talk, slides 14 to 18\n\n\
+         The stationary *J*/*J*_{max} against *w* jumps at *w*_c(*ε\u{307}*): a discontinuous transition, which peristalsis of a \
+         Newtonian fluid does not have.\n",
         &["divergence-fine", "divergence-coarse"],
     ),
     claim(
         "F7",
-        "The critical bottleneck shrinks with the strain rate",
-        "*w*_c falls linearly with *ε\u{307}*: *w*_c = −3.75 *ε\u{307}* + *w*_{max}.",
+        "# The critical bottleneck shrinks with the strain rate\n\nSource: talk, slides 14 to 18\n\n\
+         *w*_c falls linearly with *ε\u{307}*: *w*_c = −3.75 *ε\u{307}* + *w*_{max}.\n",
         &["divergence-fine", "divergence-coarse"],
     ),
     claim(
         "F9",
-        "Hysteresis",
-        "From jammed, a narrow bottleneck stays jammed and a wide one turns at some time into slow flow, at *w*'_c ≠ *w*_c.",
+        "# Hysteresis\n\nSource: talk, slides 14 to 18\n\n\
+         From jammed, a narrow bottleneck stays jammed and a wide one turns at some time into slow flow, at *w*'_c ≠ *w*_c.\n",
         &["divergence-coarse"],
     ),
     claim(
         "Q1",
-        "Slow waves",
-        "What is *w*_c for *ε\u{307}* ≤ 10^{−2}?",
+        "# Slow waves\n\nSource: talk, slides 14 to 18\n\n\
+         What is *w*_c for *ε\u{307}* ≤ 10^{−2}?\n",
         &["divergence-coarse"],
     ),
 ];

@@ -13,15 +13,15 @@ use crate::critical::{longest, strain_rates};
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::runs::{Lattice, Run, Start};
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("f1.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "F1",
-    title: "Slow unjammed flow, and a transition to fast jammed flow",
-    statement: "From rest: at large *w* the flow stays slow, steady and unjammed; at small *w* an unsteady unjammed flow turns \
-                at a time *τ* into a steady fast jammed flow with *J* near *J*_{max}.",
-    source: "talk",
+    prose: PROSE,
     studies: &["flow-in-time", "branches-fine", "branches-coarse"],
     examine,
 };

@@ -12,13 +12,14 @@ use crate::critical::{Line, WINDOW};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::text::{estimate, interval, number};
+
+const PROSE: Prose = Prose::new(include_str!("f2.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F2",
-    title: "The transition time diverges at the critical bottleneck",
-    statement: "From below, the transition time diverges as *τ* ~ (*w*_{c} − *w*)^{−1}.",
-    source: "talk",
+    prose: PROSE,
     studies: &[
         "divergence-fine",
         "divergence-coarse",

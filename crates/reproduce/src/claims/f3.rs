@@ -7,13 +7,13 @@ use crate::critical::Line;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Statistics};
+use crate::prose::Prose;
+
+const PROSE: Prose = Prose::new(include_str!("f3.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F3",
-    title: "Transition times of all strain rates collapse",
-    statement: "*τ* ~ *ε̇*^{−7/2} *f*((*w*_{c} − *w*)/*ε̇*^{3/2}) with *f*(*x*) ~ *x*^{−1} for *x* ~ 1: the data of several \
-                strain rates fall on one curve.",
-    source: "talk",
+    prose: PROSE,
     studies: &[
         "divergence-fine",
         "divergence-coarse",

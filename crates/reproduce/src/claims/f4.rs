@@ -12,14 +12,14 @@ use crate::critical::{Line, WINDOW};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::text::{estimate, interval, number};
+
+const PROSE: Prose = Prose::new(include_str!("f4.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F4",
-    title: "The scatter of the transition times diverges faster",
-    statement: "*χ_{τ}* = ⟨*τ*^2⟩ − ⟨*τ*⟩^2 ~ (*w*_{c} − *w*)^{−3}, and *χ_{τ}* ~ *ε̇*^{−7} \
-                *g*((*w*_{c} − *w*)/*ε̇*^{3/2}) with *g*(*x*) ~ *x*^{−3} for *x* ~ 1.",
-    source: "talk",
+    prose: PROSE,
     studies: &[
         "divergence-fine",
         "divergence-coarse",

@@ -14,14 +14,14 @@ use crate::critical::strain_rates;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::text::{estimate, number, with_error};
+
+const PROSE: Prose = Prose::new(include_str!("f5.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F5",
-    title: "The fluctuation of the flow rate peaks near the critical bottleneck",
-    statement: "The peak in time of the ensemble's second moment of the flow rate, *χ_{J}* = ⟨*j*^2⟩ − ⟨*j*⟩^2 with \
-                *j* = *J*/*J*_{max}, diverges near *w*_{c} as a power law and obeys a scaling relation.",
-    source: "abstract of the paper; its exponents are not known to us",
+    prose: PROSE,
     studies: &["second-moment"],
     examine,
 };

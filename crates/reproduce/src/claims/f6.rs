@@ -14,15 +14,15 @@ use crate::critical::{longest, strain_rates, weighted_mean};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::runs::{Lattice, Run, Start};
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("f6.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "F6",
-    title: "The stationary flow jumps at the critical bottleneck",
-    statement: "The stationary *J*/*J*_{max} against *w* jumps at *w*_{c}(*ε̇*): a discontinuous transition, which Newtonian \
-                peristalsis does not have.",
-    source: "talk",
+    prose: PROSE,
     studies: &["branches-fine", "branches-coarse"],
     examine,
 };

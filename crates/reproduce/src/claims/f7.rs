@@ -12,13 +12,14 @@ use crate::critical::{Line, WINDOW};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::text::{estimate, interval, number};
+
+const PROSE: Prose = Prose::new(include_str!("f7.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "F7",
-    title: "The critical bottleneck narrows linearly with the strain rate",
-    statement: "*w*_{c} = −3.75 *ε̇* + *w*_{max}.",
-    source: "talk",
+    prose: PROSE,
     studies: &[
         "divergence-fine",
         "divergence-coarse",

@@ -12,15 +12,15 @@ use crate::crossing::crossing;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::runs::{Run, Start};
 use crate::text::{estimate, number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("f8.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "F8",
-    title: "Denser grains flow slower, at the same critical bottleneck",
-    statement: "At one *ε̇*, for 0.15 ≤ *ρ* ≤ 0.60: *J*/*J*_{max} decreases with *ρ*, *w*_{c} hardly depends on *ρ*, and \
-                *α* ~ 1.",
-    source: "talk",
+    prose: PROSE,
     studies: &["density-fine", "density-coarse"],
     examine,
 };

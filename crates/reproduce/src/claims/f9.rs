@@ -11,15 +11,15 @@ use crate::critical::{longest, strain_rates};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::prose::Prose;
 use crate::runs::{Lattice, Run, Start};
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("f9.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "F9",
-    title: "Hysteresis: a transition of first order",
-    statement: "From jammed: at small *w* the flow stays jammed, at large *w* it turns at some time into unjammed flow, at \
-                *w*_{c}′ ≠ *w*_{c}: a first-order transition.",
-    source: "talk",
+    prose: PROSE,
     studies: &["branches-fine", "branches-coarse", "jam-lifetime"],
     examine,
 };

@@ -11,15 +11,15 @@ use crate::critical::{longest, strain_rates};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::runs::Start;
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("q1.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q1",
-    title: "Small strain rates: does the critical width turn back?",
-    statement: "The source leaves open *w*_{c} for *ε̇* ≤ 10^{−2}. First runs with a threshold of one half suggested that it \
-                turns back below *ε̇* ~ 0.03 on the coarse lattice.",
-    source: "open in the source",
+    prose: PROSE,
     studies: &[
         "small-strain-rate-coarse",
         "small-strain-rate-fine",

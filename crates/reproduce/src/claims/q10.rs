@@ -10,15 +10,15 @@ use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
 use crate::forces::{ForceBranch, LEAST_JUMP, escaped_at, leaking, outside};
+use crate::prose::Prose;
 use crate::runs::{Run, Start};
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q10.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q10",
-    title: "What the source does not give of the elastic tube",
-    statement: "The source gives no stiffness of the wall's springs, no natural length, nothing of what keeps the wall in place, and \
-                pictures at one density. How far do the conclusions S2 to S5 depend on these?",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["elastic-sensitivity"],
     examine,
 };

@@ -10,15 +10,15 @@ use crate::crossing::{behind, crossing, grouped};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::runs::Run;
 use crate::text::estimate;
 
+const PROSE: Prose = Prose::new(include_str!("q11.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q11",
-    title: "The method: time step, neighbour list, integrator",
-    statement: "The source gives its time step and integrator, but not what they do to its numbers. How far do *w*_{c} and \
-                *J* move with the time step, the skin of the neighbour list and the integrator?",
-    source: "not in the source",
+    prose: PROSE,
     studies: &["method-fine", "method-coarse"],
     examine,
 };
@@ -84,7 +84,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let mut words = Vec::new();
     for (study, lattice) in STUDIES {
         let mut outcomes = Vec::new();
-        for (method, here) in grouped(&evidence.study(study)?.runs, Method::of) {
+        for (method, here) in grouped(&evidence.study(study)?.runs, |run| Method::of(run)) {
             behind_all.push(behind(&here));
             outcomes.extend(outcome(method, &here));
         }

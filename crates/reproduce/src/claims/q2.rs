@@ -9,14 +9,15 @@ use crate::crossing::{behind, crossing, grouped};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::runs::Run;
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("q2.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q2",
-    title: "The critical width against the roughness of the wall",
-    statement: "The source does not give the arrangement of the wall spheres. How does *w*_{c} depend on it?",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["roughness"],
     examine,
 };

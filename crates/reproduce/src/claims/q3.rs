@@ -9,15 +9,15 @@ use crate::crossing::{behind, crossing, grouped};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::runs::Run;
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("q3.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q3",
-    title: "What sets the critical width: softness or geometry?",
-    statement: "The source leaves open what sets *w*_{max} and the slope. *w*_{c} against the restitution *e*, the softness \
-                *c*(*m*/*k*)^{1/2}/*d*, the wavelength *λ*/*a* and the radius *a*/*d*, one at a time.",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["restitution", "softness", "wavelength", "radius"],
     examine,
 };

@@ -11,15 +11,15 @@ use crate::crossing::{behind, crossing, grouped};
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::runs::{Run, Start};
 use crate::text::{estimate, number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q4.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q4",
-    title: "Longer tubes: a sharper jump, and where a jam begins",
-    statement: "Is the jump sharper in longer tubes? Does a jam begin somewhere and spread, so that long tubes jam sooner, or \
-                everywhere at once?",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["length"],
     examine,
 };

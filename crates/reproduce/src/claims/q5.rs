@@ -10,14 +10,14 @@ use crate::critical::{Line, WINDOW, weighted_mean};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::text::{estimate, number};
+
+const PROSE: Prose = Prose::new(include_str!("q5.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "Q5",
-    title: "Is the divergence real?",
-    statement: "F2 with F4 implies *χ_{τ}*/*τ*^2 ~ 1/(*w*_{c} − *w*), while nucleation by chance would give 1, and F9 says first \
-                order. Is the law a power, or a barrier?",
-    source: "open in the source",
+    prose: PROSE,
     studies: &[
         "divergence-fine",
         "divergence-coarse",

@@ -8,16 +8,15 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::rows::{Mean, Row, behind, by, mean, mean_of};
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q6.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q6",
-    title: "The mechanism of back flow",
-    statement: "Frictional grains flow back at small force (S4). Is it friction, or the wall that moves along the tube? The axial \
-                momentum balance in the wave frame, and *J* against friction, against the axial tether of the wall from free to \
-                pinned, and against the strain rate.",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["back-flow"],
     examine,
 };

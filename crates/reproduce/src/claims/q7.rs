@@ -9,17 +9,16 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::rows::{Mean, Row, behind, by, mean};
 use crate::runs::{MOST_DRIFT, Start};
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q7.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q7",
-    title: "Friction and control of the wall, two by two",
-    statement: "The two models of the source differ in the grains and in the wall at once. Which transitions belong to friction, \
-                which to the wall that a force drives? Grains with and without friction in a prescribed and in an elastic wall, at \
-                one density and at the same bottlenecks.",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["two-by-two-strain", "two-by-two-stress"],
     examine,
 };

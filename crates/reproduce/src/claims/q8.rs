@@ -9,17 +9,16 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::rows::{Mean, Row, behind, by, mean, mean_of};
 use crate::runs::MOST_DRIFT;
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q8.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q8",
-    title: "Is the transition continuous at a small wave speed?",
-    statement: "The source finds a discontinuous transition in the force for fast waves and none, or a continuous one, for slow \
-                waves (S3). Does the rise of the flow sharpen in longer tubes, do its fluctuations grow there, and does the loop of \
-                a slow sweep of the force close?",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["small-speed-size", "sweep-up", "sweep-down"],
     examine,
 };

@@ -11,16 +11,15 @@ use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportTable, Statistics, Verdict};
+use crate::prose::Prose;
 use crate::rows::{Mean, Row, behind, by, mean, mean_of};
 use crate::text::{estimate, number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("q9.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "Q9",
-    title: "Pumping: characteristic curve and efficiency",
-    statement: "How large a back pressure does either model pump against, and with what efficiency (power of the flow against the \
-                pressure over that of the wall)? With the pressure and the shear on the wall, the time that a grain stays, its \
-                axial dispersion, and other waveforms than the sine.",
-    source: "open in the source",
+    prose: PROSE,
     studies: &["pumping-frictionless", "pumping-frictional"],
     examine,
 };

@@ -13,15 +13,15 @@ use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
 use crate::forces::{CLEAR, ForceLine, together};
+use crate::prose::Prose;
 use crate::runs::Run;
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("s1.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "S1",
-    title: "Flow fields of frictional grains in an elastic tube",
-    statement: "At *n* = 0.710 and *ε̇* = 4.01 × 10^{−3}: snapshots of the flow at *f*^{P} = 0.005, 0.004 and 0.002 *Yd*^{2}, the \
-                last for grains with rotation and friction beside those without (colours: velocity along *z*).",
-    source: "talk",
+    prose: PROSE,
     studies: &["elastic-flow", "elastic-branches"],
     examine,
 };

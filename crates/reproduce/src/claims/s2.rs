@@ -12,14 +12,15 @@ use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
 use crate::forces::{ForceLine, together};
+use crate::prose::Prose;
 use crate::runs::{Run, Start};
 use crate::text::{number, with_error};
 
+const PROSE: Prose = Prose::new(include_str!("s2.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "S2",
-    title: "Jammed flow gives way where the wall yields",
-    statement: "*J*(*t*): for certain *f*^{P} the flow turns from jammed to unjammed, because the walls are stress-controlled.",
-    source: "talk",
+    prose: PROSE,
     studies: &["elastic-yielding", "elastic-branches"],
     examine,
 };

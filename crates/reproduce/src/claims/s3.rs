@@ -15,14 +15,15 @@ use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
 use crate::forces::{ForceLine, Kind, LEAST_JUMP, MOST_ESCAPED, outside, together};
+use crate::prose::Prose;
 use crate::runs::Run;
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("s3.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "S3",
-    title: "The flow jumps with the force at large wave speeds only",
-    statement: "The stationary *J* against *f*^{P}: a discontinuous transition for large *c*; none, or a continuous one, for small *c*.",
-    source: "talk",
+    prose: PROSE,
     studies: &["elastic-branches", "elastic-extremes"],
     examine,
 };

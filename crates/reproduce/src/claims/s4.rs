@@ -12,13 +12,14 @@ use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
 use crate::forces::{ForceLine, ForcePoint, LEAST_JUMP, together};
+use crate::prose::Prose;
 use crate::text::{number, with_error};
+
+const PROSE: Prose = Prose::new(include_str!("s4.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "S4",
-    title: "Back flow at small forces",
-    statement: "*J* can be negative for small *f*^{P}: grains flow against the wave.",
-    source: "talk",
+    prose: PROSE,
     studies: &["elastic-branches", "elastic-extremes"],
     examine,
 };

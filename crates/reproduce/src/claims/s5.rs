@@ -14,14 +14,14 @@ use crate::error::ClaimError;
 use crate::evidence::Evidence;
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
 use crate::forces::{ForceLine, ForcePoint, together};
+use crate::prose::Prose;
 use crate::text::{number, with_error};
+
+const PROSE: Prose = Prose::new(include_str!("s5.md"));
 
 pub(super) const CLAIM: Claim = Claim {
     id: "S5",
-    title: "Frictionless grains in the elastic tube: no back flow?",
-    statement: "Is *J* never negative for frictionless grains? (A question in the source, with figures that suggest it: because of \
-                friction?)",
-    source: "talk, a question",
+    prose: PROSE,
     studies: &[
         "elastic-frictionless",
         "elastic-branches",

@@ -14,15 +14,15 @@ use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
 use crate::forces::{CLEAR, ForceLine, MOST_ESCAPED, together};
+use crate::prose::Prose;
 use crate::runs::{Run, Start};
 use crate::text::{estimate, number};
 
+const PROSE: Prose = Prose::new(include_str!("s6.md"));
+
 pub(super) const CLAIM: Claim = Claim {
     id: "S6",
-    title: "Two kinds of unjammed flow",
-    statement: "The unjammed flow of frictional grains in the elastic tube differs from that of the frictionless model: compare density, \
-                velocity and temperature in the wave frame.",
-    source: "talk",
+    prose: PROSE,
     studies: &["elastic-flow", "elastic-branches", "unjammed-frictionless"],
     examine,
 };

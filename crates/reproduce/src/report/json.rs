@@ -21,7 +21,7 @@ struct Document<'a> {
 struct Claim<'a> {
     id: &'a str,
     title: &'a str,
-    statement: &'a str,
+    statement: String,
     source: &'a str,
     verdict: Verdict,
     summary: &'a str,
@@ -97,9 +97,9 @@ fn claim<'a>(
     } = examination;
     Claim {
         id: claim.id,
-        title: claim.title,
-        statement: claim.statement,
-        source: claim.source,
+        title: claim.prose.title(),
+        statement: claim.prose.statement(),
+        source: claim.prose.source(),
         verdict: finding.verdict,
         summary: &finding.summary,
         statistics: finding.statistics,

@@ -51,9 +51,7 @@ mod tests {
     fn claim(id: &'static str, studies: &'static [&'static str]) -> Claim {
         Claim {
             id,
-            title: "",
-            statement: "",
-            source: "",
+            prose: crate::Prose::new(""),
             studies,
             examine: unexamined,
         }

@@ -23,12 +23,12 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
     html! {
         section.claim #(name) aria-labelledby={ (name) "-title" } {
             header {
-                h2 id={ (name) "-title" } { span.id { (claim.id) } " " (rich(claim.title)) }
+                h2 id={ (name) "-title" } { span.id { (claim.id) } " " (rich(claim.prose.title())) }
                 (verdict_badge(examination))
             }
             blockquote {
-                p { (rich(claim.statement)) }
-                @if !claim.source.is_empty() { footer { (rich(claim.source)) } }
+                p { (rich(&claim.prose.statement())) }
+                @if !claim.prose.source().is_empty() { footer { (rich(claim.prose.source())) } }
             }
             @if let Some(failure) = failure {
                 p.failure role="note" { b { "This claim could not be examined. " } (failure) }

@@ -59,7 +59,7 @@ fn navigation(report: &Report) -> Markup {
                             span.mark.(examination.finding.verdict.name()) aria-hidden="true" {}
                             span.id { (examination.claim.id) }
                             " "
-                            span { (rich(examination.claim.title)) }
+                            span { (rich(examination.claim.prose.title())) }
                         }
                     }
                 }
@@ -124,7 +124,7 @@ fn overview(report: &Report) -> Markup {
                             tr {
                                 th scope="row" {
                                     a href={ "#" (anchor(examination.claim.id)) } {
-                                        span.id { (examination.claim.id) } " " (rich(examination.claim.title))
+                                        span.id { (examination.claim.id) } " " (rich(examination.claim.prose.title()))
                                     }
                                 }
                                 td { (verdict_badge(examination)) }

@@ -1,0 +1,73 @@
+//! Tables and figures that claims draw alike.
+
+use peristalsis_analysis::Uncertain;
+use peristalsis_figures::chart::Points;
+use peristalsis_figures::{ColourScale, Quantity, Units};
+
+use crate::branch::Branch;
+use crate::text::estimate;
+
+/// What stands in a cell without a value.
+pub(crate) const NONE: &str = "–";
+
+/// A cell with a number and its error, or a dash.
+pub(crate) fn cell(number: Option<Uncertain>) -> String {
+    number.map_or(NONE.to_owned(), |number| estimate(&number))
+}
+
+/// A cell with the text of a value, or a dash.
+pub(crate) fn cell_of<T>(value: Option<T>, text: impl Fn(T) -> String) -> String {
+    value.map_or(NONE.to_owned(), text)
+}
+
+/// Label of an axis of the prescribed tube.
+pub(crate) fn label(quantity: Quantity) -> String {
+    quantity.label(Units::Linear)
+}
+
+/// Points with error bars; an error that is not known is not drawn. `None` without a point.
+pub(crate) fn points(
+    name: &str,
+    points: impl IntoIterator<Item = (f64, Uncertain)>,
+) -> Option<Points> {
+    let (x, y): (Vec<f64>, Vec<Uncertain>) = points.into_iter().unzip();
+    let values: Vec<f64> = y.iter().map(|y| y.value).collect();
+    let known = |error: f64| if error.is_finite() { error } else { 0.0 };
+    let errors: Vec<f64> = y.iter().map(|y| known(y.error)).collect();
+    (!x.is_empty()).then(|| Points::new(name, &x, &values).y_errors(&errors))
+}
+
+/// A branch as joined points with error bars.
+pub(crate) fn branch_points(name: &str, branch: &Branch<'_>) -> Option<Points> {
+    points(name, branch.flows()).map(Points::joined)
+}
+
+/// Least and largest of some numbers; `None` where they do not differ.
+pub(crate) fn ends(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    let ends = numbers.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, largest), x| {
+        (least.min(x), largest.max(x))
+    });
+    (ends.0 < ends.1).then_some(ends)
+}
+
+/// Colours for strain rates; `otherwise` are the ends of the scale where these do not differ.
+pub(crate) fn rate_colours(
+    rates: impl Iterator<Item = f64>,
+    otherwise: (f64, f64),
+    units: Units,
+) -> ColourScale {
+    let (least, largest) = ends(rates).unwrap_or(otherwise);
+    ColourScale::new(&Quantity::StrainRate.label(units), least, largest).logarithmic()
+}
+
+/// Equally spaced numbers from end to end.
+pub(crate) fn spaced(from: f64, to: f64, count: usize) -> Vec<f64> {
+    (0..count)
+        .map(|place| from + (to - from) * place as f64 / (count.max(2) - 1) as f64)
+        .collect()
+}
+
+/// The middles of so many periods, counted from 0.
+pub(crate) fn periods(count: usize) -> Vec<f64> {
+    (0..count).map(|number| number as f64 + 0.5).collect()
+}

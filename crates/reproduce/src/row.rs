@@ -1,0 +1,365 @@
+//! Rows of finished runs: the one form in which claims read runs.
+
+use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
+use peristalsis_formats::{FormatError, Table, Values};
+use peristalsis_run::THRESHOLDS;
+
+use crate::finding::Statistics;
+use crate::thresholds::MOST_DRIFT;
+
+/// Columns of numbers that every table of runs has, besides the transition times at [`THRESHOLDS`].
+const NUMBERS: [&str; 9] = [
+    "width",
+    "strain_rate",
+    "volume_fraction",
+    "radius",
+    "wavelength",
+    "time",
+    "flow_rate_ratio",
+    "flow_rate_ratio_error",
+    "transition_time",
+];
+/// Columns of whole numbers that every table of runs has.
+const WHOLE_NUMBERS: [&str; 6] = [
+    "spheres_per_ring",
+    "rings_per_wave",
+    "grains",
+    "waves",
+    "escaped",
+    "replicate",
+];
+
+/// How the grains stood at t = 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Start {
+    /// J = 0.
+    Rest,
+    /// J = Jmax.
+    Jammed,
+}
+
+/// Arrangement of the wall spheres.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Lattice {
+    /// Spheres a ring.
+    pub spheres_per_ring: i64,
+    /// Rings a wavelength.
+    pub rings_per_wave: i64,
+}
+
+impl Lattice {
+    /// 24 x 26, nearly smooth.
+    pub const FINE: Self = Self {
+        spheres_per_ring: 24,
+        rings_per_wave: 26,
+    };
+    /// 12 x 14, rough.
+    pub const COARSE: Self = Self {
+        spheres_per_ring: 12,
+        rings_per_wave: 14,
+    };
+
+    /// "fine", "coarse", or the numbers.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::FINE => "fine".to_owned(),
+            Self::COARSE => "coarse".to_owned(),
+            Self {
+                spheres_per_ring,
+                rings_per_wave,
+            } => format!("{spheres_per_ring} × {rings_per_wave}"),
+        }
+    }
+}
+
+/// One finished run: a row of a study's table.
+#[derive(Clone, Copy, Debug)]
+pub struct Row<'a> {
+    table: &'a Table,
+    row: usize,
+}
+
+/// Checks that a table has the columns that every table of runs has.
+pub(crate) fn check(table: &Table) -> Result<(), FormatError> {
+    if table.rows() == 0 {
+        return Ok(());
+    }
+    for name in ["identity", "initial_state"] {
+        table.texts(name)?;
+    }
+    for name in NUMBERS {
+        table.reals(name)?;
+    }
+    for name in WHOLE_NUMBERS {
+        table.integers(name)?;
+    }
+    for place in 0..THRESHOLDS.len() {
+        table.reals(&threshold_column(place))?;
+    }
+    Ok(())
+}
+
+/// All rows of a table.
+pub(crate) fn rows_of(table: &Table) -> Vec<Row<'_>> {
+    (0..table.rows()).map(|row| Row { table, row }).collect()
+}
+
+/// Column of the transition time at one of [`THRESHOLDS`].
+fn threshold_column(place: usize) -> String {
+    format!("transition_time_{}", 10 * (place + 1))
+}
+
+impl<'a> Row<'a> {
+    /// A number; NaN where the column is missing or holds no numbers.
+    #[must_use]
+    pub fn number(&self, column: &str) -> f64 {
+        match self.table.column(column).map(|column| &column.values) {
+            Ok(Values::Real(values)) => values[self.row],
+            Ok(Values::Integer(values)) => values[self.row] as f64,
+            _ => f64::NAN,
+        }
+    }
+
+    /// A text; empty where the column is missing or holds no texts.
+    #[must_use]
+    pub fn text(&self, column: &str) -> &'a str {
+        match self.table.column(column).map(|column| &column.values) {
+            Ok(Values::Text(values)) => &values[self.row],
+            _ => "",
+        }
+    }
+
+    /// Whether its table has a column.
+    pub(crate) fn has(&self, column: &str) -> bool {
+        self.table.column(column).is_ok()
+    }
+
+    /// Name of the run.
+    #[must_use]
+    pub fn identity(&self) -> &'a str {
+        self.text("identity")
+    }
+
+    /// How the grains stood at t = 0.
+    #[must_use]
+    pub fn start(&self) -> Start {
+        match self.text("initial_state") {
+            "jammed" => Start::Jammed,
+            _ => Start::Rest,
+        }
+    }
+
+    /// Arrangement of the wall spheres.
+    #[must_use]
+    pub fn lattice(&self) -> Lattice {
+        Lattice {
+            spheres_per_ring: self.number("spheres_per_ring") as i64,
+            rings_per_wave: self.number("rings_per_wave") as i64,
+        }
+    }
+
+    /// Number of the replicate.
+    #[must_use]
+    pub fn replicate(&self) -> i64 {
+        self.number("replicate") as i64
+    }
+
+    /// w \[d\]; NaN under stress control.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.number("width")
+    }
+
+    /// f^P; NaN under strain control.
+    #[must_use]
+    pub fn force(&self) -> f64 {
+        self.number("force_amplitude")
+    }
+
+    /// epsdot = c/lambda \[1/t\].
+    #[must_use]
+    pub fn strain_rate(&self) -> f64 {
+        self.number("strain_rate")
+    }
+
+    /// Period of the wave \[t\].
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        1.0 / self.strain_rate()
+    }
+
+    /// lambda \[d\].
+    #[must_use]
+    pub fn wavelength(&self) -> f64 {
+        self.number("wavelength")
+    }
+
+    /// c \[d/t\].
+    #[must_use]
+    pub fn wave_speed(&self) -> f64 {
+        self.strain_rate() * self.wavelength()
+    }
+
+    /// a \[d\].
+    #[must_use]
+    pub fn radius(&self) -> f64 {
+        self.number("radius")
+    }
+
+    /// Time reached \[t\].
+    #[must_use]
+    pub fn time(&self) -> f64 {
+        self.number("time")
+    }
+
+    /// Late mean of J/Jmax.
+    #[must_use]
+    pub fn flow_rate_ratio(&self) -> f64 {
+        self.number("flow_rate_ratio")
+    }
+
+    /// Periods that its late mean is over; 0 where the table does not say.
+    #[must_use]
+    pub fn late_periods(&self) -> f64 {
+        let periods = self.number("late_periods");
+        if periods.is_finite() { periods } else { 0.0 }
+    }
+
+    /// Whether its late mean belongs to a stationary flow: the halves of the late part differ by at most [`MOST_DRIFT`], or
+    /// the table does not say.
+    #[must_use]
+    pub fn is_stationary(&self) -> bool {
+        let drift = self.number("flow_rate_ratio_drift");
+        drift.is_nan() || drift.abs() <= MOST_DRIFT
+    }
+
+    /// Fraction of the grains outside the tube at the end.
+    #[must_use]
+    pub fn escaped_fraction(&self) -> f64 {
+        self.number("escaped") / self.number("grains").max(1.0)
+    }
+
+    /// The transition at the threshold of the study; censored at the end of the run where there was none.
+    #[must_use]
+    pub fn transition(&self) -> Transition {
+        self.transition_of(self.number("transition_time"))
+    }
+
+    /// The transition at another threshold, the nearest of [`THRESHOLDS`].
+    #[must_use]
+    pub fn transition_at(&self, threshold: f64) -> Transition {
+        let place = THRESHOLDS
+            .iter()
+            .enumerate()
+            .min_by(|(_, one), (_, other)| {
+                (*one - threshold)
+                    .abs()
+                    .total_cmp(&(*other - threshold).abs())
+            })
+            .map_or(0, |(place, _)| place);
+        self.transition_of(self.number(&threshold_column(place)))
+    }
+
+    fn transition_of(&self, time: f64) -> Transition {
+        if time.is_nan() {
+            return Transition::Censored { time: self.time() };
+        }
+        Transition::At {
+            time,
+            period: (time * self.strain_rate()) as u64,
+        }
+    }
+}
+
+/// All that have the same key together, by ascending key.
+pub(crate) fn grouped<T: Copy, K: PartialOrd + Copy>(
+    all: impl IntoIterator<Item = T>,
+    key: impl Fn(&T) -> K,
+) -> Vec<(K, Vec<T>)> {
+    let mut keyed: Vec<(K, T)> = all.into_iter().map(|one| (key(&one), one)).collect();
+    keyed.sort_by(|one, other| {
+        one.0
+            .partial_cmp(&other.0)
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    keyed
+        .chunk_by(|one, other| one.0 == other.0)
+        .map(|group| (group[0].0, group.iter().map(|(_, one)| *one).collect()))
+        .collect()
+}
+
+/// The rows of each strain rate, by ascending one.
+pub(crate) fn by_strain_rate<'a>(
+    rows: impl IntoIterator<Item = Row<'a>>,
+) -> Vec<(f64, Vec<Row<'a>>)> {
+    grouped(rows, Row::strain_rate)
+}
+
+/// Longest time that a run was given, in whole periods.
+pub(crate) fn longest<'a>(rows: impl IntoIterator<Item = &'a Row<'a>>) -> f64 {
+    rows.into_iter()
+        .map(|row| row.time() * row.strain_rate())
+        .fold(0.0, f64::max)
+        .round()
+}
+
+/// The mean of the finite values in a column; its standard error is the larger of two: from the errors in the column of the
+/// same name with `_error`, and from the scatter of the values. NaN where neither is known; `None` without a finite value.
+pub(crate) fn mean(rows: &[Row<'_>], column: &str) -> Option<Uncertain> {
+    let errors = format!("{column}_error");
+    mean_of(rows, |row| (row.number(column), row.number(&errors)))
+}
+
+/// [`mean`] of a value with its error.
+pub(crate) fn mean_of(
+    rows: &[Row<'_>],
+    value: impl Fn(&Row<'_>) -> (f64, f64),
+) -> Option<Uncertain> {
+    let known = rows
+        .iter()
+        .map(value)
+        .filter(|(value, _)| value.is_finite());
+    let (values, errors): (Vec<f64>, Vec<f64>) = known.unzip();
+    let (mean, scatter) = mean_and_error(&values);
+    let squares: f64 = errors.iter().map(|error| error * error).sum();
+    // The maximum takes the one that is known where the other is not.
+    let error = (squares.sqrt() / values.len() as f64).max(scatter);
+    (!values.is_empty()).then(|| Uncertain::normal(mean, error))
+}
+
+/// How much is behind some rows of one strain rate that differ in a control, which counts as the width, and in the replicate.
+pub(crate) fn behind<'a>(rows: &[Row<'a>], control: impl Fn(&Row<'a>) -> f64) -> Statistics {
+    Statistics::at_one_rate(rows.iter().map(control))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table() -> Table {
+        let real = |values: &[f64]| Values::Real(values.to_vec());
+        Table::builder()
+            .column("width", "d", "", real(&[2.0, 1.0, 2.0, 2.0]))
+            .column("flow", "1", "", real(&[0.4, 0.9, 0.6, f64::NAN]))
+            .column("flow_error", "1", "", real(&[0.01, 0.02, 0.01, 0.01]))
+            .build()
+            .unwrap()
+    }
+
+    #[test]
+    fn replicates_are_averaged_with_the_larger_error() {
+        let table = table();
+        let groups = grouped(rows_of(&table), Row::width);
+        assert_eq!(groups.len(), 2);
+        assert_eq!(groups[0].0, 1.0);
+        let alone = mean(&groups[0].1, "flow").unwrap();
+        assert_eq!((alone.value, alone.error), (0.9, 0.02));
+        let both = mean(&groups[1].1, "flow").unwrap();
+        assert!((both.value - 0.5).abs() < 1e-12 && (both.error - 0.1).abs() < 1e-12);
+        assert_eq!(mean(&groups[0].1, "pressure"), None);
+        assert!(groups[0].1[0].number("pressure").is_nan());
+        assert_eq!(behind(&groups[1].1, Row::width).replicates, 3);
+        assert!(check(&table).is_err());
+    }
+}
