@@ -30,7 +30,32 @@ pub struct Bodies {
     pub inertia: Vec<f64>,
 }
 
+/// A sphere as a contact sees it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sphere {
+    /// Centre \[d\].
+    pub position: DVec3,
+    /// \[d/t\]
+    pub velocity: DVec3,
+    /// \[1/t\]
+    pub angular_velocity: DVec3,
+    /// \[d\]
+    pub diameter: f64,
+}
+
 impl Bodies {
+    /// One of the spheres.
+    #[inline(always)]
+    #[must_use]
+    pub fn sphere(&self, index: usize) -> Sphere {
+        Sphere {
+            position: self.position[index],
+            velocity: self.velocity[index],
+            angular_velocity: self.angular_velocity[index],
+            diameter: self.diameter[index],
+        }
+    }
+
     /// Spheres at rest at the given places, with the given diameters and masses d^3 (in units of the mass of a sphere
     /// of diameter 1) and moments of inertia m d^2/10.
     #[must_use]

@@ -4,55 +4,65 @@
 //! chosen once per [`crate::Simulation::advance`].
 
 use glam::DVec3;
-use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw, TangentialLaw};
+use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 
 use crate::bodies::Bodies;
+use crate::contacts::Contacts;
+use crate::integrate::{Past, Runaway, after_forces, before_forces};
 use crate::ledger::Tally;
-use crate::neighbours::{Neighbours, PairRule, periodic};
+use crate::neighbours::{Neighbours, periodic};
+use crate::parameters::Parameters;
+use crate::steps::Stepper;
 use crate::wall::Wall;
-use crate::wall::memory::WallMemory;
 
-/// What contacts remember, between moving spheres and with a prescribed wall.
-#[derive(Clone, Debug)]
-pub(crate) struct Contacts<H> {
-    pub(crate) pairs: Neighbours<H>,
-    pub(crate) wall: WallMemory<H>,
+/// The reference kernel for one advance.
+pub(crate) struct Reference<'a, N, T: TangentialLaw> {
+    pub(crate) law: &'a ContactLaw<N, T>,
+    pub(crate) contacts: &'a mut Contacts<T::History<f64>>,
+    pub(crate) bodies: &'a mut Bodies,
+    pub(crate) past: &'a mut Past,
+    pub(crate) parameters: &'a Parameters,
+    /// Longest displacement of a step \[d\].
+    pub(crate) limit: f64,
+    /// Period of the tube \[d\].
+    pub(crate) length: f64,
 }
 
-impl<H: Copy + Default + PartialEq> Contacts<H> {
-    pub(crate) fn none() -> Self {
-        Self {
-            pairs: Neighbours::empty(),
-            wall: WallMemory::default(),
-        }
+impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
+    fn move_spheres(&mut self) -> Result<(), Runaway> {
+        let Parameters {
+            integrator,
+            time_step,
+            ..
+        } = *self.parameters;
+        before_forces(integrator, self.bodies, self.past, time_step, self.limit)?;
+        self.bodies.fold(self.length);
+        Ok(())
     }
 
-    /// Makes the neighbour list anew where it no longer holds.
-    pub(crate) fn refresh(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
-        let length = wall.lattice().length();
-        if self
-            .pairs
-            .outdated(&bodies.position, &bodies.turns, length, skin)
-        {
-            self.rebuild(bodies, wall, skin);
-        }
+    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+        let (mut bodies, mut contacts) = (self.bodies.clone(), self.contacts.clone());
+        contacts.refresh(&bodies, wall, self.parameters.skin);
+        evaluate(self.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
     }
 
-    /// Makes the neighbour list anew.
-    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
-        let grains = bodies.grains;
-        let rule = PairRule {
-            diameter: &bodies.diameter,
-            length: wall.lattice().length(),
+    fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
+        let Parameters {
+            integrator,
+            time_step,
             skin,
-            half_width: wall.usual_radius(),
-            admits_all_below: grains,
-            admits: |i: usize, j: usize| match wall {
-                Wall::Elastic(wall) => wall.may_touch(i - grains, j - grains),
-                Wall::Prescribed(_) => true,
-            },
-        };
-        self.pairs.rebuild(&bodies.position, &bodies.turns, &rule);
+            body_force,
+            ..
+        } = *self.parameters;
+        self.contacts.refresh(self.bodies, wall, skin);
+        let tally = evaluate(self.law, self.bodies, wall, self.contacts, time_step);
+        add_body_force(self.bodies, body_force);
+        after_forces(integrator, self.bodies, self.past, time_step);
+        tally
+    }
+
+    fn finish(&mut self) -> Result<(), Runaway> {
+        Ok(())
     }
 }
 
@@ -70,20 +80,9 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
         bodies.angular_acceleration.fill(DVec3::ZERO);
     }
     let length = wall.lattice().length();
-    add_pairs(
-        law,
-        bodies,
-        &mut contacts.pairs,
-        length,
-        time_step,
-        &mut tally,
-    );
-    match wall {
-        Wall::Prescribed(wall) => {
-            wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
-        }
-        Wall::Elastic(wall) => wall.add_forces(bodies, &mut tally),
-    }
+    let pairs = &mut contacts.pairs;
+    add_pairs(law, bodies, pairs, length, time_step, &mut tally);
+    wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
     // Until here the arrays held forces and torques.
     for (acceleration, mass) in bodies.acceleration.iter_mut().zip(&bodies.mass) {
         *acceleration /= *mass;
@@ -133,46 +132,30 @@ fn add_pairs<N: NormalLaw, T: TangentialLaw>(
                 }
                 continue;
             }
-            let distance = squared.sqrt();
-            let overlap = reach - distance;
-            let arms = (
-                0.5 * (diameter - overlap),
-                0.5 * (bodies.diameter[j] - overlap),
-            );
-            let contact = Contact {
-                overlap,
-                distance,
-                normal: separation * (1.0 / distance),
-                relative_velocity: velocity - bodies.velocity[j],
-                reduced_radius: diameter * bodies.diameter[j]
-                    / (2.0 * (diameter + bodies.diameter[j])),
-                spin: if T::ROTATES {
-                    arms.0 * bodies.angular_velocity[i] + arms.1 * bodies.angular_velocity[j]
-                } else {
-                    DVec3::ZERO
-                },
-            };
+            let diameters = (diameter, bodies.diameter[j]);
+            let mut contact = Contact::new(diameters, separation, velocity - bodies.velocity[j]);
             if i >= grains {
                 // Wall against wall, across a closing throat: the same normal law, no friction.
-                let smooth = ContactLaw {
-                    normal: law.normal,
-                    tangential: Frictionless,
-                };
-                let answer = smooth.force(&contact, &mut (), time_step);
+                let answer = law.frictionless().force(&contact, &mut (), time_step);
                 force += answer.force;
                 bodies.acceleration[j] -= answer.force;
                 tally.contact_energy += answer.energy;
                 tally.normal_dissipation += answer.normal_dissipation;
                 continue;
             }
+            let arms = (contact.arm(diameters.0), contact.arm(diameters.1));
+            if T::ROTATES {
+                contact.rotation =
+                    arms.0 * bodies.angular_velocity[i] + arms.1 * bodies.angular_velocity[j];
+            }
             let answer = law.force(&contact, history, time_step);
             force += answer.force;
             bodies.acceleration[j] -= answer.force;
             if T::ROTATES {
-                bodies.angular_acceleration[i] += arms.0 * answer.twist;
-                bodies.angular_acceleration[j] += arms.1 * answer.twist;
+                bodies.angular_acceleration[i] += arms.0 * answer.torque_per_arm;
+                bodies.angular_acceleration[j] += arms.1 * answer.torque_per_arm;
             }
-            tally.add_contact(&answer, overlap);
+            tally.add_contact(&answer, contact.overlap);
             if j < grains {
                 tally.grain_contacts += 1;
             } else {

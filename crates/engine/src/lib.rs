@@ -4,6 +4,7 @@
 //! [`Simulation::advance`], saved by [`Simulation::snapshot`]. [`initial`] makes the states that runs start from.
 
 pub mod bodies;
+mod contacts;
 pub mod error;
 mod fast;
 mod forces;
@@ -11,17 +12,20 @@ pub mod initial;
 pub mod integrate;
 pub mod ledger;
 pub mod neighbours;
-pub mod simulation;
+mod parameters;
+mod simulation;
 pub mod snapshot;
+mod steps;
 pub mod touching;
 pub mod wall;
 
 pub use bodies::Bodies;
 pub use error::EngineError;
 pub use fast::machine::Instructions;
-pub use integrate::Integrator;
+pub use integrate::Past;
 pub use ledger::{Ledger, Tally};
-pub use simulation::{Kernel, Parameters, Simulation};
+pub use parameters::{Integrator, Kernel, Parameters};
+pub use simulation::Simulation;
 pub use snapshot::{Snapshot, SnapshotView};
 pub use touching::Touching;
 pub use wall::Wall;

@@ -2,42 +2,25 @@
 
 use std::sync::Arc;
 
-use peristalsis_physics::contact::{
-    ContactLaw, ContactModel, CundallStrack, Frictionless, Normal, NormalLaw, TangentialHistory,
-};
-
-pub use peristalsis_physics::method::Kernel;
+use peristalsis_physics::contact::TangentialHistory;
+use peristalsis_physics::with_normal_law;
 
 use crate::bodies::Bodies;
+use crate::contacts::{Memory, with_contact_law};
 use crate::error::EngineError;
-use crate::fast;
+use crate::fast::listed;
 use crate::fast::machine::Instructions;
-use crate::fast::sorted::{Course, Sorted, Sorting};
-use crate::forces::{Contacts, add_body_force, evaluate};
-use crate::integrate::{Integrator, Past, Runaway, after_forces, before_forces};
+use crate::fast::sorted::{Sorted, Sorting};
+use crate::forces::{Reference, add_body_force, evaluate};
+use crate::integrate::{Past, Runaway};
 use crate::ledger::{Ledger, Tally};
+use crate::parameters::{Kernel, Parameters};
 use crate::snapshot::{Snapshot, SnapshotView};
+use crate::steps::Course;
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;
 use crate::wall::contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 use crate::wall::memory::WallMemory;
-
-/// How a simulation is computed.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Parameters {
-    /// The contact law.
-    pub contact: ContactModel,
-    /// The integrator of the motion.
-    pub integrator: Integrator,
-    /// Length of a step \[t\].
-    pub time_step: f64,
-    /// Skin of the neighbour list \[d\]; results depend on it by rounding at most.
-    pub skin: f64,
-    /// Which kernel computes the forces.
-    pub kernel: Kernel,
-    /// Body force on the grains: force over mass along +z, the same at all times \[d/t^2\].
-    pub body_force: f64,
-}
 
 /// Grains in a peristaltic tube, advanced in time.
 #[derive(Clone, Debug)]
@@ -52,21 +35,11 @@ pub struct Simulation {
 #[derive(Clone, Debug)]
 struct System {
     bodies: Bodies,
-    wall: Wall,
+    course: Course,
     parameters: Parameters,
     past: Past,
-    tally: Tally,
-    ledger: Ledger,
-    step: u64,
     limit: f64,
-    scratch: fast::listed::Scratch,
-}
-
-/// A law in the plane of contact together with what its contacts remember, so that they cannot disagree.
-#[derive(Clone, Debug)]
-enum Memory {
-    Smooth(Contacts<()>),
-    Frictional(CundallStrack, Contacts<TangentialHistory>),
+    scratch: listed::Scratch,
 }
 
 impl Simulation {
@@ -75,9 +48,9 @@ impl Simulation {
     pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
         let mut simulation = Self::assemble(bodies, wall, parameters);
         let Self { system, memory, .. } = &mut simulation;
-        memory.with_law(parameters.contact.normal, StartForces { system });
-        system.ledger.initial_energy = system.energy();
-        system.ledger.initial_axial_moment = system.axial_moment();
+        system.evaluate_at_rest(memory);
+        system.course.ledger.initial_energy = system.energy();
+        system.course.ledger.initial_axial_moment = system.axial_moment();
         simulation.choose_kernel(None);
         simulation
     }
@@ -85,27 +58,24 @@ impl Simulation {
     fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
         bodies.fold(wall.lattice().length());
         wall.move_to(0.0);
-        let least_diameter = bodies
-            .diameter
-            .iter()
-            .copied()
-            .fold(f64::INFINITY, f64::min);
+        let diameters = bodies.diameter.iter().copied();
+        let least_diameter = diameters.fold(f64::INFINITY, f64::min);
         Self {
             system: System {
                 bodies,
-                wall,
+                course: Course {
+                    wall,
+                    tally: Tally::default(),
+                    ledger: Ledger::default(),
+                    step: 0,
+                    time_step: parameters.time_step,
+                },
                 parameters,
                 past: Past::default(),
-                tally: Tally::default(),
-                ledger: Ledger::default(),
-                step: 0,
                 limit: 0.5 * least_diameter,
-                scratch: fast::listed::Scratch::default(),
+                scratch: listed::Scratch::default(),
             },
-            memory: match parameters.contact.friction {
-                None => Memory::Smooth(Contacts::none()),
-                Some(law) => Memory::Frictional(law, Contacts::none()),
-            },
+            memory: Memory::of(parameters.contact.friction),
             sorted: None,
         }
     }
@@ -114,18 +84,15 @@ impl Simulation {
     fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
         let System {
             bodies,
-            wall,
+            course,
             parameters,
             ..
         } = &self.system;
-        if let Wall::Prescribed(prescribed) = wall
-            && parameters.kernel == Kernel::Fast
-            && Sorted::serves(bodies, wall, parameters)
-        {
+        if parameters.kernel == Kernel::Fast && Sorted::serves(bodies, &course.wall, parameters) {
             // No list is needed any more; what it took serves the kernel.
-            self.memory = Memory::Smooth(Contacts::none());
-            let sorted = Sorted::new(bodies, prescribed, parameters.skin, sorting);
-            self.sorted = Some(Box::new(sorted));
+            self.memory = Memory::of(None);
+            let sorted = Sorted::new(bodies, &course.wall, parameters.skin, sorting);
+            self.sorted = sorted.map(Box::new);
         }
     }
 
@@ -141,11 +108,11 @@ impl Simulation {
             sorted,
         } = self;
         let outcome = match sorted {
-            None => memory.with_law(system.parameters.contact.normal, Advance { system, steps }),
+            None => system.advance(memory, steps),
             Some(sorted) => system.advance_sorted(sorted, steps),
         };
         system.book_body_force();
-        outcome
+        outcome.map_err(|runaway| system.diverged(runaway))
     }
 
     /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
@@ -183,11 +150,11 @@ impl Simulation {
     /// [`EngineError::OtherWall`] where `wall` differs in more, or would not be where the wall is; nothing is changed.
     pub fn drive_by(&mut self, mut wall: Wall) -> Result<(), EngineError> {
         wall.move_to(self.time());
-        let difference = self.system.wall.difference(&wall, self.time());
+        let difference = self.wall().difference(&wall, self.time());
         if let Some(reason) = difference {
             return Err(EngineError::OtherWall { reason });
         }
-        self.system.wall = wall;
+        self.system.course.wall = wall;
         Ok(())
     }
 
@@ -235,7 +202,7 @@ impl Simulation {
     /// The wall as it is now.
     #[must_use]
     pub fn wall(&self) -> &Wall {
-        &self.system.wall
+        &self.system.course.wall
     }
 
     /// How the simulation is computed.
@@ -247,25 +214,25 @@ impl Simulation {
     /// Sums over the contacts at the end of the last step.
     #[must_use]
     pub fn tally(&self) -> &Tally {
-        &self.system.tally
+        &self.system.course.tally
     }
 
     /// Energies accumulated since the start.
     #[must_use]
     pub fn ledger(&self) -> &Ledger {
-        &self.system.ledger
+        &self.system.course.ledger
     }
 
     /// Steps done since the start.
     #[must_use]
     pub fn step(&self) -> u64 {
-        self.system.step
+        self.system.course.step
     }
 
     /// Time since the start \[t\].
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.system.time()
+        self.system.course.time()
     }
 
     /// Kinetic plus potential energy of grains and elastic wall \[m d^2/t^2\].
@@ -277,18 +244,17 @@ impl Simulation {
     /// Energy that the ledger cannot account for over the integral of |power that enters|.
     #[must_use]
     pub fn energy_residual(&self) -> f64 {
-        self.system.ledger.relative_residual(self.system.energy())
+        self.ledger().relative_residual(self.energy())
     }
 
     /// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
     ///
     /// The forces are those of the last step but for the velocities, which the integrator has corrected since.
     pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
-        let System { bodies, wall, .. } = &self.system;
-        match self.system.parameters.contact.normal {
-            Normal::Linear(normal) => self.memory.visit(normal, bodies, wall, visit),
-            Normal::Hertz(normal) => self.memory.visit(normal, bodies, wall, visit),
-        }
+        let normal = self.parameters().contact.normal;
+        with_contact_law!(normal, &self.memory, |law, contacts| {
+            for_each_contact(law, self.bodies(), self.wall(), contacts, visit);
+        });
     }
 
     /// Adds up what contacts of grains with the wall are, as [`Simulation::for_each_wall_contact`] visits them, piece by
@@ -299,13 +265,11 @@ impl Simulation {
         begin: impl Fn(usize) -> S + Sync,
         add: impl Fn(&mut S, WallContact) + Sync,
     ) -> Vec<S> {
-        let System { bodies, wall, .. } = &self.system;
-        if let (Wall::Prescribed(wall), Memory::Smooth(_)) = (wall, &self.memory) {
+        if let (Some(wall), Memory::Smooth(_)) = (self.wall().prescribed(), &self.memory) {
             let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
-            return match self.system.parameters.contact.normal {
-                Normal::Linear(law) => add_up_smooth_contacts(law, bodies, wall, pool, begin, add),
-                Normal::Hertz(law) => add_up_smooth_contacts(law, bodies, wall, pool, begin, add),
-            };
+            return with_normal_law!(self.parameters().contact.normal, law => {
+                add_up_smooth_contacts(law, self.bodies(), wall, pool, begin, add)
+            });
         }
         let mut sums = begin(0);
         self.for_each_wall_contact(|contact| add(&mut sums, contact));
@@ -315,10 +279,13 @@ impl Simulation {
     /// All contacts as they are now, with their forces; grain by grain.
     #[must_use]
     pub fn touching(&self) -> Vec<Touching> {
-        let system = &self.system;
-        // What contacts remember is taken out on the way.
+        // Histories of contacts with the wall are taken out on the way.
         let mut memory = self.memory.clone();
-        memory.with_law(system.parameters.contact.normal, Touch { system })
+        let normal = self.parameters().contact.normal;
+        let (bodies, wall) = (self.bodies(), self.wall());
+        with_contact_law!(normal, &mut memory, |law, contacts| touching(
+            law, bodies, wall, contacts
+        ))
     }
 
     /// Everything that a restart needs to go on with the same bits.
@@ -347,11 +314,11 @@ impl Simulation {
             ),
         };
         SnapshotView {
-            step: self.system.step,
-            bodies: &self.system.bodies,
+            step: self.step(),
+            bodies: self.bodies(),
             past: &self.system.past,
-            tally: &self.system.tally,
-            ledger: &self.system.ledger,
+            tally: self.tally(),
+            ledger: self.ledger(),
             pair_histories,
             wall_histories,
             sorting: self.sorted.as_ref().map(|sorted| sorted.sorting()),
@@ -371,16 +338,20 @@ impl Simulation {
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
         let Self { system, memory, .. } = &mut simulation;
         system.past = snapshot.past;
-        system.tally = snapshot.tally;
-        system.ledger = snapshot.ledger;
-        system.step = snapshot.step;
-        system.wall.move_to(system.time());
-        // Contacts with an elastic wall are found in the list.
-        if let (Memory::Smooth(contacts), Wall::Elastic(_)) = (&mut *memory, &system.wall) {
-            contacts.refresh(&system.bodies, &system.wall, parameters.skin);
+        let Course {
+            wall,
+            tally,
+            ledger,
+            step,
+            ..
+        } = &mut system.course;
+        (*tally, *ledger, *step) = (snapshot.tally, snapshot.ledger, snapshot.step);
+        wall.move_to(*step as f64 * parameters.time_step);
+        // Contacts with mobile spheres of the wall, and all that have a history, are found in the list.
+        if wall.mobile_spheres() > 0 || parameters.contact.friction.is_some() {
+            memory.refresh(&system.bodies, wall, parameters.skin);
         }
         if let Memory::Frictional(_, contacts) = memory {
-            contacts.refresh(&system.bodies, &system.wall, parameters.skin);
             for (i, j, history) in snapshot.pair_histories {
                 if !contacts.pairs.set_history(i, j, history) {
                     return Err(EngineError::SnapshotMismatch {
@@ -399,21 +370,15 @@ impl Simulation {
 }
 
 impl System {
-    fn time(&self) -> f64 {
-        self.step as f64 * self.parameters.time_step
-    }
-
     fn energy(&self) -> f64 {
         self.bodies.kinetic_energy(0..self.bodies.number())
             + self.bodies.rotational_energy()
-            + self.tally.potential_energy()
+            + self.course.tally.potential_energy()
     }
-}
 
-impl System {
     /// First moment of the grains' mass along the tube, sum m z with turns round it counted \[m d\].
     fn axial_moment(&self) -> f64 {
-        let length = self.wall.lattice().length();
+        let length = self.course.wall.lattice().length();
         (0..self.bodies.grains)
             .map(|i| self.bodies.mass[i] * self.bodies.unfolded(i, length))
             .sum()
@@ -423,243 +388,74 @@ impl System {
     fn book_body_force(&mut self) {
         let body_force = self.parameters.body_force;
         if body_force != 0.0 {
-            self.ledger.body_work =
-                body_force * (self.axial_moment() - self.ledger.initial_axial_moment);
+            let moved = self.axial_moment() - self.course.ledger.initial_axial_moment;
+            self.course.ledger.body_work = body_force * moved;
         }
     }
 
-    fn advance_sorted(&mut self, sorted: &mut Sorted, steps: u64) -> Result<(), EngineError> {
+    /// Forces at the start, so that the first step knows its accelerations.
+    fn evaluate_at_rest(&mut self, memory: &mut Memory) {
         let Self {
             bodies,
-            wall,
+            course,
             parameters,
-            tally,
-            ledger,
-            step,
+            ..
+        } = self;
+        with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
+            contacts.refresh(bodies, &course.wall, parameters.skin);
+            course.tally = evaluate(law, bodies, &course.wall, contacts, 0.0);
+        });
+        add_body_force(bodies, parameters.body_force);
+    }
+
+    fn advance(&mut self, memory: &mut Memory, steps: u64) -> Result<(), Runaway> {
+        let length = self.course.wall.lattice().length();
+        let Self {
+            bodies,
+            course,
+            parameters,
+            past,
+            limit,
+            scratch,
+        } = self;
+        with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
+            let mut reference = Reference {
+                law,
+                contacts,
+                bodies,
+                past,
+                parameters,
+                limit: *limit,
+                length,
+            };
+            match parameters.kernel {
+                Kernel::Reference => course.advance(&mut reference, steps),
+                Kernel::Fast => listed::advance(reference, scratch, course, steps),
+            }
+        })
+    }
+
+    fn advance_sorted(&mut self, sorted: &mut Sorted, steps: u64) -> Result<(), Runaway> {
+        let Self {
+            bodies,
+            course,
+            parameters,
             limit,
             ..
         } = self;
-        let Wall::Prescribed(wall) = wall else {
-            unreachable!("the sorted kernel serves prescribed walls only")
-        };
-        let course = Course {
-            wall,
-            tally,
-            ledger,
-            step,
-            time_step: parameters.time_step,
-            body_force: parameters.body_force,
-            limit: *limit,
-        };
-        let outcome = match parameters.contact.normal {
-            Normal::Linear(law) => sorted.advance(&law, course, bodies, steps),
-            Normal::Hertz(law) => sorted.advance(&law, course, bodies, steps),
-        };
-        outcome.map_err(|runaway| self.diverged(runaway))
+        with_normal_law!(parameters.contact.normal, law => {
+            sorted.advance(&law, course, bodies, (parameters.body_force, *limit), steps)
+        })
     }
 
     fn diverged(&self, runaway: Runaway) -> EngineError {
         EngineError::Diverged {
-            step: self.step,
-            time: self.time(),
+            step: self.course.step,
+            time: self.course.time(),
             grain: runaway.body,
             grains: self.bodies.grains,
             displacement: runaway.displacement,
             limit: self.limit,
         }
-    }
-}
-
-/// Work to be done with the laws known at compile time.
-trait WithLaw {
-    type Answer;
-    fn run<N: NormalLaw, T: fast::listed::Remember>(
-        self,
-        law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History<f64>>,
-    ) -> Self::Answer;
-}
-
-impl Memory {
-    /// Calls `visit` for each contact with the wall.
-    fn visit<N: NormalLaw>(
-        &self,
-        normal: N,
-        bodies: &Bodies,
-        wall: &Wall,
-        visit: impl FnMut(WallContact),
-    ) {
-        match self {
-            Self::Smooth(contacts) => {
-                let tangential = Frictionless;
-                let law = ContactLaw { normal, tangential };
-                for_each_contact(&law, bodies, wall, contacts, visit);
-            }
-            Self::Frictional(tangential, contacts) => {
-                let tangential = *tangential;
-                let law = ContactLaw { normal, tangential };
-                for_each_contact(&law, bodies, wall, contacts, visit);
-            }
-        }
-    }
-
-    /// The one place where names of laws become types.
-    fn with_law<W: WithLaw>(&mut self, normal: Normal, work: W) -> W::Answer {
-        match (normal, self) {
-            (Normal::Linear(normal), Self::Smooth(contacts)) => work.run(
-                &ContactLaw {
-                    normal,
-                    tangential: Frictionless,
-                },
-                contacts,
-            ),
-            (Normal::Hertz(normal), Self::Smooth(contacts)) => work.run(
-                &ContactLaw {
-                    normal,
-                    tangential: Frictionless,
-                },
-                contacts,
-            ),
-            (Normal::Linear(normal), Self::Frictional(tangential, contacts)) => work.run(
-                &ContactLaw {
-                    normal,
-                    tangential: *tangential,
-                },
-                contacts,
-            ),
-            (Normal::Hertz(normal), Self::Frictional(tangential, contacts)) => work.run(
-                &ContactLaw {
-                    normal,
-                    tangential: *tangential,
-                },
-                contacts,
-            ),
-        }
-    }
-}
-
-/// Forces at the start, so that the first step knows its accelerations.
-struct StartForces<'a> {
-    system: &'a mut System,
-}
-
-impl WithLaw for StartForces<'_> {
-    type Answer = ();
-
-    fn run<N: NormalLaw, T: fast::listed::Remember>(
-        self,
-        law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History<f64>>,
-    ) {
-        let System {
-            bodies,
-            wall,
-            parameters,
-            tally,
-            ..
-        } = self.system;
-        contacts.refresh(bodies, wall, parameters.skin);
-        *tally = evaluate(law, bodies, wall, contacts, 0.0);
-        add_body_force(bodies, parameters.body_force);
-    }
-}
-
-/// A look at the contacts.
-struct Touch<'a> {
-    system: &'a System,
-}
-
-impl WithLaw for Touch<'_> {
-    type Answer = Vec<Touching>;
-
-    fn run<N: NormalLaw, T: fast::listed::Remember>(
-        self,
-        law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History<f64>>,
-    ) -> Self::Answer {
-        touching(law, &self.system.bodies, &self.system.wall, contacts)
-    }
-}
-
-struct Advance<'a> {
-    system: &'a mut System,
-    steps: u64,
-}
-
-impl WithLaw for Advance<'_> {
-    type Answer = Result<(), EngineError>;
-
-    fn run<N: NormalLaw, T: fast::listed::Remember>(
-        self,
-        law: &ContactLaw<N, T>,
-        contacts: &mut Contacts<T::History<f64>>,
-    ) -> Self::Answer {
-        let system = self.system;
-        if system.parameters.kernel == Kernel::Fast {
-            let course = fast::listed::Course {
-                bodies: &mut system.bodies,
-                wall: &mut system.wall,
-                past: &mut system.past,
-                tally: &mut system.tally,
-                ledger: &mut system.ledger,
-                step: &mut system.step,
-                parameters: system.parameters,
-                limit: system.limit,
-            };
-            let scratch = &mut system.scratch;
-            return fast::listed::advance(law, course, contacts, scratch, self.steps)
-                .map_err(|runaway| system.diverged(runaway));
-        }
-        let Parameters {
-            integrator,
-            time_step,
-            skin,
-            body_force,
-            ..
-        } = system.parameters;
-        let length = system.wall.lattice().length();
-        for _ in 0..self.steps {
-            let System {
-                bodies,
-                wall,
-                past,
-                tally,
-                ledger,
-                step,
-                limit,
-                ..
-            } = system;
-            *step += 1;
-            let time = *step as f64 * time_step;
-            let grains = bodies.grains;
-            before_forces(integrator, bodies, past, time_step, *limit).map_err(|runaway| {
-                EngineError::Diverged {
-                    step: *step,
-                    time,
-                    grain: runaway.body,
-                    grains,
-                    displacement: runaway.displacement,
-                    limit: *limit,
-                }
-            })?;
-            bodies.fold(length);
-            // A wall that jumps does work on the contacts that it finds: what they store after the jump but not before.
-            let stored_before_jump = wall.move_without_jump(time - time_step, time).then(|| {
-                let (mut bodies, mut contacts) = (bodies.clone(), contacts.clone());
-                contacts.refresh(&bodies, wall, skin);
-                evaluate(law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
-            });
-            wall.move_to(time);
-            contacts.refresh(bodies, wall, skin);
-            let after = evaluate(law, bodies, wall, contacts, time_step);
-            add_body_force(bodies, body_force);
-            if let Some(stored) = stored_before_jump {
-                ledger.add_jump(after.contact_energy - stored);
-            }
-            after_forces(integrator, bodies, past, time_step);
-            ledger.add_step(tally, &after, time_step);
-            *tally = after;
-        }
-        Ok(())
     }
 }

@@ -8,7 +8,7 @@ use crate::fast::sorted::Sorted;
 pub use crate::fast::sorted::Sorting;
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
-use crate::simulation::Parameters;
+use crate::parameters::Parameters;
 use crate::wall::Wall;
 
 /// What a restart needs: spheres, the integrator's past, what contacts remember, the ledger.
@@ -84,10 +84,7 @@ impl Snapshot {
         if lengths.iter().any(|&length| length != number) || bodies.grains > number {
             return mismatch("its arrays differ in length".to_owned());
         }
-        let wall_spheres = match wall {
-            Wall::Prescribed(_) => 0,
-            Wall::Elastic(wall) => wall.lattice().spheres(),
-        };
+        let wall_spheres = wall.mobile_spheres();
         if number - bodies.grains != wall_spheres {
             return mismatch(format!(
                 "it holds {} wall spheres, the wall has {wall_spheres}",
@@ -134,7 +131,9 @@ impl Snapshot {
         {
             return mismatch("it remembers contacts of spheres that do not exist".to_owned());
         }
-        if let (Some(sorting), Wall::Prescribed(wall)) = (&self.sorting, wall) {
+        if let Some(sorting) = &self.sorting
+            && wall.mobile_spheres() == 0
+        {
             let strips = Sorted::strips(bodies, wall, parameters.skin);
             sorting
                 .check(bodies.grains, strips, wall.lattice().length())

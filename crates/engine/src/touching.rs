@@ -1,11 +1,10 @@
 //! Which spheres touch, and with which force: read off a simulation, for pictures and files.
 
 use glam::DVec3;
-use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw};
+use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 
-use crate::bodies::Bodies;
-use crate::fast::listed::Remember;
-use crate::forces::Contacts;
+use crate::bodies::{Bodies, Sphere};
+use crate::contacts::Contacts;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
 
@@ -35,52 +34,47 @@ pub struct Touching {
 /// All contacts at the present positions and velocities, in order of the first sphere; those of a grain with other moving
 /// spheres before those with a prescribed wall.
 ///
-/// `contacts` holds what frictional contacts remember; no history moves on, but those of the wall are taken out.
-pub(crate) fn touching<N: NormalLaw, T: Remember>(
+/// No history moves on, but those of contacts with the wall are taken out of `contacts`.
+pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
     wall: &Wall,
     contacts: &mut Contacts<T::History<f64>>,
 ) -> Vec<Touching> {
     contacts.rebuild(bodies, wall, 0.0);
-    let length = wall.lattice().length();
-    let smooth = ContactLaw {
-        normal: law.normal,
-        tangential: Frictionless,
-    };
+    let lattice = wall.lattice();
     let mut found = Vec::new();
     for first in 0..bodies.number() {
+        let here = bodies.sphere(first);
         let (partners, histories) = contacts.pairs.row(first);
         for (&partner, history) in partners.iter().zip(histories) {
             let second = partner as usize;
-            let Some(contact) = meeting(
-                Sphere::moving(bodies, first),
-                Sphere::moving(bodies, second),
-                periodic(bodies.position[first] - bodies.position[second], length),
-            ) else {
+            let there = bodies.sphere(second);
+            let separation = periodic(here.position - there.position, lattice.length());
+            let Some(contact) = contact_of(&here, &there, separation) else {
                 continue;
             };
             // Wall against wall has no friction.
             found.push(if first >= bodies.grains {
-                answered(&smooth, &contact, (), first, second)
+                answered(&law.frictionless(), &contact, (), first, second)
             } else {
                 answered(law, &contact, *history, first, second)
             });
         }
-        let Wall::Prescribed(prescribed) = wall else {
+        if first >= bodies.grains {
             continue;
-        };
-        let grain = Sphere::moving(bodies, first);
-        prescribed.for_each_touching(
-            bodies.position[first],
-            grain.diameter,
+        }
+        wall.for_each_touching(
+            here.position,
+            here.diameter,
             |sphere, separation, velocity| {
-                let fixed = Sphere {
+                let there = Sphere {
+                    position: here.position - separation,
                     velocity,
                     angular_velocity: DVec3::ZERO,
-                    diameter: prescribed.lattice().sphere_diameter,
+                    diameter: lattice.sphere_diameter,
                 };
-                if let Some(contact) = meeting(grain, fixed, separation) {
+                if let Some(contact) = contact_of(&here, &there, separation) {
                     let history = contacts.wall.take(first, sphere);
                     let second = bodies.grains + sphere as usize;
                     found.push(answered(law, &contact, history, first, second));
@@ -91,41 +85,16 @@ pub(crate) fn touching<N: NormalLaw, T: Remember>(
     found
 }
 
-/// What a contact asks of a sphere besides its place.
-#[derive(Clone, Copy)]
-struct Sphere {
-    velocity: DVec3,
-    angular_velocity: DVec3,
-    diameter: f64,
-}
-
-impl Sphere {
-    fn moving(bodies: &Bodies, index: usize) -> Self {
-        Self {
-            velocity: bodies.velocity[index],
-            angular_velocity: bodies.angular_velocity[index],
-            diameter: bodies.diameter[index],
-        }
-    }
-}
-
 /// The contact of two spheres; `None` where they do not overlap.
-fn meeting(one: Sphere, other: Sphere, separation: DVec3) -> Option<Contact> {
-    let distance = separation.length();
-    let overlap = 0.5 * (one.diameter + other.diameter) - distance;
-    // Coincident centres have no normal.
-    (overlap > 0.0 && distance > 0.0).then(|| Contact {
-        overlap,
-        distance,
-        normal: separation * (1.0 / distance),
-        relative_velocity: one.velocity - other.velocity,
-        reduced_radius: one.diameter * other.diameter / (2.0 * (one.diameter + other.diameter)),
-        spin: 0.5 * (one.diameter - overlap) * one.angular_velocity
-            + 0.5 * (other.diameter - overlap) * other.angular_velocity,
-    })
+fn contact_of(one: &Sphere, other: &Sphere, separation: DVec3) -> Option<Contact> {
+    let diameters = (one.diameter, other.diameter);
+    let contact = Contact::new(diameters, separation, one.velocity - other.velocity);
+    let rotation = contact.arm(one.diameter) * one.angular_velocity
+        + contact.arm(other.diameter) * other.angular_velocity;
+    contact.touches().then(|| contact.rotating(rotation))
 }
 
-fn answered<N: NormalLaw, T: Remember>(
+fn answered<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     contact: &Contact,
     mut history: T::History<f64>,
@@ -133,14 +102,13 @@ fn answered<N: NormalLaw, T: Remember>(
     second: usize,
 ) -> Touching {
     let answer = law.force(contact, &mut history, 0.0);
-    let normal_force = answer.force.dot(contact.normal);
     Touching {
         first,
         second,
         separation: contact.normal * contact.distance,
         overlap: contact.overlap,
         force: answer.force,
-        normal_force,
+        normal_force: answer.force.dot(contact.normal),
         tangential_force: answer.tangential.force.length(),
         sliding: answer.tangential.sliding,
     }

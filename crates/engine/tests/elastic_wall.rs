@@ -59,11 +59,14 @@ fn forces(simulation: &Simulation) -> Vec<DVec3> {
 fn the_balanced_tube_is_in_equilibrium() {
     for parameters in [elastic_parameters(), preset()] {
         // Each part of the mean would cancel in a straight tube anyway: it is left in.
-        let keep = Tethers {
+        let tethers = Tethers {
             net_force: NetForce::Free,
-            ..parameters.keep
+            ..parameters.tethers
         };
-        let parameters = undriven(ElasticParameters { keep, ..parameters });
+        let parameters = undriven(ElasticParameters {
+            tethers,
+            ..parameters
+        });
         let mut simulation = alone(parameters.clone(), |_| ());
         let largest = forces(&simulation)
             .iter()
@@ -80,11 +83,17 @@ fn the_balanced_tube_is_in_equilibrium() {
         assert!(fastest < 1e-9, "{fastest}");
 
         // Without the balance it shrinks: the springs are stretched.
-        let keep = Tethers {
+        let tethers = Tethers {
             balance: false,
-            ..parameters.keep
+            ..parameters.tethers
         };
-        let free = alone(ElasticParameters { keep, ..parameters }, |_| ());
+        let free = alone(
+            ElasticParameters {
+                tethers,
+                ..parameters
+            },
+            |_| (),
+        );
         let inwards = free
             .bodies()
             .position
@@ -108,10 +117,10 @@ fn shaken(size: f64, seed: u64) -> impl Fn(&mut Bodies) {
 #[test]
 fn the_forces_are_the_slope_of_the_energy() {
     let mut parameters = undriven(elastic_parameters());
-    parameters.keep = Tethers {
+    parameters.tethers = Tethers {
         radial: 0.02,
         net_force: NetForce::Free,
-        ..parameters.keep
+        ..parameters.tethers
     };
     // A tube so narrow that opposite sides touch.
     parameters.mean_radius = 0.55;
@@ -198,12 +207,12 @@ fn a_removed_mean_force_leaves_the_momentum() {
             (NetForce::Free, false),
         ] {
             let parameters = elastic_parameters();
-            let keep = Tethers {
+            let tethers = Tethers {
                 net_force,
-                ..parameters.keep
+                ..parameters.tethers
             };
             let wall = elastic(ElasticParameters {
-                keep,
+                tethers,
                 ..parameters.clone()
             });
             let mut bodies = with_wall_spheres(Bodies::default(), &wall);
@@ -269,7 +278,7 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
         (DriveAngle::Reference, -1.0),
         (DriveAngle::Current, 1.0),
     ] {
-        let keep = Tethers {
+        let tethers = Tethers {
             balance: false,
             radial: 0.0,
             azimuthal: 0.0,
@@ -277,7 +286,7 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
             net_force: NetForce::Free,
         };
         let parameters = ElasticParameters {
-            keep,
+            tethers,
             spring_stiffness: 0.0,
             angle,
             heading,
@@ -362,14 +371,20 @@ fn drag_and_dashpots_take_the_energy_out() {
 fn what_removes_the_mean_force_does_work_on_a_drifting_wall() {
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
         let parameters = undriven(elastic_parameters());
-        let keep = Tethers {
+        let tethers = Tethers {
             net_force,
-            ..parameters.keep
+            ..parameters.tethers
         };
-        let axial = keep.axial;
-        let mut simulation = alone(ElasticParameters { keep, ..parameters }, |bodies| {
-            bodies.velocity.fill(DVec3::new(0.0, 0.0, 0.02));
-        });
+        let axial = tethers.axial;
+        let mut simulation = alone(
+            ElasticParameters {
+                tethers,
+                ..parameters
+            },
+            |bodies| {
+                bodies.velocity.fill(DVec3::new(0.0, 0.0, 0.02));
+            },
+        );
         let start = simulation.energy();
         simulation.advance(400).unwrap();
         let drifted = 0.02 * simulation.time();

@@ -179,9 +179,9 @@ fn where_no_normal_and_no_radius_has_a_direction() {
             lattice,
             mean_radius: 1.5,
             spring_stiffness: 0.0,
-            keep: Tethers {
+            tethers: Tethers {
                 net_force: NetForce::Free,
-                ..elastic_parameters().keep
+                ..elastic_parameters().tethers
             },
             force_amplitude: Schedule::constant(force_amplitude),
             angle: DriveAngle::Current,

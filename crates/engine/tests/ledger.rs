@@ -76,10 +76,10 @@ fn under_stress_control_with_everything_on() {
     parameters.spring_damping = 0.01;
     parameters.drag = 0.005;
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
-        parameters.keep = Tethers {
+        parameters.tethers = Tethers {
             radial: 0.002,
             net_force,
-            ..parameters.keep
+            ..parameters.tethers
         };
         closes(&elastic(parameters.clone()), 120, |simulation| {
             let ledger = simulation.ledger();

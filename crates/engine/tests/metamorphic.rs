@@ -284,11 +284,11 @@ impl Units {
                     spring_damping: self.damping() * ours.spring_damping,
                     drag: self.damping() * ours.drag,
                     contact_range: self.length * ours.contact_range,
-                    keep: Tethers {
-                        radial: self.stiffness() * ours.keep.radial,
-                        azimuthal: self.stiffness() * ours.keep.azimuthal,
-                        axial: self.stiffness() * ours.keep.axial,
-                        ..ours.keep
+                    tethers: Tethers {
+                        radial: self.stiffness() * ours.tethers.radial,
+                        azimuthal: self.stiffness() * ours.tethers.azimuthal,
+                        axial: self.stiffness() * ours.tethers.axial,
+                        ..ours.tethers
                     },
                     force_amplitude: ours.force_amplitude.map(|value| force * value),
                     frequency: ours.frequency.map(|value| value / self.time),

@@ -1,6 +1,6 @@
 //! What looks wrong with an elastic wall: buckled, collapsed or blown up.
 
-use peristalsis_engine::{Simulation, Wall};
+use peristalsis_engine::Simulation;
 
 /// Distance of a wall sphere from the axis below which it counts as collapsed, in its diameters.
 const NEAR_AXIS: f64 = 0.25;
@@ -78,13 +78,9 @@ impl WallFault {
 
 /// Notes the first fault of each kind that an elastic wall shows.
 pub fn note_wall_faults(simulation: &Simulation, faults: &mut Vec<WallFault>) {
-    let Wall::Elastic(wall) = simulation.wall() else {
-        return;
-    };
-    let bodies = simulation.bodies();
+    let (wall, bodies) = (simulation.wall(), simulation.bodies());
     let diameter = wall.lattice().sphere_diameter;
-    for sphere in 0..wall.lattice().spheres() {
-        let away = wall.displacement(bodies, sphere);
+    for (sphere, away) in wall.displacements(bodies).enumerate() {
         let position = bodies.position[bodies.grains + sphere];
         let radius = (position.x * position.x + position.y * position.y).sqrt();
         let found = [
@@ -93,10 +89,7 @@ pub fn note_wall_faults(simulation: &Simulation, faults: &mut Vec<WallFault>) {
                 away.y.abs().max(away.z.abs()) > LATERAL * diameter,
             ),
             (FaultKind::Collapsed, radius < NEAR_AXIS * diameter),
-            (
-                FaultKind::BlownUp,
-                radius > BLOWN_UP * wall.parameters().mean_radius,
-            ),
+            (FaultKind::BlownUp, radius > BLOWN_UP * wall.mean_radius()),
         ];
         for (kind, shown) in found {
             if shown && faults.iter().all(|fault| fault.kind != kind) {

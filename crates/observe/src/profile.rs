@@ -6,7 +6,7 @@ mod part;
 use core::f64::consts::TAU;
 
 use glam::DVec3;
-use peristalsis_engine::{Simulation, Wall};
+use peristalsis_engine::Simulation;
 use peristalsis_physics::wall::Waveform;
 
 pub use part::{PartOfWave, WavePart};
@@ -316,17 +316,12 @@ impl WaveFrameProfile {
         for (sums, wall) in last.iter_mut().zip(together.into_iter().flatten()) {
             sums.wall = wall;
         }
-        if matches!(wall, Wall::Elastic(_)) {
-            let bodies = simulation.bodies();
-            let spheres = bodies.grains..bodies.number();
-            for (position, velocity) in bodies.position[spheres.clone()]
-                .iter()
-                .zip(&bodies.velocity[spheres])
-            {
-                let bin = bin_of(heading * position.z / lattice.wavelength - cycles, bins);
-                last[bin].wall.axial_velocity += heading * velocity.z;
-                last[bin].wall.spheres += 1.0;
-            }
+        let bodies = simulation.bodies();
+        for sphere in bodies.grains..bodies.number() {
+            let z = bodies.position[sphere].z;
+            let bin = bin_of(heading * z / lattice.wavelength - cycles, bins);
+            last[bin].wall.axial_velocity += heading * bodies.velocity[sphere].z;
+            last[bin].wall.spheres += 1.0;
         }
     }
 

@@ -303,13 +303,12 @@ struct WallMotion {
 
 impl WallMotion {
     fn of(simulation: &Simulation) -> Self {
-        let peristalsis_engine::Wall::Elastic(wall) = simulation.wall() else {
+        let spheres = simulation.wall().mobile_spheres();
+        if spheres == 0 {
             return Self::default();
-        };
-        let spheres = wall.lattice().spheres();
+        }
         let (mut axial, mut axial_squared, mut azimuthal_squared) = (0.0, 0.0, 0.0);
-        for sphere in 0..spheres {
-            let away = wall.displacement(simulation.bodies(), sphere);
+        for away in simulation.wall().displacements(simulation.bodies()) {
             axial += away.z;
             axial_squared += away.z * away.z;
             azimuthal_squared += away.y * away.y;

@@ -1,6 +1,5 @@
 //! The shape of the tube: the wall's radius along the axis.
 
-use peristalsis_engine::wall::ElasticWall;
 use peristalsis_engine::{Bodies, Simulation, Wall};
 use peristalsis_physics::wall::RadiusWave;
 
@@ -39,11 +38,10 @@ impl TubeShape {
     /// The shape now.
     #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
-        match simulation.wall() {
-            Wall::Prescribed(wall) => Self::Wave(*wall.wave(), wall.cycles()),
-            Wall::Elastic(wall) => {
-                Self::Slices(slices(simulation.bodies(), wall), wall.lattice().length())
-            }
+        let wall = simulation.wall();
+        match wall.wave() {
+            Some(wave) => Self::Wave(*wave, wall.cycles()),
+            None => Self::Slices(slices(simulation.bodies(), wall), wall.lattice().length()),
         }
     }
 
@@ -88,7 +86,7 @@ impl TubeShape {
 }
 
 /// Slices one ring's spacing thick; a slice that no sphere is in takes the reference radius.
-fn slices(bodies: &Bodies, wall: &ElasticWall) -> Vec<Slice> {
+fn slices(bodies: &Bodies, wall: &Wall) -> Vec<Slice> {
     let lattice = wall.lattice();
     let number = lattice.rings() as usize;
     let mut sums = vec![(0_u32, 0.0, f64::INFINITY, 0.0_f64); number];
@@ -101,7 +99,7 @@ fn slices(bodies: &Bodies, wall: &ElasticWall) -> Vec<Slice> {
         *least = least.min(radius);
         *largest = largest.max(radius);
     }
-    let reference = wall.parameters().mean_radius;
+    let reference = wall.mean_radius();
     sums.into_iter()
         .map(|(count, sum, least, largest)| match count {
             0 => Slice::round(reference),

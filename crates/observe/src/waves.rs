@@ -1,20 +1,9 @@
 //! Flow wave by wave: how the grains that travel with each wave of the tube flow, period after period.
 
-use peristalsis_engine::{Simulation, Wall};
+use peristalsis_engine::Simulation;
 
 use crate::sample::Observer;
 use crate::view::{View, floor};
-
-/// Where a wave ends and the next begins in the wave's frame \[lambda\]: at the throat, so that a wave is one belly.
-///
-/// Under strain control the radius is least at 0.25, under stress control the inward force is largest at 0.75.
-#[must_use]
-pub fn throat(wall: &Wall) -> f64 {
-    match wall {
-        Wall::Prescribed(_) => 0.25,
-        Wall::Elastic(_) => 0.75,
-    }
-}
 
 /// The grains in one wave over one period.
 ///
@@ -81,7 +70,7 @@ impl WaveByWave {
     /// Adds the interval between two states of the observer, seen from its end.
     pub fn add(&mut self, before: &Observer, after: &Observer, view: &View<'_>) {
         let wall = view.simulation.wall();
-        let (heading, throat) = (wall.heading(), throat(wall));
+        let (heading, throat) = (wall.heading(), wall.throat());
         let wavelength = wall.lattice().wavelength;
         let waves = self.sums.len();
         let half_way = 0.5 * (before.cycles + after.cycles) + throat;

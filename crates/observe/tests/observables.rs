@@ -330,7 +330,7 @@ fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
         spring_damping: 0.0,
         drag: 0.0,
         contact_range: 3.0,
-        keep: Tethers {
+        tethers: Tethers {
             balance: true,
             radial: 0.0,
             azimuthal: 0.1,

@@ -52,22 +52,31 @@ pub trait Real:
     /// The lesser of this and `other`.
     #[inline(always)]
     #[must_use]
-    fn lesser(self, other: Self) -> Self {
+    fn min(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
 
     /// The larger of this and `other`.
     #[inline(always)]
     #[must_use]
-    fn larger(self, other: Self) -> Self {
+    fn max(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
 
-    /// This without its sign.
+    /// The nearest whole number, for numbers below 2^51 in size.
     #[inline(always)]
     #[must_use]
-    fn size(self) -> Self {
-        self.larger(-self)
+    fn nearest_integer(self) -> Self {
+        // Added to a number, this leaves no digits behind the point.
+        let shift = Self::splat(6_755_399_441_055_744.0);
+        self + shift - shift
+    }
+
+    /// The absolute value.
+    #[inline(always)]
+    #[must_use]
+    fn abs(self) -> Self {
+        self.max(-self)
     }
 }
 

@@ -6,7 +6,7 @@ use common::{Collision, answer, table};
 use glam::{DQuat, DVec3};
 use peristalsis_physics::contact::{
     Contact, ContactModel, CundallStrack, Normal, NormalForce, NormalLaw, TangentialHistory,
-    TangentialLaw,
+    TangentialLaw, reduced_radius,
 };
 use proptest::prelude::*;
 
@@ -38,7 +38,7 @@ fn case() -> impl Strategy<Value = Case> {
         .prop_map(
             |(
                 (overlap, one, other, normal),
-                (relative_velocity, spin),
+                (relative_velocity, rotation),
                 (u, rate, power, time_step),
             )| {
                 let lateral = |v: DVec3| v - v.dot(normal) * normal;
@@ -48,8 +48,8 @@ fn case() -> impl Strategy<Value = Case> {
                         distance: 0.5 * (one + other) - overlap,
                         normal,
                         relative_velocity,
-                        reduced_radius: one * other / (2.0 * (one + other)),
-                        spin,
+                        reduced_radius: reduced_radius(one, other),
+                        rotation,
                     },
                     history: TangentialHistory {
                         displacement: lateral(u),
@@ -79,18 +79,12 @@ fn ask(
 }
 
 fn normal_force(normal: Normal, contact: &Contact, velocity: f64) -> NormalForce {
-    match normal {
-        Normal::Linear(law) => law.force(contact.overlap, velocity, contact.reduced_radius),
-        Normal::Hertz(law) => law.force(contact.overlap, velocity, contact.reduced_radius),
-    }
+    normal.force(contact.overlap, velocity, contact.reduced_radius)
 }
 
 fn undamped(model: &ContactModel) -> ContactModel {
     ContactModel {
-        normal: match model.normal {
-            Normal::Linear(law) => Normal::Linear(law.undamped()),
-            Normal::Hertz(law) => Normal::Hertz(law.undamped()),
-        },
+        normal: model.normal.undamped(),
         friction: model.friction.map(|law| CundallStrack {
             tangential_damping: 0.0,
             ..law
@@ -118,7 +112,7 @@ proptest! {
             let mut forces = [1e-4, 1e-6, 1e-8].map(|overlap| {
                 let mut contact = with_overlap(&case.contact, overlap);
                 contact.relative_velocity = DVec3::ZERO;
-                contact.spin = DVec3::ZERO;
+                contact.rotation = DVec3::ZERO;
                 let answer = answer(&model, &contact, &mut TangentialHistory::default(), case.time_step);
                 prop_assert!(answer.force.dot(contact.normal) > 0.0, "{}: not repelled", name);
                 prop_assert!(answer.energy > 0.0 && answer.energy <= overlap * overlap);
@@ -149,7 +143,7 @@ proptest! {
             };
             let (there, history_there) = ask(&model, &swapped);
             prop_assert_eq!(here.force, -there.force, "{}", name);
-            prop_assert_eq!(here.twist, there.twist, "{}", name);
+            prop_assert_eq!(here.torque_per_arm, there.torque_per_arm, "{}", name);
             prop_assert_eq!(here.energy, there.energy);
             prop_assert_eq!(history_here.displacement, -history_there.displacement);
         }
@@ -173,7 +167,7 @@ proptest! {
                     if found.tangential.sliding {
                         prop_assert!((lateral.length() - bound * pressed).abs() <= 1e-12, "{}", name);
                     }
-                    prop_assert!(close(found.twist, -normal.cross(lateral), 1e-15));
+                    prop_assert!(close(found.torque_per_arm, -normal.cross(lateral), 1e-15));
                 }
             }
         }
@@ -188,7 +182,7 @@ proptest! {
                 contact: Contact {
                     normal: turn * case.contact.normal,
                     relative_velocity: turn * case.contact.relative_velocity,
-                    spin: turn * case.contact.spin,
+                    rotation: turn * case.contact.rotation,
                     ..case.contact
                 },
                 history: TangentialHistory {
@@ -200,7 +194,7 @@ proptest! {
             };
             let (found, history_found) = ask(&model, &turned);
             prop_assert!(close(found.force, turn * plain.force, 1e-13), "{}", name);
-            prop_assert!(close(found.twist, turn * plain.twist, 1e-13), "{}", name);
+            prop_assert!(close(found.torque_per_arm, turn * plain.torque_per_arm, 1e-13), "{}", name);
             prop_assert!((found.energy - plain.energy).abs() < 1e-13);
             prop_assert!(close(history_found.displacement, turn * history_plain.displacement, 1e-13));
         }
@@ -239,7 +233,7 @@ proptest! {
         for (name, model) in table() {
             let contact = Contact {
                 relative_velocity: rotation.cross(case.contact.distance * normal),
-                spin: case.contact.distance * rotation,
+                rotation: case.contact.distance * rotation,
                 ..case.contact
             };
             let found = answer(&model, &contact, &mut TangentialHistory::default(), case.time_step);
@@ -331,7 +325,7 @@ proptest! {
             Contact {
                 normal,
                 relative_velocity: rotation.cross(distance * normal),
-                spin: distance * rotation,
+                rotation: distance * rotation,
                 ..case.contact
             }
         };

@@ -42,7 +42,7 @@ impl OnPlane {
             normal: DVec3::Z,
             relative_velocity: DVec3::new(self.velocity, 0.0, 0.0),
             reduced_radius: 0.5,
-            spin: 0.5 * DVec3::new(0.0, self.angular_velocity, 0.0),
+            rotation: 0.5 * DVec3::new(0.0, self.angular_velocity, 0.0),
         };
         self.last = self
             .law

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use parking_lot::Mutex;
-use peristalsis_engine::{Instructions, Wall};
+use peristalsis_engine::Instructions;
 use peristalsis_run::{Status, Summary, profile_table, timeseries_table, waves_table};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -163,14 +163,13 @@ impl Run {
     /// Centres of the wall's spheres.
     #[getter]
     fn wall_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.vectors(py, |run| match run.simulation().wall() {
-            Wall::Prescribed(wall) => (0..wall.lattice().spheres())
-                .map(|sphere| wall.sphere_position(sphere))
-                .collect(),
-            Wall::Elastic(_) => {
-                let bodies = run.simulation().bodies();
-                bodies.position[bodies.grains..].to_vec()
-            }
+        self.vectors(py, |run| {
+            let bodies = run.simulation().bodies();
+            let prescribed = run.simulation().wall().prescribed_spheres();
+            let mobile = bodies.position[bodies.grains..].iter().copied();
+            mobile
+                .chain(prescribed.map(|sphere| sphere.position))
+                .collect()
         })
     }
 

@@ -193,7 +193,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
             spring_damping: wall.spring_damping,
             drag: wall.drag,
             contact_range: wall.contact_range,
-            keep: Tethers {
+            tethers: Tethers {
                 balance: wall.keep.balance,
                 radial: wall.keep.radial,
                 azimuthal: wall.keep.azimuthal,

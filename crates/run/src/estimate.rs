@@ -3,8 +3,7 @@
 use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
-use peristalsis_engine::Wall;
-use peristalsis_physics::contact::{Normal, NormalLaw};
+use peristalsis_physics::contact::NormalLaw;
 
 use crate::RunError;
 use crate::assemble::{contact_model, walls};
@@ -226,10 +225,7 @@ fn contact_time(configuration: &Configuration) -> f64 {
         }
     };
     let overlap = USUAL_OVERLAP * diameter;
-    let normal = match model.normal {
-        Normal::Linear(law) => law.stiffness(overlap, 0.25 * diameter),
-        Normal::Hertz(law) => law.stiffness(overlap, 0.25 * diameter),
-    };
+    let normal = model.normal.stiffness(overlap, 0.25 * diameter);
     let tangential = model.friction.map_or(0.0, |law| law.tangential_stiffness);
     let stiffest = normal.max(tangential);
     std::f64::consts::PI / (stiffest / reduced_mass).sqrt()
@@ -276,9 +272,9 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
     let hardest = configuration.at_its_hardest();
     // An elastic wall, which may be large, is not made for nothing.
     if let Control::Strain { .. } = hardest.drive.control
-        && let Wall::Prescribed(wall) = walls(&hardest)
+        && let wall = walls(&hardest)
+        && let Some(wave) = wall.wave()
     {
-        let wave = wall.wave();
         warnings.extend(leaking::warning(&hardest, wave, wall.lattice()));
         let opening =
             2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;

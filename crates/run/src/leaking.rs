@@ -1,7 +1,7 @@
 //! Whether a prescribed wall, which is a lattice of spheres, keeps soft grains in.
 
 use peristalsis_configuration::Configuration;
-use peristalsis_physics::contact::{Normal, NormalLaw};
+use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
 use crate::assemble::contact_model;
@@ -44,11 +44,7 @@ pub(crate) fn warning(
     let part = grains
         .map(|diameter| {
             let kinetic = 0.5 * diameter * diameter * diameter * speed * speed;
-            let giving_way = match normal {
-                Normal::Linear(law) => energy_to_pass(law, lattice, widest, diameter),
-                Normal::Hertz(law) => energy_to_pass(law, lattice, widest, diameter),
-            };
-            kinetic / giving_way
+            kinetic / energy_to_pass(normal, lattice, widest, diameter)
         })
         .into_iter()
         .fold(0.0, f64::max);
@@ -76,8 +72,7 @@ fn energy_to_pass(law: impl NormalLaw, lattice: &Lattice, radius: f64, diameter:
     if 4.0 * rows * places > DENSE {
         return f64::INFINITY;
     }
-    let reduced_radius =
-        0.5 * diameter * lattice.sphere_diameter / (diameter + lattice.sphere_diameter);
+    let reduced_radius = reduced_radius(diameter, lattice.sphere_diameter);
     // A ring through the base of the triangle, and the gap above the middle of two of its spheres.
     let height = (spacing - circumradius).max(0.0);
     let (rows, places) = (rows as i32, places as i32);

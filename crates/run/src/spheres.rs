@@ -1,6 +1,5 @@
 //! The spheres of a run as one sees them from the side.
 
-use peristalsis_engine::Wall;
 use peristalsis_figures::SnapshotSphere;
 
 use crate::run::Run;
@@ -22,11 +21,7 @@ pub(crate) fn seen_spheres(run: &Run) -> Vec<SeenSphere> {
     let bodies = simulation.bodies();
     let tube = simulation.wall().lattice().length();
     let heading = simulation.wall().heading();
-    let number = match simulation.wall() {
-        Wall::Prescribed(_) => bodies.grains,
-        Wall::Elastic(_) => bodies.number(),
-    };
-    (0..number)
+    (0..bodies.number())
         .map(|body| {
             let position = bodies.position[body];
             SeenSphere {

@@ -12,7 +12,7 @@
 //!
 //! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
 
-use peristalsis_engine::{Bodies, Wall};
+use peristalsis_engine::Bodies;
 #[cfg(feature = "server")]
 use peristalsis_formats::Frame;
 use peristalsis_observe::Sample;
@@ -109,15 +109,11 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
     } else {
         &[]
     };
-    let rings: Vec<f64> = match run.simulation().wall() {
-        Wall::Elastic(_) => Vec::new(),
-        Wall::Prescribed(wall) => (0..head.rings)
-            .map(|ring| {
-                let z = wall.lattice().axial_position(ring as u32);
-                wall.wave().radius(z, wall.cycles())
-            })
-            .collect(),
-    };
+    let wall = run.simulation().wall();
+    let rings: Vec<f64> = wall.wave().map_or_else(Vec::new, |wave| {
+        let places = (0..head.rings).map(|ring| wall.lattice().axial_position(ring as u32));
+        places.map(|z| wave.radius(z, wall.cycles())).collect()
+    });
     encode(
         head,
         [

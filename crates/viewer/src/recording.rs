@@ -99,7 +99,7 @@ impl Recording {
         let course = Course(&self.configuration);
         let clock = course.clock(frame.time);
         let lattice = self.wall.lattice();
-        let is_elastic = matches!(self.wall, Wall::Elastic(_));
+        let is_elastic = self.wall.mobile_spheres() > 0;
         let slack = SLACK * course.unit_period();
         let run = &self.configuration.run;
         let interval = run.steps_per_sample as f64 * run.time_step + slack;

@@ -128,9 +128,9 @@ impl Welcome {
             kind: "welcome",
             version: VERSION,
             title: title.to_owned(),
-            control: match wall {
-                Wall::Prescribed(_) => "strain",
-                Wall::Elastic(_) => "stress",
+            control: match configuration.drive.control {
+                Control::Strain { .. } => "strain",
+                Control::Stress { .. } => "stress",
             },
             grains,
             length: lattice.length(),
@@ -141,10 +141,7 @@ impl Welcome {
             rings_per_wave: lattice.rings_per_wave,
             wall_sphere_diameter: lattice.sphere_diameter,
             heading: wall.heading(),
-            reach: match wall {
-                Wall::Prescribed(_) => 2.0 * configuration.tube.radius,
-                Wall::Elastic(_) => wall.usual_radius(),
-            },
+            reach: 2.0 * configuration.tube.radius,
             unit_period: course.unit_period(),
             ranges: Ranges::of(configuration),
             driven: course.driven(0.0),

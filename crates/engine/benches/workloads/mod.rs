@@ -225,7 +225,7 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
         spring_damping: 0.0,
         drag: 0.0,
         contact_range: 3.0,
-        keep: Tethers {
+        tethers: Tethers {
             balance: true,
             radial: 0.0,
             azimuthal: 0.1,

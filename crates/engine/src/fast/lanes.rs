@@ -136,15 +136,12 @@ impl<M: Machine> Lanes<M> {
         ((a + e) + (c + g)) + ((b + f) + (d + h))
     }
 
-    /// The largest of all lanes.
+    /// The largest number of all lanes.
     #[inline(always)]
-    pub(crate) fn largest(self) -> f64 {
+    pub(crate) fn max_lane(self) -> f64 {
         let [a, b, c, d, e, f, g, h] = self.to_array();
-        let larger = |a: f64, b: f64| if a > b { a } else { b };
-        larger(
-            larger(larger(a, e), larger(c, g)),
-            larger(larger(b, f), larger(d, h)),
-        )
+        let max = |a: f64, b: f64| if a > b { a } else { b };
+        max(max(max(a, e), max(c, g)), max(max(b, f), max(d, h)))
     }
 }
 
@@ -240,18 +237,18 @@ impl<M: Machine> Real for Lanes<M> {
     }
 
     #[inline(always)]
-    fn lesser(self, other: Self) -> Self {
-        Self(M::lesser(self.0, other.0))
+    fn min(self, other: Self) -> Self {
+        Self(M::min(self.0, other.0))
     }
 
     #[inline(always)]
-    fn larger(self, other: Self) -> Self {
-        Self(M::larger(self.0, other.0))
+    fn max(self, other: Self) -> Self {
+        Self(M::max(self.0, other.0))
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
-        Self(M::size(self.0))
+    fn abs(self) -> Self {
+        Self(M::abs(self.0))
     }
 }
 

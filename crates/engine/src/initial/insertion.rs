@@ -3,11 +3,12 @@
 use core::f64::consts::TAU;
 
 use glam::DVec3;
+use peristalsis_physics::wall::RadiusWave;
 use rand_chacha::ChaCha8Rng;
 
 use super::{InitialState, Packing, uniform};
 use crate::neighbours::periodic;
-use crate::wall::{PrescribedWall, Wall};
+use crate::wall::Wall;
 
 /// Tries for each grain before insertion counts as stalled.
 const TRIES: usize = 200;
@@ -28,11 +29,12 @@ pub(super) struct Region<'a> {
 impl<'a> Region<'a> {
     pub(super) fn new(packing: &Packing, wall: &'a Wall) -> Self {
         let length = wall.lattice().length();
-        let (filled, belly) = match (packing.state, wall) {
-            (InitialState::Jammed, Wall::Prescribed(prescribed)) => {
-                let radius = prescribed.wave().mean_radius;
+        let (filled, belly) = match (packing.state, wall.wave()) {
+            (InitialState::Jammed, Some(wave)) => {
+                let radius = wave.mean_radius;
                 let fraction = packing.number as f64 / (6.0 * radius * radius * length);
-                ((fraction / BELLY_FRACTION).min(1.0), widest(prescribed))
+                let filled = (fraction / BELLY_FRACTION).min(1.0);
+                (filled, belly(wave, wall.cycles()))
             }
             // An elastic wall has no bellies before it is driven.
             _ => (1.0, 0.0),
@@ -48,11 +50,7 @@ impl<'a> Region<'a> {
     /// Radius within which centres of spheres of this diameter are clear of the wall at z.
     fn clear_radius(&self, z: f64, diameter: f64) -> f64 {
         let lattice = self.wall.lattice();
-        let radius = match self.wall {
-            Wall::Prescribed(wall) => wall.wave().radius(z, wall.cycles()),
-            Wall::Elastic(wall) => wall.parameters().mean_radius,
-        };
-        (radius - 0.5 * (diameter + lattice.sphere_diameter)).max(0.0)
+        (self.wall.radius(z) - 0.5 * (diameter + lattice.sphere_diameter)).max(0.0)
     }
 
     /// A random place, uniform in the volume that is clear of the wall (a narrow core where nothing is).
@@ -88,17 +86,14 @@ impl<'a> Region<'a> {
 }
 
 /// Axial position of the middle of the belly, to a thousandth of a wavelength.
-fn widest(wall: &PrescribedWall) -> f64 {
-    let wavelength = wall.lattice().wavelength;
-    if wall.wave().waveform.largest() == 0.0 {
+fn belly(wave: &RadiusWave, cycles: f64) -> f64 {
+    let wavelength = wave.wavelength;
+    if wave.waveform.largest() == 0.0 {
         // Straight but for the squeeze: half way from throat to throat, at phase 1/4.
-        let place = wall.wave().heading * (wall.cycles() - 0.25);
+        let place = wave.heading * (cycles - 0.25);
         return (place - place.floor()) * wavelength;
     }
-    let radius = |step: u32| {
-        wall.wave()
-            .radius(f64::from(step) * wavelength / 1000.0, wall.cycles())
-    };
+    let radius = |step: u32| wave.radius(f64::from(step) * wavelength / 1000.0, cycles);
     let best = (0..1000).fold(0, |best, step| {
         if radius(step) > radius(best) {
             step

@@ -5,6 +5,7 @@ mod relaxation;
 
 use glam::DVec3;
 use peristalsis_physics::contact::Normal;
+use peristalsis_physics::with_normal_law;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
@@ -102,24 +103,13 @@ pub fn pack(
     grains.sort_by(|a, b| a.0.z.total_cmp(&b.0.z));
     let (position, diameter) = grains.into_iter().unzip();
     let mut bodies = Bodies::grains_at_rest(position, diameter);
-    if let Wall::Elastic(elastic) = wall {
-        for sphere in 0..elastic.lattice().spheres() {
-            bodies.push_wall_sphere(
-                elastic.reference(sphere),
-                elastic.lattice().sphere_diameter,
-                elastic.parameters().sphere_mass,
-            );
-        }
-    }
+    wall.append_spheres(&mut bodies);
     let mut report = PackingReport {
         inserted: without_overlap,
         ..PackingReport::default()
     };
     if without_overlap < packing.number {
-        let relaxed = match normal {
-            Normal::Linear(law) => relaxation::grow(&law, &mut bodies, wall)?,
-            Normal::Hertz(law) => relaxation::grow(&law, &mut bodies, wall)?,
-        };
+        let relaxed = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall)?);
         report = PackingReport {
             inserted: without_overlap,
             ..relaxed

@@ -5,9 +5,10 @@ use peristalsis_physics::contact::{ContactLaw, Frictionless, NormalLaw};
 
 use super::{LARGEST_MEAN_OVERLAP, PackingReport};
 use crate::bodies::Bodies;
+use crate::contacts::Contacts;
 use crate::error::EngineError;
 use crate::fast::sorted::Sorted;
-use crate::forces::{Contacts, evaluate};
+use crate::forces::evaluate;
 use crate::ledger::Tally;
 use crate::wall::Wall;
 
@@ -79,11 +80,7 @@ fn pressed_out(bodies: &Bodies, wall: &Wall) -> usize {
     (0..bodies.grains)
         .filter(|&grain| {
             let place = bodies.position[grain];
-            let radius = match wall {
-                Wall::Prescribed(wall) => wall.wave().radius(place.z, wall.cycles()),
-                Wall::Elastic(wall) => wall.parameters().mean_radius,
-            };
-            let limit = radius + 0.5 * bodies.diameter[grain];
+            let limit = wall.radius(place.z) + 0.5 * bodies.diameter[grain];
             place.x * place.x + place.y * place.y > limit * limit
         })
         .count()
@@ -104,11 +101,9 @@ const SKIN: f64 = 0.3;
 
 impl Forces {
     fn between(bodies: &Bodies, wall: &Wall) -> Self {
-        match wall {
-            Wall::Prescribed(prescribed) if Sorted::serves_tube(bodies, wall, SKIN) => {
-                Self::Sorted(Box::new(Sorted::new(bodies, prescribed, SKIN, None)))
-            }
-            _ => Self::Listed(Box::new(Contacts::none())),
+        match Sorted::new(bodies, wall, SKIN, None) {
+            Some(sorted) => Self::Sorted(Box::new(sorted)),
+            None => Self::Listed(Box::new(Contacts::none())),
         }
     }
 
@@ -118,16 +113,11 @@ impl Forces {
         bodies: &mut Bodies,
         wall: &Wall,
     ) -> Tally {
-        match (self, wall) {
-            (Self::Sorted(sorted), Wall::Prescribed(wall)) => {
-                sorted.evaluate(&law.normal, wall, bodies)
-            }
-            (Self::Listed(contacts), _) => {
+        match self {
+            Self::Sorted(sorted) => sorted.evaluate(&law.normal, wall, bodies),
+            Self::Listed(contacts) => {
                 contacts.refresh(bodies, wall, SKIN);
                 evaluate(law, bodies, wall, contacts, 0.0)
-            }
-            (Self::Sorted(_), Wall::Elastic(_)) => {
-                unreachable!("the sorted kernel serves prescribed walls only")
             }
         }
     }

@@ -5,47 +5,30 @@
 //! The first step has no past: x' = x + h v + h^2 a/2, v' = v + h a. Its local errors, of order h^3 in x and h^2 in v,
 //! occur once, so that the order stays 2. A snapshot holds the past, so that a restart is no first step.
 
-use super::{Past, Runaway, displace};
-use crate::bodies::Bodies;
+use super::{Linear, Scheme};
 
-pub(super) fn before_forces(
-    bodies: &mut Bodies,
-    past: &mut Past,
-    h: f64,
-    limit: f64,
-) -> Result<(), Runaway> {
-    if past.velocity.len() == bodies.number() {
-        displace(bodies, limit, |bodies, i| {
-            h * (1.5 * bodies.velocity[i] - 0.5 * past.velocity[i])
-        })?;
-    } else {
-        displace(bodies, limit, |bodies, i| {
-            h * (bodies.velocity[i] + 0.5 * h * bodies.acceleration[i])
-        })?;
-        // A past equal to the present makes the formulas below those of the first step.
-        past.acceleration.clone_from(&bodies.acceleration);
-        past.angular_acceleration
-            .clone_from(&bodies.angular_acceleration);
+/// Adams-Bashforth from the second step on.
+#[derive(Clone, Copy)]
+pub(crate) struct AdamsBashforth {
+    /// h
+    pub(crate) step: f64,
+}
+
+impl<V: Linear<f64>> Scheme<V> for AdamsBashforth {
+    const TWO_STEP: bool = true;
+
+    #[inline(always)]
+    fn displacement(&self, velocity: V, _acceleration: V, velocity_before: V) -> V {
+        (velocity * 1.5 - velocity_before * 0.5) * self.step
     }
-    past.velocity.clone_from(&bodies.velocity);
-    past.angular_velocity.clone_from(&bodies.angular_velocity);
-    let advance = |velocity: &mut [glam::DVec3], now: &[glam::DVec3], then: &[glam::DVec3]| {
-        for ((velocity, now), then) in velocity.iter_mut().zip(now).zip(then) {
-            *velocity += h * (1.5 * *now - 0.5 * *then);
-        }
-    };
-    advance(
-        &mut bodies.velocity,
-        &bodies.acceleration,
-        &past.acceleration,
-    );
-    advance(
-        &mut bodies.angular_velocity,
-        &bodies.angular_acceleration,
-        &past.angular_acceleration,
-    );
-    past.acceleration.clone_from(&bodies.acceleration);
-    past.angular_acceleration
-        .clone_from(&bodies.angular_acceleration);
-    Ok(())
+
+    #[inline(always)]
+    fn predicted(&self, velocity: V, acceleration: V, acceleration_before: V) -> V {
+        velocity + (acceleration * 1.5 - acceleration_before * 0.5) * self.step
+    }
+
+    #[inline(always)]
+    fn corrected(&self, velocity: V, _acceleration: V, _acceleration_before: V) -> V {
+        velocity
+    }
 }

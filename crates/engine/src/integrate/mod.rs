@@ -1,15 +1,18 @@
-//! Integrators of the equations of motion: one file each.
+//! Integrators of the equations of motion: the formulas of each in a file, the same for all kernels.
 
-pub mod adams_bashforth;
-pub mod verlet;
+pub(crate) mod adams_bashforth;
+pub(crate) mod verlet;
+
+use core::ops::{Add, Mul, Sub};
 
 use glam::DVec3;
+use peristalsis_physics::method::Integrator;
 
-pub use peristalsis_physics::method::Integrator;
-
+use self::adams_bashforth::AdamsBashforth;
+use self::verlet::Verlet;
 use crate::bodies::Bodies;
 
-/// What an integrator remembers of the step before.
+/// Velocities and accelerations of the step before, as far as the integrator needs them.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Past {
     pub(crate) velocity: Vec<DVec3>,
@@ -25,43 +28,67 @@ pub(crate) struct Runaway {
     pub(crate) displacement: f64,
 }
 
+/// Vectors that can be added, and multiplied by numbers of type `S`.
+pub(crate) trait Linear<S>:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<S, Output = Self>
+{
+}
+
+impl<S, V: Copy + Add<Output = V> + Sub<Output = V> + Mul<S, Output = V>> Linear<S> for V {}
+
+/// The formulas of an integrator, for the vectors of one sphere or of several side by side.
+pub(crate) trait Scheme<V> {
+    /// Whether it needs the velocities of the step before.
+    const TWO_STEP: bool;
+
+    /// Displacement of the step.
+    fn displacement(&self, velocity: V, acceleration: V, velocity_before: V) -> V;
+
+    /// Velocity at the end of the step, as the forces there see it.
+    fn predicted(&self, velocity: V, acceleration: V, acceleration_before: V) -> V;
+
+    /// Velocity at the end of the step, from the predicted one and the acceleration there.
+    fn corrected(&self, velocity: V, acceleration: V, acceleration_before: V) -> V;
+}
+
 /// Moves positions to the end of the step and velocities to where the forces want them.
 pub(crate) fn before_forces(
     integrator: Integrator,
     bodies: &mut Bodies,
     past: &mut Past,
-    time_step: f64,
+    step: f64,
     limit: f64,
 ) -> Result<(), Runaway> {
     match integrator {
-        Integrator::Verlet => verlet::before_forces(bodies, past, time_step, limit),
-        Integrator::AdamsBashforth => {
-            adams_bashforth::before_forces(bodies, past, time_step, limit)
-        }
+        Integrator::Verlet => begin(Verlet::with_step(step), step, bodies, past, limit),
+        Integrator::AdamsBashforth => begin(AdamsBashforth { step }, step, bodies, past, limit),
     }
 }
 
 /// Brings velocities to the end of the step, now that the forces there are known.
-pub(crate) fn after_forces(
-    integrator: Integrator,
-    bodies: &mut Bodies,
-    past: &Past,
-    time_step: f64,
-) {
+pub(crate) fn after_forces(integrator: Integrator, bodies: &mut Bodies, past: &Past, step: f64) {
     match integrator {
-        Integrator::Verlet => verlet::after_forces(bodies, past, time_step),
-        Integrator::AdamsBashforth => {}
+        Integrator::Verlet => end(Verlet::with_step(step), bodies, past),
+        Integrator::AdamsBashforth => end(AdamsBashforth { step }, bodies, past),
     }
 }
 
-/// Adds displacements to positions; stops at the first that is longer than `limit` or not finite.
-fn displace(
+/// Moves positions and predicts velocities; stops at the first displacement that is longer than `limit` or not finite.
+fn begin<S: Scheme<DVec3>>(
+    scheme: S,
+    step: f64,
     bodies: &mut Bodies,
+    past: &mut Past,
     limit: f64,
-    displacement: impl Fn(&Bodies, usize) -> DVec3,
 ) -> Result<(), Runaway> {
+    let has_past = S::TWO_STEP && past.velocity.len() == bodies.number();
     for body in 0..bodies.number() {
-        let by = displacement(bodies, body);
+        let (velocity, acceleration) = (bodies.velocity[body], bodies.acceleration[body]);
+        let by = if has_past {
+            scheme.displacement(velocity, acceleration, past.velocity[body])
+        } else {
+            Verlet::with_step(step).displacement(velocity, acceleration, velocity)
+        };
         let squared = by.length_squared();
         // A comparison with NaN is false: written so that NaN is caught.
         let in_reach = squared <= limit * limit;
@@ -73,5 +100,52 @@ fn displace(
         }
         bodies.position[body] += by;
     }
+    if S::TWO_STEP {
+        past.velocity.clone_from(&bodies.velocity);
+        past.angular_velocity.clone_from(&bodies.angular_velocity);
+    }
+    if !has_past {
+        // A past equal to the present makes the formula below that of a first step.
+        past.remember_accelerations(bodies);
+    }
+    for (velocity, now, before) in velocities(bodies, past) {
+        *velocity = scheme.predicted(*velocity, *now, *before);
+    }
+    past.remember_accelerations(bodies);
     Ok(())
+}
+
+/// Corrects velocities.
+fn end(scheme: impl Scheme<DVec3>, bodies: &mut Bodies, past: &Past) {
+    for (velocity, now, before) in velocities(bodies, past) {
+        *velocity = scheme.corrected(*velocity, *now, *before);
+    }
+}
+
+impl Past {
+    fn remember_accelerations(&mut self, bodies: &Bodies) {
+        self.acceleration.clone_from(&bodies.acceleration);
+        self.angular_acceleration
+            .clone_from(&bodies.angular_acceleration);
+    }
+}
+
+/// Each velocity and angular velocity with its acceleration now and a step before.
+fn velocities<'a>(
+    bodies: &'a mut Bodies,
+    past: &'a Past,
+) -> impl Iterator<Item = (&'a mut DVec3, &'a DVec3, &'a DVec3)> {
+    let velocities = bodies
+        .velocity
+        .iter_mut()
+        .chain(&mut bodies.angular_velocity);
+    let now = bodies
+        .acceleration
+        .iter()
+        .chain(&bodies.angular_acceleration);
+    let before = past.acceleration.iter().chain(&past.angular_acceleration);
+    velocities
+        .zip(now)
+        .zip(before)
+        .map(|((velocity, now), before)| (velocity, now, before))
 }

@@ -6,50 +6,41 @@
 //! integrated to order 2 as well (a velocity of the half step would leave order 1). Without damping this is the
 //! symplectic velocity Verlet method. Groot & Warren, J. Chem. Phys. 107, 4423 (1997), with lambda = 1.
 
-use super::{Past, Runaway, displace};
-use crate::bodies::Bodies;
+use super::{Linear, Scheme};
 
-pub(super) fn before_forces(
-    bodies: &mut Bodies,
-    past: &mut Past,
-    h: f64,
-    limit: f64,
-) -> Result<(), Runaway> {
-    displace(bodies, limit, |bodies, i| {
-        h * (bodies.velocity[i] + 0.5 * h * bodies.acceleration[i])
-    })?;
-    for (velocity, acceleration) in bodies.velocity.iter_mut().zip(&bodies.acceleration) {
-        *velocity += h * *acceleration;
-    }
-    for (velocity, acceleration) in bodies
-        .angular_velocity
-        .iter_mut()
-        .zip(&bodies.angular_acceleration)
-    {
-        *velocity += h * *acceleration;
-    }
-    past.acceleration.clone_from(&bodies.acceleration);
-    past.angular_acceleration
-        .clone_from(&bodies.angular_acceleration);
-    Ok(())
+/// Velocity Verlet with steps of length h, as a number that multiplies vectors of the kind at hand.
+#[derive(Clone, Copy)]
+pub(crate) struct Verlet<S> {
+    /// h
+    pub(crate) step: S,
+    /// h/2
+    pub(crate) half_step: S,
 }
 
-pub(super) fn after_forces(bodies: &mut Bodies, past: &Past, h: f64) {
-    let half = 0.5 * h;
-    for ((velocity, now), then) in bodies
-        .velocity
-        .iter_mut()
-        .zip(&bodies.acceleration)
-        .zip(&past.acceleration)
-    {
-        *velocity += half * (*now - *then);
+impl Verlet<f64> {
+    pub(crate) fn with_step(step: f64) -> Self {
+        Self {
+            step,
+            half_step: 0.5 * step,
+        }
     }
-    for ((velocity, now), then) in bodies
-        .angular_velocity
-        .iter_mut()
-        .zip(&bodies.angular_acceleration)
-        .zip(&past.angular_acceleration)
-    {
-        *velocity += half * (*now - *then);
+}
+
+impl<S: Copy, V: Linear<S>> Scheme<V> for Verlet<S> {
+    const TWO_STEP: bool = false;
+
+    #[inline(always)]
+    fn displacement(&self, velocity: V, acceleration: V, _velocity_before: V) -> V {
+        (velocity + acceleration * self.half_step) * self.step
+    }
+
+    #[inline(always)]
+    fn predicted(&self, velocity: V, acceleration: V, _acceleration_before: V) -> V {
+        velocity + acceleration * self.step
+    }
+
+    #[inline(always)]
+    fn corrected(&self, velocity: V, acceleration: V, acceleration_before: V) -> V {
+        velocity + (acceleration - acceleration_before) * self.half_step
     }
 }

@@ -218,7 +218,7 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
                             Lanes::load(&cells.z, block),
                         );
                         let mut separation = place - other;
-                        separation.z = separation.z.size();
+                        separation.z = separation.z.abs();
                         separation.z = Lanes::select(
                             half.less(separation.z),
                             whole - separation.z,

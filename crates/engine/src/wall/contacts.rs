@@ -8,8 +8,8 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use super::{PrescribedWall, Wall};
-use crate::bodies::Bodies;
-use crate::forces::Contacts;
+use crate::bodies::{Bodies, Sphere};
+use crate::contacts::Contacts;
 use crate::neighbours::periodic;
 
 /// A contact of a grain with a sphere of the wall; forces are those on the grain \[m d/t^2\].
@@ -143,31 +143,27 @@ fn contact_of<N: NormalLaw, T: TangentialLaw>(
     wall: &WallSide,
     history: &mut T::History<f64>,
 ) -> Option<WallContact> {
-    let diameter = bodies.diameter[grain];
-    let distance = wall.separation.length();
-    let overlap = 0.5 * (diameter + wall.diameter) - distance;
-    if overlap <= 0.0 || distance == 0.0 {
+    let Sphere {
+        position,
+        velocity,
+        angular_velocity,
+        diameter,
+    } = bodies.sphere(grain);
+    let diameters = (diameter, wall.diameter);
+    let mut contact = Contact::new(diameters, wall.separation, velocity - wall.velocity);
+    if !contact.touches() {
         return None;
     }
-    let arm = 0.5 * (diameter - overlap);
-    let contact = Contact {
-        overlap,
-        distance,
-        normal: wall.separation * (1.0 / distance),
-        relative_velocity: bodies.velocity[grain] - wall.velocity,
-        reduced_radius: diameter * wall.diameter / (2.0 * (diameter + wall.diameter)),
-        spin: if T::ROTATES {
-            arm * bodies.angular_velocity[grain]
-        } else {
-            DVec3::ZERO
-        },
-    };
+    let arm = contact.arm(diameter);
+    if T::ROTATES {
+        contact.rotation = arm * angular_velocity;
+    }
     // A step of no length: the history stays where it is.
     let answer = law.force(&contact, history, 0.0);
     let tangential_force = answer.tangential.force;
     Some(WallContact {
         grain,
-        point: bodies.position[grain] - arm * contact.normal,
+        point: position - arm * contact.normal,
         normal_force: answer.force - tangential_force,
         tangential_force,
     })

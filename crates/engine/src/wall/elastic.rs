@@ -29,7 +29,7 @@ pub struct ElasticParameters {
     /// Wall spheres further apart than this in the reference tube touch like grains without friction \[d\].
     pub contact_range: f64,
     /// f_keep.
-    pub keep: Tethers,
+    pub tethers: Tethers,
     /// f^P(t) \[m d/t^2\].
     pub force_amplitude: Schedule,
     /// c(t)/lambda \[1/t\].
@@ -101,7 +101,7 @@ impl ElasticWall {
             balance: 0.0,
             cycles: 0.0,
         };
-        if wall.parameters.keep.balance {
+        if wall.parameters.tethers.balance {
             wall.balance = -wall.reference_spring_force();
         }
         wall
@@ -212,9 +212,9 @@ impl ElasticWall {
     /// the mean force is removed last.
     pub(crate) fn add_forces(&self, bodies: &mut Bodies, tally: &mut Tally) {
         self.add_springs(bodies, tally);
-        self.add_keep_and_drive(bodies, tally);
+        self.add_tethers_and_drive(bodies, tally);
         let spheres = self.directions.len();
-        match self.parameters.keep.net_force {
+        match self.parameters.tethers.net_force {
             NetForce::Free => {}
             NetForce::Removed => remove_mean(bodies, bodies.grains..bodies.grains + spheres, tally),
             NetForce::RemovedPerRing => {
@@ -257,13 +257,13 @@ impl ElasticWall {
         }
     }
 
-    fn add_keep_and_drive(&self, bodies: &mut Bodies, tally: &mut Tally) {
+    fn add_tethers_and_drive(&self, bodies: &mut Bodies, tally: &mut Tally) {
         let Tethers {
             radial,
             azimuthal,
             axial,
             ..
-        } = self.parameters.keep;
+        } = self.parameters.tethers;
         let drag = self.parameters.drag;
         let wavelength = self.parameters.lattice.wavelength;
         for (sphere, &(cos, sin)) in self.directions.iter().enumerate() {

@@ -10,7 +10,13 @@ pub use elastic::{ElasticParameters, ElasticWall};
 pub use peristalsis_physics::wall::{DriveAngle, NetForce, Tethers};
 pub use prescribed::PrescribedWall;
 
-use peristalsis_physics::wall::Lattice;
+use glam::DVec3;
+use peristalsis_physics::contact::{ContactLaw, NormalLaw, TangentialLaw};
+use peristalsis_physics::wall::{Lattice, RadiusWave};
+
+use self::memory::WallMemory;
+use crate::bodies::{Bodies, Sphere};
+use crate::ledger::Tally;
 
 /// The wall of a simulation.
 #[derive(Clone, Debug)]
@@ -39,7 +45,7 @@ impl Wall {
         }
     }
 
-    /// What keeps `other`, brought to the same time, from taking this wall's place.
+    /// The reason why `other`, brought to the same time, cannot take this wall's place; `None` where it can.
     pub(crate) fn difference(&self, other: &Self, time: f64) -> Option<&'static str> {
         let (same_kind, amplitudes) = match (self, other) {
             (Self::Prescribed(this), Self::Prescribed(other)) => {
@@ -116,6 +122,126 @@ impl Wall {
         match self {
             Self::Prescribed(wall) => wall.wave().mean_radius + wall.wave().amplitude.abs(),
             Self::Elastic(wall) => 2.0 * wall.parameters().mean_radius,
+        }
+    }
+
+    /// Mean radius of the tube, to the centres: a of a prescribed wave, the reference radius of an elastic wall \[d\].
+    #[must_use]
+    pub fn mean_radius(&self) -> f64 {
+        match self {
+            Self::Prescribed(wall) => wall.wave().mean_radius,
+            Self::Elastic(wall) => wall.parameters().mean_radius,
+        }
+    }
+
+    /// The wave that the radius follows; `None` where the radius follows from forces.
+    #[must_use]
+    pub fn wave(&self) -> Option<&RadiusWave> {
+        self.prescribed().map(PrescribedWall::wave)
+    }
+
+    /// Radius at z as far as it is known without the spheres: that of the wave, or of the reference tube \[d\].
+    pub(crate) fn radius(&self, z: f64) -> f64 {
+        self.wave()
+            .map_or_else(|| self.mean_radius(), |wave| wave.radius(z, self.cycles()))
+    }
+
+    /// Where the throat is in the frame of the wave \[lambda\]: under strain control the place of the least radius,
+    /// under stress control that of the largest inward force.
+    #[must_use]
+    pub fn throat(&self) -> f64 {
+        match self {
+            Self::Prescribed(_) => 0.25,
+            Self::Elastic(_) => 0.75,
+        }
+    }
+
+    /// Number of the wall's spheres that forces move: the last of the [`Bodies`].
+    #[must_use]
+    pub fn mobile_spheres(&self) -> usize {
+        self.elastic().map_or(0, |wall| wall.lattice().spheres())
+    }
+
+    /// The wall's spheres that move as prescribed, in the order of their numbers.
+    pub fn prescribed_spheres(&self) -> impl Iterator<Item = Sphere> {
+        self.prescribed().into_iter().flat_map(|wall| {
+            (0..wall.lattice().spheres()).map(|index| Sphere {
+                position: wall.sphere_position(index),
+                velocity: wall.sphere_velocity(index),
+                angular_velocity: DVec3::ZERO,
+                diameter: wall.lattice().sphere_diameter,
+            })
+        })
+    }
+
+    /// Displacements of the mobile spheres from their reference places: (radial, azimuthal, axial) along the reference
+    /// directions \[d\].
+    pub fn displacements(&self, bodies: &Bodies) -> impl Iterator<Item = DVec3> {
+        self.elastic().into_iter().flat_map(|wall| {
+            (0..wall.lattice().spheres()).map(|sphere| wall.displacement(bodies, sphere))
+        })
+    }
+
+    /// Appends the mobile spheres to the grains, in the reference tube.
+    pub fn append_spheres(&self, bodies: &mut Bodies) {
+        let Some(wall) = self.elastic() else { return };
+        for sphere in 0..wall.lattice().spheres() {
+            bodies.push_wall_sphere(
+                wall.reference(sphere),
+                wall.lattice().sphere_diameter,
+                wall.parameters().sphere_mass,
+            );
+        }
+    }
+
+    /// The prescribed wall, if it is one.
+    pub(crate) fn prescribed(&self) -> Option<&PrescribedWall> {
+        match self {
+            Self::Prescribed(wall) => Some(wall),
+            Self::Elastic(_) => None,
+        }
+    }
+
+    /// The elastic wall, if it is one.
+    pub(crate) fn elastic(&self) -> Option<&ElasticWall> {
+        match self {
+            Self::Prescribed(_) => None,
+            Self::Elastic(wall) => Some(wall),
+        }
+    }
+
+    /// Whether two of the mobile spheres may touch.
+    pub(crate) fn may_touch(&self, one: usize, other: usize) -> bool {
+        self.elastic()
+            .is_some_and(|wall| wall.may_touch(one, other))
+    }
+
+    /// Calls `touch` for each sphere that moves as prescribed and overlaps a sphere of diameter `diameter` at `centre`,
+    /// with its number, the separation (centre minus wall sphere) and its velocity.
+    pub(crate) fn for_each_touching(
+        &self,
+        centre: DVec3,
+        diameter: f64,
+        touch: impl FnMut(u32, DVec3, DVec3),
+    ) {
+        if let Some(wall) = self.prescribed() {
+            wall.for_each_touching(centre, diameter, touch);
+        }
+    }
+
+    /// Adds the forces of a prescribed wall on the grains, or all forces on the spheres of an elastic wall but those of
+    /// contacts, which must be there already.
+    pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
+        &self,
+        law: &ContactLaw<N, T>,
+        bodies: &mut Bodies,
+        memory: &mut WallMemory<T::History<f64>>,
+        time_step: f64,
+        tally: &mut Tally,
+    ) {
+        match self {
+            Self::Prescribed(wall) => wall.add_forces(law, bodies, memory, time_step, tally),
+            Self::Elastic(wall) => wall.add_forces(bodies, tally),
         }
     }
 }

@@ -8,7 +8,7 @@ use peristalsis_physics::wall::lattice::approximate_angle;
 use peristalsis_physics::wall::{Lattice, RadiusWave, Ring, Schedule, Waveform};
 
 use super::memory::WallMemory;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Sphere};
 use crate::ledger::Tally;
 
 /// Staggered rings whose radius follows a travelling wave.
@@ -115,21 +115,18 @@ impl PrescribedWall {
             heading: self.heading,
         };
         let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
-        match self.waveform {
-            Waveform::Sine => {
-                // One sine for all rings: sin(a - b) = sin a cos b - cos a sin b.
-                let (sin, cos) = libm::sincos(TAU * (self.cycles - self.cycles.floor()));
-                for (entry, (ring_cos, ring_sin)) in self.rings.iter_mut().zip(&self.ring_phases) {
-                    let value = sin * ring_cos - cos * ring_sin;
-                    let slope = TAU * (cos * ring_cos + sin * ring_sin);
-                    *entry = self.wave.ring_of((value, slope), frequency, amplitude_rate);
-                }
+        if self.waveform == Waveform::Sine {
+            // One sine for all rings: sin(a - b) = sin a cos b - cos a sin b.
+            let (sin, cos) = libm::sincos(TAU * (self.cycles - self.cycles.floor()));
+            for (ring, (ring_cos, ring_sin)) in self.rings.iter_mut().zip(&self.ring_phases) {
+                let value = sin * ring_cos - cos * ring_sin;
+                let slope = TAU * (cos * ring_cos + sin * ring_sin);
+                *ring = self.wave.ring_of((value, slope), frequency, amplitude_rate);
             }
-            Waveform::Bolus | Waveform::Roller => {
-                for (ring, entry) in self.rings.iter_mut().enumerate() {
-                    let z = ring as f64 * self.spacing;
-                    *entry = self.wave.ring(z, self.cycles, frequency, amplitude_rate);
-                }
+        } else {
+            for (number, ring) in self.rings.iter_mut().enumerate() {
+                let z = number as f64 * self.spacing;
+                *ring = self.wave.ring(z, self.cycles, frequency, amplitude_rate);
             }
         }
     }
@@ -161,11 +158,6 @@ impl PrescribedWall {
     #[must_use]
     pub fn frequency(&self, time: f64) -> f64 {
         self.frequency.value(time)
-    }
-
-    /// Replaces a schedule of the amplitude from now on.
-    pub fn set_amplitude(&mut self, amplitude: Schedule) {
-        self.amplitude = amplitude;
     }
 
     /// Centre of a wall sphere now \[d\].
@@ -280,20 +272,13 @@ impl PrescribedWall {
             memory.begin();
         }
         for grain in 0..bodies.grains {
-            let state = GrainState {
-                centre: bodies.position[grain],
-                velocity: bodies.velocity[grain],
-                angular_velocity: bodies.angular_velocity[grain],
-                diameter: bodies.diameter[grain],
-            };
+            let sphere = bodies.sphere(grain);
+            let force = &mut bodies.acceleration[grain];
+            let torque = &mut bodies.angular_acceleration[grain];
             self.add_force(
                 law,
-                grain,
-                &state,
-                (
-                    &mut bodies.acceleration[grain],
-                    &mut bodies.angular_acceleration[grain],
-                ),
+                (grain, &sphere),
+                (force, torque),
                 memory,
                 time_step,
                 tally,
@@ -305,60 +290,44 @@ impl PrescribedWall {
     }
 
     /// Adds the force and torque of the wall on one grain; grains come in their order, between [`WallMemory::begin`] and
-    /// [`WallMemory::end`] if contacts remember.
+    /// [`WallMemory::end`] if contacts have histories.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments)]
     pub(crate) fn add_force<N: NormalLaw, T: TangentialLaw>(
         &self,
         law: &ContactLaw<N, T>,
-        grain: usize,
-        state: &GrainState,
+        (grain, sphere): (usize, &Sphere),
         (on_grain, torque_on_grain): (&mut DVec3, &mut DVec3),
         memory: &mut WallMemory<T::History<f64>>,
         time_step: f64,
         tally: &mut Tally,
     ) {
-        let GrainState {
-            centre,
+        let Sphere {
+            position,
             velocity,
             angular_velocity,
             diameter,
-        } = *state;
-        let wall_diameter = self.lattice.sphere_diameter;
+        } = *sphere;
+        let diameters = (diameter, self.lattice.sphere_diameter);
         let (mut force, mut torque) = (*on_grain, *torque_on_grain);
-        let reach = 0.5 * (diameter + wall_diameter);
-        let reduced_radius = diameter * wall_diameter / (2.0 * (diameter + wall_diameter));
-        self.for_each_touching(centre, diameter, |sphere, separation, wall_velocity| {
-            let distance = separation.length();
-            let overlap = reach - distance;
-            // Rounding may leave a sphere at the very edge of reach; coincident centres have no normal.
-            if overlap <= 0.0 || distance == 0.0 {
+        self.for_each_touching(position, diameter, |sphere, separation, wall_velocity| {
+            let mut contact = Contact::new(diameters, separation, velocity - wall_velocity);
+            // Rounding may leave a sphere at the very edge of reach.
+            if !contact.touches() {
                 return;
             }
-            let arm = 0.5 * (diameter - overlap);
-            let contact = Contact {
-                overlap,
-                distance,
-                normal: separation * (1.0 / distance),
-                relative_velocity: velocity - wall_velocity,
-                reduced_radius,
-                spin: if T::ROTATES {
-                    arm * angular_velocity
-                } else {
-                    DVec3::ZERO
-                },
-            };
+            let arm = contact.arm(diameter);
             let mut history = T::History::<f64>::default();
             if T::ROTATES {
+                contact.rotation = arm * angular_velocity;
                 history = memory.take(grain, sphere);
             }
             let answer = law.force(&contact, &mut history, time_step);
             if T::ROTATES {
                 memory.put(sphere, history);
-                torque += arm * answer.twist;
+                torque += arm * answer.torque_per_arm;
             }
             force += answer.force;
-            tally.add_contact(&answer, overlap);
+            tally.add_contact(&answer, contact.overlap);
             tally.wall_contacts += 1;
             tally.wall_power += answer.force.dot(wall_velocity);
             tally.wall_axial_force += answer.force.z;
@@ -371,14 +340,6 @@ impl PrescribedWall {
             }
         }
     }
-}
-
-/// What a contact with the wall asks of a grain.
-pub(crate) struct GrainState {
-    pub(crate) centre: DVec3,
-    pub(crate) velocity: DVec3,
-    pub(crate) angular_velocity: DVec3,
-    pub(crate) diameter: f64,
 }
 
 /// Least whole number that is not below x: by truncation, for rounding is a library call on the plainest processors.

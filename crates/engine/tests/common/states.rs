@@ -301,7 +301,7 @@ fn springy(numbers: &mut Numbers, time_step: f64) -> (Wall, f64) {
         spring_damping: numbers.perhaps(0.05),
         drag: numbers.perhaps(0.05),
         contact_range: numbers.between(1.2, 3.0),
-        keep: Tethers {
+        tethers: Tethers {
             balance: numbers.happens(0.5),
             radial: numbers.perhaps(0.1),
             azimuthal: numbers.perhaps(0.1),

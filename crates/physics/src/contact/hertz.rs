@@ -100,6 +100,13 @@ impl NormalLaw for ViscoelasticHertz {
     fn elasticity(&self) -> Elasticity {
         Elasticity::YoungModulus(self.young_modulus)
     }
+
+    /// xi = (5 m_ij v^2/(4 K))^(2/5), K = 2 Y R_ij^(1/2)/(3 (1 - nu^2))
+    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
+        let stiffness = 2.0 * self.young_modulus * reduced_radius.sqrt()
+            / (3.0 * (1.0 - self.poisson_ratio * self.poisson_ratio));
+        libm::pow(1.25 * reduced_mass * speed * speed / stiffness, 0.4)
+    }
 }
 
 #[cfg(test)]
@@ -146,5 +153,13 @@ mod tests {
         let force = |overlap: f64| LAW.undamped().force(overlap, 0.0, 0.25).force;
         let slope = (force(overlap + step) - force(overlap - step)) / (2.0 * step);
         assert!((LAW.stiffness(overlap, 0.25) - slope).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_impact_stores_its_kinetic_energy() {
+        let (reduced_mass, speed) = (0.5, 0.02);
+        let overlap = LAW.impact_overlap(reduced_mass, speed, 0.25);
+        let stored = LAW.force(overlap, 0.0, 0.25).energy;
+        assert!((stored / (0.5 * reduced_mass * speed * speed) - 1.0).abs() < 1e-12);
     }
 }

@@ -93,6 +93,11 @@ impl NormalLaw for LinearSpringDashpot {
     fn elasticity(&self) -> Elasticity {
         Elasticity::Stiffness(self.normal_stiffness)
     }
+
+    /// xi = v (m_ij/k)^(1/2)
+    fn impact_overlap(&self, reduced_mass: f64, speed: f64, _reduced_radius: f64) -> f64 {
+        speed * (reduced_mass / self.normal_stiffness).sqrt()
+    }
 }
 
 #[cfg(test)]
@@ -115,6 +120,8 @@ mod tests {
             found.elastic_force
         );
         assert_eq!(LAW.stiffness(0.1, 0.25), 2.0);
+        // m v^2/2 = k xi^2/2
+        assert!((LAW.impact_overlap(0.5, 0.1, 0.25) - 0.05).abs() < 1e-15);
     }
 
     #[test]

@@ -33,11 +33,53 @@ pub struct Contact<R: Real = f64> {
     pub relative_velocity: R::Vector,
     /// R_ij = d_i d_j/(2 (d_i + d_j)).
     pub reduced_radius: R,
-    /// l_i omega_i + l_j omega_j with the lever arms l = (d - xi)/2; zero where nothing rotates.
-    pub spin: R::Vector,
+    /// l_i omega_i + l_j omega_j with the lever arms l = (d - xi)/2; zero where nothing rotates. n x this is what
+    /// rotation adds to the relative velocity of the surfaces.
+    pub rotation: R::Vector,
+}
+
+/// R_ij = d_i d_j/(2 (d_i + d_j)) \[d\], the reduced radius of two spheres.
+#[inline(always)]
+#[must_use]
+pub fn reduced_radius<R: Real>(diameter: R, other: R) -> R {
+    diameter * other / (R::splat(2.0) * (diameter + other))
 }
 
 impl<R: Real> Contact<R> {
+    /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`,
+    /// neither of which rotates.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(
+        (diameter, other): (R, R),
+        separation: R::Vector,
+        relative_velocity: R::Vector,
+    ) -> Self {
+        let distance = separation.dot(separation).sqrt();
+        Self {
+            overlap: R::splat(0.5) * (diameter + other) - distance,
+            distance,
+            normal: separation * (R::splat(1.0) / distance),
+            relative_velocity,
+            reduced_radius: reduced_radius(diameter, other),
+            rotation: R::Vector::default(),
+        }
+    }
+
+    /// l = (d - xi)/2 \[d\]: the lever arm of a sphere of diameter `diameter`, from its centre to the plane of contact.
+    #[inline(always)]
+    #[must_use]
+    pub fn arm(&self, diameter: R) -> R {
+        R::splat(0.5) * (diameter - self.overlap)
+    }
+
+    /// The same contact with l_i omega_i + l_j omega_j = `rotation`.
+    #[inline(always)]
+    #[must_use]
+    pub fn rotating(self, rotation: R::Vector) -> Self {
+        Self { rotation, ..self }
+    }
+
     /// v_n = (v_i - v_j) . n, positive when parting.
     #[inline(always)]
     #[must_use]
@@ -86,6 +128,9 @@ pub trait NormalLaw: Copy + Sync {
 
     /// The parameter that scales the elastic force.
     fn elasticity(&self) -> Elasticity;
+
+    /// Largest overlap of an impact along the normal at relative speed `speed`, without dissipation \[d\].
+    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64;
 }
 
 /// The parameter that scales the elastic force of a normal law: the units of time and pressure follow from it.
@@ -135,7 +180,7 @@ pub struct ContactForce<R: Real = f64> {
     /// Force on this sphere; the partner feels the opposite.
     pub force: R::Vector,
     /// -n x f_t: times the lever arm l_i it is the torque on this sphere, times l_j the torque on the partner.
-    pub twist: R::Vector,
+    pub torque_per_arm: R::Vector,
     /// Elastic energy of normal and tangential springs.
     pub energy: R,
     /// Rate of energy loss along the normal, (f_elastic - f_n) v_n.
@@ -145,6 +190,15 @@ pub struct ContactForce<R: Real = f64> {
 }
 
 impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
+    /// The same normal law without friction.
+    #[inline(always)]
+    pub fn frictionless(&self) -> ContactLaw<N, Frictionless> {
+        ContactLaw {
+            normal: self.normal,
+            tangential: Frictionless,
+        }
+    }
+
     /// Force of one contact.
     ///
     /// f = f_n n + f_t. The tangential law sees max(f_n, 0): a contact that pulls (possible with the unclipped linear
@@ -167,7 +221,7 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
                     .force(contact, normal.force.positive_part(), history, time_step);
             ContactForce {
                 force: contact.normal * normal.force + tangential.force,
-                twist: -contact.normal.cross(tangential.force),
+                torque_per_arm: -contact.normal.cross(tangential.force),
                 energy: normal.energy + tangential.energy,
                 normal_dissipation,
                 tangential,
@@ -183,6 +237,15 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
     }
 }
 
+impl Contact {
+    /// Whether the spheres overlap and have a normal, which spheres at the same place have not.
+    #[inline(always)]
+    #[must_use]
+    pub fn touches(&self) -> bool {
+        self.overlap > 0.0 && self.distance > 0.0
+    }
+}
+
 /// Normal contact law. It takes the keys that name it; friction goes with every law.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(tag = "law", rename_all = "snake_case")]
@@ -193,14 +256,50 @@ pub enum Normal {
     Hertz(ViscoelasticHertz),
 }
 
-impl Normal {
-    /// The parameter that scales the elastic force.
-    #[must_use]
-    pub fn elasticity(&self) -> Elasticity {
-        match self {
-            Self::Linear(law) => law.elasticity(),
-            Self::Hertz(law) => law.elasticity(),
+/// Evaluates an expression with the law that a [`Normal`] holds, whose type the compiler then knows:
+/// `with_normal_law!(normal, law => expression)`. The only place that lists the normal laws again.
+#[macro_export]
+macro_rules! with_normal_law {
+    ($normal:expr, $law:ident => $answer:expr) => {
+        match $normal {
+            $crate::contact::Normal::Linear($law) => $answer,
+            $crate::contact::Normal::Hertz($law) => $answer,
         }
+    };
+}
+
+impl NormalLaw for Normal {
+    #[inline(always)]
+    fn force<R: Real>(&self, overlap: R, normal_velocity: R, reduced_radius: R) -> NormalForce<R> {
+        with_normal_law!(self, law => law.force(overlap, normal_velocity, reduced_radius))
+    }
+
+    fn undamped(&self) -> Self {
+        with_normal_law!(self, law => law.undamped().into())
+    }
+
+    fn stiffness(&self, overlap: f64, reduced_radius: f64) -> f64 {
+        with_normal_law!(self, law => law.stiffness(overlap, reduced_radius))
+    }
+
+    fn elasticity(&self) -> Elasticity {
+        with_normal_law!(self, law => law.elasticity())
+    }
+
+    fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
+        with_normal_law!(self, law => law.impact_overlap(reduced_mass, speed, reduced_radius))
+    }
+}
+
+impl From<LinearSpringDashpot> for Normal {
+    fn from(law: LinearSpringDashpot) -> Self {
+        Self::Linear(law)
+    }
+}
+
+impl From<ViscoelasticHertz> for Normal {
+    fn from(law: ViscoelasticHertz) -> Self {
+        Self::Hertz(law)
     }
 }
 
@@ -236,12 +335,12 @@ mod tests {
             normal: DVec3::X,
             relative_velocity: DVec3::new(parting, 0.3, 0.0),
             reduced_radius: 0.25,
-            spin: DVec3::ZERO,
+            rotation: DVec3::ZERO,
         }
     }
 
     #[test]
-    fn force_and_twist_by_hand() {
+    fn force_and_torque_by_hand() {
         let law = ContactLaw {
             normal: LinearSpringDashpot {
                 normal_stiffness: 1.0,
@@ -253,7 +352,7 @@ mod tests {
         // f_n = 0.1 + 0.02; |f_t| = 0.1 * 0.3 < 0.5 f_n, against the slip along y.
         assert!((found.force - DVec3::new(0.12, -0.03, 0.0)).length() < 1e-15);
         // -x cross (-0.03 y) = 0.03 z
-        assert!((found.twist - DVec3::new(0.0, 0.0, 0.03)).length() < 1e-15);
+        assert!((found.torque_per_arm - DVec3::new(0.0, 0.0, 0.03)).length() < 1e-15);
         assert!((found.energy - 0.005).abs() < 1e-15);
         assert!((found.normal_dissipation - 0.002).abs() < 1e-15);
     }
@@ -269,7 +368,7 @@ mod tests {
         };
         let found = law.force(&contact(0.8), &mut TangentialHistory::default(), 0.0);
         assert!((found.force - DVec3::new(-0.06, 0.0, 0.0)).length() < 1e-15);
-        assert_eq!(found.twist, DVec3::ZERO);
+        assert_eq!(found.torque_per_arm, DVec3::ZERO);
     }
 
     #[test]
@@ -285,7 +384,7 @@ mod tests {
         let found = law.force(&contact(-0.1), &mut (), 0.05);
         assert!((found.force - DVec3::new(0.12, 0.0, 0.0)).length() < 1e-15);
         assert_eq!(
-            (found.twist, found.tangential),
+            (found.torque_per_arm, found.tangential),
             (DVec3::ZERO, TangentialForce::default())
         );
     }

@@ -134,7 +134,7 @@ impl TangentialLaw for CundallStrack {
 
         let normal = contact.normal;
         let lateral_velocity = contact.relative_velocity - normal * contact.normal_velocity();
-        let slip_velocity = lateral_velocity + normal.cross(contact.spin);
+        let slip_velocity = lateral_velocity + normal.cross(contact.rotation);
         let normal_rate = lateral_velocity * (R::splat(1.0) / contact.distance);
 
         let predicted = history.displacement + history.rate * step;
@@ -145,10 +145,11 @@ impl TangentialLaw for CundallStrack {
         // A contact that does not press slides freely, and forgets whatever sliding does elsewhere.
         let presses = zero.less(normal_force);
         let trial = -(stuck * stiffness) - slip_velocity * damping;
-        let size = trial.dot(trial).sqrt();
-        let sliding = !size.less(self.threshold::<R>(history.sliding) * normal_force) | !presses;
+        let strength = trial.dot(trial).sqrt();
+        let sliding =
+            !strength.less(self.threshold::<R>(history.sliding) * normal_force) | !presses;
         let limit = R::splat(self.kinetic_friction) * normal_force;
-        let scale = R::select(zero.less(size), limit / size, zero);
+        let scale = R::select(zero.less(strength), limit / strength, zero);
         let force = R::Vector::select(
             presses,
             R::Vector::select(sliding, trial * scale, trial),
@@ -253,7 +254,7 @@ mod tests {
             normal: DVec3::Z,
             relative_velocity: DVec3::new(slip, 0.0, -0.3),
             reduced_radius: 0.25,
-            spin: DVec3::ZERO,
+            rotation: DVec3::ZERO,
         }
     }
 
@@ -309,9 +310,9 @@ mod tests {
 
     #[test]
     fn spheres_that_roll_on_each_other_do_not_slip() {
-        // v = 0.2 along x is undone by n x spin = -0.2 along x.
+        // v = 0.2 along x is undone by n x rotation = -0.2 along x.
         let contact = Contact {
-            spin: DVec3::new(0.0, 0.2, 0.0),
+            rotation: DVec3::new(0.0, 0.2, 0.0),
             ..contact(0.2)
         };
         let mut history = TangentialHistory::default();

@@ -143,17 +143,17 @@ impl Lattice {
 #[must_use]
 pub fn approximate_angle<R: Real>(x: R, y: R) -> R {
     let zero = R::splat(0.0);
-    let (size_x, size_y) = (x.size(), y.size());
-    let (across, along) = (size_x.lesser(size_y), size_x.larger(size_y));
+    let (abs_x, abs_y) = (x.abs(), y.abs());
+    let (across, along) = (abs_x.min(abs_y), abs_x.max(abs_y));
     // On the axis any angle will do.
-    let q = across / along.larger(R::splat(f64::MIN_POSITIVE));
+    let q = across / along.max(R::splat(f64::MIN_POSITIVE));
     let s = q * q;
     let mut series = R::splat(0.020_835_1);
     for coefficient in [-0.085_133_0, 0.180_141_0, -0.330_299_5, 0.999_866_0] {
         series = series * s + R::splat(coefficient);
     }
     let octant = q * series;
-    let quadrant = R::select(size_x.less(size_y), R::splat(0.5 * PI) - octant, octant);
+    let quadrant = R::select(abs_x.less(abs_y), R::splat(0.5 * PI) - octant, octant);
     let half = R::select(x.less(zero), R::splat(PI) - quadrant, quadrant);
     R::select(y.less(zero), R::splat(2.0 * PI) - half, half)
 }

@@ -1,9 +1,9 @@
 //! The travelling wave of contraction that a strain-controlled wall follows.
 
-use core::f64::consts::TAU;
-
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+
+use super::Waveform;
 
 /// Which way the wave runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
@@ -14,131 +14,6 @@ pub enum WaveDirection {
     Forward,
     /// Turned round.
     Backward,
-}
-
-/// Shape of one wavelength, a function g of the phase.
-///
-/// Every one has its throat, g = -1, at phase 3/4, so that the bottleneck's radius is a - b and its width 2 (a - b); s is
-/// the distance from there in cycles, |s| <= 1/2. They differ in the rest: the sine opens the tube as much as it narrows
-/// it, bolus and roller squeeze a quarter of a cycle to either side and leave a straight tube of radius a between.
-///
-/// - sine: g = sin(2 pi phase); mean 0.
-/// - bolus: g = -cos^2(2 pi s) for |s| < 1/4, else 0; mean -1/4.
-/// - roller: a parabola, the circle to lowest order of its curvature, and shoulders where the tube comes off it:
-///   g = s^2/(s0 s1) - 1 for |s| < s1, -(s0 - |s|)^2/(s0 (s0 - s1)) up to s0, else 0, with s0 = 1/4 and s1 = 1/5;
-///   mean -3/10.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Waveform {
-    /// sin(2 pi phase): throats and bellies alike.
-    #[default]
-    Sine,
-    /// One smooth squeeze, cos^2, over half of each wavelength; elsewhere the tube is straight, of radius a.
-    Bolus,
-    /// A round roller pressed into the tube over half of each wavelength; elsewhere the tube is straight, of radius a.
-    Roller,
-}
-
-/// s0 of the roller's waveform: where the tube is straight again, in cycles from the throat.
-pub const ROLLER_SHOULDER: f64 = 0.25;
-/// s1: where the tube comes off the roller.
-pub const ROLLER_CONTACT: f64 = 0.2;
-
-impl Waveform {
-    /// All of them.
-    pub const ALL: [Self; 3] = [Self::Sine, Self::Bolus, Self::Roller];
-
-    /// Value at a phase in cycles.
-    #[must_use]
-    pub fn value(self, phase: f64) -> f64 {
-        match self {
-            Self::Sine => libm::sin(TAU * phase),
-            Self::Bolus | Self::Roller => self.value_and_slope(phase).0,
-        }
-    }
-
-    /// Value, and derivative with respect to the phase in cycles.
-    #[must_use]
-    pub fn value_and_slope(self, phase: f64) -> (f64, f64) {
-        match self {
-            Self::Sine => {
-                let (sin, cos) = libm::sincos(TAU * phase);
-                (sin, TAU * cos)
-            }
-            Self::Bolus => {
-                let s = from_throat(phase);
-                if s.abs() >= 0.25 {
-                    return (0.0, 0.0);
-                }
-                // cos^2(x) = (1 + cos(2 x))/2
-                let (sin, cos) = libm::sincos(2.0 * TAU * s);
-                (-0.5 * (1.0 + cos), TAU * sin)
-            }
-            Self::Roller => {
-                let s = from_throat(phase);
-                let (distance, side) = (s.abs(), if s < 0.0 { -1.0 } else { 1.0 });
-                let ([inner, outer], rest) = (ROLLER_CURVATURES, ROLLER_SHOULDER - distance);
-                if distance < ROLLER_CONTACT {
-                    (0.5 * inner * s * s - 1.0, inner * s)
-                } else if rest > 0.0 {
-                    (-0.5 * outer * rest * rest, side * outer * rest)
-                } else {
-                    (0.0, 0.0)
-                }
-            }
-        }
-    }
-
-    /// Mean over the wave: that of the radius is a + b times this.
-    #[must_use]
-    pub fn mean(self) -> f64 {
-        match self {
-            Self::Sine => 0.0,
-            Self::Bolus => -0.25,
-            // -2 s1 + 2 s1^2/(3 s0) - 2 (s0 - s1)^2/(3 s0)
-            Self::Roller => -0.3,
-        }
-    }
-
-    /// Largest value; the least is -1.
-    #[must_use]
-    pub fn largest(self) -> f64 {
-        match self {
-            Self::Sine => 1.0,
-            Self::Bolus | Self::Roller => 0.0,
-        }
-    }
-
-    /// Largest size of the slope against 2 pi phase.
-    #[must_use]
-    pub fn steepest(self) -> f64 {
-        match self {
-            Self::Sine | Self::Bolus => 1.0,
-            Self::Roller => ROLLER_CURVATURES[0] * ROLLER_CONTACT / TAU,
-        }
-    }
-
-    /// Largest size of the second derivative against 2 pi phase.
-    #[must_use]
-    pub fn most_curved(self) -> f64 {
-        match self {
-            Self::Sine => 1.0,
-            Self::Bolus => 2.0,
-            Self::Roller => ROLLER_CURVATURES[1] / (TAU * TAU),
-        }
-    }
-}
-
-/// Second derivatives of the roller's waveform on the roller and, with the other sign, on the shoulder.
-pub const ROLLER_CURVATURES: [f64; 2] = [
-    2.0 / (ROLLER_SHOULDER * ROLLER_CONTACT),
-    2.0 / (ROLLER_SHOULDER * (ROLLER_SHOULDER - ROLLER_CONTACT)),
-];
-
-/// Phase less that of the nearest throat, from -1/2 to 1/2.
-fn from_throat(phase: f64) -> f64 {
-    let from_belly = phase - 0.25;
-    from_belly - from_belly.floor() - 0.5
 }
 
 /// Radius of a peristaltic tube and its velocity.
@@ -216,6 +91,8 @@ impl RadiusWave {
 
 #[cfg(test)]
 mod tests {
+    use core::f64::consts::TAU;
+
     use super::*;
 
     fn wave(heading: f64) -> RadiusWave {
@@ -254,55 +131,6 @@ mod tests {
             let behind = wave.radius(z - dt, cycles);
             assert!((ring.slope - (ahead - behind) / (2.0 * dt)).abs() < 1e-9);
         }
-    }
-
-    #[test]
-    fn every_waveform_has_the_throat_the_mean_and_the_bounds_that_it_says() {
-        let steps = 40_000;
-        for form in Waveform::ALL {
-            assert!((form.value(0.75) + 1.0).abs() < 1e-15, "{form:?}");
-            let (mut sum, mut least, mut largest) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
-            let (mut steepest, mut most_curved) = (0.0_f64, 0.0_f64);
-            for step in 0..steps {
-                // Beyond one cycle on either side, too.
-                let phase = 3.0 * (f64::from(step) + 0.5) / f64::from(steps) - 1.0;
-                let (value, slope) = form.value_and_slope(phase);
-                assert_eq!(value, form.value(phase));
-                assert!((value - form.value(phase + 2.0)).abs() < 1e-13);
-                // Even about the throat.
-                assert!(
-                    (value - form.value(1.5 - phase)).abs() < 1e-13,
-                    "{form:?} at {phase}"
-                );
-                sum += value;
-                (least, largest) = (least.min(value), largest.max(value));
-                let h = 1e-5;
-                let ahead = form.value_and_slope(phase + h);
-                let behind = form.value_and_slope(phase - h);
-                assert!(
-                    (slope - (ahead.0 - behind.0) / (2.0 * h)).abs() < 1e-3,
-                    "{form:?} at {phase}"
-                );
-                steepest = steepest.max(slope.abs() / TAU);
-                most_curved = most_curved.max((ahead.1 - behind.1).abs() / (2.0 * h * TAU * TAU));
-            }
-            assert!(
-                (sum / f64::from(steps) - form.mean()).abs() < 1e-8,
-                "{form:?}: {sum}"
-            );
-            assert!((least + 1.0).abs() < 1e-6 && (largest - form.largest()).abs() < 1e-6);
-            assert!(
-                (steepest / form.steepest() - 1.0).abs() < 1e-3,
-                "{form:?}: {steepest}"
-            );
-            assert!(
-                (most_curved / form.most_curved() - 1.0).abs() < 1e-3,
-                "{form:?}: {most_curved}"
-            );
-        }
-        // Half way up its flank by hand: cos^2(pi/4), and s = 1/8 on the roller: (1/64)/(1/20) - 1.
-        assert!((Waveform::Bolus.value(0.875) + 0.5).abs() < 1e-15);
-        assert!((Waveform::Roller.value(0.875) + 0.6875).abs() < 1e-14);
     }
 
     #[test]

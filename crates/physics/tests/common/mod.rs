@@ -6,7 +6,7 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{
     Contact, ContactForce, ContactLaw, ContactModel, CundallStrack, DissipationForm, Frictionless,
-    LinearSpringDashpot, Normal, NormalLaw, Sliding, TangentialHistory, ViscoelasticHertz,
+    LinearSpringDashpot, Normal, Sliding, TangentialHistory, ViscoelasticHertz,
 };
 
 /// The normal law of the frictionless preset.
@@ -83,27 +83,14 @@ pub(crate) fn answer(
     history: &mut TangentialHistory,
     time_step: f64,
 ) -> ContactForce {
-    fn with_normal<N: NormalLaw>(
-        normal: N,
-        friction: Option<CundallStrack>,
-        contact: &Contact,
-        history: &mut TangentialHistory,
-        time_step: f64,
-    ) -> ContactForce {
-        match friction {
-            None => ContactLaw {
-                normal,
-                tangential: Frictionless,
-            }
-            .force(contact, &mut (), time_step),
-            Some(tangential) => {
-                ContactLaw { normal, tangential }.force(contact, history, time_step)
-            }
+    let normal = model.normal;
+    match model.friction {
+        None => ContactLaw {
+            normal,
+            tangential: Frictionless,
         }
-    }
-    match model.normal {
-        Normal::Linear(law) => with_normal(law, model.friction, contact, history, time_step),
-        Normal::Hertz(law) => with_normal(law, model.friction, contact, history, time_step),
+        .force(contact, &mut (), time_step),
+        Some(tangential) => ContactLaw { normal, tangential }.force(contact, history, time_step),
     }
 }
 
@@ -150,18 +137,16 @@ impl Collision {
 
     /// The contact as the law sees it.
     pub(crate) fn contact(&self) -> Contact {
-        let separation = self.position[0] - self.position[1];
-        let overlap = self.overlap();
         let [first, second] = self.diameter;
-        Contact {
-            overlap,
-            distance: separation.length(),
-            normal: separation.normalize(),
-            relative_velocity: self.velocity[0] - self.velocity[1],
-            reduced_radius: first * second / (2.0 * (first + second)),
-            spin: 0.5 * (first - overlap) * self.angular_velocity[0]
-                + 0.5 * (second - overlap) * self.angular_velocity[1],
-        }
+        let contact = Contact::new(
+            (first, second),
+            self.position[0] - self.position[1],
+            self.velocity[0] - self.velocity[1],
+        );
+        contact.rotating(
+            contact.arm(first) * self.angular_velocity[0]
+                + contact.arm(second) * self.angular_velocity[1],
+        )
     }
 
     /// Kinetic energy of translation and rotation.
@@ -189,7 +174,7 @@ impl Collision {
         let overlap = self.overlap();
         let arm = |sphere: usize| 0.5 * (self.diameter[sphere] - overlap);
         let force = self.last.force;
-        let turn = |sphere: usize| self.last.twist * (arm(sphere) / self.inertia(sphere));
+        let turn = |sphere: usize| self.last.torque_per_arm * (arm(sphere) / self.inertia(sphere));
         (
             [force / self.mass[0], -force / self.mass[1]],
             [turn(0), turn(1)],

@@ -294,14 +294,12 @@ impl Portrait {
 /// Distance from the axis that a picture shows: to the outer side of the widest wall.
 fn shown_radius(wall: &Wall, first: &Frame, samples: &[Frame]) -> f64 {
     let half = 0.5 * wall.lattice().sphere_diameter;
-    match wall {
-        Wall::Prescribed(_) => wall.usual_radius() + half,
-        Wall::Elastic(elastic) => {
-            let spheres = samples
-                .iter()
-                .flat_map(|frame| frame.position.iter().skip(first.grains));
-            let widest = spheres.map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
-            half + widest.max(OPEN_RADII * elastic.parameters().mean_radius)
-        }
+    if wall.wave().is_some() {
+        return wall.usual_radius() + half;
     }
+    let spheres = samples
+        .iter()
+        .flat_map(|frame| frame.position.iter().skip(first.grains));
+    let widest = spheres.map(|[x, y, _]| x.hypot(*y)).fold(0.0, f64::max);
+    half + widest.max(OPEN_RADII * wall.mean_radius())
 }

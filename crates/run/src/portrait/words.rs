@@ -3,7 +3,6 @@
 use peristalsis_configuration::{Configuration, NormalLaw};
 use peristalsis_figures::{PlaceMark, ScaleBar};
 use peristalsis_formats::Frame;
-use peristalsis_observe::waves::throat;
 
 use super::{Aspect, Place, Portrait};
 
@@ -128,7 +127,7 @@ fn marks(portrait: &Portrait, frame: &Frame) -> Vec<(f64, &'static str)> {
     }
     let wavelength = portrait.wall.lattice().wavelength;
     let heading = portrait.wall.heading();
-    let throat = throat(&portrait.wall);
+    let throat = portrait.wall.throat();
     let across = portrait.shown + 2.0 * super::MARGIN;
     let mut marks = Vec::new();
     for (phase, label) in [(throat, "throat"), (throat + 0.5, "crest")] {

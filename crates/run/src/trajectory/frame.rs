@@ -32,13 +32,11 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
         contacts: Vec::new(),
         values: values(run),
     };
-    if let Wall::Prescribed(wall) = wall {
-        for sphere in 0..wall.lattice().spheres() {
-            frame.position.push(wall.sphere_position(sphere).to_array());
-            frame.velocity.push(wall.sphere_velocity(sphere).to_array());
-            frame.turns.push(0);
-            frame.diameter.push(wall.lattice().sphere_diameter);
-        }
+    for sphere in wall.prescribed_spheres() {
+        frame.position.push(sphere.position.to_array());
+        frame.velocity.push(sphere.velocity.to_array());
+        frame.turns.push(0);
+        frame.diameter.push(sphere.diameter);
     }
     frame.width = width(&frame, wall);
     if with_contacts {

@@ -1,4 +1,4 @@
-//! What contacts remember, as the fast kernel keeps it.
+//! Histories of contacts, as the fast kernel keeps them.
 
 use peristalsis_physics::contact::{CundallStrack, Frictionless, TangentialHistory, TangentialLaw};
 use peristalsis_physics::real::Real;
@@ -11,7 +11,7 @@ use crate::fast::machine::Machine;
 pub(crate) type Packed = [Record; 2];
 
 /// A tangential law whose histories can be packed, and turned into lanes and back.
-pub(crate) trait Remember: TangentialLaw {
+pub(crate) trait PackedHistory: TangentialLaw {
     fn pack(history: &Self::History<f64>) -> [Record; 2];
 
     fn unpack(packed: &[Record; 2]) -> Self::History<f64>;
@@ -23,7 +23,7 @@ pub(crate) trait Remember: TangentialLaw {
     fn from_lanes<M: Machine>(history: &Self::History<Lanes<M>>) -> [[Quad<M>; LANES]; 2];
 }
 
-impl Remember for Frictionless {
+impl PackedHistory for Frictionless {
     fn pack((): &()) -> Packed {
         Packed::default()
     }
@@ -39,7 +39,7 @@ impl Remember for Frictionless {
     }
 }
 
-impl Remember for CundallStrack {
+impl PackedHistory for CundallStrack {
     fn pack(history: &TangentialHistory) -> Packed {
         [
             Record::new(history.displacement, history.power),

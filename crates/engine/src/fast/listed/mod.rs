@@ -10,22 +10,20 @@ mod pairs;
 mod prescribed;
 mod record;
 mod spheres;
-mod waveform;
 
-use peristalsis_physics::contact::{ContactLaw, NormalLaw};
+use peristalsis_physics::contact::NormalLaw;
 
-pub(crate) use self::history::Remember;
+use self::history::PackedHistory;
 use self::motion::{Motion, Stage, Travel};
 use self::network::{Rows, WallForces};
 use self::pairs::{PairForces, Pairs, Prune};
 use self::record::Record;
 use self::spheres::Spheres;
-use crate::bodies::Bodies;
 use crate::fast::machine::Instructions;
-use crate::forces::{Contacts, evaluate};
+use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
-use crate::ledger::{Ledger, Tally};
-use crate::simulation::Parameters;
+use crate::ledger::Tally;
+use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 
 /// Room to work in, kept from advance to advance.
@@ -53,143 +51,185 @@ const LISTED: f64 = 2.5;
 /// What comes within so many is chosen from it, again and again, and looked at in each step.
 const CHOSEN: f64 = 0.5;
 
-/// What an advance moves.
-pub(crate) struct Course<'a> {
-    pub(crate) bodies: &'a mut Bodies,
-    pub(crate) wall: &'a mut Wall,
-    pub(crate) past: &'a mut Past,
-    pub(crate) tally: &'a mut Tally,
-    pub(crate) ledger: &'a mut Ledger,
-    pub(crate) step: &'a mut u64,
-    pub(crate) parameters: Parameters,
-    pub(crate) limit: f64,
-}
-
-/// Advances by `steps` steps, as the reference does.
-pub(crate) fn advance<N: NormalLaw, T: Remember>(
-    law: &ContactLaw<N, T>,
-    mut course: Course<'_>,
-    contacts: &mut Contacts<T::History<f64>>,
+/// Advances by `steps` steps in place of the reference kernel.
+pub(crate) fn advance<N: NormalLaw, T: PackedHistory>(
+    reference: Reference<'_, N, T>,
     scratch: &mut Scratch,
+    course: &mut Course,
     steps: u64,
 ) -> Result<(), Runaway> {
     if steps == 0 {
         return Ok(());
     }
-    scratch.spheres.load(course.bodies, course.past);
-    scratch.pairs.load::<T>(&contacts.pairs, course.bodies);
-    let moved = move_through(law, &mut course, contacts, scratch, steps);
-    scratch.pairs.store::<T>(&mut contacts.pairs);
-    scratch.spheres.store(course.bodies, course.past);
-    moved
+    let Reference {
+        contacts,
+        bodies,
+        past,
+        ..
+    } = &reference;
+    scratch.spheres.load(bodies, past);
+    scratch.pairs.load::<T>(&contacts.pairs, bodies);
+    let mut listed = Listed {
+        reference,
+        scratch,
+        stage: Stage::First,
+        mean_wall_force: Record::ZERO,
+        // The list may have been made long ago, and nothing is chosen from it yet.
+        travelled: Travel {
+            axial: f64::INFINITY,
+            lateral: 0.0,
+        },
+    };
+    let outcome = course.advance(&mut listed, steps);
+    let Listed {
+        reference, scratch, ..
+    } = listed;
+    scratch.pairs.store::<T>(&mut reference.contacts.pairs);
+    scratch.spheres.store(reference.bodies, reference.past);
+    outcome
 }
 
-fn move_through<N: NormalLaw, T: Remember>(
-    law: &ContactLaw<N, T>,
-    course: &mut Course<'_>,
-    contacts: &mut Contacts<T::History<f64>>,
-    scratch: &mut Scratch,
-    steps: u64,
-) -> Result<(), Runaway> {
-    let Scratch {
-        instructions,
-        spheres,
-        pairs,
-        rows,
-    } = scratch;
-    let Parameters {
-        integrator,
-        time_step,
-        skin,
-        body_force,
-        ..
-    } = course.parameters;
-    let (limit, length) = (course.limit, course.wall.lattice().length());
-    let pass = |spheres: &mut Spheres, stage: Stage, mean_wall_force: Record| {
-        instructions.run(Motion {
-            spheres,
-            integrator,
-            stage,
-            mean_wall_force,
+/// The kernel for one advance.
+struct Listed<'a, N, T: PackedHistory> {
+    /// Its list of pairs serves; its spheres are brought up to date where it is made anew.
+    reference: Reference<'a, N, T>,
+    scratch: &'a mut Scratch,
+    stage: Stage,
+    /// Still to be taken off the force on each sphere of the wall.
+    mean_wall_force: Record,
+    /// Since pairs were last chosen from the list.
+    travelled: Travel,
+}
+
+impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
+    fn pass(&mut self) -> Result<Travel, Runaway> {
+        let Reference {
+            parameters,
+            limit,
+            length,
+            ..
+        } = self.reference;
+        self.scratch.instructions.run(Motion {
+            spheres: &mut self.scratch.spheres,
+            integrator: parameters.integrator,
+            stage: self.stage,
+            mean_wall_force: self.mean_wall_force,
             rotates: T::ROTATES,
-            body_force,
-            time_step,
+            body_force: parameters.body_force,
+            time_step: parameters.time_step,
             limit,
             length,
         })
-    };
-    let (mut stage, mut mean_wall_force) = (Stage::First, Record::ZERO);
-    // The list may have been made long ago, and nothing is chosen from it yet.
-    let mut travelled = Travel {
-        axial: f64::INFINITY,
-        lateral: 0.0,
-    };
-    for _ in 0..steps {
-        *course.step += 1;
-        let time = *course.step as f64 * time_step;
-        travelled.add(pass(spheres, stage, mean_wall_force)?);
-        stage = Stage::Between;
+    }
 
-        // A wall that jumps does work on the contacts that it finds: what they store after the jump but not before.
-        let jumped = course.wall.move_without_jump(time - time_step, time);
-        let stored_before_jump = jumped.then(|| {
-            let (mut bodies, mut contacts) = (course.bodies.clone(), contacts.clone());
-            // With their velocities: what slides stores less.
-            spheres.store(&mut bodies, &mut Past::default());
+    /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
+    fn choose_pairs(&mut self, wall: &Wall) {
+        let Reference {
+            contacts,
+            bodies,
+            parameters,
+            length,
+            ..
+        } = &mut self.reference;
+        let Scratch {
+            instructions,
+            spheres,
+            pairs,
+            ..
+        } = &mut *self.scratch;
+        let (skin, length) = (parameters.skin, *length);
+        spheres.store_places(bodies);
+        let (places, turns) = (&bodies.position, &bodies.turns);
+        if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
             pairs.store::<T>(&mut contacts.pairs);
-            contacts.refresh(&bodies, course.wall, skin);
-            evaluate(law, &mut bodies, course.wall, &mut contacts, 0.0).contact_energy
-        });
-        course.wall.move_to(time);
-        if travelled.exceeds(CHOSEN * skin) {
-            spheres.store_places(course.bodies);
-            let (places, turns) = (&course.bodies.position, &course.bodies.turns);
-            if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
-                pairs.store::<T>(&mut contacts.pairs);
-                contacts.rebuild(course.bodies, course.wall, LISTED * skin);
-                pairs.load::<T>(&contacts.pairs, course.bodies);
-            }
-            instructions.run(Prune {
-                pairs,
-                spheres,
-                length,
-                skin: CHOSEN * skin,
-            });
-            travelled = Travel::default();
+            contacts.rebuild(bodies, wall, LISTED * skin);
+            pairs.load::<T>(&contacts.pairs, bodies);
         }
-
-        let mut after = Tally::default();
-        instructions.run(PairForces {
-            law,
+        instructions.run(Prune {
             pairs,
             spheres,
             length,
-            time_step,
-            tally: &mut after,
+            skin: CHOSEN * skin,
         });
-        match course.wall {
+        self.travelled = Travel::default();
+    }
+}
+
+impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
+    fn move_spheres(&mut self) -> Result<(), Runaway> {
+        let travelled = self.pass()?;
+        self.travelled.add(travelled);
+        self.stage = Stage::Between;
+        Ok(())
+    }
+
+    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+        let Reference {
+            law,
+            contacts,
+            bodies,
+            parameters,
+            ..
+        } = &self.reference;
+        let (mut bodies, mut contacts) = ((**bodies).clone(), (**contacts).clone());
+        // With their velocities: contacts that slide store less.
+        self.scratch
+            .spheres
+            .store(&mut bodies, &mut Past::default());
+        self.scratch.pairs.store::<T>(&mut contacts.pairs);
+        contacts.refresh(&bodies, wall, parameters.skin);
+        evaluate(law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
+    }
+
+    fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
+        if self
+            .travelled
+            .exceeds(CHOSEN * self.reference.parameters.skin)
+        {
+            self.choose_pairs(wall);
+        }
+        let Reference {
+            law,
+            contacts,
+            parameters,
+            length,
+            ..
+        } = &mut self.reference;
+        let Scratch {
+            instructions,
+            spheres,
+            pairs,
+            rows,
+        } = &mut *self.scratch;
+        let time_step = parameters.time_step;
+        let mut tally = Tally::default();
+        instructions.run(PairForces {
+            law: *law,
+            pairs,
+            spheres,
+            length: *length,
+            time_step,
+            tally: &mut tally,
+        });
+        match wall {
             Wall::Elastic(wall) => {
-                mean_wall_force = instructions.run(WallForces {
+                self.mean_wall_force = instructions.run(WallForces {
                     wall,
                     rows,
                     spheres,
-                    tally: &mut after,
+                    tally: &mut tally,
                 });
             }
-            Wall::Prescribed(wall) => prescribed::add_forces(
-                wall,
-                law,
-                spheres,
-                &mut contacts.wall,
-                time_step,
-                &mut after,
-            ),
+            Wall::Prescribed(wall) => {
+                let memory = &mut contacts.wall;
+                prescribed::add_forces(wall, law, spheres, memory, time_step, &mut tally);
+            }
         }
-        if let Some(stored) = stored_before_jump {
-            course.ledger.add_jump(after.contact_energy - stored);
-        }
-        course.ledger.add_step(course.tally, &after, time_step);
-        *course.tally = after;
+        tally
     }
-    pass(spheres, Stage::Last, mean_wall_force).map(|_| ())
+
+    fn finish(&mut self) -> Result<(), Runaway> {
+        self.stage = Stage::Last;
+        self.pass().map(|_| ())
+    }
 }

@@ -1,15 +1,19 @@
 //! Motion of the spheres from one evaluation of the forces to the next, in one pass.
 
+use peristalsis_physics::method::Integrator;
+
 use super::record::{Quad, Record};
 use super::spheres::Spheres;
 use crate::bodies::fold;
 use crate::fast::machine::{Machine, Work};
-use crate::integrate::{Integrator, Runaway};
+use crate::integrate::adams_bashforth::AdamsBashforth;
+use crate::integrate::verlet::Verlet;
+use crate::integrate::{Runaway, Scheme};
 
 /// Where in an advance the pass stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Stage {
-    /// Before the first forces: what stands in the place of forces is accelerations.
+    /// Before the first forces: accelerations stand in the place of forces.
     First,
     /// From the forces of one step to the places of the next.
     Between,
@@ -57,51 +61,47 @@ impl Work for Motion<'_> {
     type Answer = Result<Travel, Runaway>;
 
     #[inline(always)]
-    fn run<M: Machine>(mut self) -> Self::Answer {
-        let number = self.spheres.number();
-        let has_past = self.spheres.velocity_before.len() == number;
+    fn run<M: Machine>(self) -> Self::Answer {
+        let verlet = Verlet::with_step(self.time_step);
+        let spheres = &mut *self.spheres;
+        let number = spheres.number();
         if self.stage != Stage::Last {
-            self.spheres
-                .acceleration_before
-                .resize(number, Record::ZERO);
-            self.spheres
-                .angular_acceleration_before
-                .resize(number, Record::ZERO);
-            if self.integrator == Integrator::AdamsBashforth {
-                self.spheres.velocity_before.resize(number, Record::ZERO);
-                self.spheres.spin_before.resize(number, Record::ZERO);
-            }
+            let before = &mut spheres.acceleration_before;
+            before.resize(number, Record::ZERO);
+            let before = &mut spheres.angular_acceleration_before;
+            before.resize(number, Record::ZERO);
         }
-        match (self.integrator, self.stage) {
-            (Integrator::Verlet, Stage::First) => self.pass::<M, false, true, true, false>(),
-            (Integrator::Verlet, Stage::Between) => self.pass::<M, false, false, true, false>(),
-            (Integrator::Verlet, Stage::Last) => self.pass::<M, false, false, false, false>(),
-            (Integrator::AdamsBashforth, Stage::First) if !has_past => {
-                self.pass::<M, true, true, true, true>()
+        match self.integrator {
+            Integrator::Verlet => self.at_stage::<M, _>(verlet),
+            Integrator::AdamsBashforth if spheres.velocity_before.len() != number => {
+                // Without a past: the first step moves as velocity Verlet does.
+                spheres.velocity_before.clone_from(&spheres.velocity);
+                spheres.turning_before.clone_from(&spheres.turning);
+                self.at_stage::<M, _>(verlet)
             }
-            (Integrator::AdamsBashforth, Stage::First) => self.pass::<M, true, true, true, false>(),
-            (Integrator::AdamsBashforth, Stage::Between) => {
-                self.pass::<M, true, false, true, false>()
-            }
-            (Integrator::AdamsBashforth, Stage::Last) => {
-                self.pass::<M, true, false, false, false>()
+            Integrator::AdamsBashforth => {
+                let step = self.time_step;
+                self.at_stage::<M, _>(AdamsBashforth { step })
             }
         }
     }
 }
 
 impl Motion<'_> {
-    /// The pass for `ADAMS`-Bashforth or Verlet; `FIRST`: forces are accelerations; `MOVES`: not the last; `FRESH`:
-    /// Adams-Bashforth without a past.
     #[inline(always)]
-    fn pass<
-        M: Machine,
-        const ADAMS: bool,
-        const FIRST: bool,
-        const MOVES: bool,
-        const FRESH: bool,
-    >(
+    fn at_stage<M: Machine, S: Scheme<Quad<M>>>(mut self, scheme: S) -> Result<Travel, Runaway> {
+        match self.stage {
+            Stage::First => self.pass::<M, S, true, true>(scheme),
+            Stage::Between => self.pass::<M, S, false, true>(scheme),
+            Stage::Last => self.pass::<M, S, false, false>(scheme),
+        }
+    }
+
+    /// The pass at a stage, which is the first or not, and moves the spheres or not.
+    #[inline(always)]
+    fn pass<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
         &mut self,
+        scheme: S,
     ) -> Result<Travel, Runaway> {
         let grains = self.spheres.grains;
         let number = self.spheres.number();
@@ -110,10 +110,10 @@ impl Motion<'_> {
         // Nothing added leaves even the sign of a zero as it is.
         let pushed = (self.body_force != 0.0).then_some(self.body_force);
         let (on_grains, on_wall) = ((Record::ZERO, pushed), (mean, None));
-        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(0..grains, on_grains, &mut extremes)?;
-        self.translate::<M, ADAMS, FIRST, MOVES, FRESH>(grains..number, on_wall, &mut extremes)?;
+        self.translate::<M, S, FIRST, MOVES>(&scheme, 0..grains, on_grains, &mut extremes)?;
+        self.translate::<M, S, FIRST, MOVES>(&scheme, grains..number, on_wall, &mut extremes)?;
         if self.rotates {
-            self.rotate::<M, ADAMS, FIRST, MOVES, FRESH>(grains);
+            self.rotate::<M, S, FIRST, MOVES>(&scheme);
         }
         if !MOVES {
             // The spheres of a wall do not rotate, whatever torques contacts wrote there.
@@ -122,21 +122,16 @@ impl Motion<'_> {
         Ok(extremes.travel())
     }
 
+    /// Moves a range of spheres, `mean` taken off the force on each and `body_force` added to its acceleration.
     #[inline(always)]
-    fn translate<
-        M: Machine,
-        const ADAMS: bool,
-        const FIRST: bool,
-        const MOVES: bool,
-        const FRESH: bool,
-    >(
+    fn translate<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
         &mut self,
+        scheme: &S,
         range: core::ops::Range<usize>,
         (mean, body_force): (Record, Option<f64>),
         extremes: &mut Extremes<M>,
     ) -> Result<(), Runaway> {
-        let h = self.time_step;
-        let (half, limit_squared, length) = (0.5 * h, self.limit * self.limit, self.length);
+        let (limit_squared, length) = (self.limit * self.limit, self.length);
         let (count, body) = (range.len(), range.start);
         let mean = mean.quad::<M>();
         let push = body_force.map(|push| Record([0.0, 0.0, push, 0.0]));
@@ -147,32 +142,31 @@ impl Motion<'_> {
         let force = &mut spheres.force[range.clone()][..count];
         let inverse_mass = &spheres.inverse_mass[range.clone()][..count];
         let before = &mut spheres.acceleration_before[range.clone()][..count];
-        let velocity_before = match ADAMS && MOVES {
+        let velocity_before = match S::TWO_STEP && MOVES {
             true => &mut spheres.velocity_before[range][..count],
             false => &mut [],
         };
         for k in 0..count {
             let mut acceleration = force[k].quad::<M>();
+            let mut v = velocity[k].quad::<M>();
             if !FIRST {
                 acceleration = (acceleration - mean) * inverse_mass[k];
                 if let Some(push) = push {
                     acceleration = acceleration + push;
                 }
-            }
-            let mut v = velocity[k].quad::<M>();
-            if !ADAMS && !FIRST {
-                v = v + (acceleration - before[k].quad()) * half;
+                v = scheme.corrected(v, acceleration, before[k].quad());
             }
             if !MOVES {
                 force[k] = acceleration.record();
                 velocity[k] = v.record();
                 continue;
             }
-            let by = if ADAMS && !FRESH {
-                (v * 1.5 - velocity_before[k].quad() * 0.5) * h
+            let v_before = if S::TWO_STEP {
+                velocity_before[k].quad()
             } else {
-                (v + acceleration * half) * h
+                v
             };
+            let by = scheme.displacement(v, acceleration, v_before);
             let [x, y, z, _] = (by * by).record().0;
             let squared = x + y + z;
             // A comparison with NaN is false: written so that NaN is caught.
@@ -191,66 +185,50 @@ impl Motion<'_> {
                 position[k].0[2] = folded;
                 position[k].0[3] += f64::from(turns);
             }
-            if ADAMS {
+            if S::TWO_STEP {
                 velocity_before[k] = v.record();
             }
-            let gained = if ADAMS && !FRESH {
-                acceleration * 1.5 - before[k].quad() * 0.5
-            } else {
-                acceleration
-            };
-            velocity[k] = (v + gained * h).record();
+            let predicted = scheme.predicted(v, acceleration, before[k].quad());
+            velocity[k] = predicted.record();
             before[k] = acceleration.record();
             force[k] = Record::ZERO;
         }
         Ok(())
     }
 
+    /// Turns the grains.
     #[inline(always)]
-    fn rotate<
-        M: Machine,
-        const ADAMS: bool,
-        const FIRST: bool,
-        const MOVES: bool,
-        const FRESH: bool,
-    >(
+    fn rotate<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
         &mut self,
-        grains: usize,
+        scheme: &S,
     ) {
-        let h = self.time_step;
-        let half = 0.5 * h;
         let spheres = &mut *self.spheres;
-        let spin = &mut spheres.spin[..grains];
+        let grains = spheres.grains;
+        let turning = &mut spheres.turning[..grains];
         let torque = &mut spheres.torque[..grains];
         let inverse_inertia = &spheres.inverse_inertia[..grains];
         let before = &mut spheres.angular_acceleration_before[..grains];
-        let spin_before = match ADAMS && MOVES {
-            true => &mut spheres.spin_before[..grains],
+        let turning_before = match S::TWO_STEP && MOVES {
+            true => &mut spheres.turning_before[..grains],
             false => &mut [],
         };
         for k in 0..grains {
             let mut acceleration = torque[k].quad::<M>();
+            let mut omega = turning[k].quad::<M>();
             if !FIRST {
                 acceleration = acceleration * inverse_inertia[k];
-            }
-            let mut omega = spin[k].quad::<M>();
-            if !ADAMS && !FIRST {
-                omega = omega + (acceleration - before[k].quad()) * half;
+                omega = scheme.corrected(omega, acceleration, before[k].quad());
             }
             if !MOVES {
                 torque[k] = acceleration.record();
-                spin[k] = omega.record();
+                turning[k] = omega.record();
                 continue;
             }
-            if ADAMS {
-                spin_before[k] = omega.record();
+            if S::TWO_STEP {
+                turning_before[k] = omega.record();
             }
-            let gained = if ADAMS && !FRESH {
-                acceleration * 1.5 - before[k].quad() * 0.5
-            } else {
-                acceleration
-            };
-            spin[k] = (omega + gained * h).record();
+            let predicted = scheme.predicted(omega, acceleration, before[k].quad());
+            turning[k] = predicted.record();
             before[k] = acceleration.record();
             torque[k] = Record::ZERO;
         }
@@ -275,8 +253,8 @@ impl<M: Machine> Extremes<M> {
 
     #[inline(always)]
     fn add(&mut self, by: Quad<M>) {
-        self.least = self.least.lesser(by);
-        self.largest = self.largest.larger(by);
+        self.least = self.least.min(by);
+        self.largest = self.largest.max(by);
     }
 
     #[inline(always)]

@@ -7,7 +7,6 @@ use peristalsis_physics::real::{Real, Vector};
 
 use super::record::{self, Quad, Record};
 use super::spheres::Spheres;
-use super::waveform;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 use crate::ledger::Tally;
@@ -176,7 +175,7 @@ impl Work for WallForces<'_> {
         if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
             rows.resize(wall);
         }
-        let net_force = wall.parameters().keep.net_force;
+        let net_force = wall.parameters().tethers.net_force;
         let mut sums = Sums::<M>::none();
         let nothing = Quad::<M>::splat(0.0);
         let (mut total_force, mut total_velocity) = (nothing, nothing);
@@ -201,7 +200,7 @@ impl Work for WallForces<'_> {
             }
             carry::<M>(rows, ring % 2, per_ring);
             bonds(wall, rows, ring % 2, &mut sums);
-            keep_and_drive(wall, rows, ring, &mut sums);
+            tethers_and_drive(wall, rows, ring, &mut sums);
             let (mut ring_force, mut ring_velocity) = (nothing, nothing);
             let forces = &mut spheres.force[here.clone()];
             let velocities = &spheres.velocity[here];
@@ -327,7 +326,7 @@ fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &
 
 /// Sums all forces on the spheres of a ring but those of contacts.
 #[inline(always)]
-fn keep_and_drive<M: Machine>(
+fn tethers_and_drive<M: Machine>(
     wall: &ElasticWall,
     rows: &mut Rows,
     ring: usize,
@@ -342,11 +341,11 @@ fn keep_and_drive<M: Machine>(
         Lanes::splat(0.5),
         Lanes::splat(wall.balance()),
     );
-    let keep = parameters.keep;
+    let tethers = parameters.tethers;
     let (radial, azimuthal, axial) = (
-        Lanes::splat(keep.radial),
-        Lanes::splat(keep.azimuthal),
-        Lanes::splat(keep.axial),
+        Lanes::splat(tethers.radial),
+        Lanes::splat(tethers.azimuthal),
+        Lanes::splat(tethers.axial),
     );
     let drag = Lanes::splat(parameters.drag);
     let radius = Lanes::splat(parameters.mean_radius);
@@ -375,7 +374,7 @@ fn keep_and_drive<M: Machine>(
         sums.keep_energy += Lanes::select(valid, keep_energy, zero);
         let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
             - Lanes::splat(wall.cycles());
-        let push = Lanes::splat(wall.amplitude()) * waveform::value(parameters.waveform, phase);
+        let push = Lanes::splat(wall.amplitude()) * parameters.waveform.value_by_series(phase);
         let (drive_cos, drive_sin) = match parameters.angle {
             DriveAngle::Reference => (cos, sin),
             DriveAngle::Current => {
@@ -391,7 +390,7 @@ fn keep_and_drive<M: Machine>(
         let drive_power = drive_x * velocity.x + drive_y * velocity.y;
         sums.drive_power += Lanes::select(valid, drive_power, zero);
         sums.drag_dissipation += Lanes::select(valid, drag * velocity.squared(), zero);
-        let keep_and_drive = LaneVector::new(
+        let tethers_and_drive = LaneVector::new(
             drive_x + (outward * cos - across * sin),
             drive_y + (outward * sin + across * cos),
             -(axial * away_axial),
@@ -399,6 +398,6 @@ fn keep_and_drive<M: Machine>(
         let springs = (rows.along.at(start + 1) - rows.along.at(start))
             + (rows.first.at(start + 1) + rows.second.at(start + 1))
             + rows.carried.at(start + 1);
-        rows.force.put(start + 1, springs + keep_and_drive);
+        rows.force.put(start + 1, springs + tethers_and_drive);
     }
 }

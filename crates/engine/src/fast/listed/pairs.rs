@@ -5,14 +5,14 @@
 
 use core::ops::Range;
 
-use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, Frictionless, NormalLaw};
+use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, NormalLaw};
 use peristalsis_physics::real::Real;
 
-use super::history::{Packed, Remember};
+use super::history::{Packed, PackedHistory};
 use super::record::{self, Quad, Record};
 use super::spheres::Spheres;
 use crate::bodies::Bodies;
-use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::lanes::{LANES, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 use crate::ledger::Tally;
 use crate::neighbours::Neighbours;
@@ -42,13 +42,11 @@ impl Flat {
     ) {
         self.clear();
         for i in rows {
-            let (size, partners) = (diameter[i], list.partners(i));
+            let (own, partners) = (diameter[i], list.partners(i));
             let whole = self.first.len() + partners.len();
             self.first.resize(whole, i as u32);
             self.second.extend_from_slice(partners);
-            let reaches = partners
-                .iter()
-                .map(|&j| 0.5 * (size + diameter[j as usize]));
+            let reaches = partners.iter().map(|&j| 0.5 * (own + diameter[j as usize]));
             self.reach.extend(reaches);
         }
         self.fill_up();
@@ -134,7 +132,7 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// Makes the flat lists from the rows.
-    pub(super) fn load<T: Remember>(
+    pub(super) fn load<T: PackedHistory>(
         &mut self,
         list: &Neighbours<T::History<f64>>,
         bodies: &Bodies,
@@ -160,7 +158,7 @@ impl Pairs {
     }
 
     /// Writes the histories back to the rows.
-    pub(super) fn store<T: Remember>(&self, list: &mut Neighbours<T::History<f64>>) {
+    pub(super) fn store<T: PackedHistory>(&self, list: &mut Neighbours<T::History<f64>>) {
         let histories = list.histories_mut();
         for &k in &self.loaded {
             histories[k as usize] = T::History::<f64>::default();
@@ -192,7 +190,7 @@ impl Work for Prune<'_> {
 }
 
 /// Adds the forces and torques of all contacts between moving spheres.
-pub(super) struct PairForces<'a, N, T: Remember> {
+pub(super) struct PairForces<'a, N, T: PackedHistory> {
     pub(super) law: &'a ContactLaw<N, T>,
     pub(super) pairs: &'a mut Pairs,
     pub(super) spheres: &'a mut Spheres,
@@ -201,7 +199,7 @@ pub(super) struct PairForces<'a, N, T: Remember> {
     pub(super) tally: &'a mut Tally,
 }
 
-impl<N: NormalLaw, T: Remember> Work for PairForces<'_, N, T> {
+impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
     type Answer = ();
 
     #[inline(always)]
@@ -249,10 +247,7 @@ impl<N: NormalLaw, T: Remember> Work for PairForces<'_, N, T> {
         if !wall.near.first.is_empty() {
             wall.near
                 .find::<M>(&self.spheres.position, self.length, 0.0, touching);
-            let smooth = ContactLaw {
-                normal: self.law.normal,
-                tangential: Frictionless,
-            };
+            let smooth = self.law.frictionless();
             let mut of_wall = Tally::default();
             add_contacts::<M, _, _>(
                 &smooth,
@@ -316,7 +311,7 @@ impl<M: Machine> Sums<M> {
         self.damped += Lanes::select(valid, answer.tangential.damped, zero);
         self.slid += Lanes::select(valid, answer.tangential.slid, zero);
         self.overlap += overlap;
-        self.largest_overlap = self.largest_overlap.larger(overlap);
+        self.largest_overlap = self.largest_overlap.max(overlap);
         self.wall_axial_force += Lanes::select(valid & with_wall, answer.force.z, zero);
         self.wall_contacts += (valid & with_wall).count();
         self.sliding_contacts += (valid & answer.tangential.sliding).count();
@@ -329,7 +324,7 @@ impl<M: Machine> Sums<M> {
         tally.tangential_lost += self.damped.sum();
         tally.sliding_lost += self.slid.sum();
         tally.total_overlap += self.overlap.sum();
-        tally.largest_overlap = tally.largest_overlap.max(self.largest_overlap.largest());
+        tally.largest_overlap = tally.largest_overlap.max(self.largest_overlap.max_lane());
         tally.wall_axial_force += self.wall_axial_force.sum();
         tally.wall_contacts += self.wall_contacts;
         tally.grain_contacts += contacts - self.wall_contacts;
@@ -339,7 +334,7 @@ impl<M: Machine> Sums<M> {
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn add_contacts<M: Machine, N: NormalLaw, T: Remember>(
+fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
     law: &ContactLaw<N, T>,
     pairs: &Pruned,
     touching: &[u32],
@@ -352,17 +347,17 @@ fn add_contacts<M: Machine, N: NormalLaw, T: Remember>(
     let grains = spheres.grains;
     let position = &spheres.position[..];
     let velocity = &spheres.velocity[..];
-    let spin = &spheres.spin[..];
+    let turning = &spheres.turning[..];
     let force = &mut spheres.force[..];
     let torque = &mut spheres.torque[..];
-    let (half, zero) = (Lanes::<M>::splat(0.5), Lanes::<M>::splat(0.0));
+    let zero = Lanes::<M>::splat(0.0);
     let mut sums = Sums::<M>::none();
     for block in touching.chunks(LANES) {
         let lanes = block.len();
         let (mut pair, mut i, mut j) = ([0; LANES], [0; LANES], [0; LANES]);
         let nothing = Quad::<M>::splat(0.0);
         let (mut apart, mut relative) = ([nothing; LANES], [nothing; LANES]);
-        let (mut spins_i, mut spins_j) = ([nothing; LANES], [nothing; LANES]);
+        let (mut turnings_i, mut turnings_j) = ([nothing; LANES], [nothing; LANES]);
         let mut with_wall = 0;
         for lane in 0..LANES {
             // Lanes to spare do the last contact again, to no effect.
@@ -373,30 +368,19 @@ fn add_contacts<M: Machine, N: NormalLaw, T: Remember>(
             let (i, j) = (i[lane], j[lane]);
             apart[lane] = position[i].quad() - position[j].quad();
             relative[lane] = velocity[i].quad() - velocity[j].quad();
-            spins_i[lane] = spin[i].quad();
-            spins_j[lane] = spin[j].quad();
+            turnings_i[lane] = turning[i].quad();
+            turnings_j[lane] = turning[j].quad();
             with_wall |= u8::from(j >= grains) << lane;
         }
         let separation = record::periodic(record::into_lanes(apart).0, length);
         let (relative_velocity, _) = record::into_lanes(relative);
-        let (spin_i, diameter_i) = record::into_lanes(spins_i);
-        let (spin_j, diameter_j) = record::into_lanes(spins_j);
-        let distance = separation.squared().sqrt();
-        let diameters = diameter_i + diameter_j;
-        let overlap = half * diameters - distance;
-        let arms = (half * (diameter_i - overlap), half * (diameter_j - overlap));
-        let contact = Contact {
-            overlap,
-            distance,
-            normal: separation * (Lanes::splat(1.0) / distance),
-            relative_velocity,
-            reduced_radius: diameter_i * diameter_j / (diameters + diameters),
-            spin: if T::ROTATES {
-                spin_i * arms.0 + spin_j * arms.1
-            } else {
-                LaneVector::default()
-            },
-        };
+        let (turning_i, diameter_i) = record::into_lanes(turnings_i);
+        let (turning_j, diameter_j) = record::into_lanes(turnings_j);
+        let mut contact = Contact::new((diameter_i, diameter_j), separation, relative_velocity);
+        let arms = (contact.arm(diameter_i), contact.arm(diameter_j));
+        if T::ROTATES {
+            contact.rotation = turning_i * arms.0 + turning_j * arms.1;
+        }
         let mut history = T::History::<Lanes<M>>::default();
         if T::ROTATES {
             let [a, b, c, d, e, f, g, h] = pair;
@@ -413,17 +397,17 @@ fn add_contacts<M: Machine, N: NormalLaw, T: Remember>(
         }
         let answer = law.force(&contact, &mut history, time_step);
         let valid = Mask::first(lanes);
-        sums.add(&answer, overlap, Mask::from_bits(with_wall), valid);
+        sums.add(&answer, contact.overlap, Mask::from_bits(with_wall), valid);
         let forces = record::from_lanes(answer.force, zero);
-        let twists = record::from_lanes(answer.twist, zero);
+        let torques = record::from_lanes(answer.torque_per_arm, zero);
         let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
         for lane in 0..lanes {
             let (i, j) = (i[lane], j[lane]);
             force[i] = (force[i].quad() + forces[lane]).record();
             force[j] = (force[j].quad() - forces[lane]).record();
             if T::ROTATES {
-                torque[i] = (torque[i].quad() + twists[lane] * arms_i[lane]).record();
-                torque[j] = (torque[j].quad() + twists[lane] * arms_j[lane]).record();
+                torque[i] = (torque[i].quad() + torques[lane] * arms_i[lane]).record();
+                torque[j] = (torque[j].quad() + torques[lane] * arms_j[lane]).record();
             }
         }
         if T::ROTATES {

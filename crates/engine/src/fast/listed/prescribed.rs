@@ -7,7 +7,6 @@ use super::spheres::Spheres;
 use crate::ledger::Tally;
 use crate::wall::PrescribedWall;
 use crate::wall::memory::WallMemory;
-use crate::wall::prescribed::GrainState;
 
 /// Adds the forces and torques of the wall on the grains, as [`PrescribedWall::add_forces`] does.
 pub(super) fn add_forces<N: NormalLaw, T: TangentialLaw>(
@@ -22,23 +21,11 @@ pub(super) fn add_forces<N: NormalLaw, T: TangentialLaw>(
         memory.begin();
     }
     for grain in 0..spheres.grains {
-        let state = GrainState {
-            centre: spheres.position[grain].vector(),
-            velocity: spheres.velocity[grain].vector(),
-            angular_velocity: spheres.spin[grain].vector(),
-            diameter: spheres.spin[grain].0[3],
-        };
+        let sphere = spheres.sphere(grain);
         let mut force = spheres.force[grain].vector();
         let mut torque = spheres.torque[grain].vector();
-        wall.add_force(
-            law,
-            grain,
-            &state,
-            (&mut force, &mut torque),
-            memory,
-            time_step,
-            tally,
-        );
+        let on_grain = (&mut force, &mut torque);
+        wall.add_force(law, (grain, &sphere), on_grain, memory, time_step, tally);
         spheres.force[grain] = Record::new(force, 0.0);
         if T::ROTATES {
             spheres.torque[grain] = Record::new(torque, 0.0);

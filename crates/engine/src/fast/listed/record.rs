@@ -50,13 +50,13 @@ impl<M: Machine> Quad<M> {
     }
 
     #[inline(always)]
-    pub(super) fn lesser(self, other: Self) -> Self {
-        Self(M::lesser_quad(self.0, other.0))
+    pub(super) fn min(self, other: Self) -> Self {
+        Self(M::min_quad(self.0, other.0))
     }
 
     #[inline(always)]
-    pub(super) fn larger(self, other: Self) -> Self {
-        Self(M::larger_quad(self.0, other.0))
+    pub(super) fn max(self, other: Self) -> Self {
+        Self(M::max_quad(self.0, other.0))
     }
 }
 

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::record::Record;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Sphere};
 use crate::integrate::Past;
 
 /// The spheres of [`Bodies`] in records of four numbers.
@@ -15,14 +15,14 @@ pub(super) struct Spheres {
     /// Velocity, and 0.
     pub(super) velocity: Vec<Record>,
     /// Angular velocity, and the diameter.
-    pub(super) spin: Vec<Record>,
+    pub(super) turning: Vec<Record>,
     /// Force, and 0; between advances the acceleration.
     pub(super) force: Vec<Record>,
     /// Torque, and 0; between advances the angular acceleration.
     pub(super) torque: Vec<Record>,
     /// Of the step before, as the integrator's [`Past`] has them.
     pub(super) velocity_before: Vec<Record>,
-    pub(super) spin_before: Vec<Record>,
+    pub(super) turning_before: Vec<Record>,
     pub(super) acceleration_before: Vec<Record>,
     pub(super) angular_acceleration_before: Vec<Record>,
     pub(super) inverse_mass: Vec<f64>,
@@ -40,6 +40,18 @@ fn empty(vectors: &mut Vec<DVec3>, records: &[Record]) {
 }
 
 impl Spheres {
+    /// One of the spheres.
+    #[inline(always)]
+    pub(super) fn sphere(&self, index: usize) -> Sphere {
+        let turning = self.turning[index];
+        Sphere {
+            position: self.position[index].vector(),
+            velocity: self.velocity[index].vector(),
+            angular_velocity: turning.vector(),
+            diameter: turning.0[3],
+        }
+    }
+
     pub(super) fn number(&self) -> usize {
         self.position.len()
     }
@@ -50,15 +62,15 @@ impl Spheres {
         let places = bodies.position.iter().zip(&bodies.turns);
         self.position
             .extend(places.map(|(&place, &turns)| Record::new(place, f64::from(turns))));
-        self.spin.clear();
-        let spins = bodies.angular_velocity.iter().zip(&bodies.diameter);
-        self.spin
-            .extend(spins.map(|(&spin, &diameter)| Record::new(spin, diameter)));
+        self.turning.clear();
+        let turnings = bodies.angular_velocity.iter().zip(&bodies.diameter);
+        self.turning
+            .extend(turnings.map(|(&turning, &diameter)| Record::new(turning, diameter)));
         fill(&mut self.velocity, &bodies.velocity);
         fill(&mut self.force, &bodies.acceleration);
         fill(&mut self.torque, &bodies.angular_acceleration);
         fill(&mut self.velocity_before, &past.velocity);
-        fill(&mut self.spin_before, &past.angular_velocity);
+        fill(&mut self.turning_before, &past.angular_velocity);
         fill(&mut self.acceleration_before, &past.acceleration);
         fill(
             &mut self.angular_acceleration_before,
@@ -89,11 +101,11 @@ impl Spheres {
     pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
         self.store_places(bodies);
         empty(&mut bodies.velocity, &self.velocity);
-        empty(&mut bodies.angular_velocity, &self.spin);
+        empty(&mut bodies.angular_velocity, &self.turning);
         empty(&mut bodies.acceleration, &self.force);
         empty(&mut bodies.angular_acceleration, &self.torque);
         empty(&mut past.velocity, &self.velocity_before);
-        empty(&mut past.angular_velocity, &self.spin_before);
+        empty(&mut past.angular_velocity, &self.turning_before);
         empty(&mut past.acceleration, &self.acceleration_before);
         empty(
             &mut past.angular_acceleration,

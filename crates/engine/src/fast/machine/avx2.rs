@@ -86,18 +86,18 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn size(a: Self::Numbers) -> Self::Numbers {
+    fn abs(a: Self::Numbers) -> Self::Numbers {
         let sign = Self::splat(-0.0);
         both!(_mm256_andnot_pd(sign, a))
     }
 
     #[inline(always)]
-    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         both!(_mm256_min_pd(a, b))
     }
 
     #[inline(always)]
-    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         both!(_mm256_max_pd(a, b))
     }
 
@@ -224,12 +224,12 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         unsafe { _mm256_min_pd(a, b) }
     }
 
     #[inline(always)]
-    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         unsafe { _mm256_max_pd(a, b) }
     }
 

@@ -67,17 +67,17 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn size(a: Self::Numbers) -> Self::Numbers {
+    fn abs(a: Self::Numbers) -> Self::Numbers {
         unsafe { _mm512_abs_pd(a) }
     }
 
     #[inline(always)]
-    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         unsafe { _mm512_min_pd(a, b) }
     }
 
     #[inline(always)]
-    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         unsafe { _mm512_max_pd(a, b) }
     }
 
@@ -171,12 +171,12 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         unsafe { _mm256_min_pd(a, b) }
     }
 
     #[inline(always)]
-    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         unsafe { _mm256_max_pd(a, b) }
     }
 

@@ -47,11 +47,11 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     fn neg(a: Self::Numbers) -> Self::Numbers;
     fn sqrt(a: Self::Numbers) -> Self::Numbers;
     /// |a|
-    fn size(a: Self::Numbers) -> Self::Numbers;
+    fn abs(a: Self::Numbers) -> Self::Numbers;
     /// a < b ? a : b
-    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     /// a > b ? a : b
-    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
+    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers;
     /// 1/sqrt(a) computed in single precision.
     fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers;
 
@@ -79,9 +79,9 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad;
     fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad;
     /// a < b ? a : b
-    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
     /// a > b ? a : b
-    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
+    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad;
     /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
     fn lanes_of(quads: [Self::Quad; LANES]) -> [Self::Numbers; 4];
     /// Lanes turned into eight quads.

@@ -72,17 +72,17 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn size(a: Self::Numbers) -> Self::Numbers {
+    fn abs(a: Self::Numbers) -> Self::Numbers {
         a.map(f64::abs)
     }
 
     #[inline(always)]
-    fn lesser(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         zip(a, b, |a, b| if a < b { a } else { b })
     }
 
     #[inline(always)]
-    fn larger(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
         zip(a, b, |a, b| if a > b { a } else { b })
     }
 
@@ -188,12 +188,12 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn lesser_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         core::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
     }
 
     #[inline(always)]
-    fn larger_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
+    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
         core::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
     }
 

@@ -8,7 +8,8 @@ use super::order::NOWHERE;
 use super::{OF_LIGHT_WORK, Sorted, TILE};
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
-use crate::integrate::Runaway;
+use crate::integrate::verlet::Verlet;
+use crate::integrate::{Runaway, Scheme};
 
 /// Which part of a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -169,8 +170,10 @@ impl Move<'_> {
             body_force,
             limit,
         } = self.motion;
-        let step = Lanes::<M>::splat(time_step);
-        let half_step = Lanes::splat(0.5 * time_step);
+        let verlet = Verlet {
+            step: Lanes::<M>::splat(time_step),
+            half_step: Lanes::splat(0.5 * time_step),
+        };
         let per_mass = Lanes::splat(self.per_mass);
         let limit_squared = Lanes::splat(limit * limit);
         let somewhere = Lanes::splat(0.5 * NOWHERE);
@@ -189,18 +192,18 @@ impl Move<'_> {
                     now.z += Lanes::select(holds, Lanes::splat(body_force), Lanes::splat(0.0));
                 }
                 self.force.store(at, LaneVector::<M>::default());
-                velocity += (now - acceleration) * half_step;
+                velocity = verlet.corrected(velocity, now, acceleration);
                 acceleration = now;
                 self.acceleration.store(at, acceleration);
             }
             if DRIFT {
-                let by = (velocity + acceleration * half_step) * step;
+                let by = verlet.displacement(velocity, acceleration, velocity);
                 let position = self.position.load(at) + by;
-                velocity += acceleration * step;
+                velocity = verlet.predicted(velocity, acceleration, acceleration);
                 self.position.store(at, position);
                 let lateral = by.x * by.x + by.y * by.y;
                 let squared = lateral + by.z * by.z;
-                most_lateral = most_lateral.larger(lateral);
+                most_lateral = most_lateral.max(lateral);
                 let apart = !squared.at_most(limit_squared);
                 if apart.any() {
                     let lane = apart.to_bits().trailing_zeros() as usize;
@@ -210,16 +213,16 @@ impl Move<'_> {
                 let origin = Lanes::load(self.origin, at);
                 let holds = origin.less(somewhere);
                 let displacement = position.z - origin;
-                least = least.lesser(Lanes::select(holds, displacement, least));
-                largest = largest.larger(Lanes::select(holds, displacement, largest));
+                least = least.min(Lanes::select(holds, displacement, least));
+                largest = largest.max(Lanes::select(holds, displacement, largest));
             }
             self.velocity.store(at, velocity);
         }
         if DRIFT {
             *self.moved = Moved {
-                least: -(-least).largest(),
-                largest: largest.largest(),
-                lateral_squared: most_lateral.largest(),
+                least: -(-least).max_lane(),
+                largest: largest.max_lane(),
+                lateral_squared: most_lateral.max_lane(),
                 runaway,
             };
         }

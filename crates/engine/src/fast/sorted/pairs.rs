@@ -3,9 +3,9 @@
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::{Real, Vector};
 
-use super::Sums;
 use super::columns::Columns;
 use super::listing::{Partners, Tile};
+use super::sums::Sums;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 

@@ -45,7 +45,7 @@ impl<M: Machine> Sums<M> {
         lost: Lanes<M>,
     ) {
         self.normal_dissipation += lost;
-        self.largest_overlap = self.largest_overlap.larger(overlap);
+        self.largest_overlap = self.largest_overlap.max(overlap);
         if FULL {
             self.contact_energy += energy;
             self.total_overlap += overlap;
@@ -58,7 +58,7 @@ impl<M: Machine> Sums<M> {
         Tally {
             wall_power: self.wall_power.sum(),
             normal_dissipation: self.normal_dissipation.sum(),
-            largest_overlap: self.largest_overlap.largest(),
+            largest_overlap: self.largest_overlap.max_lane(),
             contact_energy: self.contact_energy.sum(),
             total_overlap: self.total_overlap.sum(),
             wall_axial_force: self.wall_axial_force.sum(),

@@ -6,17 +6,17 @@
 //! lanes walk together outward from sphere to sphere, at angles that are the same for all, until no lane touches: the
 //! distance to the spheres of a ring grows in that order. In the end the forces go back to the grains, ring by ring.
 
-use peristalsis_physics::contact::NormalLaw;
+use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 use peristalsis_physics::real::Real;
 use peristalsis_physics::wall::Lattice;
 use peristalsis_physics::wall::lattice::approximate_angle;
 
-use super::Sums;
 use super::meetings::Meetings;
 use super::pairs::{Block, COINCIDENT};
+use super::sums::Sums;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::Machine;
-use crate::wall::PrescribedWall;
+use crate::wall::Wall;
 
 /// The wall at one step, as the kernel reads it.
 #[derive(Clone, Debug, Default)]
@@ -64,7 +64,7 @@ impl<M: Machine> Default for RingSums<M> {
     }
 }
 
-/// Keeps what is at the edge of reach within, whatever the rounding.
+/// Added to the reach, in rings, so that rounding leaves no ring at its edge out.
 const MARGIN: f64 = 1e-9;
 
 /// How many rings can be within reach of a grain.
@@ -75,8 +75,7 @@ pub(super) fn rings_in_reach(lattice: &Lattice, diameter: f64) -> usize {
 
 impl WallTable {
     /// The tables that do not move, for grains of diameter `diameter`.
-    pub(super) fn new(wall: &PrescribedWall, diameter: f64) -> Self {
-        let lattice = wall.lattice();
+    pub(super) fn new(lattice: &Lattice, diameter: f64) -> Self {
         let per_ring = lattice.spheres_per_ring;
         let reach = 0.5 * (diameter + lattice.sphere_diameter);
         let angle = |half_steps: f64| half_steps * core::f64::consts::PI / f64::from(per_ring);
@@ -106,14 +105,14 @@ impl WallTable {
             reach,
             rings_within: reach / lattice.spacing() + MARGIN - 0.5,
             most_rings,
-            reduced_radius: diameter * lattice.sphere_diameter
-                / (2.0 * (diameter + lattice.sphere_diameter)),
+            reduced_radius: reduced_radius(diameter, lattice.sphere_diameter),
             ..Self::default()
         }
     }
 
     /// Takes over the rings where they are now.
-    pub(super) fn follow(&mut self, wall: &PrescribedWall) {
+    pub(super) fn follow(&mut self, wall: &Wall) {
+        let wall = wall.prescribed().expect("a wall that this kernel serves");
         let rings = wall.rings();
         for (entry, ring) in self.rings.chunks_exact_mut(2).zip(rings) {
             entry.copy_from_slice(&[ring.radius, ring.velocity]);

@@ -272,10 +272,11 @@ fn plane_lattice() -> Lattice {
 
 /// Centre of the sphere of the second ring, which stands at the side of negative x.
 fn plane_centre(wall: &Wall) -> DVec3 {
-    match wall {
-        Wall::Prescribed(wall) => wall.sphere_position(1),
-        Wall::Elastic(_) => unreachable!("the wall was made as a prescribed one"),
-    }
+    let mut spheres = wall.prescribed_spheres();
+    let second = spheres
+        .nth(1)
+        .expect("a ring of one sphere is followed by another");
+    second.position
 }
 
 /// Largest value between two instants, of the cubic through values and rates.

@@ -1,0 +1,233 @@
+//! Forces of the contacts, tile by tile, and their sums.
+
+use std::cell::RefCell;
+
+use peristalsis_physics::contact::NormalLaw;
+use rayon::prelude::*;
+
+use super::columns::{Columns, ColumnsMut};
+use super::listing::{Partners, Tile};
+use super::meetings::Meetings;
+use super::pairs::{Block, PairConstants};
+use super::sums::Sums;
+use super::wall::WallTable;
+use super::{AT_A_TIME, OF_LIGHT_WORK, Sorted, TILE};
+use crate::fast::lanes::LANES;
+use crate::fast::machine::{Machine, Work};
+use crate::ledger::Tally;
+
+/// The forces that the contacts of a tile's grains exert, window after window, and their sums.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OfTile {
+    force: Columns,
+    tally: Tally,
+    /// Room to write down who touches.
+    touching: Vec<Partners>,
+}
+
+impl Sorted {
+    /// Adds up all forces, from zero, and answers their sums.
+    pub(super) fn forces<N: NormalLaw, const FULL: bool>(&mut self, law: &N) -> Tally {
+        let Self {
+            pairs,
+            wall,
+            position,
+            velocity,
+            force,
+            tiles,
+            of_tiles,
+            reached_by,
+            instructions,
+            pool,
+            ..
+        } = self;
+        let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
+            MEETINGS.with_borrow_mut(|meetings| {
+                instructions.run(ForcesOfTile::<N, FULL> {
+                    law,
+                    pairs,
+                    wall,
+                    position,
+                    velocity,
+                    tile,
+                    of_tile,
+                    meetings,
+                });
+            });
+        };
+        let mut tally = Tally::default();
+        if pool.is_some() {
+            let work = of_tiles.par_iter_mut().zip(&*tiles);
+            work.with_max_len(AT_A_TIME).for_each(one);
+            let stretches = force.par_tiles().zip(&*reached_by).enumerate();
+            let stretches = stretches.with_max_len(OF_LIGHT_WORK);
+            stretches.for_each(|(stretch, (force, reached_by))| {
+                instructions.run(AddUp {
+                    first: stretch * TILE,
+                    reached_by,
+                    tiles,
+                    of_tiles,
+                    force,
+                });
+            });
+            for of_tile in &*of_tiles {
+                tally.merge(&of_tile.tally);
+            }
+        } else {
+            for (number, tile) in tiles.iter().enumerate() {
+                one((&mut of_tiles[0], tile));
+                let all = [(0, 0), (0, 1), (0, 2), (0, 3), (0, 4)];
+                instructions.run(AddUp {
+                    first: 0,
+                    reached_by: &all[..tile.windows().len()],
+                    tiles: &tiles[number..=number],
+                    of_tiles,
+                    force: force.as_mut(),
+                });
+                tally.merge(&of_tiles[0].tally);
+            }
+        }
+        self.gather_from_copies();
+        tally
+    }
+
+    /// Finds out which stretches of places the tiles reach, so that threads can add up a stretch each.
+    pub(super) fn share_out(&mut self) {
+        let number = if self.pool.is_some() {
+            self.tiles.len()
+        } else {
+            1
+        };
+        self.of_tiles.resize_with(number, OfTile::default);
+        if self.pool.is_none() {
+            return;
+        }
+        let stretches = self.origin.len().div_ceil(TILE);
+        self.reached_by.resize_with(stretches, Vec::new);
+        self.reached_by.iter_mut().for_each(Vec::clear);
+        for (number, tile) in self.tiles.iter().enumerate() {
+            for (index, window) in tile.windows().iter().enumerate() {
+                let stretches = window.first / TILE..(window.first + window.length).div_ceil(TILE);
+                for reached_by in &mut self.reached_by[stretches] {
+                    reached_by.push((number as u32, index as u32));
+                }
+            }
+        }
+    }
+
+    pub(super) fn forget_forces(&mut self) {
+        for column in self.force.each() {
+            column.fill(0.0);
+        }
+    }
+}
+
+thread_local! {
+    /// Room that each thread uses again for every tile.
+    static MEETINGS: RefCell<Meetings> = RefCell::default();
+}
+
+struct ForcesOfTile<'a, N, const FULL: bool> {
+    law: &'a N,
+    pairs: &'a PairConstants,
+    wall: &'a WallTable,
+    position: &'a Columns,
+    velocity: &'a Columns,
+    tile: &'a Tile,
+    of_tile: &'a mut OfTile,
+    meetings: &'a mut Meetings,
+}
+
+impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let Self {
+            law,
+            pairs,
+            wall,
+            position,
+            velocity,
+            tile,
+            of_tile:
+                OfTile {
+                    force,
+                    tally,
+                    touching,
+                },
+            meetings,
+        } = self;
+        for column in force.each() {
+            column.clear();
+            column.resize(tile.room(), 0.0);
+        }
+        if touching.len() < tile.listed() {
+            touching.resize(tile.listed(), Partners::default());
+        }
+        let mut sums = Sums::<M>::zero();
+        for place in (tile.first..tile.end).step_by(LANES) {
+            let block = Block::load(position, velocity, place, tile.end);
+            block.add_pairs::<N, FULL>(
+                law, pairs, position, velocity, tile, touching, force, &mut sums,
+            );
+        }
+        let mut place = tile.first;
+        while place < tile.end {
+            meetings.clear();
+            while place < tile.end && meetings.have_room(wall.most_rings()) {
+                let block = Block::<M>::load(position, velocity, place, tile.end);
+                wall.meet(&block, place - tile.first, meetings);
+                place += LANES;
+            }
+            wall.turn::<M>(meetings);
+            wall.push::<M, N, FULL>(law, meetings, &mut sums);
+            meetings.add_forces::<M>(force);
+        }
+        *tally = sums.tally();
+    }
+}
+
+/// Adds what windows of tiles hold to the forces of a stretch of places.
+struct AddUp<'a> {
+    first: usize,
+    /// Tile and window, in the order of the tiles.
+    reached_by: &'a [(u32, u32)],
+    tiles: &'a [Tile],
+    of_tiles: &'a [OfTile],
+    force: ColumnsMut<'a>,
+}
+
+impl Work for AddUp<'_> {
+    type Answer = ();
+
+    #[inline(always)]
+    fn run<M: Machine>(self) {
+        let Self {
+            first,
+            reached_by,
+            tiles,
+            of_tiles,
+            force,
+        } = self;
+        let end = first + force.x.len();
+        for &(tile, window) in reached_by {
+            let of_tile = &of_tiles[tile as usize].force;
+            let window = &tiles[tile as usize].windows()[window as usize];
+            let from = window.first.max(first);
+            let to = (window.first + window.length).min(end).max(from);
+            for (all, of_tile) in [
+                (&mut *force.x, &of_tile.x),
+                (&mut *force.y, &of_tile.y),
+                (&mut *force.z, &of_tile.z),
+            ] {
+                let all = &mut all[from - first..to - first];
+                let base = window.base + (from - window.first);
+                let of_tile = &of_tile[base..base + (to - from)];
+                for (all, of_tile) in all.iter_mut().zip(of_tile) {
+                    *all += of_tile;
+                }
+            }
+        }
+    }
+}

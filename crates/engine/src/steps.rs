@@ -1,0 +1,66 @@
+//! The step loop, the same for all kernels.
+
+use crate::integrate::Runaway;
+use crate::ledger::{Ledger, Tally};
+use crate::wall::Wall;
+
+/// The parts of a step that a kernel does in its own way; [`Course::advance`] says in which order.
+pub(crate) trait Stepper {
+    /// Moves the spheres to the end of the step, and their velocities to where the forces want them.
+    ///
+    /// The first call completes the velocities of the step before, where [`Stepper::finish`] has not.
+    fn move_spheres(&mut self) -> Result<(), Runaway>;
+
+    /// Elastic energy of the contacts with the wall as it stands; no contact history moves on.
+    fn contact_energy(&mut self, wall: &Wall) -> f64;
+
+    /// Works out all forces at the end of the step. Sums that only observers read may be left out unless `complete`.
+    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally;
+
+    /// Brings the velocities to the end of the last step.
+    fn finish(&mut self) -> Result<(), Runaway>;
+}
+
+/// Wall, clock and energies of a simulation, which every step moves on.
+#[derive(Clone, Debug)]
+pub(crate) struct Course {
+    pub(crate) wall: Wall,
+    /// Sums over the contacts at the end of the last step.
+    pub(crate) tally: Tally,
+    pub(crate) ledger: Ledger,
+    /// Steps done.
+    pub(crate) step: u64,
+    pub(crate) time_step: f64,
+}
+
+impl Course {
+    pub(crate) fn time(&self) -> f64 {
+        self.step as f64 * self.time_step
+    }
+
+    /// Advances by `steps` steps; at a runaway the time is that of the step that failed.
+    #[inline(always)]
+    pub(crate) fn advance(&mut self, kernel: &mut impl Stepper, steps: u64) -> Result<(), Runaway> {
+        if steps == 0 {
+            return Ok(());
+        }
+        for remaining in (0..steps).rev() {
+            self.step += 1;
+            let time = self.time();
+            kernel.move_spheres()?;
+
+            // A wall that jumps does work on the contacts that it finds: the difference of what they store after and
+            // before the jump.
+            let jumps = self.wall.move_without_jump(time - self.time_step, time);
+            let stored_before_jump = jumps.then(|| kernel.contact_energy(&self.wall));
+            self.wall.move_to(time);
+            let after = kernel.evaluate(&self.wall, remaining == 0 || jumps);
+            if let Some(stored) = stored_before_jump {
+                self.ledger.add_jump(after.contact_energy - stored);
+            }
+            self.ledger.add_step(&self.tally, &after, self.time_step);
+            self.tally = after;
+        }
+        kernel.finish()
+    }
+}
