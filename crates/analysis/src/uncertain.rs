@@ -114,6 +114,12 @@ impl Uncertain {
         }
     }
 
+    /// The number in another unit: times a positive factor.
+    #[must_use]
+    pub fn scaled(self, factor: f64) -> Self {
+        self.map(self.error * factor, |value| value * factor)
+    }
+
     /// Distance from a reference value in standard errors.
     pub fn deviations_from(&self, reference: f64) -> f64 {
         if self.value == reference {

@@ -100,14 +100,6 @@ impl StudyResults {
         rows_of(&self.table)
     }
 
-    /// The late profile of the run of a row; `None` where it was not kept, or only its row was imported.
-    ///
-    /// # Errors
-    /// Errors of reading.
-    pub(crate) fn profile_of(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
-        self.profile(row)
-    }
-
     /// The time series of a run; `None` where only its row was imported.
     ///
     /// # Errors

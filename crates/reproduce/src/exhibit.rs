@@ -1,7 +1,7 @@
 //! Tables and figures that claims draw alike.
 
 use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::Points;
+use peristalsis_figures::chart::{Band, Points};
 use peristalsis_figures::{ColourScale, Quantity, Units};
 
 use crate::branch::Branch;
@@ -40,6 +40,15 @@ pub(crate) fn points(
 /// A branch as joined points with error bars.
 pub(crate) fn branch_points(name: &str, branch: &Branch<'_>) -> Option<Points> {
     points(name, branch.flows()).map(Points::joined)
+}
+
+/// The band of one standard error about a curve.
+pub(crate) fn error_band(x: &[f64], value: &[f64], error: &[f64]) -> Band {
+    let end = |sign: f64| -> Vec<f64> {
+        let pairs = value.iter().zip(error);
+        pairs.map(|(value, error)| value + sign * error).collect()
+    };
+    Band::new("", x, &end(-1.0), &end(1.0))
 }
 
 /// Least and largest of some numbers; `None` where they do not differ.

@@ -26,7 +26,6 @@ pub mod report;
 mod reproduction;
 #[allow(dead_code, reason = "claims move to it one after the other")]
 mod row;
-mod rows;
 mod runs;
 mod studies;
 mod text;

@@ -263,7 +263,7 @@ mod tests {
         });
         let call = &call[..end.unwrap_or(call.len())];
         call.match_indices("(\"")
-            .skip(1)
+            .skip(usize::from(call.starts_with("(\"")))
             .filter(|(at, _)| {
                 !call[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '!')
             })

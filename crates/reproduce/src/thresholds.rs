@@ -55,3 +55,45 @@ pub(crate) const RESOLVED: f64 = 3.0;
 
 /// What a verdict takes where a claim asks for nothing else.
 pub(crate) const FOR_A_VERDICT: Statistics = Statistics::FOR_A_VERDICT;
+
+// The stress-controlled tube.
+
+/// Periods of stationary flow behind the late mean of a run that counts for a verdict: fewer leave a slow drift unseen.
+pub(crate) const STATIONARY_PERIODS: f64 = 50.0;
+/// What a verdict takes there: 3 strain rates, 6 forces at each and 5 replicates from either start, all of them runs with
+/// [`STATIONARY_PERIODS`]. Less than elsewhere, since each of these runs takes minutes, not seconds.
+pub(crate) const FOR_A_VERDICT_ON_FORCES: Statistics = Statistics {
+    strain_rates: 3,
+    widths: 6,
+    replicates: 5,
+    runs: 180,
+};
+/// Distance of two forces beyond which a rise between them is not judged by its height: a smooth rise may be as high.
+pub(crate) const FINEST: f64 = 6e-4;
+/// J/Jmax below which a line must begin, and which it must reach, to be called smooth: else the transition lies beyond it.
+pub(crate) const SPAN: (f64, f64) = (0.3, 0.5);
+/// J/Jmax below which a jam has given way: between the jammed flow, 0.6 and more, and the unjammed flow, near 0.
+pub(crate) const GIVEN_WAY: f64 = 0.3;
+/// Flow against the wave, in parts of Jmax, that would go unnoticed.
+pub(crate) const LEAST_BACK_FLOW: f64 = 0.01;
+/// Errors by which all flows must be above −[`LEAST_BACK_FLOW`] to say that there is no back flow: the 95 per cent interval.
+pub(crate) const NO_BACK_FLOW_BY: f64 = 2.0;
+/// Errors by which a flow must differ from 0 to have a direction where one point is asked for; less than [`CLEAR`], since
+/// nothing is chosen among many.
+pub(crate) const SIGNED_BY: f64 = 2.0;
+/// J/Jmax below which a flow is unjammed, clear of the jump.
+pub(crate) const UNJAMMED: f64 = 0.2;
+/// J/Jmax from which on a flow is fast: midway between the two flows.
+pub(crate) const FAST: f64 = 0.5;
+/// J/Jmax at which a sweep of the force passes from one flow to the other: midway between them.
+pub(crate) const PASSED: f64 = 0.5;
+
+// What differs between two flows.
+
+/// Differences of velocities, in parts of c, and of densities, in parts of the mean, count from here on: less can come from
+/// the tubes, which are not quite alike.
+pub(crate) const LEAST_DIFFERENCE: f64 = 0.05;
+/// Temperatures differ from this ratio on: they vary over decades.
+pub(crate) const LEAST_RATIO: f64 = 2.0;
+/// Pressure on the wall, as a fraction of its largest, below which grains fly freely.
+pub(crate) const FREE_FLIGHT: f64 = 0.01;

@@ -3,11 +3,12 @@
 #![allow(missing_docs)]
 #![expect(clippy::unwrap_used, reason = "a test may")]
 
-use peristalsis_reproduce::{
-    CLAIMS, Evidence, Finding, Lattice, Run, STUDIES, Size, Start, Statistics, Verdict,
-};
-use peristalsis_run::THRESHOLDS;
+mod rows;
+
+use peristalsis_reproduce::{Evidence, Finding, STUDIES, Size, Start, Statistics, Verdict};
 use peristalsis_study::{Plan, Specification};
+
+use rows::{Rows, evidence, examine, value};
 
 /// An elastic tube whose flow follows a given law.
 #[derive(Clone, Copy)]
@@ -28,10 +29,11 @@ struct Tube {
     drift: f64,
     /// Mean time in periods until a jam gives way below the critical force; NaN if it never does.
     lifetime: f64,
-    /// Axial velocity in the throat over c.
+    /// Axial velocity in the throat over c, and temperature in the belly over m c^2.
     throat_velocity: f64,
+    belly_temperature: f64,
     /// Grains outside, of 1093.
-    escaped: i64,
+    escaped: f64,
 }
 
 /// The tube of the source.
@@ -46,11 +48,22 @@ const SOURCE: Tube = Tube {
     drift: 0.0,
     lifetime: 8.0,
     throat_velocity: -0.2,
-    escaped: 0,
+    belly_temperature: 0.01,
+    escaped: 0.0,
 };
 
-const RATES: [f64; 4] = [1.5e-3, 2.5e-3, 4.01e-3, 5.6e-3];
+/// Grains without friction: the flow is along the wave, the throat is no fast place.
+const FRICTIONLESS: Tube = Tube {
+    unjammed: 0.02,
+    throat_velocity: 0.0,
+    ..SOURCE
+};
+
+/// Strain rate of the source's pictures.
+const PICTURED: f64 = 4.01e-3;
+const RATES: [f64; 4] = [1.5e-3, 2.5e-3, PICTURED, 5.6e-3];
 const FORCES: [f64; 8] = [0.002, 0.003, 0.0035, 0.004, 0.0045, 0.005, 0.0055, 0.0065];
+const STARTS: [Start; 2] = [Start::Rest, Start::Jammed];
 /// Height of the jump.
 const JUMP: f64 = 0.8;
 
@@ -76,235 +89,290 @@ impl Tube {
         self.unjammed + if force > critical { JUMP } else { 0.0 }
     }
 
-    fn run(self, rate: f64, force: f64, start: Start, replicate: i64) -> Run {
+    /// Adds the replicates at one point, with other texts and numbers of their study.
+    fn replicate(
+        self,
+        rows: &mut Rows,
+        (rate, force, start): (f64, f64, Start),
+        texts: &[(&str, &str)],
+        numbers: &[(&str, f64)],
+    ) {
         let flow = self.flow(rate, force, start);
-        let periods = 16.0 + self.late_periods;
-        let noise = scattered(replicate, self.replicates);
-        // Quantiles of an exponential distribution: the times of a process without memory.
-        let quantile = ((replicate * 7 + 3) % self.replicates) as f64 + 0.5;
-        let life = -self.lifetime * (1.0 - quantile / self.replicates as f64).ln();
-        let gives_way = start == Start::Jammed && flow < 0.3 && life < periods;
-        let transition = if gives_way { life / rate } else { f64::NAN };
-        let speed = 20.0 * rate;
-        let numbers = [
-            ("force_amplitude", force),
-            ("late_periods", self.late_periods),
-            ("throat_density", 20.0 + noise),
-            (
-                "throat_axial_velocity",
-                (self.throat_velocity + 0.01 * noise) * speed,
-            ),
-            ("throat_granular_temperature", 0.01 * speed * speed),
-            ("belly_density", 40.0),
-            ("belly_axial_velocity", 0.01 * noise * speed),
-            ("belly_granular_temperature", 0.01 * speed * speed),
-        ];
-        Run {
-            identity: String::new(),
-            start,
-            lattice: Lattice {
-                spheres_per_ring: 22,
-                rings_per_wave: 23,
-            },
-            width: f64::NAN,
-            strain_rate: rate,
-            volume_fraction: 0.27,
-            grains: 1093,
-            radius: 3.5,
-            wavelength: 20.0,
-            waves: 2,
-            time: periods / rate,
-            flow_rate_ratio: flow + self.scatter * noise,
-            flow_rate_ratio_error: self.scatter,
-            flow_rate_ratio_drift: self.drift,
-            escaped: self.escaped,
-            transition_time: transition,
-            transition_threshold: 0.3,
-            transition_times: [transition; THRESHOLDS.len()],
-            replicate,
-            axes: numbers
-                .into_iter()
-                .map(|(name, value)| (name.to_owned(), value))
-                .collect(),
+        let (periods, speed) = (16.0 + self.late_periods, 20.0 * rate);
+        let initial_state = match start {
+            Start::Rest => "rest",
+            Start::Jammed => "jammed",
+        };
+        for replicate in 0..self.replicates {
+            let noise = scattered(replicate, self.replicates);
+            // Quantiles of an exponential distribution: the times of a process without memory.
+            let quantile = ((replicate * 7 + 3) % self.replicates) as f64 + 0.5;
+            let life = -self.lifetime * (1.0 - quantile / self.replicates as f64).ln();
+            let gives_way = start == Start::Jammed && flow < 0.3 && life < periods;
+            let transition = if gives_way { life / rate } else { f64::NAN };
+            let velocity = (self.throat_velocity + 0.01 * noise) * speed;
+            let own = [
+                ("strain_rate", rate),
+                ("force_amplitude", force),
+                ("time", periods / rate),
+                ("late_periods", self.late_periods),
+                ("flow_rate_ratio", flow + self.scatter * noise),
+                ("flow_rate_ratio_error", self.scatter),
+                ("flow_rate_ratio_drift", self.drift),
+                ("escaped", self.escaped),
+                ("transition_time", transition),
+                ("transition_time_30", transition),
+                ("replicate", replicate as f64),
+                ("throat_density", 20.0 + noise),
+                ("throat_axial_velocity", velocity),
+                ("throat_granular_temperature", 0.01 * speed * speed),
+                ("belly_density", 40.0),
+                ("belly_axial_velocity", 0.01 * noise * speed),
+                (
+                    "belly_granular_temperature",
+                    self.belly_temperature * speed * speed,
+                ),
+            ];
+            let texts = [&[("initial_state", initial_state)], texts].concat();
+            rows.add(&texts, &[&own[..], numbers].concat());
         }
-    }
-
-    fn replicated(self, rate: f64, force: f64, start: Start) -> Vec<Run> {
-        (0..self.replicates)
-            .map(|replicate| self.run(rate, force, start, replicate))
-            .collect()
     }
 
     /// Both branches at some strain rates.
-    fn branches(self, rates: &[f64]) -> Vec<Run> {
-        let mut runs = Vec::new();
-        for &rate in rates {
-            for force in FORCES {
-                for start in [Start::Rest, Start::Jammed] {
-                    runs.extend(self.replicated(rate, force, start));
-                }
-            }
-        }
-        runs
+    fn branches(self, rates: &[f64]) -> Rows {
+        branches(rates, |_, _| Some(self))
     }
 
     /// The three forces of the pictures, and the smallest without friction.
-    fn pictures(self, without_friction: Self) -> Vec<Run> {
-        let mut runs = Vec::new();
+    fn pictures(self, without_friction: Self) -> Rows {
+        let mut rows = empty();
         for (tube, force, friction) in [
             (self, 0.005, 0.4),
             (self, 0.004, 0.4),
             (self, 0.002, 0.4),
             (without_friction, 0.002, 0.0),
         ] {
-            for mut run in tube.replicated(4.01e-3, force, Start::Jammed) {
-                run.axes
-                    .push(("contact.kinetic_friction".to_owned(), friction));
-                runs.push(run);
-            }
+            let friction = ("contact.kinetic_friction", friction);
+            tube.replicate(
+                &mut rows,
+                (PICTURED, force, Start::Jammed),
+                &[],
+                &[friction],
+            );
         }
-        runs
+        rows
     }
 
     /// Everything, the frictionless grains in a tube of their own law.
     fn evidence(self, frictionless: Self) -> Evidence {
-        let mut evidence = empty();
-        evidence.add_runs("elastic-branches", self.branches(&RATES));
-        evidence.add_runs("elastic-frictionless", frictionless.branches(&RATES));
-        evidence.add_runs("elastic-flow", self.pictures(frictionless));
-        let ladder = Self {
-            replicates: 30,
-            ..self
-        };
-        let ladder = FORCES
-            .iter()
-            .flat_map(|force| ladder.replicated(4.01e-3, *force, Start::Jammed));
-        evidence.add_runs("elastic-yielding", ladder.collect());
-        let reference = [0.018, 0.1].map(|rate| frictionless.replicated(rate, 0.0, Start::Rest));
-        evidence.add_runs("unjammed-frictionless", reference.concat());
-        evidence
+        let (mut ladder, mut unjammed) = (empty(), empty());
+        for force in FORCES {
+            let many = Self {
+                replicates: 30,
+                ..self
+            };
+            many.replicate(&mut ladder, (PICTURED, force, Start::Jammed), &[], &[]);
+        }
+        for rate in [0.018, 0.1] {
+            frictionless.replicate(&mut unjammed, (rate, 0.0, Start::Rest), &[], &[]);
+        }
+        evidence(&[
+            ("elastic-branches", &self.branches(&RATES)),
+            ("elastic-frictionless", &frictionless.branches(&RATES)),
+            ("elastic-flow", &self.pictures(frictionless)),
+            ("elastic-yielding", &ladder),
+            ("unjammed-frictionless", &unjammed),
+        ])
     }
 }
 
-/// Grains without friction: the flow is along the wave, the throat is no fast place.
-const FRICTIONLESS: Tube = Tube {
-    unjammed: 0.02,
-    throat_velocity: 0.0,
-    ..SOURCE
-};
-
-fn empty() -> Evidence {
-    let mut evidence = Evidence::default();
-    for study in STUDIES {
-        evidence.add_runs(study.name, Vec::new());
-    }
-    evidence
+/// No runs yet of the tube.
+fn empty() -> Rows {
+    Rows::with(&[
+        ("spheres_per_ring", 22.0),
+        ("rings_per_wave", 23.0),
+        ("volume_fraction", 0.27),
+        ("grains", 1093.0),
+        ("radius", 3.5),
+        ("wavelength", 20.0),
+        ("waves", 2.0),
+        ("transition_threshold", 0.3),
+    ])
 }
 
-fn examine(id: &str, evidence: &Evidence) -> Finding {
-    let claim = CLAIMS.iter().find(|claim| claim.id == id).unwrap();
-    (claim.examine)(evidence).unwrap()
+/// Both branches at some strain rates, each force and start with a tube of its own, or with none.
+fn branches(rates: &[f64], tube: impl Fn(f64, Start) -> Option<Tube>) -> Rows {
+    let mut rows = empty();
+    for &rate in rates {
+        for force in FORCES {
+            for start in STARTS {
+                if let Some(tube) = tube(force, start) {
+                    tube.replicate(&mut rows, (rate, force, start), &[], &[]);
+                }
+            }
+        }
+    }
+    rows
 }
 
 fn find(id: &str, tube: Tube) -> Finding {
     examine(id, &tube.evidence(FRICTIONLESS))
 }
 
-fn value(finding: &Finding, name: &str) -> f64 {
-    let found = finding
-        .quantities
-        .iter()
-        .find(|one| one.name.contains(name));
-    found.unwrap().ours.unwrap().value
+/// What a claim says where only the branches were run.
+fn of_branches(id: &str, rows: &Rows) -> Finding {
+    examine(id, &evidence(&[("elastic-branches", rows)]))
+}
+
+/// Cells of the first table of a finding.
+fn cells(finding: &Finding, column: usize) -> Vec<&str> {
+    let rows = finding.tables[0].rows.iter();
+    rows.map(|row| row[column].as_str()).collect()
+}
+
+fn assert_verdict(id: &str, evidence: &Evidence, verdict: Verdict) {
+    let finding = examine(id, evidence);
+    assert_eq!(finding.verdict, verdict, "{id}: {}", finding.summary);
 }
 
 const ALL: [&str; 6] = ["S1", "S2", "S3", "S4", "S5", "S6"];
 
+/// A tube, or a pair with frictionless grains, and the verdict on each claim.
 #[test]
-fn the_source_s_tube_is_recognised() {
+fn verdicts_follow_the_law_of_the_tube() {
+    let law = |change: fn(&mut Tube)| {
+        let mut tube = SOURCE;
+        change(&mut tube);
+        tube
+    };
+    let frictionless = |change: fn(&mut Tube)| {
+        let mut tube = FRICTIONLESS;
+        change(&mut tube);
+        tube
+    };
+    use Verdict::{Differs, Open, Reproduced};
+    let cases = [
+        // Pictures are judged by the direction of the flow.
+        (
+            "S1",
+            law(|tube| tube.unjammed = 0.05),
+            FRICTIONLESS,
+            Differs,
+        ),
+        (
+            "S1",
+            SOURCE,
+            frictionless(|tube| tube.unjammed = -0.05),
+            Differs,
+        ),
+        ("S1", law(|tube| tube.scatter = 0.2), FRICTIONLESS, Open),
+        (
+            "S2",
+            law(|tube| tube.lifetime = 66.0),
+            FRICTIONLESS,
+            Reproduced,
+        ),
+        ("S2", law(|tube| tube.lifetime = 300.0), FRICTIONLESS, Open),
+        (
+            "S2",
+            law(|tube| tube.lifetime = f64::NAN),
+            FRICTIONLESS,
+            Differs,
+        ),
+        (
+            "S3",
+            law(|tube| tube.jumps_from = 0.0),
+            FRICTIONLESS,
+            Differs,
+        ),
+        (
+            "S3",
+            law(|tube| tube.jumps_from = 1.0),
+            FRICTIONLESS,
+            Differs,
+        ),
+        (
+            "S4",
+            law(|tube| tube.unjammed = 0.01),
+            FRICTIONLESS,
+            Differs,
+        ),
+        // Frictionless grains are judged by all their means.
+        (
+            "S5",
+            SOURCE,
+            frictionless(|tube| tube.unjammed = -0.05),
+            Differs,
+        ),
+        (
+            "S5",
+            SOURCE,
+            frictionless(|tube| (tube.unjammed, tube.scatter) = (0.0, 0.05)),
+            Open,
+        ),
+        (
+            "S6",
+            SOURCE,
+            frictionless(|tube| tube.throat_velocity = -0.2),
+            Differs,
+        ),
+    ];
     for id in ALL {
         let finding = find(id, SOURCE);
-        assert_eq!(
-            finding.verdict,
-            Verdict::Reproduced,
-            "{id}: {}",
-            finding.summary
-        );
+        assert_eq!(finding.verdict, Reproduced, "{id}: {}", finding.summary);
         assert_eq!(finding.varied, "force");
         assert!(!finding.paragraphs.is_empty());
+    }
+    for (id, tube, frictionless, verdict) in cases {
+        assert_verdict(id, &tube.evidence(frictionless), verdict);
     }
 }
 
 #[test]
 fn too_little_of_anything_leaves_the_verdict_open() {
-    let thin = [
-        Tube {
-            replicates: 4,
-            ..SOURCE
-        },
-        Tube {
-            late_periods: 40.0,
-            ..SOURCE
-        },
-        Tube {
-            drift: 0.1,
-            ..SOURCE
-        },
+    let thin: [fn(&mut Tube); 3] = [
+        |tube| tube.replicates = 4,
+        |tube| tube.late_periods = 40.0,
+        |tube| tube.drift = 0.1,
     ];
-    for id in ALL {
-        for tube in thin {
-            let frictionless = Tube {
-                replicates: tube.replicates,
-                late_periods: tube.late_periods,
-                drift: tube.drift,
-                ..FRICTIONLESS
-            };
-            let finding = examine(id, &tube.evidence(frictionless));
-            assert_eq!(finding.verdict, Verdict::Open, "{id}: {}", finding.summary);
+    for change in thin {
+        let [mut tube, mut frictionless] = [SOURCE, FRICTIONLESS];
+        change(&mut tube);
+        change(&mut frictionless);
+        for id in ALL {
+            assert_verdict(id, &tube.evidence(frictionless), Verdict::Open);
         }
-        // Two strain rates, five forces, one start.
+    }
+    // Two strain rates, five forces, one start.
+    let few: [fn(Tube) -> Rows; 3] = [
+        |tube| tube.branches(&RATES[1..3]),
+        |tube| branches(&RATES, |force, _| (force < 0.0048).then_some(tube)),
+        |tube| branches(&RATES, |_, start| (start == Start::Rest).then_some(tube)),
+    ];
+    for branches in few {
         let mut evidence = SOURCE.evidence(FRICTIONLESS);
         for (study, tube) in [
             ("elastic-branches", SOURCE),
             ("elastic-frictionless", FRICTIONLESS),
         ] {
-            evidence.add_runs(study, tube.branches(&RATES[1..3]));
+            evidence.add_table(study, branches(tube).table()).unwrap();
         }
-        assert_eq!(examine(id, &evidence).verdict, Verdict::Open, "{id}");
-        for (study, tube) in [
-            ("elastic-branches", SOURCE),
-            ("elastic-frictionless", FRICTIONLESS),
-        ] {
-            let few = tube
-                .branches(&RATES)
-                .into_iter()
-                .filter(|run| run.force() < 0.0048);
-            evidence.add_runs(study, few.collect());
+        for id in ALL {
+            assert_verdict(id, &evidence, Verdict::Open);
         }
-        assert_eq!(examine(id, &evidence).verdict, Verdict::Open, "{id}");
-        for (study, tube) in [
-            ("elastic-branches", SOURCE),
-            ("elastic-frictionless", FRICTIONLESS),
-        ] {
-            let one = tube
-                .branches(&RATES)
-                .into_iter()
-                .filter(|run| run.start == Start::Rest);
-            evidence.add_runs(study, one.collect());
-        }
-        assert_eq!(examine(id, &evidence).verdict, Verdict::Open, "{id}");
     }
 }
 
 #[test]
 fn forces_without_stationary_runs_do_not_count_and_cost_nothing() {
-    let mut evidence = SOURCE.evidence(FRICTIONLESS);
-    let mut runs = SOURCE.branches(&RATES);
-    for run in runs.iter_mut().filter(|run| run.force() == 0.005) {
-        run.flow_rate_ratio_drift = 0.2;
-    }
-    evidence.add_runs("elastic-branches", runs);
-    let finding = examine("S4", &evidence);
+    let drifting = Tube {
+        drift: 0.2,
+        ..SOURCE
+    };
+    let rows = branches(&RATES, |force, _| {
+        Some(if force == 0.005 { drifting } else { SOURCE })
+    });
+    let finding = of_branches("S4", &rows);
     let expected = Statistics {
         strain_rates: 4,
         widths: 7,
@@ -316,332 +384,225 @@ fn forces_without_stationary_runs_do_not_count_and_cost_nothing() {
 }
 
 #[test]
-fn pictures_are_judged_by_the_direction_of_the_flow() {
-    let forward = Tube {
-        unjammed: 0.05,
-        ..SOURCE
-    };
-    assert_eq!(find("S1", forward).verdict, Verdict::Differs);
-    let backward = Tube {
-        unjammed: -0.05,
-        ..FRICTIONLESS
-    };
-    let finding = examine("S1", &SOURCE.evidence(backward));
-    assert_eq!(finding.verdict, Verdict::Differs);
-    let noisy = Tube {
-        scatter: 0.2,
-        ..SOURCE
-    };
-    assert_eq!(find("S1", noisy).verdict, Verdict::Open);
-}
-
-#[test]
 fn the_time_until_a_jam_gives_way_counts_what_was_censored() {
-    let finding = find("S2", SOURCE);
-    assert!((value(&finding, "*f*^{P} = 0.003") - 8.0).abs() < 1.0);
     // Of lifetimes as long as the runs a third is censored: the mean must not be that of the others.
-    let slow = Tube {
-        lifetime: 66.0,
-        ..SOURCE
-    };
-    let finding = find("S2", slow);
-    assert!((value(&finding, "*f*^{P} = 0.003") - 66.0).abs() < 12.0);
-    assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    let rare = Tube {
-        lifetime: 300.0,
-        ..SOURCE
-    };
-    assert_eq!(find("S2", rare).verdict, Verdict::Open);
-    let never = Tube {
-        lifetime: f64::NAN,
-        ..SOURCE
-    };
-    assert_eq!(find("S2", never).verdict, Verdict::Differs);
+    for (lifetime, error) in [(8.0, 1.0), (66.0, 12.0)] {
+        let finding = find("S2", Tube { lifetime, ..SOURCE });
+        assert!((value(&finding, "*f*^{P} = 0.003") - lifetime).abs() < error);
+    }
 }
 
 #[test]
 fn the_jump_and_the_rate_at_which_it_vanishes_are_found() {
     let finding = find("S3", SOURCE);
-    let rate = finding.quantities[0].ours.unwrap();
-    assert_eq!(
-        (rate.interval_95.lower, rate.interval_95.upper),
-        (2.5e-3, 4.01e-3)
-    );
+    let bounds = finding.quantities[0].ours.unwrap().interval_95;
+    assert_eq!((bounds.lower, bounds.upper), (2.5e-3, 4.01e-3));
     assert!((value(&finding, "strain rate 0.00401") - JUMP).abs() < 0.02);
     assert!(value(&finding, "strain rate 0.0015").abs() < 0.1);
+    assert_eq!(cells(&finding, 0)[2], "0.00401");
+    assert_eq!(cells(&finding, 8)[2], "jump");
     // The window of both flows, from 0.0045 to 0.005, is at least as wide as that and less than to the forces beyond.
-    let row = finding.tables[0]
-        .rows
-        .iter()
-        .find(|row| row[0] == "0.00401")
-        .unwrap();
-    assert_eq!(row[4], "0.0005 … 0.0015");
-    assert_eq!(row[8], "jump");
-    // Without a force beyond the window its width has no upper end.
-    let mut evidence = empty();
-    let runs = SOURCE.branches(&RATES).into_iter();
-    evidence.add_runs(
-        "elastic-branches",
-        runs.filter(|run| run.force() < 0.0052).collect(),
-    );
-    let open = &examine("S3", &evidence).tables[0].rows[2];
-    assert_eq!(
-        (open[0].as_str(), open[4].as_str()),
-        ("0.00401", "> 0.0005")
-    );
+    assert_eq!(cells(&finding, 4)[2], "0.0005 … 0.0015");
     assert_eq!(finding.figures.len(), 2);
-    for jumps_from in [0.0, 1.0] {
-        let finding = find(
-            "S3",
-            Tube {
-                jumps_from,
-                ..SOURCE
-            },
-        );
-        assert_eq!(finding.verdict, Verdict::Differs, "{}", finding.summary);
-    }
+    // Without a force beyond the window its width has no upper end.
+    let below = branches(&RATES, |force, _| (force < 0.0052).then_some(SOURCE));
+    assert_eq!(cells(&of_branches("S3", &below), 4)[2], "> 0.0005");
 }
 
 #[test]
 fn neither_a_coarse_grid_nor_one_beside_the_transition_decides() {
-    let kinds = |forces: &[f64]| -> Vec<String> {
-        let tube = Tube {
-            window: 0.0,
-            ..SOURCE
-        };
-        let runs = tube.branches(&RATES).into_iter();
-        let mut evidence = empty();
-        evidence.add_runs(
-            "elastic-branches",
-            runs.filter(|run| forces.contains(&run.force())).collect(),
-        );
-        let rows = &examine("S3", &evidence).tables[0].rows;
-        rows.iter().map(|row| row[8].clone()).collect()
+    let tube = Tube {
+        window: 0.0,
+        ..SOURCE
     };
-    assert_eq!(kinds(&FORCES), ["smooth", "smooth", "jump", "jump"]);
-    let coarse = [0.002, 0.003, 0.004, 0.0055, 0.0065];
-    assert_eq!(kinds(&coarse), ["smooth", "smooth", "unclear", "unclear"]);
-    let below = [0.002, 0.003, 0.0035, 0.004];
-    assert_eq!(kinds(&below)[2..], ["unclear", "unclear"]);
+    let cases: [(&[f64], &[&str]); 3] = [
+        (&FORCES, &["smooth", "smooth", "jump", "jump"]),
+        (
+            &[0.002, 0.003, 0.004, 0.0055, 0.0065],
+            &["smooth", "smooth", "unclear", "unclear"],
+        ),
+        (&[0.002, 0.003, 0.0035, 0.004], &["unclear", "unclear"]),
+    ];
+    for (forces, kinds) in cases {
+        let rows = branches(&RATES, |force, _| forces.contains(&force).then_some(tube));
+        let finding = of_branches("S3", &rows);
+        assert!(cells(&finding, 8).ends_with(kinds), "{forces:?}");
+    }
 }
 
 #[test]
-fn strain_rates_at_which_grains_leave_are_not_judged() {
+fn what_leaks_is_not_judged() {
+    // A strain rate of its own.
     let mut evidence = SOURCE.evidence(FRICTIONLESS);
     let leaky = Tube {
         jumps_from: 1.0,
-        escaped: 200,
+        escaped: 200.0,
         ..SOURCE
     };
-    evidence.add_runs("elastic-extremes", leaky.branches(&[8e-3]));
+    let table = leaky.branches(&[8e-3]).table();
+    evidence.add_table("elastic-extremes", table).unwrap();
     let finding = examine("S3", &evidence);
     assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    let row = finding.tables[0].rows.last().unwrap();
-    assert_eq!((row[0].as_str(), row[8].as_str()), ("0.008", "leaks"));
-}
-
-#[test]
-fn forces_at_which_grains_leave_are_left_out() {
-    // Without the force at which they leave, and jam, nothing is left of the jump.
-    let mut evidence = empty();
-    let runs = SOURCE.branches(&[4.01e-3]).into_iter().map(|mut run| {
-        if run.force() > 0.004 {
-            run.escaped = 80;
-        }
-        run
+    assert_eq!(cells(&finding, 0)[4], "0.008");
+    assert_eq!(cells(&finding, 8)[4], "leaks");
+    // Without the forces at which grains leave, and jam, nothing is left of the jump.
+    let rows = branches(&[PICTURED], |force, _| {
+        let escaped = if force > 0.004 { 80.0 } else { 0.0 };
+        Some(Tube { escaped, ..SOURCE })
     });
-    evidence.add_runs("elastic-branches", runs.collect());
-    let finding = examine("S3", &evidence);
-    let row = &finding.tables[0].rows[0];
-    assert_eq!(row[8], "unclear");
-    assert_eq!(row[7], "0.07 (left out: 0.0045, 0.005, 0.0055, 0.0065)");
+    let finding = of_branches("S3", &rows);
+    let left_out = "0.07 (left out: 0.0045, 0.005, 0.0055, 0.0065)";
+    assert_eq!(finding.tables[0].rows[0][7..], [left_out, "unclear"]);
     assert!(!finding.summary.contains("0.00401"), "{}", finding.summary);
 }
 
 #[test]
-fn back_flow_is_seen_and_its_absence_too() {
-    let finding = find("S4", SOURCE);
-    assert!((value(&finding, "strain rate 0.00401") + 0.05).abs() < 0.01);
-    assert_eq!(
-        find(
-            "S4",
-            Tube {
-                unjammed: 0.01,
-                ..SOURCE
-            }
-        )
-        .verdict,
-        Verdict::Differs
-    );
-    // Where both flows exist the slow one counts.
-    assert!(
-        find("S4", SOURCE).summary.contains("0.005"),
-        "{}",
-        find("S4", SOURCE).summary
-    );
-    // Negative from one start only is none.
-    let mut evidence = empty();
-    let mut runs = SOURCE.branches(&RATES);
-    for run in runs.iter_mut().filter(|run| run.start == Start::Jammed) {
-        run.flow_rate_ratio = 0.0;
+fn numbers_of_back_flow_and_of_unjammed_flows_are_those_of_the_law() {
+    for (id, name, expected, error) in [
+        ("S4", "strain rate 0.00401", -0.05, 0.01),
+        ("S5", "strain rate 0.00401, *f*^{P} = 0.003", 0.07, 0.01),
+        ("S6", "axial velocity in the throat, frictional", -0.2, 1e-6),
+    ] {
+        let found = value(&find(id, SOURCE), name);
+        assert!((found - expected).abs() < error, "{id}: {found}");
     }
-    evidence.add_runs("elastic-branches", runs);
-    assert_eq!(examine("S4", &evidence).verdict, Verdict::Differs);
+    // Where both flows exist the slow one counts.
+    let finding = find("S4", SOURCE);
+    assert!(finding.summary.contains("0.005"), "{}", finding.summary);
 }
 
 #[test]
-fn frictionless_grains_are_judged_by_all_their_means() {
-    let backward = Tube {
-        unjammed: -0.05,
-        ..FRICTIONLESS
-    };
-    let finding = examine("S5", &SOURCE.evidence(backward));
-    assert_eq!(finding.verdict, Verdict::Differs, "{}", finding.summary);
-    let noisy = Tube {
+fn back_flow_from_one_start_only_is_none() {
+    let still = Tube {
+        jumps_from: 0.0,
         unjammed: 0.0,
-        scatter: 0.05,
-        ..FRICTIONLESS
+        critical: f64::INFINITY,
+        ..SOURCE
     };
-    let finding = examine("S5", &SOURCE.evidence(noisy));
-    assert_eq!(finding.verdict, Verdict::Open, "{}", finding.summary);
-    let finding = find("S5", SOURCE);
-    assert!((value(&finding, "strain rate 0.00401, *f*^{P} = 0.003") - 0.07).abs() < 0.01);
+    let rows = branches(&RATES, |_, start| {
+        Some(if start == Start::Rest { SOURCE } else { still })
+    });
+    assert_eq!(of_branches("S4", &rows).verdict, Verdict::Differs);
 }
 
 #[test]
-fn two_unjammed_flows_are_compared_by_throat_and_belly() {
-    let finding = find("S6", SOURCE);
-    assert!((value(&finding, "axial velocity in the throat, frictional") + 0.2).abs() < 1e-6);
+fn temperatures_count_by_their_ratio() {
     let alike = Tube {
         throat_velocity: -0.2,
         ..FRICTIONLESS
     };
-    let finding = examine("S6", &SOURCE.evidence(alike));
-    assert_eq!(finding.verdict, Verdict::Differs, "{}", finding.summary);
-    // Temperatures count by their ratio.
     for (ratio, verdict) in [(1.5, Verdict::Differs), (3.0, Verdict::Reproduced)] {
+        let mut warm = empty();
+        for rate in [0.018, 0.1] {
+            let tube = Tube {
+                belly_temperature: 0.01 * ratio,
+                ..alike
+            };
+            tube.replicate(&mut warm, (rate, 0.0, Start::Rest), &[], &[]);
+        }
         let mut evidence = SOURCE.evidence(alike);
-        let mut warm = evidence
-            .study("unjammed-frictionless")
-            .unwrap()
-            .runs
-            .clone();
-        for (name, value) in warm.iter_mut().flat_map(|run| &mut run.axes) {
-            if name == "belly_granular_temperature" {
-                *value *= ratio;
-            }
-        }
-        evidence.add_runs("unjammed-frictionless", warm);
-        let finding = examine("S6", &evidence);
-        assert_eq!(finding.verdict, verdict, "{}", finding.summary);
+        let table = warm.table();
+        evidence.add_table("unjammed-frictionless", table).unwrap();
+        assert_verdict("S6", &evidence, verdict);
     }
 }
 
-/// Runs of one setting: its keys, and the tube that it makes.
-fn of_setting(tube: Tube, keys: &[(&str, f64)]) -> Vec<Run> {
-    let mut runs = Vec::new();
+/// Adds the runs of one setting: its texts and numbers, and the tube that it makes at each force.
+fn add_setting(
+    rows: &mut Rows,
+    texts: &[(&str, &str)],
+    numbers: &[(&str, f64)],
+    tube: impl Fn(f64) -> Tube,
+) {
+    let with = |friction| [&[("contact.kinetic_friction", friction)], numbers].concat();
     for force in [0.002, 0.003, 0.004, 0.005, 0.0065] {
-        for start in [Start::Rest, Start::Jammed] {
-            runs.extend(
-                tube.replicated(4.01e-3, force, start)
-                    .into_iter()
-                    .map(|run| (run, 0.4)),
-            );
+        for start in STARTS {
+            tube(force).replicate(rows, (PICTURED, force, start), texts, &with(0.4));
         }
     }
-    let without = FRICTIONLESS.replicated(4.01e-3, 0.002, Start::Rest);
-    runs.extend(without.into_iter().map(|run| (run, 0.0)));
-    runs.into_iter()
-        .map(|(mut run, friction)| {
-            run.axes
-                .push(("contact.kinetic_friction".to_owned(), friction));
-            let keys = keys.iter().map(|(key, value)| ((*key).to_owned(), *value));
-            run.axes.extend(keys);
-            run
-        })
-        .collect()
+    FRICTIONLESS.replicate(rows, (PICTURED, 0.002, Start::Rest), texts, &with(0.0));
 }
 
-#[test]
-fn settings_are_named_and_counted() {
+/// Runs of five settings; at the largest force so many grains leave.
+fn settings(escaped_at_largest: f64) -> Rows {
     let preset = ("wall.spring_stiffness", 0.018);
+    let leaks_at_largest = |tube: Tube| {
+        move |force| Tube {
+            escaped: if force == 0.0065 {
+                escaped_at_largest.max(tube.escaped)
+            } else {
+                tube.escaped
+            },
+            ..tube
+        }
+    };
     let forward = Tube {
         unjammed: 0.05,
         ..SOURCE
     };
-    let mut runs = of_setting(SOURCE, &[preset, ("wall.keep.balance=true", 1.0)]);
-    runs.extend(of_setting(SOURCE, &[("wall.spring_stiffness", 0.012)]));
-    runs.extend(of_setting(forward, &[preset, ("wall.keep.axial", 0.0)]));
-    runs.extend(of_setting(
-        SOURCE,
-        &[preset, ("wall.keep.net_force=free", 1.0)],
-    ));
-    runs.extend(of_setting(
-        Tube {
-            escaped: 200,
-            ..forward
-        },
-        &[("wall.keep.balance=false", 1.0)],
-    ));
-    let mut evidence = empty();
-    evidence.add_runs("elastic-sensitivity", runs.clone());
-    let finding = examine("Q10", &evidence);
-    let names: Vec<&str> = finding.tables[0]
-        .rows
-        .iter()
-        .map(|row| row[0].as_str())
-        .collect();
-    assert_eq!(
-        names,
-        [
-            "the preset",
-            "*k*_{w} = 0.012",
-            "no axial tether",
-            "mean force not removed",
-            "springs not balanced"
-        ]
-    );
-    assert!(
-        finding.summary.contains("Of 5 settings")
-            && finding.summary.contains("4 hold their grains"),
-        "{}",
-        finding.summary
-    );
-    assert!(
-        finding.summary.contains("S4 in 3 of 4") && finding.summary.contains("S5 in 4 of 4"),
-        "{}",
-        finding.summary
-    );
+    let leaky = Tube {
+        escaped: 200.0,
+        ..forward
+    };
+    let mut rows = empty();
+    let mut add = |texts: &[(&str, &str)], numbers: &[(&str, f64)], tube| {
+        add_setting(&mut rows, texts, numbers, leaks_at_largest(tube));
+    };
+    add(&[("wall.keep.balance", "true")], &[preset], SOURCE);
+    add(&[], &[("wall.spring_stiffness", 0.012)], SOURCE);
+    add(&[], &[preset, ("wall.keep.axial", 0.0)], forward);
+    add(&[("wall.keep.net_force", "free")], &[preset], SOURCE);
+    add(&[("wall.keep.balance", "false")], &[], leaky);
+    rows
+}
+
+#[test]
+fn settings_are_named_and_counted() {
+    let of = |rows: &Rows| examine("Q10", &evidence(&[("elastic-sensitivity", rows)]));
+    let finding = of(&settings(0.0));
+    let names = [
+        "the preset",
+        "*k*_{w} = 0.012",
+        "no axial tether",
+        "mean force not removed",
+        "springs not balanced",
+    ];
+    assert_eq!(cells(&finding, 0), names);
+    for said in [
+        "Of 5 settings",
+        "4 hold their grains",
+        "S4 in 3 of 4",
+        "S5 in 4 of 4",
+    ] {
+        assert!(finding.summary.contains(said), "{}", finding.summary);
+    }
     assert_eq!(finding.verdict, Verdict::Open);
     // A leak at one force leaves that force out, not the setting.
-    let mut leaks = runs.clone();
-    for run in leaks.iter_mut().filter(|run| run.force() == 0.0065) {
-        run.escaped = 200;
-    }
-    let mut at_one = empty();
-    at_one.add_runs("elastic-sensitivity", leaks);
-    let finding = examine("Q10", &at_one);
-    assert!(
-        finding.summary.contains("4 hold their grains"),
-        "{}",
-        finding.summary
-    );
-    assert!(finding.tables[0].rows[0][5].ends_with("(left out: 0.0065)"));
+    let leaking = of(&settings(200.0));
+    let summary = &leaking.summary;
+    assert!(summary.contains("4 hold their grains"), "{summary}");
+    assert!(cells(&leaking, 5)[0].ends_with("(left out: 0.0065)"));
     // With enough settings there is an answer.
+    let mut rows = settings(0.0);
     for stiffness in [0.013, 0.014, 0.015] {
-        runs.extend(of_setting(SOURCE, &[("wall.spring_stiffness", stiffness)]));
+        let stiffness = ("wall.spring_stiffness", stiffness);
+        add_setting(&mut rows, &[], &[stiffness], |_| SOURCE);
     }
-    evidence.add_runs("elastic-sensitivity", runs);
-    assert_eq!(examine("Q10", &evidence).verdict, Verdict::Answered);
+    assert_eq!(of(&rows).verdict, Verdict::Answered);
+}
+
+/// The full design of a study.
+fn full(name: &str) -> (Specification, Plan) {
+    let file = STUDIES.iter().find(|study| study.name == name).unwrap();
+    let text = file.text(Size::Full);
+    let specification = Specification::from_toml(file.path, text, |_| unreachable!()).unwrap();
+    let plan = Plan::of(&specification).unwrap();
+    (specification, plan)
 }
 
 #[test]
 fn the_full_designs_allow_verdicts() {
-    let study = |name: &str| STUDIES.iter().find(|study| study.name == name).unwrap();
-    let file = study("elastic-sensitivity");
-    let specification =
-        Specification::from_toml(file.path, file.text(Size::Full), |_| unreachable!()).unwrap();
-    let plan = Plan::of(&specification).unwrap();
+    let (specification, plan) = full("elastic-sensitivity");
     let with_friction = plan.points().iter().filter(|point| {
         let friction = point.configuration.contact.friction.as_ref();
         friction.is_some_and(|friction| friction.kinetic_friction > 0.0)
@@ -649,10 +610,7 @@ fn the_full_designs_allow_verdicts() {
     // Eight settings, five forces, two states.
     assert!(with_friction.count() >= 8 * 5 * 2 && specification.replicates >= 2);
     for name in ["elastic-branches", "elastic-frictionless"] {
-        let file = study(name);
-        let specification =
-            Specification::from_toml(file.path, file.text(Size::Full), |_| unreachable!()).unwrap();
-        let plan = Plan::of(&specification).unwrap();
+        let (specification, plan) = full(name);
         let mut rates: Vec<(f64, usize)> = Vec::new();
         for point in plan.points() {
             let configuration = &point.configuration;

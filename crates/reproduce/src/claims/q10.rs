@@ -1,18 +1,20 @@
 //! Q10: how far the conclusions on the elastic tube depend on what the source does not give.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Reference, Tint};
-use peristalsis_figures::{Quantity as Axis, Width};
+use peristalsis_figures::Width;
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Reference, Tint};
 
-use super::elastic::{is_frictionless, label};
+use super::elastic::{flow_against_force, is_frictionless};
+use crate::branch::{Branch, Control, Point, Step};
 use crate::claim::Claim;
-use crate::crossing::grouped;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
-use crate::forces::{ForceBranch, LEAST_JUMP, escaped_at, leaking, outside};
+use crate::exhibit::{branch_points, cell_of};
+use crate::finding::{Finding, ReportFigure, Statistics, Verdict};
+use crate::forces::{leaking, lowest, outside};
 use crate::prose::Prose;
-use crate::runs::{Run, Start};
-use crate::text::{number, with_error};
+use crate::row::{Row, Start, grouped};
+use crate::text::number;
+use crate::thresholds::{GIVEN_WAY, LEAST_BACK_FLOW, LEAST_JUMP_AGAINST_FORCE, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q10.md"));
 
@@ -32,16 +34,11 @@ const NEEDED: Statistics = Statistics {
     runs: 200,
 };
 const LEAST_SETTINGS: usize = 8;
-
-/// J/Jmax below which a jam has given way, and from which on a flow is jammed.
-const GIVEN_WAY: f64 = 0.3;
 /// Forces without a leak from which on a setting is judged.
 const LEAST_FORCES: usize = 3;
-/// J/Jmax from which on a flow against the wave counts.
-const LEAST_FLOW: f64 = 0.01;
 
-/// The preset's wall and density, and how each key departs from it in words; `None` for keys with texts.
-const KEYS: [(&str, f64, &str); 8] = [
+/// Keys of the wall and of the density with the preset's number, and how a departure from it is called.
+const NUMBERS: [(&str, f64, &str); 8] = [
     ("grains.number_density", 0.71, "*n*"),
     ("wall.spring_stiffness", 0.018, "*k*_{w}"),
     ("wall.natural_length", 0.7, "*l*"),
@@ -51,11 +48,12 @@ const KEYS: [(&str, f64, &str); 8] = [
     ("wall.drag", 0.0, "drag"),
     ("wall.sphere_mass", 0.1, "*m*_{w}"),
 ];
-const TEXTS: [(&str, &str); 4] = [
-    ("wall.keep.balance=false", "springs not balanced"),
-    ("wall.keep.net_force=free", "mean force not removed"),
-    ("drive.angle=current", "force along the current angle"),
-    ("contact.sliding=literal", "sliding as printed"),
+/// Keys with a text that the preset does not have, and how it is called.
+const TEXTS: [(&str, &str, &str); 4] = [
+    ("wall.keep.balance", "false", "springs not balanced"),
+    ("wall.keep.net_force", "free", "mean force not removed"),
+    ("drive.angle", "current", "force along the current angle"),
+    ("contact.sliding", "literal", "sliding as printed"),
 ];
 
 /// The setting of the preset.
@@ -69,311 +67,244 @@ const NOTHING_KEEPS: [&str; 4] = [
 ];
 
 /// How a run departs from the preset, in words.
-fn setting(run: &Run) -> String {
-    let numbers = KEYS.iter().filter_map(|(key, preset, name)| {
-        let value = run.axis(key)?;
-        (value != *preset).then(|| {
-            if value == 0.0 {
-                format!("no {name}")
-            } else {
-                format!("{name} = {value}")
-            }
+fn setting(row: &Row<'_>) -> String {
+    let numbers = NUMBERS.iter().filter_map(|(key, preset, name)| {
+        let value = row.number(key);
+        (!value.is_nan() && value != *preset).then(|| match value {
+            0.0 => format!("no {name}"),
+            value => format!("{name} = {value}"),
         })
     });
     let texts = TEXTS
         .iter()
-        .filter(|(key, _)| run.axis(key).is_some())
-        .map(|(_, name)| (*name).to_owned());
+        .filter(|(key, text, _)| row.text(key) == *text)
+        .map(|(.., name)| (*name).to_owned());
     let words: Vec<String> = numbers.chain(texts).collect();
-    match words.len() {
-        0 => PRESET.to_owned(),
-        1 => words.join(""),
-        _ if words == NOTHING_KEEPS => "nothing keeps the wall".to_owned(),
-        _ => words.join(", "),
+    if words.is_empty() {
+        PRESET.to_owned()
+    } else if words == NOTHING_KEEPS {
+        "nothing keeps the wall".to_owned()
+    } else {
+        words.join(", ")
     }
 }
 
 /// What the claims come to under one setting; `None` where it cannot be said.
 struct Outcome<'a> {
     name: String,
-    runs: Vec<&'a Run>,
+    rows: Vec<Row<'a>>,
     /// Those at forces at which grains stay in the tube.
-    tight: Vec<&'a Run>,
-    rest: ForceBranch,
-    jammed: ForceBranch,
+    tight: Vec<Row<'a>>,
+    rest: Branch<'a>,
+    jammed: Branch<'a>,
 }
 
 impl<'a> Outcome<'a> {
-    fn of(name: String, runs: Vec<&'a Run>) -> Self {
+    /// The outcomes of all settings, the preset first, whatever the order of the rows.
+    fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
+        let mut groups: Vec<(String, Vec<Row<'a>>)> = Vec::new();
+        for row in rows {
+            let name = setting(&row);
+            match groups.iter_mut().find(|group| group.0 == name) {
+                Some(group) => group.1.push(row),
+                None => groups.push((name, vec![row])),
+            }
+        }
+        groups.sort_by_key(|(name, _)| name != PRESET);
+        let outcomes = groups.into_iter();
+        outcomes.map(|(name, rows)| Self::of(name, rows)).collect()
+    }
+
+    fn of(name: String, rows: Vec<Row<'a>>) -> Self {
         // Grains with friction and without fill the tube differently: one kind may stay where the other leaves.
-        let leaking = [false, true].map(|frictionless| {
-            let kind = runs.iter().copied();
-            let kind = kind.filter(move |run| is_frictionless(run) == frictionless);
-            leaking(&escaped_at(kind))
-        });
+        let (frictionless, frictional): (Vec<Row<'_>>, Vec<Row<'_>>) =
+            rows.iter().partition(|row| is_frictionless(row));
+        let leaks = [leaking(&frictional), leaking(&frictionless)];
         let is_tight =
-            |run: &&Run| !leaking[usize::from(is_frictionless(run))].contains(&run.force());
-        let tight: Vec<&Run> = runs.iter().copied().filter(is_tight).collect();
-        let frictional = || tight.iter().copied().filter(|run| !is_frictionless(run));
+            |row: &&Row<'_>| !leaks[usize::from(is_frictionless(row))].contains(&row.force());
+        let tight: Vec<Row<'a>> = rows.iter().filter(is_tight).copied().collect();
+        let branch = |start| {
+            let frictional = tight.iter().filter(|row| !is_frictionless(row));
+            Branch::of(frictional.copied(), start, Control::Force)
+        };
         Self {
-            rest: ForceBranch::of(frictional(), Start::Rest),
-            jammed: ForceBranch::of(frictional(), Start::Jammed),
             name,
-            runs,
+            rest: branch(Start::Rest),
+            jammed: branch(Start::Jammed),
+            rows,
             tight,
         }
     }
 
     /// Whether grains stay in the tube at so many forces that the claims can be told.
     fn holds_its_grains(&self) -> bool {
-        let forces = grouped(self.tight.iter().copied(), |run| run.force());
-        forces.len() >= LEAST_FORCES
+        grouped(self.tight.iter(), |row| row.force()).len() >= LEAST_FORCES
     }
 
-    /// Forces at which they do not.
-    fn left_out(&self) -> Vec<f64> {
-        let forces = grouped(self.runs.iter().copied(), |run| run.force());
-        forces
+    /// Largest part of the grains outside, and the forces at which too many are, in words.
+    fn outside(&self) -> String {
+        let escaped = self.rows.iter().map(Row::escaped_fraction);
+        let left_out: Vec<f64> = grouped(self.rows.iter(), |row| row.force())
             .into_iter()
             .map(|(force, _)| force)
-            .filter(|force| self.tight.iter().all(|run| run.force() != *force))
-            .collect()
+            .filter(|force| self.tight.iter().all(|row| row.force() != *force))
+            .collect();
+        outside(escaped.fold(0.0, f64::max), &left_out)
     }
 
-    fn escaped(&self) -> f64 {
-        self.runs
-            .iter()
-            .map(|run| run.escaped_fraction())
-            .fold(0.0, f64::max)
-    }
-
-    fn frictional(&self, start: Start) -> impl Iterator<Item = &&'a Run> {
-        self.tight
-            .iter()
-            .filter(move |run| run.start == start && !is_frictionless(run))
-    }
-
-    /// Forces from jammed at which the jam gave way, of all: S2.
+    /// Runs from jammed in which the jam gave way, of all: S2.
     fn gives_way(&self) -> Option<(usize, usize)> {
-        let all = self.frictional(Start::Jammed).count();
-        let gave = self
-            .frictional(Start::Jammed)
-            .filter(|run| run.transition_at(GIVEN_WAY).observed().is_some())
-            .count();
-        (all > 0).then_some((gave, all))
+        let jammed = |row: &&Row<'_>| row.start() == Start::Jammed && !is_frictionless(row);
+        let jammed: Vec<&Row<'_>> = self.tight.iter().filter(jammed).collect();
+        let gave_way = |row: &&&Row<'_>| row.transition_at(GIVEN_WAY).observed().is_some();
+        let gave = jammed.iter().filter(gave_way).count();
+        (!jammed.is_empty()).then_some((gave, jammed.len()))
     }
 
-    /// Height of the largest rise between neighbouring forces, and where: S3.
-    fn rise(&self) -> Option<(f64, f64, f64)> {
-        let rise = self.rest.rise()?;
-        let (before, after) = (self.rest.at(rise.before)?, self.rest.at(rise.after)?);
-        Some((after.mean - before.mean, rise.before, rise.after))
+    /// The largest rise between neighbouring forces: S3.
+    fn rise(&self) -> Option<Step> {
+        self.rest.rise()
     }
 
-    /// The smallest flow rate, with its force: S4.
-    fn lowest(&self) -> Option<(f64, f64, f64)> {
-        self.rest
-            .points
-            .iter()
-            .chain(&self.jammed.points)
-            .min_by(|one, other| one.mean.total_cmp(&other.mean))
-            .map(|point| (point.mean, point.error, point.force))
+    /// The smallest flow: S4.
+    fn lowest(&self) -> Option<&Point<'a>> {
+        lowest(self.rest.points.iter().chain(&self.jammed.points))
     }
 
     /// The flow rate of frictionless grains, the smallest of all runs: S5.
     fn frictionless(&self) -> Option<f64> {
-        self.tight
-            .iter()
-            .filter(|run| is_frictionless(run))
-            .map(|run| run.flow_rate_ratio)
+        let frictionless = self.tight.iter().filter(|row| is_frictionless(row));
+        frictionless
+            .map(Row::flow_rate_ratio)
             .filter(|ratio| ratio.is_finite())
             .reduce(f64::min)
     }
 
     /// Whether each of S2 to S5 holds.
     fn holds(&self) -> [Option<bool>; 4] {
+        let rises = |rise: Step| rise.height.value > LEAST_JUMP_AGAINST_FORCE;
+        let flows_back =
+            |point: &Point<'_>| point.flow.value + SIGNED_BY * point.flow.error < -LEAST_BACK_FLOW;
         [
             self.gives_way().map(|(gave, all)| gave > 0 && gave < all),
-            self.rise().map(|(height, ..)| height > LEAST_JUMP),
-            self.lowest()
-                .map(|(mean, error, _)| mean + 2.0 * error < -LEAST_FLOW),
-            self.frictionless().map(|flow| flow > -LEAST_FLOW),
+            self.rise().map(rises),
+            self.lowest().map(flows_back),
+            self.frictionless().map(|flow| flow > -LEAST_BACK_FLOW),
         ]
     }
 
+    /// What was run, whether or not grains left the tube.
     fn statistics(&self) -> Statistics {
-        // What was run, whether or not grains left the tube.
-        let from_rest = self.runs.iter().filter(|run| run.start == Start::Rest);
-        let frictional = from_rest.filter(|run| !is_frictionless(run));
+        let from_rest = self.rows.iter().filter(|row| row.start() == Start::Rest);
+        let frictional = from_rest.filter(|row| !is_frictionless(row));
         Statistics {
-            runs: self.runs.len(),
-            ..Statistics::at_one_rate(frictional.map(|run| run.force()))
+            runs: self.rows.len(),
+            ..Statistics::at_one_rate(frictional.map(Row::force))
         }
+    }
+
+    /// The row of the table.
+    fn cells(&self) -> Vec<String> {
+        let [gives_way, jumps, back, forward] = self.holds().map(|holds| match holds {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "–",
+        });
+        vec![
+            self.name.clone(),
+            cell_of(self.gives_way(), |(gave, all)| {
+                format!("{gives_way}: {gave} of {all}")
+            }),
+            cell_of(self.rise(), |rise| {
+                let (height, [before, after]) = (number(rise.height.value, 2), rise.controls);
+                format!("{jumps}: {height} at {before} … {after}")
+            }),
+            cell_of(self.lowest(), |point| {
+                format!("{back}: {} at {}", point.flow, point.control)
+            }),
+            cell_of(self.frictionless(), |flow| {
+                format!("{forward}: {}", number(flow, 2))
+            }),
+            self.outside(),
+        ]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let runs = &evidence.study("elastic-sensitivity")?.runs;
-    let mut groups: Vec<(String, Vec<&Run>)> = Vec::new();
-    for run in runs {
-        let name = setting(run);
-        match groups.iter_mut().find(|group| group.0 == name) {
-            Some(group) => group.1.push(run),
-            None => groups.push((name, vec![run])),
-        }
-    }
-    // The preset first, whatever the order of the rows.
-    groups.sort_by_key(|(name, _)| name != PRESET);
-    let outcomes: Vec<Outcome<'_>> = groups
-        .into_iter()
-        .map(|(name, runs)| Outcome::of(name, runs))
-        .collect();
+    let outcomes = Outcome::all_of(evidence.study("elastic-sensitivity")?.rows());
     if outcomes.is_empty() {
         let mut nothing = Finding::nothing("No runs yet.", Statistics::default(), &NEEDED);
         nothing.varied = "force";
         return Ok(nothing);
     }
-    let tight: Vec<&Outcome<'_>> = outcomes
+    let tight: Vec<[Option<bool>; 4]> = outcomes
         .iter()
         .filter(|outcome| outcome.holds_its_grains())
+        .map(Outcome::holds)
         .collect();
+    let words = ["S2", "S3", "S4", "S5"].into_iter().enumerate();
+    let words: Vec<String> = words
+        .map(|(place, name)| {
+            let known: Vec<bool> = tight.iter().filter_map(|holds| holds[place]).collect();
+            let holding = known.iter().filter(|holds| **holds).count();
+            format!("{name} in {holding} of {}", known.len())
+        })
+        .collect();
+    let verdict = if outcomes.len() >= LEAST_SETTINGS {
+        Verdict::Answered
+    } else {
+        Verdict::Open
+    };
+    let summary = PROSE.text(
+        "summary",
+        &[
+            ("settings", &outcomes.len()),
+            ("tight", &tight.len()),
+            ("holding", &words.join(", ")),
+        ],
+    );
     let statistics = Statistics {
         strain_rates: 1,
         ..Statistics::weakest(outcomes.iter().map(Outcome::statistics))
     };
-    let names = ["S2", "S3", "S4", "S5"];
-    let words: Vec<String> = names
-        .iter()
-        .enumerate()
-        .map(|(place, name)| {
-            let of = |value: bool| {
-                tight
-                    .iter()
-                    .filter(|outcome| outcome.holds()[place] == Some(value))
-                    .count()
-            };
-            format!("{name} in {} of {}", of(true), of(true) + of(false))
-        })
-        .collect();
-    let mut found = Finding::new(
-        if outcomes.len() >= LEAST_SETTINGS {
-            Verdict::Answered
-        } else {
-            Verdict::Open
-        },
-        format!(
-            "Of {} settings of wall and density, {} hold their grains at three forces or more; of these, as far as they say, hold \
-             {}.",
-            outcomes.len(),
-            tight.len(),
-            words.join(", ")
-        ),
-        statistics,
-        &NEEDED,
-    );
+    let mut found = Finding::new(verdict, summary, statistics, &NEEDED);
     found.varied = "force";
-    found.tables.push(table(&outcomes));
-    found.paragraphs.push(
-        "Each row departs from the preset in what it names. S2: jams give way at some forces and last at others. S3: the flow from rest \
-         rises by more than 0.25 from one force to the next. S4: the smallest flow rate is below −0.01 by two errors. S5: that of \
-         frictionless grains at *f*^{P} = 0.002 *Yd*^{2} is not. Forces at which more than a twentieth of the grains leave the tube \
-         from either start are left out. Differences of forces are 0.001 and more here: a rise of this size \
-         is no proof of a jump."
-            .to_owned(),
-    );
-    found.weaknesses.push(
-        "One strain rate, short runs: near the transition a jam that lasts here may give way later.".to_owned(),
-    );
+    let cells = outcomes.iter().map(Outcome::cells).collect();
+    found.tables.push(PROSE.table("settings", &[], cells));
+    found.paragraphs.push(PROSE.text("method", &[]));
+    found.weaknesses.push(PROSE.text("weakness", &[]));
     found.figures.extend(figure(&outcomes)?);
     Ok(found)
 }
 
-fn table(outcomes: &[Outcome<'_>]) -> ReportTable {
-    let mark = |holds: Option<bool>| match holds {
-        Some(true) => "yes",
-        Some(false) => "no",
-        None => "–",
-    };
-    let rows = outcomes
-        .iter()
-        .map(|outcome| {
-            let [gives_way, jumps, back, forward] = outcome.holds().map(mark);
-            let none = || "–".to_owned();
-            vec![
-                outcome.name.clone(),
-                outcome
-                    .gives_way()
-                    .map_or_else(none, |(gave, all)| format!("{gives_way}: {gave} of {all}")),
-                outcome.rise().map_or_else(none, |(height, before, after)| {
-                    format!("{jumps}: {} at {before} … {after}", number(height, 2))
-                }),
-                outcome.lowest().map_or_else(none, |(mean, error, force)| {
-                    format!("{back}: {} at {force}", with_error(mean, error))
-                }),
-                outcome
-                    .frictionless()
-                    .map_or_else(none, |flow| format!("{forward}: {}", number(flow, 2))),
-                outside(outcome.escaped(), &outcome.left_out()),
-            ]
-        })
-        .collect();
-    ReportTable {
-        caption: "Claims against settings: jams that give way (S2), the largest rise of the flow from rest and its forces (S3), the \
-                  smallest flow rate and its force (S4), that of frictionless grains (S5), largest part of the grains outside."
-            .to_owned(),
-        head: [
-            "setting",
-            "S2: gives way",
-            "S3: rise",
-            "S4: smallest *J*/*J*_{max}",
-            "S5: frictionless",
-            "outside",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
-}
-
 /// Small panels, one a setting: both branches against the force.
 fn figure(outcomes: &[Outcome<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
-    let panels: Vec<ChartPanel> = outcomes
-        .iter()
-        .filter(|outcome| !outcome.rest.points.is_empty() || !outcome.jammed.points.is_empty())
-        .map(|outcome| {
-            let mut panel =
-                ChartPanel::new(&label(Axis::ForceAmplitude), &label(Axis::FlowRateRatio))
-                    .y_range(-0.2..=1.05)
-                    .with(Reference::horizontal(0.0))
-                    .title(&outcome.name);
-            for (series, name, branch, tint) in [
-                (0, "from rest", &outcome.rest, Tint::Blue),
-                (1, "from jammed", &outcome.jammed, Tint::Vermillion),
-            ] {
-                let [force, mean, error] = branch.columns();
-                if !force.is_empty() {
-                    let points = Points::new(name, &force, &mean)
-                        .y_errors(&error)
-                        .series(series)
-                        .tint(tint)
-                        .joined();
-                    panel = panel.with(if series == 1 { points.open() } else { points });
-                }
-            }
-            panel
-        })
-        .collect();
+    let panels: Vec<ChartPanel> = outcomes.iter().filter_map(panel).collect();
     if panels.is_empty() {
         return Ok(None);
     }
-    Ok(Some(ReportFigure {
-        name: "sensitivity".to_owned(),
-        caption: "Late *J*/*J*_{max} against the force from both starts, for each setting of wall and density.".to_owned(),
-        drawing: ChartFigure::grid(3, panels)
-            .share_x()
-            .share_y()
-            .width(Width::DoubleColumn)
-            .description("Flow rate against the force for several settings of the wall and of the density.")
-            .draw()?,
-    }))
+    let figure = ChartFigure::grid(3, panels)
+        .share_x()
+        .share_y()
+        .width(Width::DoubleColumn)
+        .description(
+            "Flow rate against the force for several settings of the wall and of the density.",
+        );
+    Ok(Some(PROSE.figure("sensitivity", &[], figure.draw()?)))
+}
+
+/// Both branches of one setting; `None` where they are empty.
+fn panel(outcome: &Outcome<'_>) -> Option<ChartPanel> {
+    let rest =
+        branch_points("from rest", &outcome.rest).map(|points| points.series(0).tint(Tint::Blue));
+    let jammed = branch_points("from jammed", &outcome.jammed)
+        .map(|points| points.series(1).tint(Tint::Vermillion).open());
+    (rest.is_some() || jammed.is_some()).then(|| {
+        flow_against_force()
+            .y_range(-0.2..=1.05)
+            .with(Reference::horizontal(0.0))
+            .title(&outcome.name)
+            .with_all(rest)
+            .with_all(jammed)
+    })
 }

@@ -7,10 +7,12 @@ use peristalsis_analysis::Uncertain;
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportTable, Statistics, Verdict};
+use crate::exhibit::cell;
+use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::prose::Prose;
-use crate::rows::{Mean, Row, behind, by, mean, mean_of};
-use crate::text::{number, with_error};
+use crate::row::{Row, behind, grouped, mean, mean_of};
+use crate::text::number;
+use crate::thresholds::{FREE_FLIGHT, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q6.md"));
 
@@ -29,10 +31,8 @@ const NEEDED: Statistics = Statistics {
     runs: 60,
 };
 
-/// Names of the axes.
+/// Column of the coefficient of static friction.
 const FRICTION: &str = "contact.static_friction";
-const TETHER: &str = "wall.keep.axial";
-const RATE: &str = "strain_rate";
 /// The preset, about which one parameter at a time is varied.
 const PRESET: Point = Point {
     friction: 0.5,
@@ -41,10 +41,6 @@ const PRESET: Point = Point {
 };
 /// A tether so stiff that the wall cannot follow the grains.
 const PINNED: f64 = 1.0;
-/// Pressure on the wall, as a fraction of its largest, below which grains fly freely.
-const FREE: f64 = 0.01;
-/// Errors by which a number must differ from 0 to have a sign.
-const CLEAR: f64 = 2.0;
 
 /// What is varied.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -58,8 +54,8 @@ impl Point {
     fn of(row: &Row<'_>) -> Self {
         Self {
             friction: row.number(FRICTION),
-            tether: row.number(TETHER),
-            rate: row.number(RATE),
+            tether: row.number("wall.keep.axial"),
+            rate: row.strain_rate(),
         }
     }
 }
@@ -68,35 +64,60 @@ impl Point {
 struct Sampled<'a> {
     point: Point,
     rows: Vec<Row<'a>>,
-    flow: Mean,
+    flow: Uncertain,
 }
 
 impl Sampled<'_> {
-    /// A force on the grains of a wavelength; front and throat are parts of the whole.
-    fn force(&self, column: &str) -> Option<Mean> {
-        mean(&self.rows, column)
+    /// A force on the grains of a wavelength, in thousandths; front and throat are parts of the whole.
+    fn force(&self, column: &str) -> Option<Uncertain> {
+        Some(mean(&self.rows, column)?.scaled(1e3))
     }
 
-    /// The rest of a force: that of the rear, or of the bulge.
-    fn rest(&self, whole: &str, part: &str) -> Option<Mean> {
-        mean_of(&self.rows, |row| {
+    /// The rest of a force, in thousandths: that of the rear, or of the bulge.
+    fn rest(&self, whole: &str, part: &str) -> Option<Uncertain> {
+        let rest = mean_of(&self.rows, |row| {
             let error = |column: &str| row.number(&format!("{column}_error"));
             (
                 row.number(whole) - row.number(part),
                 error(whole).hypot(error(part)),
             )
-        })
+        });
+        Some(rest?.scaled(1e3))
     }
 
     /// A velocity over that of the wave.
-    fn velocity(&self, column: &str) -> Option<Mean> {
+    fn velocity(&self, column: &str) -> Option<Uncertain> {
         mean_of(&self.rows, |row| {
             let error = row.number(&format!("{column}_error"));
-            (
-                row.number(column) / row.wave_speed(),
-                error / row.wave_speed(),
-            )
+            let speed = row.wave_speed();
+            (row.number(column) / speed, error / speed)
         })
+    }
+
+    /// Whether the flow is against the wave.
+    fn flows_back(&self) -> bool {
+        self.flow.value < -SIGNED_BY * self.flow.error.max(0.0)
+    }
+
+    /// The row of the table.
+    fn cells(&self) -> Vec<String> {
+        let parts = |kind: &str, part: &str| {
+            let (whole, part) = (format!("wall_{kind}"), format!("{part}_{kind}"));
+            let (force, rest) = (self.force(&part), self.rest(&whole, &part));
+            format!("{}, {}", cell(force), cell(rest))
+        };
+        vec![
+            number(self.point.friction, 2),
+            number(self.point.tether, 3),
+            number(1e3 * self.point.rate, 2),
+            self.flow.to_string(),
+            parts("normal_force", "front"),
+            parts("tangential_force", "front"),
+            parts("normal_force", "narrow"),
+            parts("tangential_force", "narrow"),
+            cell(self.velocity("narrow_axial_velocity")),
+            cell(self.velocity("narrow_wall_velocity")),
+        ]
     }
 }
 
@@ -107,7 +128,7 @@ struct Samples<'a> {
 
 impl<'a> Samples<'a> {
     fn of(results: &'a StudyResults) -> Self {
-        let all = by(&results.rows(), Point::of)
+        let all = grouped(results.rows(), Point::of)
             .into_iter()
             .filter_map(|(point, rows)| {
                 let flow = mean(&rows, "flow_rate_ratio")?;
@@ -143,7 +164,7 @@ impl<'a> Samples<'a> {
             of.iter().flat_map(|one| one.rows.clone()).collect()
         };
         let friction = behind(&rows(self.friction()), |row| row.number(FRICTION));
-        let rate = behind(&rows(self.rate(PRESET.tether)), |row| row.number(RATE));
+        let rate = behind(&rows(self.rate(PRESET.tether)), Row::strain_rate);
         Statistics {
             strain_rates: rate.widths,
             replicates: friction.replicates.min(rate.replicates),
@@ -168,7 +189,7 @@ impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>, ClaimError> {
         for row in &one.rows {
-            let Some(profile) = results.profile_of(row)? else {
+            let Some(profile) = results.profile(row)? else {
                 continue;
             };
             let [pressure, density, velocity] =
@@ -178,7 +199,7 @@ impl FreeFlight {
             let (mut bins, mut free, mut flux, mut all) = (0.0, 0.0, 0.0, 0.0);
             for ((pressure, density), velocity) in pressure.iter().zip(density).zip(velocity) {
                 all += density;
-                if *pressure < FREE * largest && velocity.is_finite() {
+                if *pressure < FREE_FLIGHT * largest && velocity.is_finite() {
                     bins += 1.0;
                     free += density;
                     flux += density * velocity / row.wave_speed();
@@ -201,197 +222,101 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let Some(preset) = samples.at(PRESET) else {
         return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
     };
-    let without = samples.at(Point {
-        friction: 0.0,
-        ..PRESET
-    });
-    let pinned = samples.at(Point {
-        tether: PINNED,
-        ..PRESET
-    });
-    let flight = FreeFlight::of(results, preset)?;
-    let mut finding = Finding::new(
-        Verdict::Answered,
-        summary(preset, without, pinned),
-        statistics,
-        &NEEDED,
+    let at_friction = |friction| samples.at(Point { friction, ..PRESET });
+    let at_tether = |tether| samples.at(Point { tether, ..PRESET });
+    let (without, pinned) = (at_friction(0.0), at_tether(PINNED));
+    let summary = format!(
+        "{}{}",
+        of_friction(preset, without),
+        of_wall(preset, pinned)
     );
+    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &NEEDED);
     finding.varied = "friction";
+    let flight = FreeFlight::of(results, preset)?;
     finding.paragraphs.extend(balance(preset, flight));
-    finding.paragraphs.push(
-        "In a steady state the forces of the wall on the grains add up to nothing over a wavelength: what the inclined wall gives by \
-         normal forces, friction takes. The front is the part from the narrowest place to the widest one ahead, which the wave \
-         closes; the rear opens behind the narrowest place. Throat is where the tube is narrower than on its mean."
-            .to_owned(),
-    );
-    finding.weaknesses.push(
-        "One force, 0.002 *Y d*^2, from rest, two waves; the wall's \
-         springs and tethers are not those of the source, which gives none."
-            .to_owned(),
-    );
-    finding.quantities = quantities(&samples, preset, without, pinned);
-    finding.tables.push(table(&samples));
+    finding.paragraphs.push(PROSE.text("method", &[]));
+    finding.weaknesses.push(PROSE.text("weakness", &[]));
+    let points = [
+        ("flow of the preset at a small force", Some(preset)),
+        ("the same without friction", without),
+        ("the same with the wall pinned", pinned),
+        ("the same with the wall free along the tube", at_tether(0.0)),
+    ];
+    let quantity = |(name, sampled): (&str, Option<&Sampled<'_>>)| -> Option<Quantity> {
+        Some(PROSE.quantity("flow", &[("name", &name)], sampled?.flow))
+    };
+    finding.quantities = points.into_iter().filter_map(quantity).collect();
+    let cells = samples.all.iter().map(Sampled::cells).collect();
+    finding.tables.push(PROSE.table("forces", &[], cells));
     finding.figures = figures::all(results, &samples)?;
     Ok(finding)
 }
 
-/// Value and error, as far as known.
-fn said(mean: Option<Mean>) -> String {
-    mean.map_or("–".to_owned(), |mean| with_error(mean.value, mean.error))
+/// What friction has to do with it.
+fn of_friction(preset: &Sampled<'_>, without: Option<&Sampled<'_>>) -> String {
+    let (with, friction) = (preset.flow, PRESET.friction);
+    match without {
+        Some(without) if without.flows_back() => PROSE.text(
+            "friction is not needed",
+            &[
+                ("without", &without.flow),
+                ("with", &with),
+                ("friction", &friction),
+            ],
+        ),
+        Some(without) if preset.flows_back() => PROSE.text(
+            "friction is needed",
+            &[
+                ("without", &without.flow),
+                ("with", &with),
+                ("friction", &friction),
+            ],
+        ),
+        _ => PROSE.text("with friction", &[("with", &with), ("friction", &friction)]),
+    }
 }
 
-/// What friction and the motion of the wall have to do with it.
-fn summary(
-    preset: &Sampled<'_>,
-    without: Option<&Sampled<'_>>,
-    pinned: Option<&Sampled<'_>>,
-) -> String {
-    let back = |flow: &Mean| flow.value < -CLEAR * flow.error.max(0.0);
-    let friction = match without {
-        Some(without) if back(&without.flow) => format!(
-            "Friction is not needed: *J*/*J*_{{max}} = {} without it and {} with *μ*_{{s}} = {}.",
-            said(Some(without.flow)),
-            said(Some(preset.flow)),
-            PRESET.friction
-        ),
-        Some(without) if back(&preset.flow) => format!(
-            "Friction is needed: *J*/*J*_{{max}} = {} with *μ*_{{s}} = {} and {} without.",
-            said(Some(preset.flow)),
-            PRESET.friction,
-            said(Some(without.flow))
-        ),
-        _ => format!(
-            "*J*/*J*_{{max}} = {} with *μ*_{{s}} = {}.",
-            said(Some(preset.flow)),
-            PRESET.friction
-        ),
+/// What the motion of the wall has to do with it.
+fn of_wall(preset: &Sampled<'_>, pinned: Option<&Sampled<'_>>) -> String {
+    let Some(pinned) = pinned else {
+        return String::new();
     };
-    let wall = pinned.map_or(String::new(), |pinned| {
-        let difference = pinned.flow.value - preset.flow.value;
+    let sentence = if preset.flows_back() && pinned.flows_back() {
         let error = pinned.flow.error.hypot(preset.flow.error);
-        if back(&preset.flow) && back(&pinned.flow) {
-            format!(
-                " The wall need not move along the tube: pinned, {} remains, and pinning it changes *J*/*J*_{{max}} by {}.",
-                said(Some(pinned.flow)),
-                with_error(difference, error)
-            )
-        } else {
-            format!(
-                " With the wall pinned along the tube *J*/*J*_{{max}} = {}.",
-                said(Some(pinned.flow))
-            )
-        }
-    });
-    format!("{friction}{wall}")
+        let change = Uncertain::normal(pinned.flow.value - preset.flow.value, error);
+        PROSE.text(
+            "wall need not move",
+            &[("pinned", &pinned.flow), ("change", &change)],
+        )
+    } else {
+        PROSE.text("wall pinned", &[("pinned", &pinned.flow)])
+    };
+    format!(" {sentence}")
 }
 
 /// The momentum balance of the preset in words.
 fn balance(preset: &Sampled<'_>, flight: Option<FreeFlight>) -> Option<String> {
-    let thousandths = |mean: Mean| with_error(1e3 * mean.value, 1e3 * mean.error);
-    let normal = preset.force("wall_normal_force")?;
-    let tangential = preset.force("wall_tangential_force")?;
-    let front = preset.force("front_tangential_force")?;
-    let rear = preset.rest("wall_tangential_force", "front_tangential_force")?;
-    let flight = flight.map_or(String::new(), |flight| {
-        format!(
-            " Over {} of the wavelength, behind the narrowest place, grains hardly touch the wall: there they fly at *v_z* = {} *c*, \
-             which alone makes *J*/*J*_{{max}} = {}; where the wall touches them the other {} is made.",
-            number(flight.part, 2),
-            number(flight.velocity, 3),
-            number(flight.share, 3),
-            number(preset.flow.value - flight.share, 3),
-        )
-    });
-    Some(format!(
-        "At the preset (axial forces on the grains of a wavelength in 10^{{−3}} *Y d*^2, positive along the wave) normal forces give \
-         {}, friction {}: {} in the front, where the wave closes the tube and pushes grains on, and {} in the rear, where they leave \
-         it.{flight}",
-        thousandths(normal),
-        thousandths(tangential),
-        thousandths(front),
-        thousandths(rear),
-    ))
-}
-
-fn quantities(
-    samples: &Samples<'_>,
-    preset: &Sampled<'_>,
-    without: Option<&Sampled<'_>>,
-    pinned: Option<&Sampled<'_>>,
-) -> Vec<Quantity> {
-    let flow = |name: &str, mean: Mean| Quantity {
-        name: name.to_owned(),
-        symbol: "*J*/*J*_{max}".to_owned(),
-        unit: String::new(),
-        source: None,
-        ours: Some(Uncertain::normal(mean.value, mean.error)),
-        method: "late mean over the replicates".to_owned(),
-    };
-    let mut quantities = vec![flow("flow of the preset at a small force", preset.flow)];
-    quantities.extend(without.map(|one| flow("the same without friction", one.flow)));
-    quantities.extend(pinned.map(|one| flow("the same with the wall pinned", one.flow)));
-    quantities.extend(
-        samples
-            .at(Point {
-                tether: 0.0,
-                ..PRESET
-            })
-            .map(|one| flow("the same with the wall free along the tube", one.flow)),
+    let (whole, part) = ("wall_tangential_force", "front_tangential_force");
+    let balance = PROSE.text(
+        "balance",
+        &[
+            ("normal", &preset.force("wall_normal_force")?),
+            ("tangential", &preset.force(whole)?),
+            ("front", &preset.force(part)?),
+            ("rear", &preset.rest(whole, part)?),
+        ],
     );
-    quantities
-}
-
-fn table(samples: &Samples<'_>) -> ReportTable {
-    let force = |mean: Option<Mean>| {
-        mean.map_or("–".to_owned(), |m| {
-            with_error(1e3 * m.value, 1e3 * m.error)
-        })
+    let Some(flight) = flight else {
+        return Some(balance);
     };
-    let rows = samples
-        .all
-        .iter()
-        .map(|one| {
-            let parts =
-                |whole: &str, part: &str| [one.force(part), one.rest(whole, part)].map(&force);
-            let [normal_front, normal_rear] = parts("wall_normal_force", "front_normal_force");
-            let [friction_front, friction_rear] =
-                parts("wall_tangential_force", "front_tangential_force");
-            let [normal_throat, normal_bulge] = parts("wall_normal_force", "narrow_normal_force");
-            let [friction_throat, friction_bulge] =
-                parts("wall_tangential_force", "narrow_tangential_force");
-            vec![
-                number(one.point.friction, 2),
-                number(one.point.tether, 3),
-                number(1e3 * one.point.rate, 2),
-                said(Some(one.flow)),
-                format!("{normal_front}, {normal_rear}"),
-                format!("{friction_front}, {friction_rear}"),
-                format!("{normal_throat}, {normal_bulge}"),
-                format!("{friction_throat}, {friction_bulge}"),
-                said(one.velocity("narrow_axial_velocity")),
-                said(one.velocity("narrow_wall_velocity")),
-            ]
-        })
-        .collect();
-    ReportTable {
-        caption: "Flow, axial forces of the wall on the grains of a wavelength (*F*/*Yd*^{2}), by normal forces and by friction, \
-                  in front and rear and in throat and bulge, and mean axial velocities of grains and of wall spheres in the throat, \
-                  against friction, axial tether (*Y d*) and strain rate (1/*t*^{\\*})."
-            .to_owned(),
-        head: [
-            "*μ*_{s}",
-            "tether",
-            "10^{3}*ε̇*",
-            "*J*/*J*_{max}",
-            "10^{3}*F*, normal: front, rear",
-            "10^{3}*F*, friction: front, rear",
-            "10^{3}*F*, normal: throat, bulge",
-            "10^{3}*F*, friction: throat, bulge",
-            "grains, *v_z*/*c*",
-            "wall, *v_z*/*c*",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows,
-    }
+    let flight = PROSE.text(
+        "free flight",
+        &[
+            ("part", &number(flight.part, 2)),
+            ("velocity", &number(flight.velocity, 3)),
+            ("share", &number(flight.share, 3)),
+            ("other", &number(preset.flow.value - flight.share, 3)),
+        ],
+    );
+    Some(format!("{balance} {flight}"))
 }

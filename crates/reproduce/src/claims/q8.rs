@@ -1,18 +1,19 @@
 //! Q8: is the transition of slow waves continuous?
 
 mod figures;
-mod tables;
 
 use peristalsis_analysis::{Uncertain, power_exponent};
 
+use crate::branch::{Branch, Control, Point, Step};
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
+use crate::exhibit::{cell, cell_of};
 use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::prose::Prose;
-use crate::rows::{Mean, Row, behind, by, mean, mean_of};
-use crate::runs::MOST_DRIFT;
-use crate::text::{number, with_error};
+use crate::row::{Row, behind, grouped, mean_of};
+use crate::text::number;
+use crate::thresholds::{LEAST_JUMP, PASSED};
 
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
 
@@ -32,116 +33,143 @@ const NEEDED: Statistics = Statistics {
 };
 const LEAST_LENGTHS: usize = 3;
 
-/// Rise between two neighbouring forces that counts, and in its errors.
-const LEAST_RISE: f64 = 0.1;
-const CLEAR: f64 = 4.0;
-/// Threshold of J/Jmax at which a sweep passes from one flow to the other.
-const PASSED: f64 = 0.5;
+/// Part of the runs, at their end, over which the study takes its means.
+const LATE: f64 = 0.5;
 
 /// The stationary flow against the force in a tube of one length.
 struct Ladder<'a> {
     rate: f64,
     waves: f64,
-    points: Vec<Rung>,
+    branch: Branch<'a>,
     rows: Vec<Row<'a>>,
 }
 
-/// The stationary flow at one force.
-#[derive(Clone, Copy)]
-struct Rung {
-    force: f64,
-    flow: Mean,
-    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves. Of runs
-    /// that no longer drift.
-    fluctuation: Option<Mean>,
-}
-
-/// The steepest rise between two neighbouring forces.
-struct Rise {
-    force: f64,
-    height: Uncertain,
-}
-
 impl<'a> Ladder<'a> {
-    fn of((rate, waves): (f64, f64), rows: Vec<Row<'a>>) -> Self {
-        let points = by(&rows, |row| row.number("force_amplitude"))
+    /// The ladders of all strain rates and lengths.
+    fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
+        grouped(rows, |row| (row.strain_rate(), row.number("waves")))
             .into_iter()
-            .filter_map(|(force, rows)| {
-                Some(Rung {
-                    force,
-                    flow: mean(&rows, "flow_rate_ratio")?,
-                    fluctuation: mean_of(&rows, |row| {
-                        let drift = row.number("flow_rate_ratio_drift");
-                        if drift.abs() > MOST_DRIFT {
-                            // What drifts does not fluctuate.
-                            return (f64::NAN, f64::NAN);
-                        }
-                        let variance = row.number("flow_rate_ratio_variance");
-                        // As of normal numbers, one for each late period.
-                        let periods = row.number("periods") * LATE - 1.0;
-                        let error = variance * (2.0 / periods).sqrt();
-                        (waves * variance, waves * error)
-                    }),
-                })
+            .map(|((rate, waves), rows)| Self {
+                rate,
+                waves,
+                branch: Branch::of_all(rows.iter().copied(), Control::Force),
+                rows,
             })
-            .collect();
-        Self {
-            rate,
-            waves,
-            points,
-            rows,
-        }
+            .collect()
     }
 
-    fn rise(&self) -> Option<Rise> {
-        self.points
-            .windows(2)
-            .map(|pair| {
-                let error = pair[0]
-                    .flow
-                    .error
-                    .max(0.0)
-                    .hypot(pair[1].flow.error.max(0.0));
-                let height = pair[1].flow.value - pair[0].flow.value;
-                Rise {
-                    force: 0.5 * (pair[0].force + pair[1].force),
-                    height: Uncertain::normal(height, error),
-                }
-            })
+    /// The largest rise between two neighbouring forces.
+    fn rise(&self) -> Option<Step> {
+        self.branch
+            .steps()
             .max_by(|one, other| one.height.value.total_cmp(&other.height.value))
     }
 
-    fn largest_fluctuation(&self) -> Option<(f64, Mean)> {
-        self.points
-            .iter()
-            .filter_map(|one| Some((one.force, one.fluctuation?)))
+    /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves. Of runs
+    /// that no longer drift: what drifts does not fluctuate.
+    fn fluctuation(&self, point: &Point<'_>) -> Option<Uncertain> {
+        let steady = point.rows.iter().filter(|row| row.is_stationary());
+        let steady: Vec<Row<'_>> = steady.copied().collect();
+        mean_of(&steady, |row| {
+            let variance = row.number("flow_rate_ratio_variance");
+            // As of normal numbers, one for each late period.
+            let periods = row.number("periods") * LATE - 1.0;
+            let error = variance * (2.0 / periods).sqrt();
+            (self.waves * variance, self.waves * error)
+        })
+    }
+
+    fn largest_fluctuation(&self) -> Option<(f64, Uncertain)> {
+        let points = self.branch.points.iter();
+        points
+            .filter_map(|point| Some((point.control, self.fluctuation(point)?)))
             .max_by(|one, other| one.1.value.total_cmp(&other.1.value))
+    }
+
+    /// The largest rise in words.
+    fn words(&self) -> Option<String> {
+        let rise = self.rise()?;
+        let clear = rise.height.value > 0.0 && rise.counts(LEAST_JUMP);
+        let doubt = if clear { "" } else { " (not clear)" };
+        Some(format!("{}{doubt} in {} waves", rise.height, self.waves))
+    }
+
+    /// The row of the table.
+    fn cells(&self) -> Vec<String> {
+        let (rise, fluctuation) = (self.rise(), self.largest_fluctuation());
+        let thousandths = |value: f64| number(1e3 * value, 2);
+        vec![
+            thousandths(self.rate),
+            self.waves.to_string(),
+            self.branch.points.len().to_string(),
+            cell(rise.map(|rise| rise.height)),
+            cell_of(rise, |rise| thousandths(rise.place().value)),
+            cell(fluctuation.map(|(_, mean)| mean)),
+            cell_of(fluctuation, |(force, _)| thousandths(force)),
+        ]
     }
 }
 
-/// Part of the runs, at their end, over which the study takes its means.
-const LATE: f64 = 0.5;
-
-/// The forces at which sweeps at one strain rate and of one length pass from one flow to the other.
+/// The forces, in thousandths, at which sweeps at one strain rate and of one length pass from one flow to the other.
 struct Loop {
     rate: f64,
     /// Length of the sweep in periods.
     periods: f64,
-    up: Option<Mean>,
-    down: Option<Mean>,
+    up: Option<Uncertain>,
+    down: Option<Uncertain>,
     /// Sweeps up and down that ended before they passed.
     censored: [usize; 2],
 }
 
 impl Loop {
+    /// The loops of all sweeps, by strain rate and length.
+    fn all_of(up: Vec<Row<'_>>, down: Vec<Row<'_>>) -> Vec<Self> {
+        let sweep = |row: &Row<'_>| (row.strain_rate(), row.number("drive.schedule.end"));
+        let down = grouped(down, sweep);
+        let pairs = grouped(up, sweep).into_iter().filter_map(|(sweep, up)| {
+            let (_, down) = down.iter().find(|(other, _)| *other == sweep)?;
+            Some((sweep, up, down))
+        });
+        pairs
+            .map(|((rate, periods), up, down)| Self {
+                rate,
+                periods,
+                up: mean_of(&up, passed),
+                down: mean_of(down, passed),
+                censored: [&up, down].map(|rows| {
+                    let censored = |row: &&Row<'_>| !passed(row).0.is_finite();
+                    rows.iter().filter(censored).count()
+                }),
+            })
+            .collect()
+    }
+
     /// Width of the loop; `None` where one way did not pass.
-    fn width(&self) -> Option<Mean> {
+    fn width(&self) -> Option<Uncertain> {
         let (up, down) = (self.up?, self.down?);
-        Some(Mean {
-            value: up.value - down.value,
-            error: up.error.max(0.0).hypot(down.error.max(0.0)),
-            runs: up.runs.min(down.runs),
-        })
+        Some(Uncertain::normal(
+            up.value - down.value,
+            up.error.max(0.0).hypot(down.error.max(0.0)),
+        ))
+    }
+
+    /// Its width in words.
+    fn words(&self) -> Option<String> {
+        let width = self.width()?.scaled(1e3);
+        Some(format!("{width} in {} periods", self.periods))
+    }
+
+    /// The row of the table.
+    fn cells(&self) -> Vec<String> {
+        let force = |force: Option<Uncertain>| cell(force.map(|force| force.scaled(1e3)));
+        vec![
+            number(1e3 * self.rate, 2),
+            number(self.periods, 0),
+            force(self.up),
+            force(self.down),
+            force(self.width()),
+            format!("{}, {}", self.censored[0], self.censored[1]),
+        ]
     }
 }
 
@@ -149,45 +177,23 @@ impl Loop {
 fn passed(row: &Row<'_>) -> (f64, f64) {
     let [from, to, end] =
         ["from", "to", "end"].map(|key| row.number(&format!("drive.schedule.{key}")));
-    let progress = row.number("transition_time") * row.number("strain_rate") / end;
+    let progress = row.number("transition_time") * row.strain_rate() / end;
     (
         from + (to - from) * progress.clamp(0.0, 1.0),
         0.5 * (to - from).abs() / end,
     )
 }
 
-fn loops(up: &[Row<'_>], down: &[Row<'_>]) -> Vec<Loop> {
-    let key = |row: &Row<'_>| (row.number("strain_rate"), row.number("drive.schedule.end"));
-    let down = by(down, key);
-    by(up, key)
-        .into_iter()
-        .filter_map(|(sweep, up)| {
-            let down = &down.iter().find(|(other, _)| *other == sweep)?.1;
-            let force = |rows: &[Row<'_>]| mean_of(rows, passed);
-            let censored = |rows: &[Row<'_>]| rows.len() - force(rows).map_or(0, |mean| mean.runs);
-            Some(Loop {
-                rate: sweep.0,
-                periods: sweep.1,
-                up: force(&up),
-                down: force(down),
-                censored: [censored(&up), censored(down)],
-            })
-        })
-        .collect()
-}
-
 /// Exponent of a positive quantity in another, from points with errors; `None` from fewer than three.
-fn exponent(points: &[(f64, Mean)]) -> Option<Uncertain> {
-    let known: Vec<&(f64, Mean)> = points
-        .iter()
+fn exponent(points: impl Iterator<Item = (f64, Uncertain)>) -> Option<Uncertain> {
+    let known: Vec<(f64, Uncertain)> = points
         .filter(|(_, mean)| mean.value > 0.0 && mean.error > 0.0)
         .collect();
     if known.len() < 3 {
         return None;
     }
-    let column = |value: fn(&(f64, Mean)) -> f64| -> Vec<f64> {
-        known.iter().map(|one| value(one)).collect()
-    };
+    let column =
+        |value: fn(&(f64, Uncertain)) -> f64| -> Vec<f64> { known.iter().map(value).collect() };
     let line = power_exponent(
         &column(|one| one.0),
         &column(|one| one.1.value),
@@ -200,187 +206,114 @@ fn exponent(points: &[(f64, Mean)]) -> Option<Uncertain> {
     ))
 }
 
+/// What was found at one strain rate.
+struct AtRate<'b, 'a> {
+    rate: f64,
+    ladders: Vec<&'b Ladder<'a>>,
+    /// By ascending length.
+    loops: Vec<&'b Loop>,
+}
+
+impl<'b, 'a> AtRate<'b, 'a> {
+    fn all_of(ladders: &'b [Ladder<'a>], loops: &'b [Loop]) -> Vec<Self> {
+        let of_ladders = ladders.iter().map(|one| one.rate);
+        let rates = of_ladders.chain(loops.iter().map(|one| one.rate));
+        grouped(rates, |rate| *rate)
+            .into_iter()
+            .map(|(rate, _)| Self {
+                rate,
+                ladders: ladders.iter().filter(|one| one.rate == rate).collect(),
+                loops: loops.iter().filter(|one| one.rate == rate).collect(),
+            })
+            .collect()
+    }
+
+    /// Whether there are as many lengths of tubes and of sweeps as an answer takes.
+    fn is_complete(&self) -> bool {
+        let closed = self.loops.iter().filter(|one| one.width().is_some());
+        self.ladders.len() >= LEAST_LENGTHS && closed.count() >= LEAST_LENGTHS
+    }
+
+    /// What it shows.
+    fn words(&self) -> String {
+        let rises: Vec<String> = self.ladders.iter().filter_map(|one| one.words()).collect();
+        let widths: Vec<String> = self.loops.iter().filter_map(|one| one.words()).collect();
+        let rises = if rises.is_empty() {
+            "no rise between two forces is known yet".to_owned()
+        } else {
+            PROSE.text("rises", &[("rises", &rises.join(", "))])
+        };
+        let sweeps = if widths.is_empty() {
+            "no sweep passes both ways".to_owned()
+        } else {
+            PROSE.text("sweeps", &[("widths", &widths.join(", "))])
+        };
+        PROSE.text(
+            "at a strain rate",
+            &[
+                ("rate", &number(1e3 * self.rate, 2)),
+                ("rises", &rises),
+                ("sweeps", &sweeps),
+            ],
+        )
+    }
+
+    fn quantities(&self) -> Vec<Quantity> {
+        let fluctuations = self.ladders.iter();
+        let fluctuations =
+            fluctuations.filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)));
+        let of_fluctuation = exponent(fluctuations).map(|exponent| {
+            PROSE.quantity("exponent of fluctuation", &[("rate", &self.rate)], exponent)
+        });
+        let widths = self.loops.iter();
+        let widths = widths.filter_map(|one| Some((one.periods, one.width()?)));
+        let of_loop = exponent(widths)
+            .map(|exponent| PROSE.quantity("exponent of loop", &[("rate", &self.rate)], exponent));
+        let rises = self.ladders.iter().filter_map(|one| {
+            Some(PROSE.quantity(
+                "rise",
+                &[("rate", &self.rate), ("waves", &one.waves)],
+                one.rise()?.height,
+            ))
+        });
+        let exponents = of_fluctuation.into_iter().chain(of_loop);
+        exponents.chain(rises).collect()
+    }
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let size = evidence.study("small-speed-size")?.rows();
-    let ladders: Vec<Ladder<'_>> = by(&size, |row| {
-        (row.number("strain_rate"), row.number("waves"))
-    })
-    .into_iter()
-    .map(|(key, rows)| Ladder::of(key, rows))
-    .collect();
-    let (up, down) = (
-        evidence.study("sweep-up")?.rows(),
-        evidence.study("sweep-down")?.rows(),
-    );
-    let loops = loops(&up, &down);
-    let of_ladders = ladders.iter().map(|one| one.rate);
-    let mut rates: Vec<f64> = of_ladders.chain(loops.iter().map(|one| one.rate)).collect();
-    rates.sort_by(f64::total_cmp);
-    rates.dedup();
+    let rows = |study: &str| Ok::<_, ClaimError>(evidence.study(study)?.rows());
+    let ladders = Ladder::all_of(rows("small-speed-size")?);
+    let loops = Loop::all_of(rows("sweep-up")?, rows("sweep-down")?);
+    let rates = AtRate::all_of(&ladders, &loops);
+    let of_ladders = ladders.iter().map(|one| behind(&one.rows, Row::force));
     let statistics = Statistics {
         strain_rates: rates.len(),
-        ..Statistics::weakest(
-            ladders
-                .iter()
-                .map(|one| behind(&one.rows, |row| row.number("force_amplitude"))),
-        )
+        ..Statistics::weakest(of_ladders)
     };
     if rates.is_empty() {
         return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
     }
-    let words: Vec<String> = rates
-        .iter()
-        .map(|rate| words(*rate, &ladders, &loops))
-        .collect();
-    let lengths = |rate: f64| ladders.iter().filter(|one| one.rate == rate).count();
-    let complete = rates.iter().all(|rate| {
-        lengths(*rate) >= LEAST_LENGTHS
-            && loops
-                .iter()
-                .filter(|one| one.rate == *rate && one.width().is_some())
-                .count()
-                >= LEAST_LENGTHS
-    });
-    let mut finding = Finding::new(
-        if complete {
-            Verdict::Answered
-        } else {
-            Verdict::Open
-        },
-        format!("{}.", words.join(". ")),
-        statistics,
-        &NEEDED,
-    );
+    let words: Vec<String> = rates.iter().map(AtRate::words).collect();
+    let verdict = if rates.iter().all(AtRate::is_complete) {
+        Verdict::Answered
+    } else {
+        Verdict::Open
+    };
+    let summary = format!("{}.", words.join(". "));
+    let mut finding = Finding::new(verdict, summary, statistics, &NEEDED);
     finding.varied = "force";
-    finding.quantities = quantities(&rates, &ladders, &loops);
+    finding.quantities = rates.iter().flat_map(AtRate::quantities).collect();
     if !ladders.is_empty() {
-        finding.tables.push(tables::of_ladders(&ladders));
+        let cells = ladders.iter().map(Ladder::cells).collect();
+        finding.tables.push(PROSE.table("ladders", &[], cells));
     }
     if !loops.is_empty() {
-        finding.tables.push(tables::of_loops(&loops));
+        let cells = loops.iter().map(Loop::cells).collect();
+        finding.tables.push(PROSE.table("loops", &[], cells));
     }
-    finding.paragraphs.push(
-        "A discontinuous rise between two forces stays as high however long the tube is, and where both flows live side by side the \
-         variance of *J*/*J*_{max} does not fall with its length; a continuous one has a largest slope, and waves that fluctuate by \
-         themselves leave the product of variance and length as it is. The loop of a discontinuous transition stays open however \
-         slow the sweep, up to the lifetime of the metastable flow; that of a continuous one closes."
-            .to_owned(),
-    );
-    finding.paragraphs.push(format!(
-        "A sweep passes where the line through the period averages of *J*/*J*_{{max}} crosses {PASSED} for good; its error is at least \
-         half of what the force changes in a period."
-    ));
-    finding.weaknesses.push(
-        "One run a force and length; the flow of slow waves takes many periods to \
-         settle, and the late half of the run is what is averaged."
-            .to_owned(),
-    );
-    finding
-        .figures
-        .extend(figures::figure(&rates, &ladders, &loops)?);
+    finding.paragraphs = PROSE.paragraphs("method", &[("passed", &PASSED)]);
+    finding.weaknesses.push(PROSE.text("weakness", &[]));
+    finding.figures.extend(figures::figure(&rates)?);
     Ok(finding)
-}
-
-/// What one strain rate shows.
-fn words(rate: f64, ladders: &[Ladder<'_>], loops: &[Loop]) -> String {
-    let rises: Vec<String> = ladders
-        .iter()
-        .filter(|one| one.rate == rate)
-        .filter_map(|one| {
-            let rise = one.rise()?;
-            let clear = rise.height.value > LEAST_RISE.max(CLEAR * rise.height.error);
-            Some(format!(
-                "{}{} in {} waves",
-                with_error(rise.height.value, rise.height.error),
-                if clear { "" } else { " (not clear)" },
-                one.waves
-            ))
-        })
-        .collect();
-    let mut here: Vec<&Loop> = loops.iter().filter(|one| one.rate == rate).collect();
-    here.sort_by(|one, other| one.periods.total_cmp(&other.periods));
-    let widths: Vec<String> = here
-        .iter()
-        .filter_map(|one| {
-            let width = one.width()?;
-            Some(format!(
-                "{} in {} periods",
-                with_error(1e3 * width.value, 1e3 * width.error),
-                one.periods
-            ))
-        })
-        .collect();
-    let sweeps = if widths.is_empty() {
-        "no sweep passes both ways".to_owned()
-    } else {
-        format!(
-            "the loop of a sweep is 10^{{−3}} *Y d*^2 × ({}) wide",
-            widths.join(", ")
-        )
-    };
-    let rises = if rises.is_empty() {
-        "no rise between two forces is known yet".to_owned()
-    } else {
-        format!(
-            "the largest rise between two forces is {}",
-            rises.join(", ")
-        )
-    };
-    format!(
-        "At *ε̇* = {} × 10^{{−3}}/*t*^{{\\*}} {rises}; {sweeps}",
-        number(1e3 * rate, 2)
-    )
-}
-
-fn quantities(rates: &[f64], ladders: &[Ladder<'_>], loops: &[Loop]) -> Vec<Quantity> {
-    let mut quantities = Vec::new();
-    for rate in rates {
-        let of_rate = || ladders.iter().filter(|one| one.rate == *rate);
-        let fluctuation: Vec<(f64, Mean)> = of_rate()
-            .filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)))
-            .collect();
-        let widths: Vec<(f64, Mean)> = loops
-            .iter()
-            .filter(|one| one.rate == *rate)
-            .filter_map(|one| Some((one.periods, one.width()?)))
-            .collect();
-        for (name, symbol, points, method) in [
-            (
-                "exponent of the largest (variance × waves) in the length",
-                "d ln *Lχ_J*/d ln *L*",
-                fluctuation,
-                "0: waves fluctuate by themselves; 1: all together",
-            ),
-            (
-                "exponent of the loop in the length of the sweep",
-                "d ln Δ*f*/d ln *t*",
-                widths,
-                "0: a loop that stays open; below: one that closes",
-            ),
-        ] {
-            let ours = exponent(&points);
-            quantities.extend(ours.map(|ours| Quantity {
-                name: format!("{name}, strain rate {rate}"),
-                symbol: symbol.to_owned(),
-                unit: String::new(),
-                source: None,
-                ours: Some(ours),
-                method: method.to_owned(),
-            }));
-        }
-        quantities.extend(of_rate().filter_map(|one| {
-            Some(Quantity {
-                name: format!(
-                    "largest rise between two forces, strain rate {rate}, {} waves",
-                    one.waves
-                ),
-                symbol: "Δ(*J*/*J*_{max})".to_owned(),
-                unit: String::new(),
-                source: None,
-                ours: Some(one.rise()?.height),
-                method: "from rest, neighbouring forces".to_owned(),
-            })
-        }));
-    }
-    quantities
 }

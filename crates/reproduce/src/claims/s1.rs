@@ -1,21 +1,21 @@
 //! S1: the flow fields at three forces, and the last of them without friction.
 
-use peristalsis_analysis::Uncertain;
+use peristalsis_analysis::{Uncertain, mean_and_error};
 use peristalsis_figures::{
     SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall, Width,
 };
 use peristalsis_formats::Table;
 
 use super::elastic::{finding, is_frictionless, judged, nothing};
-use crate::branches::mean_and_error;
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
-use crate::forces::{CLEAR, ForceLine, together};
+use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::forces::{ForceLine, together};
 use crate::prose::Prose;
-use crate::runs::Run;
-use crate::text::{number, with_error};
+use crate::row::{Row, grouped};
+use crate::text::number;
+use crate::thresholds::CLEAR;
 
 const PROSE: Prose = Prose::new(include_str!("s1.md"));
 
@@ -30,10 +30,32 @@ pub(super) const CLAIM: Claim = Claim {
 struct Scene<'a> {
     force: f64,
     frictionless: bool,
-    runs: Vec<&'a Run>,
+    rows: Vec<Row<'a>>,
+    /// J/Jmax, mean over the replicates.
+    flow: Uncertain,
 }
 
-impl Scene<'_> {
+/// The spheres of one run of a scene.
+struct Picture<'a> {
+    name: String,
+    row: Row<'a>,
+    spheres: Table,
+}
+
+impl<'a> Scene<'a> {
+    /// The scenes of some runs, from the largest force to the smallest, without friction last.
+    fn all_of(rows: Vec<Row<'a>>) -> Vec<Self> {
+        grouped(rows, |row| (-row.force(), is_frictionless(row)))
+            .into_iter()
+            .map(|((force, frictionless), rows)| Self {
+                force: -force,
+                frictionless,
+                flow: flow(&rows),
+                rows,
+            })
+            .collect()
+    }
+
     fn name(&self) -> String {
         let grains = if self.frictionless {
             ", without friction"
@@ -43,57 +65,47 @@ impl Scene<'_> {
         format!("*f*^{{P}} = {} *Yd*^{{2}}{grains}", self.force)
     }
 
-    /// J/Jmax, mean over the replicates.
-    fn flow(&self) -> Uncertain {
-        let ratios: Vec<f64> = self.runs.iter().map(|run| run.flow_rate_ratio).collect();
-        let (mean, error) = mean_and_error(&ratios);
-        Uncertain::normal(
-            mean,
-            if error.is_finite() {
-                error
-            } else {
-                self.runs[0].flow_rate_ratio_error
-            },
-        )
-    }
-
     /// Whether the flow is as the source's picture suggests: along the wave at the largest force and without friction,
     /// against it at the smaller ones; `None` where the error is too large to say.
     fn holds(&self, largest: f64) -> Option<bool> {
-        let flow = self.flow();
-        let clear = flow.value.abs() > CLEAR * flow.error;
-        clear.then_some((flow.value > 0.0) == (self.frictionless || self.force == largest))
+        let clear = self.flow.value.abs() > CLEAR * self.flow.error;
+        clear.then_some((self.flow.value > 0.0) == (self.frictionless || self.force == largest))
     }
+
+    /// The first run whose spheres were kept.
+    fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>, ClaimError> {
+        for row in &self.rows {
+            if let Some(spheres) = study.snapshot(row)? {
+                let (name, row) = (self.name(), *row);
+                return Ok(Some(Picture { name, row, spheres }));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// The mean of J/Jmax with its error from the scatter, or from the blocks of the run where there is but one.
+fn flow(rows: &[Row<'_>]) -> Uncertain {
+    let ratios: Vec<f64> = rows.iter().map(Row::flow_rate_ratio).collect();
+    let (mean, scatter) = mean_and_error(&ratios);
+    let error = if scatter.is_finite() {
+        scatter
+    } else {
+        rows[0].number("flow_rate_ratio_error")
+    };
+    Uncertain::normal(mean, error)
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let study = evidence.study("elastic-flow")?;
-    let mut scenes: Vec<Scene<'_>> = Vec::new();
-    for run in &study.runs {
-        let (force, frictionless) = (run.force(), is_frictionless(run));
-        match scenes
-            .iter_mut()
-            .find(|scene| scene.force == force && scene.frictionless == frictionless)
-        {
-            Some(scene) => scene.runs.push(run),
-            None => scenes.push(Scene {
-                force,
-                frictionless,
-                runs: vec![run],
-            }),
-        }
-    }
-    scenes.sort_by(|one, other| {
-        (other.force, one.frictionless)
-            .partial_cmp(&(one.force, other.frictionless))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    if scenes.is_empty() {
+    let scenes = Scene::all_of(study.rows());
+    let Some(first) = scenes.first() else {
         return Ok(nothing("No runs yet."));
-    }
-    let largest = scenes[0].force;
-    let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.runs);
-    let outcomes: Vec<Option<bool>> = scenes.iter().map(|scene| scene.holds(largest)).collect();
+    };
+    let outcomes: Vec<Option<bool>> = scenes
+        .iter()
+        .map(|scene| scene.holds(first.force))
+        .collect();
     let verdict = if outcomes.contains(&Some(false)) {
         Verdict::Differs
     } else if outcomes.len() >= 4 && outcomes.iter().all(Option::is_some) {
@@ -101,55 +113,51 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     } else {
         Verdict::Open
     };
-    let words: Vec<String> = scenes
+    let flows: Vec<String> = scenes
         .iter()
-        .map(|scene| {
-            let flow = scene.flow();
-            format!("{} at {}", with_error(flow.value, flow.error), scene.name())
-        })
+        .map(|scene| format!("{} at {}", scene.flow, scene.name()))
         .collect();
+    let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
     let mut found = finding(
         verdict,
-        format!("*J*/*J*_{{max}} is {}.", words.join(", ")),
+        PROSE.text("summary", &[("flows", &flows.join(", "))]),
         statistics(&lines, &scenes),
     );
-    for scene in &scenes {
-        found.quantities.push(Quantity {
-            name: format!("flow rate, {}", scene.name()),
-            symbol: "*J*/*J*_{max}".to_owned(),
-            unit: String::new(),
-            source: None,
-            ours: Some(scene.flow()),
-            method: format!("late mean over {} runs that began jammed", scene.runs.len()),
-        });
-    }
-    found.paragraphs.push(
-        "The source gives pictures of one strain rate and no numbers; forces and strain rates behind the verdict are those of the \
-         branches (S3), of which these flows are part. What is compared is the direction of the flow: along the wave at the largest force, \
-         where the jam lasts, and for grains without friction; against it at the smaller forces, where the jam has given way."
-            .to_owned(),
-    );
-    let drifting: Vec<String> = scenes
+    found.quantities = scenes
         .iter()
-        .filter(|scene| scene.runs.iter().any(|run| !run.is_stationary()))
-        .map(Scene::name)
+        .map(|scene| {
+            let (name, runs) = (scene.name(), scene.rows.len());
+            PROSE.quantity(
+                "flow rate",
+                &[("scene", &name), ("runs", &runs)],
+                scene.flow,
+            )
+        })
         .collect();
+    found.paragraphs.push(PROSE.text("method", &[]));
+    let drifts = |scene: &&Scene<'_>| scene.rows.iter().any(|row| !row.is_stationary());
+    let drifting: Vec<String> = scenes.iter().filter(drifts).map(Scene::name).collect();
     if !drifting.is_empty() {
-        found.weaknesses.push(format!(
-            "The flow still drifts in some of the runs at {}.",
-            drifting.join(", ")
-        ));
+        let scenes = drifting.join(", ");
+        let weakness = PROSE.text("drifting", &[("scenes", &scenes)]);
+        found.weaknesses.push(weakness);
     }
-    found.tables.extend(against_the_wave(study, &scenes)?);
-    found.figures.extend(snapshots(study, &scenes)?);
+    let mut pictures = Vec::new();
+    for scene in &scenes {
+        pictures.extend(scene.picture(study)?);
+    }
+    if !pictures.is_empty() {
+        found.tables.push(against_the_wave(&pictures)?);
+        found.figures.push(flow_fields(&pictures)?);
+    }
     Ok(found)
 }
 
 /// The pictures are of one strain rate: forces and strain rates are those of the branches, whose flows these are; replicates
 /// the fewest of branches and pictures.
-fn statistics(lines: &[ForceLine], scenes: &[Scene<'_>]) -> Statistics {
-    let branches = together(judged(lines).into_iter());
-    let of_pictures = scenes.iter().map(|scene| scene.runs.len());
+fn statistics(lines: &[ForceLine<'_>], scenes: &[Scene<'_>]) -> Statistics {
+    let branches = together(judged(lines));
+    let of_pictures = scenes.iter().map(|scene| scene.rows.len());
     Statistics {
         replicates: of_pictures.fold(branches.replicates, usize::min),
         ..branches
@@ -157,144 +165,92 @@ fn statistics(lines: &[ForceLine], scenes: &[Scene<'_>]) -> Statistics {
 }
 
 /// Which part of the grains moves against the wave in each picture.
-fn against_the_wave(
-    study: &StudyResults,
-    scenes: &[Scene<'_>],
-) -> Result<Option<ReportTable>, ClaimError> {
-    let mut rows = Vec::new();
-    for scene in scenes {
-        let Some((run, table)) = picture(study, scene)? else {
-            continue;
-        };
-        let (grain, velocity) = (table.booleans("grain")?, table.reals("axial_velocity")?);
-        let velocities: Vec<f64> = grain
-            .iter()
-            .zip(velocity)
-            .filter(|(is_grain, _)| **is_grain)
-            .map(|(_, velocity)| velocity / (run.strain_rate * run.wavelength))
+fn against_the_wave(pictures: &[Picture<'_>]) -> Result<ReportTable, ClaimError> {
+    let mut cells = Vec::new();
+    for Picture { name, row, spheres } in pictures {
+        let is_grain = spheres.booleans("grain")?;
+        let velocity = spheres.reals("axial_velocity")?;
+        let grains = is_grain.iter().zip(velocity).filter(|(grain, _)| **grain);
+        let velocities: Vec<f64> = grains
+            .map(|(_, velocity)| velocity / row.wave_speed())
             .collect();
-        let of_grains = |count: usize| count as f64 / velocities.len().max(1) as f64;
-        rows.push(vec![
-            scene.name(),
-            number(
-                of_grains(velocities.iter().filter(|v| **v < 0.0).count()),
-                2,
-            ),
-            number(
-                of_grains(velocities.iter().filter(|v| **v > 0.5).count()),
-                2,
-            ),
-            number(run.time * run.strain_rate, 0),
-            number(run.escaped_fraction(), 3),
+        let part = |moves: fn(f64) -> bool| {
+            let count = velocities.iter().filter(|v| moves(**v)).count();
+            number(count as f64 / velocities.len().max(1) as f64, 2)
+        };
+        cells.push(vec![
+            name.clone(),
+            part(|velocity| velocity < 0.0),
+            part(|velocity| velocity > 0.5),
+            number(row.time() * row.strain_rate(), 0),
+            number(row.escaped_fraction(), 3),
         ]);
     }
-    Ok((!rows.is_empty()).then(|| ReportTable {
-        caption: "Grains of the pictures: part that moves against the wave, part that moves along it faster than half its speed, \
-                  time in periods, part outside the tube."
-            .to_owned(),
-        head: ["picture", "*v_z* < 0", "*v_z* > *c*/2", "*t*/*T*", "outside"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    }))
-}
-
-/// The first run of a scene whose spheres were kept.
-fn picture<'a>(
-    study: &StudyResults,
-    scene: &Scene<'a>,
-) -> Result<Option<(&'a Run, Table)>, ClaimError> {
-    for run in &scene.runs {
-        if let Some(table) = study.snapshot(run)? {
-            return Ok(Some((run, table)));
-        }
-    }
-    Ok(None)
+    Ok(PROSE.table("grains of the pictures", &[], cells))
 }
 
 /// How far from the axis a picture shows spheres, in radii of the tube.
 const SHOWN_RADII: f64 = 2.5;
 
-/// The spheres of a table as they are drawn, velocities over a speed.
-fn spheres(
-    table: &Table,
-    reach: f64,
-    speed: f64,
-) -> Result<(Vec<SnapshotGrain>, Vec<SnapshotSphere>), ClaimError> {
-    let grain = table.booleans("grain")?;
-    let [along, across, depth, diameter, velocity] =
-        ["along", "across", "depth", "diameter", "axial_velocity"].map(|name| table.reals(name));
-    let (along, across, depth) = (along?, across?, depth?);
-    let (diameter, velocity) = (diameter?, velocity?);
-    let (mut grains, mut wall) = (Vec::new(), Vec::new());
-    for row in 0..table.rows() {
-        // One that has flown off must not stretch the picture.
-        if across[row].hypot(depth[row]) > reach {
-            continue;
+impl Picture<'_> {
+    /// The grains and the wall as they are drawn, velocities over that of the wave.
+    fn drawn(&self) -> Result<(Vec<SnapshotGrain>, Vec<SnapshotSphere>), ClaimError> {
+        let is_grain = self.spheres.booleans("grain")?;
+        let column = |name| self.spheres.reals(name);
+        let (along, across, depth) = (column("along")?, column("across")?, column("depth")?);
+        let (diameter, velocity) = (column("diameter")?, column("axial_velocity")?);
+        let (mut grains, mut wall) = (Vec::new(), Vec::new());
+        for place in 0..self.spheres.rows() {
+            // One that has flown off must not stretch the picture.
+            if across[place].hypot(depth[place]) > SHOWN_RADII * self.row.radius() {
+                continue;
+            }
+            let sphere = SnapshotSphere {
+                along: along[place],
+                across: across[place],
+                depth: depth[place],
+                diameter: diameter[place],
+            };
+            if is_grain[place] {
+                grains.push(SnapshotGrain {
+                    sphere,
+                    axial_velocity: velocity[place] / self.row.wave_speed(),
+                });
+            } else {
+                wall.push(sphere);
+            }
         }
-        let sphere = SnapshotSphere {
-            along: along[row],
-            across: across[row],
-            depth: depth[row],
-            diameter: diameter[row],
-        };
-        if grain[row] {
-            grains.push(SnapshotGrain {
-                sphere,
-                axial_velocity: velocity[row] / speed,
-            });
-        } else {
-            wall.push(sphere);
-        }
+        Ok((grains, wall))
     }
-    Ok((grains, wall))
 }
 
-fn snapshots(
-    study: &StudyResults,
-    scenes: &[Scene<'_>],
-) -> Result<Option<ReportFigure>, ClaimError> {
-    let mut parts = Vec::new();
-    for scene in scenes {
-        if let Some((run, table)) = picture(study, scene)? {
-            let speed = run.strain_rate * run.wavelength;
-            let (grains, wall) = spheres(&table, SHOWN_RADII * run.radius, speed)?;
-            parts.push((scene.name(), run, grains, wall));
-        }
+fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure, ClaimError> {
+    let mut drawn = Vec::new();
+    for picture in pictures {
+        drawn.push((picture, picture.drawn()?));
     }
-    if parts.is_empty() {
-        return Ok(None);
-    }
-    let figures: Vec<(&str, SnapshotFigure<'_>)> = parts
+    let snapshots: Vec<(&str, SnapshotFigure<'_>)> = drawn
         .iter()
-        .map(|(name, run, grains, wall)| {
-            let length = run.wavelength * run.waves as f64;
-            (
-                name.as_str(),
-                SnapshotFigure {
-                    grains,
-                    wall: SnapshotWall::Spheres(wall),
-                    length,
-                    period: Some(length),
-                    wavelength: Some(run.wavelength),
-                    ..SnapshotFigure::default()
-                },
-            )
+        .map(|(picture, (grains, wall))| {
+            let wavelength = picture.row.wavelength();
+            let length = wavelength * picture.row.number("waves");
+            let figure = SnapshotFigure {
+                grains,
+                wall: SnapshotWall::Spheres(wall),
+                length,
+                period: Some(length),
+                wavelength: Some(wavelength),
+                ..SnapshotFigure::default()
+            };
+            (picture.name.as_str(), figure)
         })
         .collect();
-    Ok(Some(ReportFigure {
-        name: "flow-fields".to_owned(),
-        caption: format!(
-            "The flow after {} periods from jammed, *n* = 0.710, *ε̇* = 4.01 × 10^{{−3}}: grains in front of and behind the axis, \
-             coloured by their axial velocity over the wave's speed, blue against the wave and red along it; the wave runs to the \
-             right. The wall is cut along the axis.",
-            number(parts[0].1.time * parts[0].1.strain_rate, 0)
-        ),
-        drawing: SnapshotStack {
-            title: "",
-            snapshots: &figures,
-            width: Width::DoubleColumn,
-        }
-        .draw()?,
-    }))
+    let stack = SnapshotStack {
+        title: "",
+        snapshots: &snapshots,
+        width: Width::DoubleColumn,
+    };
+    let first = &pictures[0].row;
+    let periods = number(first.time() * first.strain_rate(), 0);
+    Ok(PROSE.figure("flow-fields", &[("periods", &periods)], stack.draw()?))
 }

@@ -1,20 +1,20 @@
 //! S2: jammed flow gives way where the wall yields.
 
-use peristalsis_analysis::{Family, Survival, Transition, Uncertain, fit_lifetime};
+use peristalsis_analysis::{Family, Survival, Transition, Uncertain, fit_lifetime, mean_and_error};
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
-use super::elastic::{finding, judged, label, nothing, rate_text};
-use crate::branches::mean_and_error;
+use super::elastic::{finding, judged, label, nothing};
 use crate::claim::Claim;
-use crate::critical::longest;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
+use crate::exhibit::{self, cell_of, ends, periods};
+use crate::finding::{Finding, ReportFigure, Verdict};
 use crate::forces::{ForceLine, together};
 use crate::prose::Prose;
-use crate::runs::{Run, Start};
-use crate::text::{number, with_error};
+use crate::row::{Row, Start, grouped, longest};
+use crate::text::number;
+use crate::thresholds::GIVEN_WAY;
 
 const PROSE: Prose = Prose::new(include_str!("s2.md"));
 
@@ -25,299 +25,224 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
-/// J/Jmax below which the jam has given way: between that of the jam, 0.6 and more, and that of the unjammed flow, near 0.
-const GIVEN_WAY: f64 = 0.3;
-
 /// The runs from jammed at one force.
 struct Rung<'a> {
     strain_rate: f64,
     force: f64,
-    runs: Vec<&'a Run>,
+    rows: Vec<Row<'a>>,
+    transitions: Vec<Transition>,
+    /// Times until the jam gave way, of those runs in which it did.
+    times: Vec<f64>,
 }
 
-impl Rung<'_> {
-    fn transitions(&self) -> Vec<Transition> {
-        self.runs
-            .iter()
-            .map(|run| run.transition_at(GIVEN_WAY))
+impl<'a> Rung<'a> {
+    /// Of the runs from jammed, by strain rate and force.
+    fn all_of(rows: &[Row<'a>]) -> Vec<Self> {
+        let jammed = |row: &&Row<'_>| row.start() == Start::Jammed && row.force().is_finite();
+        let rows = rows.iter().filter(jammed).copied();
+        grouped(rows, |row| (row.strain_rate(), row.force()))
+            .into_iter()
+            .map(|((strain_rate, force), rows)| {
+                let transitions: Vec<Transition> = rows
+                    .iter()
+                    .map(|row| row.transition_at(GIVEN_WAY))
+                    .collect();
+                Self {
+                    strain_rate,
+                    force,
+                    rows,
+                    times: transitions
+                        .iter()
+                        .filter_map(|one| one.observed())
+                        .collect(),
+                    transitions,
+                }
+            })
             .collect()
     }
 
-    fn yielded(&self) -> usize {
-        self.transitions()
-            .iter()
-            .filter(|one| one.observed().is_some())
-            .count()
-    }
-
-    /// Mean time until the jam gives way, those that did not counted as censored; `None` where none did.
+    /// Mean number of periods until the jam gives way, those that did not counted as censored; `None` where none did.
     fn mean(&self) -> Option<Uncertain> {
-        let transitions = self.transitions();
-        if let Ok(fit) = fit_lifetime(Family::Gamma, &transitions) {
-            return Some(fit.mean);
-        }
-        // Too few for two parameters: their scatter where all were seen, no error of a single one, else one parameter.
-        let times: Vec<f64> = transitions
-            .iter()
-            .filter_map(|one| one.observed())
-            .collect();
-        if times.len() > 1 && times.len() == transitions.len() {
-            let (mean, error) = mean_and_error(&times);
-            return Some(Uncertain::normal(mean, error));
-        }
-        if let ([time], 1) = (times.as_slice(), transitions.len()) {
-            return Some(Uncertain::normal(*time, f64::NAN));
-        }
-        let fit = fit_lifetime(Family::Exponential, &transitions).ok()?;
-        Some(fit.mean)
+        let mean = if let Ok(fit) = fit_lifetime(Family::Gamma, &self.transitions) {
+            fit.mean
+        } else if self.times.len() == self.transitions.len() {
+            // Too few for two parameters: their scatter where all were seen, no error of a single one.
+            let (mean, error) = mean_and_error(&self.times);
+            Uncertain::normal(mean, error)
+        } else {
+            fit_lifetime(Family::Exponential, &self.transitions)
+                .ok()?
+                .mean
+        };
+        Some(mean.scaled(self.strain_rate))
     }
 
-    /// For how long all runs were watched at least.
+    /// For how many periods all runs were watched at least.
     fn watched(&self) -> f64 {
-        self.runs
-            .iter()
-            .map(|run| run.time)
-            .fold(f64::INFINITY, f64::min)
+        let times = self.rows.iter().map(Row::time);
+        times.fold(f64::INFINITY, f64::min) * self.strain_rate
     }
 
     fn most_yield(&self) -> bool {
-        2 * self.yielded() >= self.runs.len()
+        2 * self.times.len() >= self.rows.len()
     }
-}
-
-/// Runs from jammed by strain rate and force.
-fn rungs(runs: &[Run]) -> Vec<Rung<'_>> {
-    let key = |run: &Run| (run.strain_rate, run.force());
-    let mut sorted: Vec<&Run> = runs
-        .iter()
-        .filter(|run| run.start == Start::Jammed && run.force().is_finite())
-        .collect();
-    sorted.sort_by(|one, other| {
-        key(one)
-            .partial_cmp(&key(other))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    sorted
-        .chunk_by(|one, other| key(one) == key(other))
-        .map(|group| Rung {
-            strain_rate: group[0].strain_rate,
-            force: group[0].force(),
-            runs: group.to_vec(),
-        })
-        .collect()
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let study = evidence.study("elastic-yielding")?;
-    let branches = &evidence.study("elastic-branches")?.runs;
-    let lines = ForceLine::all_of(branches);
-    let ladder = rungs(&study.runs);
+    let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
+    let ladder = Rung::all_of(&rows);
     if ladder.is_empty() {
         return Ok(nothing("No runs from jammed yet."));
     }
-    let yielding: Vec<&Rung<'_>> = ladder.iter().filter(|rung| rung.most_yield()).collect();
-    let lasting: Vec<&Rung<'_>> = ladder.iter().filter(|rung| rung.yielded() == 0).collect();
-    let (gives_way, lasts) = (yielding.last(), lasting.first());
+    let gives_way = ladder.iter().rfind(|rung| rung.most_yield());
+    let lasts = ladder.iter().find(|rung| rung.times.is_empty());
     let verdict = match (gives_way, lasts) {
         (Some(gives_way), Some(lasts)) if gives_way.force < lasts.force => Verdict::Reproduced,
-        (None, Some(_)) if lasting.len() == ladder.len() => Verdict::Differs,
+        (None, Some(_)) if ladder.iter().all(|rung| rung.times.is_empty()) => Verdict::Differs,
         _ => Verdict::Open,
     };
-    let periods = longest(study.runs.iter());
+    let periods = longest(&rows);
+    let yielding = gives_way.map_or("at no force".to_owned(), |rung| {
+        format!("up to *f*^{{P}} = {} *Yd*^{{2}}", rung.force)
+    });
+    let lasting = lasts.map_or("some do at every force".to_owned(), |rung| {
+        format!("from {} on none does", rung.force)
+    });
+    let lines = ForceLine::all_of(&branches);
     let mut found = finding(
         verdict,
-        format!(
-            "Within {periods} periods most jams give way {}; {}.",
-            gives_way.map_or("at no force".to_owned(), |rung| format!(
-                "up to *f*^{{P}} = {} *Yd*^{{2}}",
-                rung.force
-            )),
-            lasts.map_or("some do at every force".to_owned(), |rung| format!(
-                "from {} on none does",
-                rung.force
-            )),
+        PROSE.text(
+            "summary",
+            &[
+                ("periods", &periods),
+                ("yielding", &yielding),
+                ("lasting", &lasting),
+            ],
         ),
-        together(judged(&lines).into_iter()),
+        together(judged(&lines)),
     );
     for rung in &ladder {
-        if let Some(mean) = rung.mean() {
-            let period = rung.runs[0].period();
-            found.quantities.push(Quantity {
-                name: format!("time until the jam gives way, *f*^{{P}} = {}", rung.force),
-                symbol: "*τ*/*T*".to_owned(),
-                unit: String::new(),
-                source: None,
-                ours: Some(scaled(&mean, 1.0 / period)),
-                method: format!(
-                    "mean over {} runs, {} of them censored",
-                    rung.runs.len(),
-                    rung.runs.len() - rung.yielded()
-                ),
-            });
-        }
+        let runs = rung.rows.len();
+        found.quantities.extend(rung.mean().map(|mean| {
+            PROSE.quantity(
+                "time",
+                &[
+                    ("force", &rung.force),
+                    ("runs", &runs),
+                    ("censored", &(runs - rung.times.len())),
+                ],
+                mean,
+            )
+        }));
     }
-    found.tables.push(times(
-        &ladder,
-        "Runs from jammed in which *J*/*J*_{max} fell below 0.3 for good, the mean time until then (likelihood, the others counted \
-         as censored) and the median (Kaplan-Meier), in periods.",
-    ));
-    let all = rungs(branches);
+    found.tables.push(PROSE.table("times", &[], cells(&ladder)));
+    let all = Rung::all_of(&branches);
     if !all.is_empty() {
-        found.tables.push(times(
-            &all,
-            "The same at all strain rates, from the runs behind S3. At small strain rates the flow passes 0.3 without a jump.",
-        ));
+        let table = PROSE.table("times at all strain rates", &[], cells(&all));
+        found.tables.push(table);
     }
-    found.paragraphs.push(format!(
-        "The jam counts as given way when the period average of *J*/*J*_{{max}} passes {GIVEN_WAY} downwards for good. A run that keeps \
-         its jam to the end is censored there, not dropped: where most are, the mean is that of the fitted distribution and not of the \
-         times seen."
-    ));
-    found.weaknesses.push(format!(
-        "A jam that outlasts {periods} periods may give way later: the border between lasting and yielding forces falls with the time of \
-         watching."
-    ));
-    found.figures.extend(figure(study, &ladder)?);
+    let method = PROSE.text("method", &[("threshold", &GIVEN_WAY)]);
+    found.paragraphs.push(method);
+    let weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    found.weaknesses.extend(weaknesses);
+    found.figures.push(figure(study, &ladder)?);
     Ok(found)
 }
 
-/// A number in another unit.
-fn scaled(number: &Uncertain, factor: f64) -> Uncertain {
-    let interval = |interval: peristalsis_analysis::Interval| peristalsis_analysis::Interval {
-        lower: interval.lower * factor,
-        upper: interval.upper * factor,
+/// How many jams gave way, and when.
+fn cells(rungs: &[Rung<'_>]) -> Vec<Vec<String>> {
+    let row = |rung: &Rung<'_>| {
+        let median = Survival::new(&rung.transitions)
+            .and_then(|curve| curve.median())
+            .ok();
+        let mean = rung.mean().map(|mean| {
+            if mean.error.is_finite() {
+                mean.to_string()
+            } else {
+                number(mean.value, 1)
+            }
+        });
+        vec![
+            rung.strain_rate.to_string(),
+            rung.force.to_string(),
+            format!("{} of {}", rung.times.len(), rung.rows.len()),
+            mean.unwrap_or_else(|| format!("> {}", number(rung.watched(), 0))),
+            cell_of(median, |median| number(median.value * rung.strain_rate, 1)),
+        ]
     };
-    Uncertain {
-        value: number.value * factor,
-        error: number.error * factor,
-        interval_68: interval(number.interval_68),
-        interval_95: interval(number.interval_95),
-    }
-}
-
-fn times(rungs: &[Rung<'_>], caption: &str) -> ReportTable {
-    let rows = rungs
-        .iter()
-        .map(|rung| {
-            let rate = rung.strain_rate;
-            let median = Survival::new(&rung.transitions()).and_then(|curve| curve.median());
-            vec![
-                rate_text(rate),
-                format!("{}", rung.force),
-                format!("{} of {}", rung.yielded(), rung.runs.len()),
-                rung.mean().map_or_else(
-                    || format!("> {}", number(rung.watched() * rate, 0)),
-                    |mean| {
-                        if mean.error.is_finite() {
-                            with_error(mean.value * rate, mean.error * rate)
-                        } else {
-                            number(mean.value * rate, 1)
-                        }
-                    },
-                ),
-                median.map_or("–".to_owned(), |median| number(median.value * rate, 1)),
-            ]
-        })
-        .collect();
-    ReportTable {
-        caption: caption.to_owned(),
-        head: ["*ε̇*", "*f*^{P}", "gave way", "*τ*/*T*", "median"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    }
+    rungs.iter().map(row).collect()
 }
 
 /// J(t) of one run a force, and the time until the jam gives way against the force.
-fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
-    let mut flow =
-        ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(..=1.05);
-    let mut drawn = 0;
-    for rung in ladder {
-        let Some(run) = rung.runs.iter().find(|run| run.replicate == 0) else {
-            continue;
-        };
-        let Some(averages) = study.period_averages(run)? else {
-            continue;
-        };
-        let period: Vec<f64> = (0..averages.len()).map(|k| k as f64 + 0.5).collect();
-        if !averages.is_empty() {
-            flow = flow.with(Curve::new("", &period, &averages).tint(Tint::Value(rung.force)));
-            drawn += 1;
-        }
-    }
-    let mut panels = Vec::new();
-    if drawn > 0 {
-        panels.push(flow.title("from jammed, one run a force"));
-    }
-    let mut single: [Vec<f64>; 2] = Default::default();
-    let mut mean: [Vec<f64>; 3] = Default::default();
-    let mut limits: [Vec<f64>; 2] = Default::default();
-    for rung in ladder {
-        for transition in rung.transitions() {
-            if let Some(time) = transition.observed() {
-                single[0].push(rung.force);
-                single[1].push(time * rung.strain_rate);
-            }
-        }
-        match rung.mean().filter(|_| rung.most_yield()) {
-            Some(time) => {
-                mean[0].push(rung.force);
-                mean[1].push(time.value * rung.strain_rate);
-                mean[2].push(time.error * rung.strain_rate);
-            }
-            None => {
-                limits[0].push(rung.force);
-                limits[1].push(rung.watched() * rung.strain_rate);
-            }
-        }
-    }
-    let mut times = ChartPanel::new(&label(Axis::ForceAmplitude), &label(Axis::TransitionPeriod))
-        .y_scale(Scale::Logarithmic);
-    if !single[0].is_empty() {
-        times = times.with(
-            Points::new("runs", &single[0], &single[1])
-                .series(0)
-                .tint(Tint::Grey)
-                .open(),
-        );
-    }
-    if !mean[0].is_empty() {
-        times = times.with(
-            Points::new("mean", &mean[0], &mean[1])
-                .y_errors(&mean[2])
-                .series(0)
-                .joined(),
-        );
-    }
-    if !limits[0].is_empty() {
-        times = times.with(
-            Points::new("", &limits[0], &limits[1])
-                .lower_limits(&vec![true; limits[0].len()])
-                .limit_name("most outlast the run")
-                .series(1),
-        );
-    }
-    panels.push(times.title("until the jam gives way"));
-    let forces = ladder.iter().map(|rung| rung.force);
-    let (least, largest) = forces.fold((f64::INFINITY, 0.0_f64), |(least, largest), force| {
-        (least.min(force), largest.max(force))
-    });
+fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ReportFigure, ClaimError> {
+    let courses = courses(study, ladder)?;
+    let is_coloured = courses.is_some();
+    let panels = courses.into_iter().chain([times(ladder)]);
     let mut figure = ChartFigure::grid(2, panels)
         .width(Width::DoubleColumn)
         .description("Flow rate in time from jammed, and the time until the jam gives way against the force.");
-    if drawn > 0 {
-        figure = figure.colour_scale(ColourScale::new(
-            &label(Axis::ForceAmplitude),
-            least,
-            largest.max(least * 1.01),
-        ));
+    if is_coloured {
+        let first = ladder[0].force;
+        let forces = ladder.iter().map(|rung| rung.force);
+        let (least, largest) = ends(forces).unwrap_or((first, 1.01 * first));
+        let scale = ColourScale::new(&label(Axis::ForceAmplitude), least, largest);
+        figure = figure.colour_scale(scale);
     }
-    Ok(Some(ReportFigure {
-        name: "yielding".to_owned(),
-        caption: "Jammed flow gives way at small forces: *J*/*J*_{max}, averaged over each period, and the time at which it falls \
-                  below 0.3; arrows: most runs keep their jam to the end."
-            .to_owned(),
-        drawing: figure.draw()?,
-    }))
+    Ok(PROSE.figure("yielding", &[("threshold", &GIVEN_WAY)], figure.draw()?))
+}
+
+/// The flow in time of the first replicate at each force; `None` where no time series is at hand.
+fn courses(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Option<ChartPanel>, ClaimError> {
+    let mut curves = Vec::new();
+    for rung in ladder {
+        let Some(row) = rung.rows.iter().find(|row| row.replicate() == 0) else {
+            continue;
+        };
+        let averages = study.period_averages(row)?.unwrap_or_default();
+        if !averages.is_empty() {
+            let curve = Curve::new("", &periods(averages.len()), &averages);
+            curves.push(curve.tint(Tint::Value(rung.force)));
+        }
+    }
+    let panel = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
+        .y_range(..=1.05)
+        .title("from jammed, one run a force");
+    Ok((!curves.is_empty()).then(|| panel.with_all(curves)))
+}
+
+/// The time until the jam gives way against the force, of the runs and their mean.
+fn times(ladder: &[Rung<'_>]) -> ChartPanel {
+    let single = ladder.iter().flat_map(|rung| {
+        let times = rung.times.iter();
+        times.map(|time| (rung.force, time * rung.strain_rate))
+    });
+    let (force, time): (Vec<f64>, Vec<f64>) = single.unzip();
+    let single = (!force.is_empty()).then(|| {
+        Points::new("runs", &force, &time)
+            .series(0)
+            .tint(Tint::Grey)
+            .open()
+    });
+    let mean = |rung: &Rung<'_>| rung.mean().filter(|_| rung.most_yield());
+    let means = ladder
+        .iter()
+        .filter_map(|rung| Some((rung.force, mean(rung)?)));
+    let (force, watched): (Vec<f64>, Vec<f64>) = ladder
+        .iter()
+        .filter(|rung| mean(rung).is_none())
+        .map(|rung| (rung.force, rung.watched()))
+        .unzip();
+    let limits = (!force.is_empty()).then(|| {
+        Points::new("", &force, &watched)
+            .lower_limits(&vec![true; force.len()])
+            .limit_name("most outlast the run")
+            .series(1)
+    });
+    ChartPanel::new(&label(Axis::ForceAmplitude), &label(Axis::TransitionPeriod))
+        .y_scale(Scale::Logarithmic)
+        .title("until the jam gives way")
+        .with_all(single)
+        .with_all(exhibit::points("mean", means).map(|points| points.series(0).joined()))
+        .with_all(limits)
 }

@@ -1,19 +1,21 @@
 //! S4: back flow at small forces.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::Quantity as Axis;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Reference};
+use peristalsis_figures::Drawing;
+use peristalsis_figures::chart::{ChartFigure, LegendPlace, Reference};
 
 use super::elastic::{
-    branch_points, branch_runs, finding, judged, label, nothing, rate_colours, rate_text,
+    branch_rows, finding, flow_against_force, judged, nothing, rate_colours, with_branches,
 };
+use crate::branch::Point;
 use crate::claim::Claim;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Verdict};
-use crate::forces::{ForceLine, ForcePoint, LEAST_JUMP, together};
+use crate::exhibit::cell;
+use crate::finding::{Finding, Verdict};
+use crate::forces::{ForceLine, counted, is_below, lowest, together};
 use crate::prose::Prose;
-use crate::text::{number, with_error};
+use crate::text::number;
+use crate::thresholds::{LEAST_BACK_FLOW, LEAST_JUMP_AGAINST_FORCE};
 
 const PROSE: Prose = Prose::new(include_str!("s4.md"));
 
@@ -24,132 +26,114 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
-/// Part of *J*max from which on a flow against the wave is more than none.
-const LEAST_FLOW: f64 = 0.01;
-
 /// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
 /// jam lasts there.
-pub(super) fn negative(line: &ForceLine) -> Vec<f64> {
+pub(super) fn negative(line: &ForceLine<'_>) -> Vec<f64> {
+    let flows_back = |point: &Point<'_>| is_below(point, -LEAST_BACK_FLOW);
+    let lasts = |rest: &Point<'_>, jammed: &Point<'_>| {
+        jammed.flow.value > rest.flow.value + LEAST_JUMP_AGAINST_FORCE
+    };
     line.rest
         .points
         .iter()
-        .filter(|rest| rest.is_below(-LEAST_FLOW))
+        .filter(|rest| flows_back(rest))
         .filter(|rest| {
-            line.jammed.at(rest.force).is_none_or(|jammed| {
-                jammed.is_below(-LEAST_FLOW) || jammed.mean > rest.mean + LEAST_JUMP
-            })
+            let jammed = line.jammed.at(rest.control);
+            jammed.is_none_or(|jammed| flows_back(jammed) || lasts(rest, jammed))
         })
-        .map(|rest| rest.force)
+        .map(|rest| rest.control)
         .collect()
 }
 
-/// Whether the flow of a line is negative at larger forces only, and not at its smallest.
-fn only_beyond(line: &ForceLine) -> bool {
-    let smallest = line.points().map(|point| point.force).reduce(f64::min);
-    negative(line)
-        .first()
-        .is_some_and(|first| Some(*first) > smallest)
-}
-
-/// The point of the strongest flow against the wave, of both starts.
-pub(super) fn lowest(line: &ForceLine) -> Option<ForcePoint> {
-    line.points()
-        .copied()
-        .min_by(|one, other| one.mean.total_cmp(&other.mean))
+/// All forces of a line, ascending.
+fn forces(line: &ForceLine<'_>) -> Vec<f64> {
+    let mut forces: Vec<f64> = line.points().map(|point| point.control).collect();
+    forces.sort_by(f64::total_cmp);
+    forces.dedup();
+    forces
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let lines = ForceLine::all_of(&branch_runs(evidence)?);
+    let rows = branch_rows(evidence)?;
+    let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
         return Ok(nothing("No runs yet."));
     }
-    let backward: Vec<(&ForceLine, Vec<f64>)> = tight
-        .iter()
-        .map(|line| (*line, negative(line)))
-        .filter(|(_, forces)| !forces.is_empty())
-        .collect();
+    let (forward, backward): (Vec<&ForceLine<'_>>, _) =
+        tight.iter().partition(|line| negative(line).is_empty());
     let verdict = if backward.is_empty() {
         Verdict::Differs
     } else {
         Verdict::Reproduced
     };
-    let words: Vec<String> = backward
-        .iter()
-        .filter_map(|(line, forces)| {
-            let lowest = lowest(line)?;
-            Some(format!(
-                "at *ε̇* = {} for *f*^{{P}} {} (down to {} at {})",
-                rate_text(line.strain_rate),
-                range(forces),
-                with_error(lowest.mean, lowest.error),
-                lowest.force
-            ))
-        })
-        .collect();
-    let without: Vec<String> = tight
-        .iter()
-        .filter(|line| negative(line).is_empty())
-        .map(|line| rate_text(line.strain_rate))
-        .collect();
-    let mut found = finding(
-        verdict,
-        format!(
-            "*J* is negative {}{}.",
-            if words.is_empty() {
-                "nowhere".to_owned()
-            } else {
-                words.join(", ")
-            },
-            if without.is_empty() || words.is_empty() {
-                String::new()
-            } else {
-                format!(", and nowhere at *ε̇* = {}", without.join(", "))
-            }
-        ),
-        together(tight.iter().copied()),
-    );
+    let statistics = together(tight.iter().copied());
+    let mut found = finding(verdict, summary(&backward, &forward), statistics);
     for line in &tight {
-        if let Some(lowest) = lowest(line) {
-            found.quantities.push(Quantity {
-                name: format!(
-                    "smallest flow rate, strain rate {}, at *f*^{{P}} = {}",
-                    line.strain_rate, lowest.force
-                ),
-                symbol: "*J*/*J*_{max}".to_owned(),
-                unit: String::new(),
-                source: None,
-                ours: Some(Uncertain::normal(lowest.mean, lowest.error)),
-                method: "mean over replicates of stationary runs; the smallest of several, and so a little too small".to_owned(),
-            });
-        }
+        found.quantities.extend(lowest(line.points()).map(|lowest| {
+            PROSE.quantity(
+                "lowest",
+                &[("rate", &line.strain_rate), ("force", &lowest.control)],
+                lowest.flow,
+            )
+        }));
     }
-    found.tables.push(table(&tight));
-    found.paragraphs.push(format!(
-        "A flow counts as negative where its mean is below −{LEAST_FLOW} by four of its errors from rest, and from jammed as well unless \
-         the jam lasts there. Errors are those of \
-         the scatter over replicates, of the blocks of one run where there is but one."
-    ));
-    let beyond: Vec<String> = tight
-        .iter()
-        .filter(|line| only_beyond(line))
-        .map(|line| rate_text(line.strain_rate))
-        .collect();
+    let cells = tight.iter().flat_map(|line| cells(line)).collect();
+    found.tables.push(PROSE.table("flows", &[], cells));
+    let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
+    found.paragraphs.push(method);
+    // Those whose flow is negative at larger forces only, and not at the smallest.
+    let only_beyond = |line: &&ForceLine<'_>| {
+        negative(line)
+            .first()
+            .is_some_and(|first| *first > forces(line)[0])
+    };
+    let beyond: Vec<&ForceLine<'_>> = tight.iter().copied().filter(only_beyond).collect();
     if !beyond.is_empty() {
-        found.weaknesses.push(format!(
-            "The claim says small forces: at *ε̇* = {} the smallest that were tried carry the grains along, and only larger ones turn \
-             the flow round.",
-            beyond.join(", ")
-        ));
+        let weakness = PROSE.text("only beyond", &[("rates", &rates(&beyond))]);
+        found.weaknesses.push(weakness);
     }
-    found.figures.push(ReportFigure {
-        name: "back-flow".to_owned(),
-        caption: "Stationary *J*/*J*_{max} below the transition, from rest (filled) and from jammed (open): below the dotted line grains \
-                  flow against the wave."
-            .to_owned(),
-        drawing: below_transition(&lines, &tight)?,
-    });
+    let drawing = below_transition(&lines, &tight)?;
+    found.figures.push(PROSE.figure("back-flow", &[], drawing));
     Ok(found)
+}
+
+/// The strain rates of some lines in words.
+fn rates(lines: &[&ForceLine<'_>]) -> String {
+    let rates: Vec<String> = lines
+        .iter()
+        .map(|line| line.strain_rate.to_string())
+        .collect();
+    rates.join(", ")
+}
+
+/// Where the flow is negative.
+fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
+    let at_rate = |line: &&ForceLine<'_>| {
+        let lowest = lowest(line.points())?;
+        Some(PROSE.text(
+            "at a strain rate",
+            &[
+                ("rate", &line.strain_rate),
+                ("forces", &range(&negative(line))),
+                ("lowest", &lowest.flow),
+                ("force", &lowest.control),
+            ],
+        ))
+    };
+    let words: Vec<String> = backward.iter().filter_map(at_rate).collect();
+    if words.is_empty() {
+        return PROSE.text("nowhere", &[]);
+    }
+    let elsewhere = if forward.is_empty() {
+        String::new()
+    } else {
+        format!(", and nowhere at *ε̇* = {}", rates(forward))
+    };
+    PROSE.text(
+        "summary",
+        &[("rates", &words.join(", ")), ("elsewhere", &elsewhere)],
+    )
 }
 
 /// Forces in words.
@@ -163,63 +147,35 @@ fn range(forces: &[f64]) -> String {
 
 /// Both branches of each line about J = 0.
 fn below_transition(
-    lines: &[ForceLine],
-    tight: &[&ForceLine],
-) -> Result<peristalsis_figures::Drawing, ClaimError> {
-    let mut panel = ChartPanel::new(&label(Axis::ForceAmplitude), &label(Axis::FlowRateRatio))
+    lines: &[ForceLine<'_>],
+    tight: &[&ForceLine<'_>],
+) -> Result<Drawing, ClaimError> {
+    let panel = flow_against_force()
         .y_range(-0.12..=0.12)
         .with(Reference::horizontal(0.0));
-    for (place, line) in tight.iter().enumerate() {
-        for (branch, is_open) in [(&line.rest, false), (&line.jammed, true)] {
-            if let Some(points) = branch_points(branch, "", place, line.strain_rate) {
-                panel = panel.with(if is_open { points.open() } else { points });
-            }
-        }
-    }
-    Ok(ChartFigure::new(panel)
+    Ok(ChartFigure::new(with_branches(panel, tight))
         .legend(LegendPlace::Hidden)
         .colour_scale(rate_colours(lines))
         .description("Stationary flow rate against the force about zero, from both starts.")
         .draw()?)
 }
 
-fn table(tight: &[&ForceLine]) -> ReportTable {
-    let mut rows = Vec::new();
-    for line in tight {
-        let mut forces: Vec<f64> = line.points().map(|point| point.force).collect();
-        forces.sort_by(f64::total_cmp);
-        forces.dedup();
-        for force in forces {
-            let cell = |point: Option<&ForcePoint>| {
-                point.map_or("–".to_owned(), |point| {
-                    with_error(point.mean, point.error)
-                })
-            };
-            let counted = |point: Option<&ForcePoint>| point.map_or(0, |point| point.counted);
-            let (rest, jammed) = (line.rest.at(force), line.jammed.at(force));
-            rows.push(vec![
-                rate_text(line.strain_rate),
-                format!("{force}"),
-                cell(rest),
-                cell(jammed),
-                format!("{} + {}", counted(rest), counted(jammed)),
-                number(
-                    rest.into_iter()
-                        .chain(jammed)
-                        .map(|point| point.escaped)
-                        .fold(0.0, f64::max),
-                    3,
-                ),
-            ]);
-        }
-    }
-    ReportTable {
-        caption: "Stationary *J*/*J*_{max} from rest and from jammed, runs from either start that average over 50 stationary periods, and \
-                  part of the grains outside; “–”: most runs still drift."
-            .to_owned(),
-        head: ["*ε̇*", "*f*^{P}", "from rest", "from jammed", "runs that count", "outside"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    }
+/// The rows of the table for one strain rate.
+fn cells(line: &ForceLine<'_>) -> Vec<Vec<String>> {
+    let row = |force: f64| {
+        let starts = line.branches().map(|branch| branch.at(force));
+        let flows = starts.map(|point| cell(point.map(|point| point.flow)));
+        let runs = starts.map(|point| point.map_or(0, |point| counted(&point.rows)));
+        let escaped = starts.into_iter().flatten().map(Point::escaped);
+        let [from_rest, from_jammed] = flows;
+        vec![
+            line.strain_rate.to_string(),
+            force.to_string(),
+            from_rest,
+            from_jammed,
+            format!("{} + {}", runs[0], runs[1]),
+            number(escaped.fold(0.0, f64::max), 3),
+        ]
+    };
+    forces(line).into_iter().map(row).collect()
 }

@@ -32,7 +32,7 @@ const NUMBERS: [&str; 11] = [
 
 /// Rows as they are put together: texts and numbers by column.
 #[derive(Clone, Default)]
-pub struct Rows {
+pub(crate) struct Rows {
     /// Numbers that every row has unless it says otherwise.
     common: Vec<(&'static str, f64)>,
     rows: Vec<(BTreeMap<String, String>, BTreeMap<String, f64>)>,
@@ -40,7 +40,7 @@ pub struct Rows {
 
 impl Rows {
     /// No rows yet; those to come have these numbers unless they say otherwise.
-    pub fn with(common: &[(&'static str, f64)]) -> Self {
+    pub(crate) fn with(common: &[(&'static str, f64)]) -> Self {
         Self {
             common: common.to_vec(),
             rows: Vec::new(),
@@ -48,7 +48,7 @@ impl Rows {
     }
 
     /// Adds a run.
-    pub fn add(&mut self, texts: &[(&str, &str)], numbers: &[(&str, f64)]) {
+    pub(crate) fn add(&mut self, texts: &[(&str, &str)], numbers: &[(&str, f64)]) {
         let texts = texts
             .iter()
             .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))
@@ -63,16 +63,19 @@ impl Rows {
     }
 
     /// Adds the runs of others.
-    pub fn extend(&mut self, others: &Self) {
+    pub(crate) fn extend(&mut self, others: &Self) {
         self.rows.extend(others.rows.iter().cloned());
     }
 
     /// Those runs of which `keep` holds, given their texts and numbers.
-    pub fn only(
+    pub(crate) fn only(
         &self,
         keep: impl Fn(&BTreeMap<String, String>, &BTreeMap<String, f64>) -> bool,
     ) -> Self {
-        let rows = self.rows.iter().filter(|(texts, numbers)| keep(texts, numbers));
+        let rows = self
+            .rows
+            .iter()
+            .filter(|(texts, numbers)| keep(texts, numbers));
         Self {
             common: self.common.clone(),
             rows: rows.cloned().collect(),
@@ -80,7 +83,7 @@ impl Rows {
     }
 
     /// The table of a study; every column that a claim may need is there.
-    pub fn table(&self) -> Table {
+    pub(crate) fn table(&self) -> Table {
         let mut texts: BTreeSet<&str> = BTreeSet::from(["identity", "initial_state"]);
         let mut numbers: BTreeSet<&str> = NUMBERS.into();
         let ladder: Vec<String> = (1..=9)
@@ -125,10 +128,12 @@ impl Rows {
 }
 
 /// Evidence with every study, of which all but these are without a run.
-pub fn evidence(studies: &[(&str, &Rows)]) -> Evidence {
+pub(crate) fn evidence(studies: &[(&str, &Rows)]) -> Evidence {
     let mut evidence = Evidence::default();
     for study in STUDIES {
-        evidence.add_table(study.name, Rows::default().table()).unwrap();
+        evidence
+            .add_table(study.name, Rows::default().table())
+            .unwrap();
     }
     for (name, rows) in studies {
         evidence.add_table(name, rows.table()).unwrap();
@@ -137,13 +142,13 @@ pub fn evidence(studies: &[(&str, &Rows)]) -> Evidence {
 }
 
 /// What a claim says of some studies.
-pub fn examine(id: &str, evidence: &Evidence) -> Finding {
+pub(crate) fn examine(id: &str, evidence: &Evidence) -> Finding {
     let claim = CLAIMS.iter().find(|claim| claim.id == id).unwrap();
     (claim.examine)(evidence).unwrap()
 }
 
 /// The value of the first quantity whose name contains this.
-pub fn value(finding: &Finding, name: &str) -> f64 {
+pub(crate) fn value(finding: &Finding, name: &str) -> f64 {
     let found = finding
         .quantities
         .iter()

@@ -3,82 +3,77 @@
 use peristalsis_figures::chart::{
     ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Points, Reference, Tint,
 };
-use peristalsis_figures::{Quantity as Axis, Units, Width};
+use peristalsis_figures::{Quantity as Axis, Width};
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
-use super::super::spaced;
-use super::{Corner, STARTS, State};
+use super::{Corner, PROSE, bottleneck};
+use crate::branch::Branch;
+use crate::claims::elastic::label;
 use crate::error::ClaimError;
+use crate::exhibit::{points, spaced};
 use crate::finding::ReportFigure;
 
 /// Flow against the measured bottleneck, a panel a corner.
 pub(super) fn figure(corners: &[Corner<'_>]) -> Result<ReportFigure, ClaimError> {
     let widths = || {
-        corners
-            .iter()
-            .flat_map(|corner| corner.states().map(|state| state.bottleneck.value))
+        let points = corners.iter().flat_map(Corner::points);
+        points.map(|point| bottleneck(point).value)
     };
     let least = widths().fold(f64::INFINITY, f64::min);
     let largest = widths().fold(0.0, f64::max);
+    let figure = ChartFigure::grid(
+        2,
+        corners.iter().map(|corner| panel(corner, least, largest)),
+    )
+    .width(Width::DoubleColumn)
+    .share_x()
+    .share_y()
+    .legend(LegendPlace::Below)
+    .description("Flow against bottleneck in four panels: friction by control.");
+    Ok(PROSE.figure("two-by-two", &[], figure.draw()?))
+}
+
+/// One corner, between the least and the largest bottleneck of all.
+fn panel(corner: &Corner<'_>, least: f64, largest: f64) -> ChartPanel {
     let margin = 0.05 * (largest - least).max(0.1);
-    let panels = corners.iter().map(|corner| {
-        let mut panel = ChartPanel::new(
-            "bottleneck as measured, *w*/*d*",
-            &Axis::FlowRateRatio.label(Units::Hertz),
-        )
-        .title(&corner.name())
-        .x_range(least - margin..=largest + margin)
-        .y_range(-0.2..=1.1)
-        .with(Reference::horizontal(0.0));
-        for (series, (states, (_, name))) in corner.branches.iter().zip(STARTS).enumerate() {
-            // In the order of the bottleneck, so that the line does not run back and forth.
-            let mut states = states.clone();
-            states.sort_by(|one, other| one.bottleneck.value.total_cmp(&other.bottleneck.value));
-            if states.is_empty() {
-                continue;
-            }
-            let column =
-                |value: fn(&State) -> f64| -> Vec<f64> { states.iter().map(value).collect() };
-            let points = Points::new(
-                name,
-                &column(|state| state.bottleneck.value),
-                &column(|state| state.flow.value),
-            )
-            .y_errors(&column(|state| state.flow.error))
-            .x_errors(&column(|state| state.bottleneck.error))
-            .series(series)
-            .joined();
-            panel = panel.with(if series == 1 { points.open() } else { points });
-        }
-        let radius = corner.rows.first().map_or(1.0, |row| row.number("radius"));
-        let (x, y): (Vec<f64>, Vec<f64>) = spaced(least, largest.min(2.0 * radius), 100)
-            .into_iter()
-            .filter_map(|width| {
-                let fluid = NewtonianPeristalsis::from_width(width, radius, 0.0)?;
-                Some((width, fluid.flow_rate_ratio()))
-            })
-            .unzip();
-        if x.len() > 1 {
-            panel = panel.with(
-                Line::new("Newtonian fluid", &x, &y)
-                    .tint(Tint::Grey)
-                    .pattern(Pattern::Dashed),
-            );
-        }
-        panel
-    });
-    Ok(ReportFigure {
-        name: "two-by-two".to_owned(),
-        caption: "Flow against the bottleneck that was measured: grains with and without friction (left, right) in a prescribed and \
-                  in an elastic wall (above, below), from both starts; a wide bottleneck is a small amplitude. Dashed: a Newtonian \
-                  fluid in a sine of that bottleneck."
-            .to_owned(),
-        drawing: ChartFigure::grid(2, panels)
-            .width(Width::DoubleColumn)
-            .share_x()
-            .share_y()
-            .legend(LegendPlace::Below)
-            .description("Flow against bottleneck in four panels: friction by control.")
-            .draw()?,
+    let rest = flows("from rest", &corner.rest);
+    let jammed = flows("from jammed", &corner.jammed);
+    ChartPanel::new(
+        "bottleneck as measured, *w*/*d*",
+        &label(Axis::FlowRateRatio),
+    )
+    .title(&corner.name())
+    .x_range(least - margin..=largest + margin)
+    .y_range(-0.2..=1.1)
+    .with(Reference::horizontal(0.0))
+    .with_all(rest.map(|points| points.series(0)))
+    .with_all(jammed.map(|points| points.series(1).open()))
+    .with_all(fluid(corner, least, largest))
+}
+
+/// A branch against the bottleneck, in its order, so that the line does not run back and forth.
+fn flows(name: &str, branch: &Branch<'_>) -> Option<Points> {
+    let known = branch.points.iter();
+    let mut known: Vec<_> = known.map(|point| (bottleneck(point), point.flow)).collect();
+    known.sort_by(|one, other| one.0.value.total_cmp(&other.0.value));
+    let errors: Vec<f64> = known.iter().map(|one| one.0.error).collect();
+    let points = points(name, known.iter().map(|one| (one.0.value, one.1)))?;
+    Some(points.x_errors(&errors).joined())
+}
+
+/// A Newtonian fluid in a sine of each bottleneck.
+fn fluid(corner: &Corner<'_>, least: f64, largest: f64) -> Option<Line> {
+    let radius = corner.rows.first()?.radius();
+    let (x, y): (Vec<f64>, Vec<f64>) = spaced(least, largest.min(2.0 * radius), 100)
+        .into_iter()
+        .filter_map(|width| {
+            let fluid = NewtonianPeristalsis::from_width(width, radius, 0.0)?;
+            Some((width, fluid.flow_rate_ratio()))
+        })
+        .unzip();
+    (x.len() > 1).then(|| {
+        Line::new("Newtonian fluid", &x, &y)
+            .tint(Tint::Grey)
+            .pattern(Pattern::Dashed)
     })
 }
