@@ -108,6 +108,11 @@ impl Colour {
         }
     }
 
+    /// Red, green and blue, without the opacity.
+    pub(crate) fn srgb(self) -> [u8; 3] {
+        [self.red, self.green, self.blue]
+    }
+
     /// Six hexadecimal digits, without the opacity.
     pub(crate) fn hexadecimal(self) -> String {
         format!("{:02x}{:02x}{:02x}", self.red, self.green, self.blue)

@@ -1,11 +1,11 @@
 //! Colours that mean values, and the bar that says which.
 
-use crate::axis::{Axis, Scale, Tick};
+use crate::axis::{Axis, Scale, Tick, widest};
 use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, sequential};
-use crate::drawing::{Anchor, Drawing, Point, Rectangle, Stroke};
+use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
-use crate::panel::TICK_GAP;
-use crate::style::{FRAME_WEIGHT, LABEL_SIZE, MAJOR_TICK, TICK_SIZE};
+use crate::geometry::{Path, Point, Rectangle};
+use crate::style::{FRAME_WEIGHT, LABEL_SIZE, MAJOR_TICK, TICK_GAP, TICK_SIZE, TICK_SPACE};
 use crate::text::{DIGIT_HEIGHT, Text};
 
 /// A family of colours that colour-blind readers can order.
@@ -30,9 +30,17 @@ pub struct ColourScale {
     palette: Palette,
     /// Part of the sequential palette that is used: its lightest end is lost as a line on white.
     reach: f64,
+    /// Least and largest of the values that are shown, where some may lie beyond the ends.
+    found: (f64, f64),
 }
 
+/// Width of a bar beside panels.
 const BAR_WIDTH: f64 = 7.0;
+/// Height and width of a bar below panels, and the space above it.
+const LOW_BAR: (f64, f64) = (6.0, 110.0);
+/// Largest part of the panels' width that it takes.
+const LOW_BAR_PART: f64 = 0.36;
+const SPACE_ABOVE: f64 = 5.0;
 const BAR_STEPS: usize = 128;
 /// Gap between a frame and the bar at its right.
 const BAR_GAP: f64 = 7.0;
@@ -52,30 +60,35 @@ impl ColourScale {
             scale: Scale::Linear,
             palette: Palette::Sequential,
             reach: 1.0,
+            found: (least, largest),
         }
     }
 
     /// The same with equal steps of colour for equal ratios.
     #[must_use]
-    pub fn logarithmic(self) -> Self {
-        Self {
-            scale: Scale::Logarithmic,
-            ..self
-        }
+    pub fn logarithmic(mut self) -> Self {
+        self.scale = Scale::Logarithmic;
+        self
     }
 
     /// The same in the colours of another palette.
     #[must_use]
-    pub fn palette(self, palette: Palette) -> Self {
-        Self { palette, ..self }
+    pub fn palette(mut self, palette: Palette) -> Self {
+        self.palette = palette;
+        self
+    }
+
+    /// The same with ends that say so, where some of the values between a least and a largest lie beyond them.
+    #[must_use]
+    pub(crate) fn showing(mut self, found: (f64, f64)) -> Self {
+        self.found = found;
+        self
     }
 
     /// The same without the colours that would be lost as lines on white.
-    pub(crate) fn on_white(self) -> Self {
-        Self {
-            reach: REACH_ON_WHITE,
-            ..self
-        }
+    pub(crate) fn on_white(mut self) -> Self {
+        self.reach = REACH_ON_WHITE;
+        self
     }
 
     /// Red, green and blue of a value as bytes of sRGB; grey where it is not a number.
@@ -86,7 +99,7 @@ impl ColourScale {
         } else {
             self.colour(value)
         };
-        [colour.red, colour.green, colour.blue]
+        colour.srgb()
     }
 
     pub(crate) fn check(&self) -> Result<(), FigureError> {
@@ -106,7 +119,7 @@ impl ColourScale {
     }
 
     fn axis(&self) -> Axis {
-        Axis::exact(self.scale, (self.least, self.largest))
+        Axis::new(self.scale, (self.least, self.largest))
     }
 
     /// Colour of a value.
@@ -122,21 +135,23 @@ impl ColourScale {
         }
     }
 
-    fn ticks(&self, height: f64) -> Vec<Tick> {
-        self.axis().fitting_ticks(
-            height,
-            ((height / ROOM_PER_LABEL) as usize).min(MOST_LABELS),
-            |_| ROOM_PER_LABEL - 3.0,
-        )
+    /// Ticks of a bar, those at ends with values beyond them marked so.
+    fn ticks(&self, length: f64, most: usize, extent: impl Fn(&str) -> f64) -> Vec<Tick> {
+        let mut ticks = self.axis().fitting_ticks(length, most, extent);
+        for tick in &mut ticks {
+            let sign = match tick.value {
+                value if value <= self.least && self.found.0 < self.least => "≤ ",
+                value if value >= self.largest && self.found.1 > self.largest => "≥ ",
+                _ => continue,
+            };
+            tick.label = tick.label.take().map(|label| format!("{sign}{label}"));
+        }
+        ticks
     }
 
-    fn numbers_width(&self, height: f64) -> f64 {
-        self.ticks(height)
-            .iter()
-            .filter_map(|tick| tick.label.as_ref())
-            .fold(0.0, |widest: f64, label| {
-                widest.max(Text::new(label, TICK_SIZE).width)
-            })
+    fn ticks_up(&self, height: f64) -> Vec<Tick> {
+        let most = ((height / ROOM_PER_LABEL) as usize).min(MOST_LABELS);
+        self.ticks(height, most, |_| ROOM_PER_LABEL - 3.0)
     }
 
     /// Space that a bar of a height takes at the right of a frame, up to the edge of the page.
@@ -146,7 +161,7 @@ impl ColourScale {
         } else {
             LABEL_SIZE + 3.0
         };
-        BAR_GAP + BAR_WIDTH + TICK_GAP + self.numbers_width(height) + label + 3.0
+        BAR_GAP + BAR_WIDTH + TICK_GAP + widest(&self.ticks_up(height)) + label + 3.0
     }
 
     /// Draws the bar across, its label before it, smaller where it would reach further left than `from`, and its numbers
@@ -159,79 +174,83 @@ impl ColourScale {
         ink: Colour,
     ) {
         let layer = drawing.layer("colour bar", None);
-        let colours =
-            (0..BAR_STEPS).map(|step| self.colour_at((step as f64 + 0.5) / BAR_STEPS as f64));
-        layer.cells(area, BAR_STEPS, colours.collect());
-        let pen = Stroke::solid(ink, FRAME_WEIGHT);
-        let axis = self.axis();
-        let ticks = axis.fitting_ticks(area.width, MOST_LABELS, |label| {
+        layer.image(Image::of_cells(area, BAR_STEPS, self.steps()));
+        let ticks = self.ticks(area.width, MOST_LABELS, |label| {
             Text::new(label, TICK_SIZE).width + ROOM_BETWEEN_LABELS
         });
+        let baseline = area.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
         let mut segments = Vec::new();
         for tick in ticks {
-            let x = area.left + area.width * axis.fraction(tick.value);
+            let x = area.left + area.width * self.axis().fraction(tick.value);
             let length = if tick.length < MAJOR_TICK { 1.0 } else { 2.0 };
-            segments.push([area.bottom(), area.bottom() + length].map(|y| Point { x, y }));
+            segments.push([area.bottom(), area.bottom() + length].map(|y| Point::new(x, y)));
             if let Some(label) = &tick.label {
-                let baseline = area.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
-                layer.text(
-                    (x, baseline),
-                    Anchor::Middle,
-                    Text::new(label, TICK_SIZE),
-                    ink,
-                );
+                let text = Text::new(label, TICK_SIZE);
+                layer.text((x, baseline), Anchor::Middle, text, ink);
             }
         }
-        layer.segments(segments, pen);
-        layer.outline(area, pen);
+        outline(layer, area, segments, ink);
         let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
-        layer.text(
-            (area.left - BAR_GAP, middle),
-            Anchor::End,
-            Text::fitted(&self.label, LABEL_SIZE, area.left - BAR_GAP - from),
-            ink,
-        );
+        let end = area.left - BAR_GAP;
+        let text = Text::fitted(&self.label, LABEL_SIZE, end - from);
+        layer.text((end, middle), Anchor::End, text, ink);
+    }
+
+    /// Draws the bar with its label in the middle below panels; returns the height that it takes.
+    pub(crate) fn draw_bar_below(&self, drawing: &mut Drawing, span: Rectangle, top: f64) -> f64 {
+        let (height, width) = (LOW_BAR.0, LOW_BAR.1.min(LOW_BAR_PART * span.width));
+        let label = Text::new(&self.label, LABEL_SIZE).width + BAR_GAP;
+        let middle = span.left + (span.width + label - width) / 2.0;
+        let area = Rectangle {
+            left: middle.min(span.right() - width),
+            top: top + SPACE_ABOVE,
+            width,
+            height,
+        };
+        self.draw_bar_across(drawing, area, BAR_GAP, BLACK);
+        SPACE_ABOVE + height + TICK_SPACE
     }
 
     /// Draws the bar at the right of a frame.
-    pub(crate) fn draw_bar(&self, drawing: &mut Drawing, frame: Rectangle) {
+    pub(crate) fn draw_bar_beside(&self, drawing: &mut Drawing, frame: Rectangle) {
         let area = Rectangle {
             left: frame.right() + BAR_GAP,
             width: BAR_WIDTH,
             ..frame
         };
         let layer = drawing.layer("colour bar", None);
-        let colours = (0..BAR_STEPS)
-            .rev()
-            .map(|step| self.colour_at((step as f64 + 0.5) / BAR_STEPS as f64));
-        layer.cells(area, 1, colours.collect());
-        let pen = Stroke::solid(BLACK, FRAME_WEIGHT);
-        let axis = self.axis();
+        layer.image(Image::of_cells(area, 1, self.steps().rev()));
+        let ticks = self.ticks_up(area.height);
         let mut segments = Vec::new();
-        for tick in self.ticks(area.height) {
-            let y = area.bottom() - area.height * axis.fraction(tick.value);
+        for tick in &ticks {
+            let y = area.bottom() - area.height * self.axis().fraction(tick.value);
             // Ticks inside would be lost in dark colours.
             let length = tick.length * if tick.length < MAJOR_TICK { 0.6 } else { 0.66 };
-            segments.push([area.right(), area.right() + length].map(|x| Point { x, y }));
+            segments.push([area.right(), area.right() + length].map(|x| Point::new(x, y)));
             if let Some(label) = &tick.label {
-                layer.text(
-                    (area.right() + TICK_GAP, y + DIGIT_HEIGHT * TICK_SIZE / 2.0),
-                    Anchor::Start,
-                    Text::new(label, TICK_SIZE),
-                    BLACK,
-                );
+                let place = (area.right() + TICK_GAP, y + DIGIT_HEIGHT * TICK_SIZE / 2.0);
+                layer.text(place, Anchor::Start, Text::new(label, TICK_SIZE), BLACK);
             }
         }
-        layer.segments(segments, pen);
-        layer.outline(area, pen);
-        if !self.label.is_empty() {
-            let baseline =
-                area.right() + TICK_GAP + self.numbers_width(area.height) + LABEL_SIZE + 1.0;
-            let middle = (area.top + area.bottom()) / 2.0;
-            let text = Text::fitted(&self.label, LABEL_SIZE, area.height);
-            layer.upward_text((baseline, middle), Anchor::Middle, text, BLACK);
-        }
+        outline(layer, area, segments, BLACK);
+        let baseline = area.right() + TICK_GAP + widest(&ticks) + LABEL_SIZE + 1.0;
+        let middle = (area.top + area.bottom()) / 2.0;
+        let text = Text::fitted(&self.label, LABEL_SIZE, area.height);
+        layer.upward_text((baseline, middle), Anchor::Middle, text, BLACK);
     }
+
+    /// The colours of a bar from its least to its largest value.
+    fn steps(&self) -> impl DoubleEndedIterator<Item = Colour> {
+        let fraction = |step: usize| (step as f64 + 0.5) / BAR_STEPS as f64;
+        (0..BAR_STEPS).map(move |step| self.colour_at(fraction(step)))
+    }
+}
+
+/// Draws the outline of a bar, and its ticks.
+fn outline(layer: &mut Layer, area: Rectangle, ticks: Vec<[Point; 2]>, ink: Colour) {
+    let pen = Stroke::solid(ink, FRAME_WEIGHT);
+    layer.stroke(Path::segments(ticks), pen);
+    layer.stroke(Path::polygon(area.corners()), pen);
 }
 
 #[cfg(test)]

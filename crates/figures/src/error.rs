@@ -3,24 +3,6 @@
 /// Why a figure could not be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum FigureError {
-    /// A series holds no point that can be drawn.
-    #[error("the series `{series}` has no finite point to draw ({length} rows)")]
-    EmptySeries {
-        /// Name of the series.
-        series: &'static str,
-        /// Number of rows that were given.
-        length: usize,
-    },
-    /// Columns of one series differ in length.
-    #[error("the series `{series}` has a column of {found} rows beside one of {expected}")]
-    ColumnLengths {
-        /// Name of the series.
-        series: &'static str,
-        /// Rows of its first column.
-        expected: usize,
-        /// Rows of the column that differs.
-        found: usize,
-    },
     /// A single value that a figure needs is infinite or not a number.
     #[error("the {quantity} is {value}, not a finite number")]
     NonFinite {
@@ -45,17 +27,17 @@ pub enum FigureError {
         /// Row of the sphere.
         index: usize,
     },
-    /// A series of a chart holds no point that can be drawn.
+    /// A series holds no point that can be drawn.
     #[error("the series `{series}` has no finite point to draw ({length} rows)")]
-    EmptyLayer {
+    EmptySeries {
         /// Name of the series, without markup.
         series: String,
         /// Number of rows that were given.
         length: usize,
     },
-    /// Columns of one series of a chart differ in length.
+    /// Columns of one series differ in length.
     #[error("the series `{series}` has {found} rows of its {column}; there must be {expected}")]
-    LayerLengths {
+    ColumnLengths {
         /// Name of the series, without markup.
         series: String,
         /// The column that differs.

@@ -1,7 +1,8 @@
 //! What the lines and marks of a figure mean, written below the frame or in a free part of it.
 
 use crate::colour::{BLACK, Colour};
-use crate::drawing::{Anchor, Drawing, Outline, Point, Rectangle, Stroke};
+use crate::drawing::{Anchor, Drawing, Fill, Stroke};
+use crate::geometry::{Path, Point, Rectangle};
 use crate::style::LEGEND_SIZE;
 use crate::text::Text;
 
@@ -17,7 +18,8 @@ pub(crate) struct Entry {
 /// Sample of a mark.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mark {
-    pub(crate) outline: Outline,
+    /// Around the origin.
+    pub(crate) outline: Path,
     pub(crate) fill: Colour,
     pub(crate) stroke: Stroke,
     /// Straight lines beside it, relative to its place.
@@ -165,23 +167,18 @@ impl Legend {
                     width: self.sample,
                     height: 5.2,
                 };
-                layer.rectangle(area, colour);
+                layer.fill(Path::polygon(area.corners()), colour);
             }
             if let Some(stroke) = cell.entry.line {
-                layer.segment((start, middle), (start + self.sample, middle), stroke);
+                let ends = [start, start + self.sample].map(|x| Point::new(x, middle));
+                layer.stroke(Path::line(ends), stroke);
             }
             if let Some(mark) = &cell.entry.mark {
-                let place = Point {
-                    x: start + self.sample / 2.0,
-                    y: middle,
-                };
-                let moved = |end: Point| Point {
-                    x: place.x + end.x,
-                    y: place.y + end.y,
-                };
-                let bars = mark.bars.iter().map(|bar| bar.map(moved)).collect();
-                layer.segments(bars, mark.bar_stroke);
-                layer.marks(mark.outline.clone(), vec![place], mark.fill, mark.stroke);
+                let place = [Point::new(start + self.sample / 2.0, middle)];
+                let bars = Path::segments(mark.bars.iter().copied());
+                layer.stroke(bars.at(place), mark.bar_stroke);
+                let (fill, stroke) = (Some(Fill::Flat(mark.fill)), Some(mark.stroke));
+                layer.path(mark.outline.at(place), fill, stroke);
             }
             let place = (
                 start + self.sample + SAMPLE_GAP,

@@ -1,16 +1,14 @@
 //! Tables in, figures out: the journal figures of runs and of ensembles, as SVG and PNG from one and the same drawing.
 //!
-//! A figure is a small struct of column slices and labels. `draw` checks them and lays the figure out once, as a
+//! A figure is a small struct of columns and labels. `draw` checks them and lays the figure out once, as a
 //! [`Drawing`] in points on a page of one or two journal columns; [`Drawing::svg`] and [`Drawing::png`] write that
 //! one drawing. Text is drawn as outlines of an embedded font in both, so that a figure looks the same on every
 //! machine, and the same input gives the same bytes.
 //!
-//! Single runs have figures of their own ([`FlowFigure`], [`ProfileFigure`], [`WallFigure`], [`SnapshotFigure`] and
-//! [`SnapshotStack`], [`SpaceTimeFigure`]); [`PictureFigure`] frames a picture of pixels with scale, colours and notes;
-//! everything else is a [`chart`]. [`Quantity`] names the axes.
+//! Most figures are a [`chart`]; [`SnapshotFigure`] shows the tube from the side, and [`PictureFigure`] frames a picture of
+//! pixels with scale, colours and notes. [`Quantity`] names the axes.
 //!
-//! An SVG can stand in a web page among others: [`Drawing::with_prefix`] keeps their names apart,
-//! [`Drawing::with_title`] and [`Drawing::with_description`] tell what is to be seen. Its letters are drawn once and
+//! An SVG can stand in a web page among others: [`Drawing::svg_with_prefix`] keeps their names apart. Its letters are drawn once and
 //! referred to, lengths have two decimals, curves are thinned to what can be seen and fields are embedded as pictures:
 //! a chart takes some 40 kB, each thousand points 60 kB more, or 140 kB with error bars.
 //!
@@ -21,12 +19,10 @@
 //! The sign convention of every figure: flow rates and velocities are positive along the wave.
 //!
 //! ```
-//! use peristalsis_figures::{FlowFigure, Series};
+//! use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line};
 //!
-//! let figure = FlowFigure {
-//!     samples: Series { x: &[0.0, 1.0, 2.0], y: &[0.0, 0.4, 0.9] },
-//!     ..FlowFigure::default()
-//! };
+//! let panel = ChartPanel::new("time, *t*/*T*", "flow rate, *J*/*J*_{max}");
+//! let figure = ChartFigure::new(panel.with(Line::new("", &[0.0, 1.0, 2.0], &[0.0, 0.4, 0.9])));
 //! let drawing = figure.draw()?;
 //! assert!(drawing.svg().starts_with("<svg"));
 //! assert_eq!(drawing.width_millimetres().round(), 86.0);
@@ -38,35 +34,23 @@
 mod axis;
 pub mod chart;
 mod colour;
-mod colour_bar;
 mod colour_scale;
 mod drawing;
-mod envelope;
 mod error;
-mod flow;
+mod geometry;
 mod legend;
-mod panel;
 mod picture;
-mod profile;
 mod quantity;
-mod series;
 mod snapshot;
-mod space_time;
 mod style;
 mod text;
-mod wall;
 
 pub use axis::Scale;
 pub use colour_scale::{ColourScale, Palette};
 pub use drawing::{Drawing, Raster};
 pub use error::FigureError;
-pub use flow::{FlowFigure, LateMean, NewtonianReference, Transition};
 pub use picture::{Paper, PictureFigure, PlaceMark, ScaleBar};
-pub use profile::ProfileFigure;
 pub use quantity::{Quantity, Units};
-pub use series::{Profile, Series};
-pub use snapshot::{SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall};
-pub use space_time::SpaceTimeFigure;
+pub use snapshot::{Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
 pub use style::Width;
 pub use text::{Letter, Level, escape, letters};
-pub use wall::WallFigure;

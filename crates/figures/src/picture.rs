@@ -2,8 +2,9 @@
 
 use crate::colour::{BLACK, Colour, WHITE};
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Anchor, Drawing, Layer, Point, Rectangle, Stroke};
+use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
+use crate::geometry::{Path, Point, Rectangle};
 use crate::style::{LABEL_SIZE, LEGEND_SIZE, TICK_SIZE, Width};
 use crate::text::{DIGIT_HEIGHT, Text};
 
@@ -63,10 +64,7 @@ impl Paper {
     /// Its red, green and blue.
     #[must_use]
     pub fn srgb(self) -> [u8; 3] {
-        let Colour {
-            red, green, blue, ..
-        } = self.colour();
-        [red, green, blue]
+        self.colour().srgb()
     }
 
     fn colour(self) -> Colour {
@@ -153,9 +151,12 @@ impl PictureFigure<'_> {
         let height = area.bottom() + whole(self.space_below());
         let mut drawing =
             Drawing::new(area.width, height, self.title).on_paper(self.paper.colour(), scale);
-        drawing
-            .layer("picture", None)
-            .picture(area, columns, self.pixels);
+        drawing.layer("picture", None).image(Image {
+            area,
+            columns,
+            pixels: self.pixels.to_vec(),
+            is_smooth: true,
+        });
         self.draw_notes(drawing.layer("notes", None), area.width);
         self.draw_marks(drawing.layer("marks", None), area);
         let free_from = self.draw_scale_bar(drawing.layer("scale", None), area);
@@ -217,12 +218,9 @@ impl PictureFigure<'_> {
         let mut taken: Vec<(f64, f64)> = Vec::new();
         for mark in self.marks {
             let x = area.width * mark.place;
-            let corners = [
-                (x, tip),
-                (x - MARK.0, tip - MARK.1),
-                (x + MARK.0, tip - MARK.1),
-            ];
-            layer.polygon(corners.map(|(x, y)| Point { x, y }), ink);
+            let corners = [(0.0, 0.0), (-MARK.0, -MARK.1), (MARK.0, -MARK.1)];
+            let corners = corners.map(|(side, up)| Point::new(x + side, tip + up));
+            layer.fill(Path::polygon(corners), ink);
             let text = Text::new(mark.label, LEGEND_SIZE);
             let half = 0.5 * text.width;
             let (left, right) = (x - half - 2.0, x + half + 2.0);
@@ -243,17 +241,10 @@ impl PictureFigure<'_> {
         let ink = self.paper.ink();
         let (left, middle) = (EDGE, area.bottom() + GAP_BELOW + 0.5 * BAR_HEIGHT);
         let right = left + bar.length * area.width;
-        let pen = Stroke::solid(ink, 1.0);
-        let line = |from: (f64, f64), to: (f64, f64)| [from, to].map(|(x, y)| Point { x, y });
         let end = 0.5 * BAR_HEIGHT;
-        layer.segments(
-            vec![
-                line((left, middle), (right, middle)),
-                line((left, middle - end), (left, middle + end)),
-                line((right, middle - end), (right, middle + end)),
-            ],
-            pen,
-        );
+        let mut segments = vec![[left, right].map(|x| Point::new(x, middle))];
+        segments.extend([left, right].map(|x| [-end, end].map(|up| Point::new(x, middle + up))));
+        layer.stroke(Path::segments(segments), Stroke::solid(ink, 1.0));
         let baseline = middle + 0.5 * DIGIT_HEIGHT * LABEL_SIZE;
         let text = Text::new(bar.label, LABEL_SIZE);
         let start = right + 4.0;
@@ -266,7 +257,6 @@ impl PictureFigure<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::drawing::Shape;
 
     fn figure(pixels: &[u8]) -> PictureFigure<'_> {
         PictureFigure {
@@ -318,15 +308,10 @@ mod tests {
     fn words_do_not_stand_on_each_other_and_the_scale_is_as_long_as_it_says() {
         let pixels = vec![255; 1200 * 60];
         let drawing = figure(&pixels).draw().expect("drawable");
-        let words = drawing
-            .shapes("marks")
-            .into_iter()
-            .filter(|it| matches!(it, Shape::Text { .. }));
-        assert_eq!(words.count(), 1);
-        let Shape::Segments { segments, .. } = drawing.shapes("scale")[0] else {
+        assert_eq!(drawing.texts("marks").len(), 1);
+        let [from, to, ..] = drawing.paths("scale")[0].points()[..] else {
             panic!("a scale is of segments");
         };
-        let [from, to] = segments[0];
         assert!((to.x - from.x - 0.25 * 400.0 / FEWEST_PIXELS_PER_POINT).abs() < 1e-9);
     }
 

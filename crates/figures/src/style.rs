@@ -42,3 +42,5 @@ pub(crate) const TICK_SPACE: f64 = 10.0;
 pub(crate) const LABEL_SPACE: f64 = 11.5;
 /// Distance of the vertical axis label's baseline from the left edge of the page.
 pub(crate) const LABEL_BASELINE: f64 = 8.5;
+/// Gap between a frame and the labels of its ticks.
+pub(crate) const TICK_GAP: f64 = 3.0;

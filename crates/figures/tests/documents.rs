@@ -1,379 +1,291 @@
-//! Every figure as a document: well-formed SVG with its labels, a PNG with a picture, and the same bytes each time.
+//! Every figure as a document: well-formed SVG with its labels, a PNG with a picture, and what is refused.
 
 use std::collections::HashSet;
-use std::f64::consts::TAU;
 
-use peristalsis_figures::{
-    Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Profile, ProfileFigure, Scale,
-    Series, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Transition, WallFigure,
-    Width,
+use peristalsis_figures::chart::{
+    Band, Bars, ChartFigure, ChartLayer, ChartPanel, Field, Line, Points, Reference, Tint,
 };
+use peristalsis_figures::{ColourScale, FigureError, Scale};
 
-fn flow(periods: u32) -> Drawing {
-    let time: Vec<f64> = (0..20 * periods)
-        .map(|step| f64::from(step) / 20.0)
-        .collect();
-    let ratio: Vec<f64> = time
-        .iter()
-        .map(|time| 0.4 + 0.3 * libm::sin(TAU * 1.03 * time))
-        .collect();
-    let middles: Vec<f64> = (0..periods).map(|period| f64::from(period) + 0.5).collect();
-    let means: Vec<f64> = middles
-        .iter()
-        .map(|middle| 0.4 + 0.1 * libm::sin(middle / 7.0))
-        .collect();
-    let figure = FlowFigure {
-        title: "*w* = 2.75 *d* & <test>",
-        samples: Series {
-            x: &time,
-            y: &ratio,
-        },
-        averages: Some(Series {
-            x: &middles,
-            y: &means,
-        }),
-        threshold: Some(0.5),
-        transition: Some(Transition {
-            period: 3.0,
-            time: 60.0,
-            unit: "(*m*/*k*)^{1/2}",
-        }),
-        newtonian: Some(NewtonianReference {
-            ratio: 0.05,
-            clear_bore: Some(0.11),
-        }),
-        late_mean: Some(LateMean {
-            mean: 0.4,
-            error: 0.02,
-        }),
-        width: Width::DoubleColumn,
-    };
-    figure.draw().expect("a valid figure")
-}
+#[path = "../examples/gallery/samples.rs"]
+mod samples;
 
-fn profiles() -> Drawing {
-    let position: Vec<f64> = (0..60).map(|bin| (f64::from(bin) + 0.5) / 60.0).collect();
-    let wave: Vec<f64> = position
-        .iter()
-        .map(|position| libm::sin(TAU * position))
-        .collect();
-    let positive: Vec<f64> = wave.iter().map(|wave| 2.0 + wave).collect();
-    let error = vec![0.1; 60];
-    let profile = |value, label| Profile {
-        position: &position,
-        value,
-        error: Some(&error),
-        label,
-    };
-    let figure = ProfileFigure {
-        title: "profiles",
-        wall_radius: profile(&positive, "*r*/*d*"),
-        density: profile(&positive, "density"),
-        axial_velocity: profile(&wave, "*v_z*/*c*"),
-        temperature: profile(&positive, "temperature"),
-        temperature_scale: Scale::Logarithmic,
-        wall_pressure: Some(profile(&positive, "*p*/*Y*")),
-        wall_shear: Some(profile(&wave, "*τ*/*Y*")),
-        width: Width::SingleColumn,
-    };
-    figure.draw().expect("a valid figure")
-}
+/// Texts that must be on a figure.
+const LABELS: [(&str, &[&str]); 7] = [
+    (
+        "flow",
+        &[
+            "w = 2.75 d & <test>",
+            "flow rate, J/Jmax",
+            "time, t/T",
+            "τ = 864 (m/k)1/2",
+            "threshold",
+            "samples",
+            "late mean",
+        ],
+    ),
+    ("widths", &["width of the bottleneck, w/d"]),
+    ("times", &["ε\u{307} = 0.1", "not seen", "wmax"]),
+    ("panels", &["(d)  A = 0.6", "a note"]),
+    (
+        "snapshot",
+        &["z/d", "x/d", "axial velocity along the wave, vz/c"],
+    ),
+    (
+        "snapshots",
+        &["(a)  unjammed, t/T = 3", "z/d  (2 of 10 waves shown)"],
+    ),
+    (
+        "picture",
+        &["t/T = 1.5", "wave →", "belly", "throat", "5 d"],
+    ),
+];
 
-fn wall() -> Drawing {
-    let phase: Vec<f64> = (0..50).map(|bin| (f64::from(bin) + 0.5) / 50.0).collect();
-    let radius = |shift: f64| -> Vec<f64> {
-        phase
-            .iter()
-            .map(|phase| 3.5 + libm::sin(TAU * phase) + shift)
-            .collect()
-    };
-    let (mean, least, largest) = (radius(0.0), radius(-0.2), radius(0.3));
-    let figure = WallFigure {
-        title: "wall",
-        phase: &phase,
-        mean: &mean,
-        least: &least,
-        largest: &largest,
-        reference: Some(3.5),
-        length_unit: "*d*",
-        width: Width::SingleColumn,
-    };
-    figure.draw().expect("a valid figure")
-}
-
-fn snapshot(count: u32) -> Drawing {
-    let sphere = |index: u32, across: f64| SnapshotSphere {
-        along: f64::from(index) * 20.0 / f64::from(count),
-        across,
-        depth: f64::from(index % 5) / 10.0,
-        diameter: 1.0,
-    };
-    let grains: Vec<SnapshotGrain> = (0..count)
-        .map(|index| SnapshotGrain {
-            sphere: sphere(index, f64::from(index % 7) / 7.0 - 0.5),
-            axial_velocity: libm::sin(f64::from(index)),
-        })
-        .collect();
-    let wall: Vec<SnapshotSphere> = (0..count)
-        .flat_map(|index| [sphere(index, 1.5), sphere(index, -1.5)])
-        .collect();
-    let figure = SnapshotFigure {
-        title: "snapshot",
-        grains: &grains,
-        wall: SnapshotWall::Spheres(&wall),
-        length: 20.0,
-        period: Some(20.0),
-        ..SnapshotFigure::default()
-    };
-    figure.draw().expect("a valid figure")
-}
-
-fn all() -> [(&'static str, Drawing, &'static [&'static str]); 4] {
-    [
-        (
-            "flow",
-            flow(12),
-            &[
-                "w = 2.75 d & <test>",
-                "flow rate, J/Jmax",
-                "time, t/T",
-                "τ = 60.0 (m/k)1/2",
-                "threshold",
-                "late mean 0.400 ± 0.020",
-                "Newtonian fluid (Shapiro et al. 1969), φ = b/a",
-                "the same, clear bore, φ = b/(a − d/2)",
-            ],
-        ),
-        (
-            "profiles",
-            profiles(),
-            &[
-                "r/d",
-                "density",
-                "vz/c",
-                "temperature",
-                "position in the wave frame, (z − ct)/λ",
-                "(d)",
-            ],
-        ),
-        (
-            "wall",
-            wall(),
-            &[
-                "wall radius, R/d",
-                "phase, (z − ct)/λ",
-                "least to largest",
-                "tube at rest",
-            ],
-        ),
-        (
-            "snapshot",
-            snapshot(40),
-            &[
-                "z/d",
-                "x/d",
-                "against the wave",
-                "along the wave, vz/c",
-                "−1",
-            ],
-        ),
-    ]
+fn parse(svg: &str) -> roxmltree::Document<'_> {
+    roxmltree::Document::parse(svg).expect("well-formed")
 }
 
 #[test]
-fn every_svg_is_well_formed_and_bears_its_labels() {
-    for (name, drawing, labels) in all() {
+fn every_svg_is_well_formed_bears_its_labels_on_its_page_and_is_the_same_each_time() {
+    for ((name, drawing), (_, again)) in samples::all().into_iter().zip(samples::all()) {
         let svg = drawing.svg();
-        let document =
-            roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let texts: HashSet<&str> = document
+        assert_eq!(svg, again.svg(), "{name}");
+        let document = parse(&svg);
+        let page = document.root_element().attribute("viewBox").unwrap();
+        let page: Vec<f64> = page.split(' ').map(|it| it.parse().unwrap()).collect();
+        let texts = document
             .descendants()
-            .filter_map(|node| node.attribute("aria-label"))
-            .collect();
-        for label in labels {
-            assert!(texts.contains(label), "{name} lacks `{label}`: {texts:?}");
+            .filter(|node| node.attribute("aria-label").is_some());
+        let mut found = HashSet::new();
+        for text in texts {
+            found.insert(text.attribute("aria-label").unwrap());
+            let place = text.attribute("transform").unwrap();
+            let place = place.strip_prefix("translate(").unwrap();
+            let place = place.split_once(')').unwrap().0.split_once(' ').unwrap();
+            let (x, y): (f64, f64) = (place.0.parse().unwrap(), place.1.parse().unwrap());
+            assert!(
+                (0.0..page[2]).contains(&x) && (0.0..page[3]).contains(&y),
+                "{name}: {x} {y}"
+            );
         }
+        let wanted = LABELS.iter().filter(|(figure, _)| *figure == name);
+        for label in wanted.flat_map(|(_, labels)| *labels) {
+            assert!(found.contains(label), "{name} lacks `{label}`: {found:?}");
+        }
+        assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{name}");
     }
 }
 
 #[test]
-fn every_reference_in_an_svg_has_its_definition() {
-    for (name, drawing, _) in all() {
-        let svg = drawing.svg();
-        let document = roxmltree::Document::parse(&svg).unwrap();
-        let identities: Vec<&str> = document
-            .descendants()
-            .filter_map(|node| node.attribute("id"))
-            .collect();
-        let defined: HashSet<&str> = identities.iter().copied().collect();
-        assert_eq!(
-            defined.len(),
-            identities.len(),
-            "{name} defines something twice"
-        );
-        let mut references = 0;
-        for node in document.descendants() {
-            let fill = node
-                .attribute("fill")
-                .and_then(|fill| fill.strip_prefix("url(#")?.strip_suffix(')'));
-            for reference in node
-                .attribute("href")
-                .map(|href| &href[1..])
-                .into_iter()
-                .chain(fill)
-            {
-                assert!(defined.contains(reference), "{name}: {reference}");
-                references += 1;
+fn references_have_definitions_and_figures_with_prefixes_share_none() {
+    for (name, drawing) in samples::all() {
+        let identities = |prefix: &str| -> HashSet<String> {
+            let svg = drawing.svg_with_prefix(prefix);
+            let document = parse(&svg);
+            let nodes = || document.descendants();
+            let defined: Vec<String> = nodes()
+                .filter_map(|node| node.attribute("id").map(str::to_owned))
+                .collect();
+            let distinct: HashSet<String> = defined.iter().cloned().collect();
+            assert_eq!(distinct.len(), defined.len(), "{name} defines it twice");
+            let fill = |node: roxmltree::Node<'_, '_>| {
+                let fill = node.attribute("fill")?.strip_prefix("url(#")?;
+                fill.strip_suffix(')').map(str::to_owned)
+            };
+            let link = |node: roxmltree::Node<'_, '_>| {
+                let link = node.attribute("href")?.strip_prefix('#')?;
+                Some(link.to_owned())
+            };
+            let references: Vec<String> = nodes()
+                .flat_map(|node| [fill(node), link(node)])
+                .flatten()
+                .collect();
+            assert!(references.len() > 20, "{name} has text");
+            for reference in references {
+                assert!(distinct.contains(&reference), "{name}: {reference}");
             }
-        }
-        assert!(references > 20, "{name} has text");
+            distinct
+        };
+        let (one, other) = (identities("figure 1-"), identities("figure2-"));
+        assert!(one.len() > 5 && one.is_disjoint(&other), "{name}");
+        assert!(one.iter().all(|id| id.starts_with("figure-1-")), "{name}");
     }
 }
 
 #[test]
-fn every_number_of_an_svg_lies_on_its_page() {
-    let svg = flow(12).svg();
-    let document = roxmltree::Document::parse(&svg).unwrap();
-    let page: Vec<f64> = document
-        .root_element()
-        .attribute("viewBox")
-        .unwrap()
-        .split(' ')
-        .map(|number| number.parse().unwrap())
-        .collect();
-    assert_eq!(document.root_element().attribute("width"), Some("178mm"));
-    for text in document
-        .descendants()
-        .filter(|node| node.attribute("aria-label").is_some())
-    {
-        let place = text
-            .attribute("transform")
-            .unwrap()
-            .strip_prefix("translate(")
-            .unwrap();
-        let place = place.split_once(')').unwrap().0.split_once(' ').unwrap();
-        let (x, y): (f64, f64) = (place.0.parse().unwrap(), place.1.parse().unwrap());
-        assert!(
-            (0.0..page[2]).contains(&x) && (0.0..page[3]).contains(&y),
-            "{x} {y}"
-        );
-    }
-}
-
-#[test]
-fn every_png_is_a_picture_of_the_same_size_at_300_dots_per_inch() {
-    for (name, drawing, _) in all() {
+fn every_png_is_a_picture_of_the_size_of_the_svg() {
+    for (name, drawing) in samples::all() {
         let bytes = drawing.png().unwrap();
         let mut reader = png::Decoder::new(std::io::Cursor::new(&bytes))
             .read_info()
             .unwrap();
         let density = reader.info().pixel_dims.expect("a density");
-        assert_eq!((density.xppu, density.yppu), (11_811, 11_811));
+        let per_millimetre = f64::from(density.xppu) / 1000.0;
+        if name != "picture" {
+            assert_eq!((density.xppu, density.yppu), (11_811, 11_811), "300 dpi");
+        }
         let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
         let frame = reader.next_frame(&mut pixels).unwrap();
-        let inches =
-            [drawing.width_millimetres(), drawing.height_millimetres()].map(|length| length / 25.4);
-        assert!(
-            (f64::from(frame.width) - 300.0 * inches[0]).abs() < 1.0,
-            "{name}"
-        );
-        assert!(
-            (f64::from(frame.height) - 300.0 * inches[1]).abs() < 1.0,
-            "{name}"
-        );
-
-        let white = pixels
-            .chunks_exact(3)
-            .filter(|pixel| **pixel == [255; 3])
-            .count();
-        let total = pixels.len() / 3;
-        assert!(
-            white > total / 4 && white < total - total / 50,
-            "{name}: {white} of {total} are white"
-        );
+        for (found, millimetres) in [
+            (frame.width, drawing.width_millimetres()),
+            (frame.height, drawing.height_millimetres()),
+        ] {
+            let expected = per_millimetre * millimetres;
+            assert!((f64::from(found) - expected).abs() < 1.0, "{name}");
+        }
         let colours: HashSet<&[u8]> = pixels.chunks_exact(3).collect();
         assert!(colours.len() > 30, "{name} has {} colours", colours.len());
-        let corner = &pixels[..3];
-        assert_eq!(corner, [255; 3], "{name} has a white margin");
+        assert_eq!(&pixels[..3], [255; 3], "{name} has a white margin");
+        // A cell without a value is grey.
+        let is_grey = |colours: &HashSet<&[u8]>| colours.contains(&[190; 3][..]);
+        assert!(name != "space-time" || is_grey(&colours));
     }
 }
 
 #[test]
-fn the_same_input_gives_the_same_bytes() {
-    for ((name, first, _), (_, second, _)) in all().into_iter().zip(all()) {
-        assert_eq!(first.svg(), second.svg(), "{name}");
-        assert_eq!(first.png().unwrap(), second.png().unwrap(), "{name}");
-    }
-}
-
-#[test]
-fn thousands_of_periods_make_a_small_file() {
-    let svg = flow(5000).svg();
-    assert!(svg.len() < 300_000, "{} bytes", svg.len());
-    assert!(
-        svg.len() > 2 * flow(12).svg().len(),
-        "the envelope must not be empty"
-    );
-}
-
-#[test]
-fn tables_without_rows_are_refused_by_name() {
-    let nothing = FlowFigure::default().draw().unwrap_err();
-    assert!(
-        matches!(
-            nothing,
-            FigureError::EmptySeries {
-                series: "flow rate",
-                length: 0
-            }
-        ),
-        "{nothing}"
-    );
-    assert!(matches!(
-        ProfileFigure::default().draw(),
-        Err(FigureError::EmptySeries { .. })
-    ));
-    assert!(matches!(
-        WallFigure::default().draw(),
-        Err(FigureError::EmptySeries { .. })
-    ));
-    let no_length = SnapshotFigure::default().draw().unwrap_err();
-    assert!(
-        matches!(no_length, FigureError::NotPositive { .. }),
-        "{no_length}"
-    );
-}
-
-#[test]
-fn values_that_are_no_numbers_never_reach_the_page() {
-    let time = [0.0, 1.0, f64::NAN, 3.0, 4.0, 5.0];
-    let ratio = [0.1, f64::INFINITY, 0.3, 0.4, f64::NAN, 0.6];
-    let drawing = FlowFigure {
-        samples: Series {
-            x: &time,
-            y: &ratio,
-        },
-        ..FlowFigure::default()
-    }
-    .draw();
-    let svg = drawing.unwrap().svg();
-    let document = roxmltree::Document::parse(&svg).unwrap();
-    for attribute in document.descendants().flat_map(|node| node.attributes()) {
-        assert!(
-            !attribute.value().contains("NaN") && !attribute.value().contains("inf"),
-            "{attribute:?}"
-        );
-    }
-    let samples = document
-        .descendants()
-        .find(|node| node.attribute("class") == Some("samples"))
-        .unwrap();
+fn titles_and_descriptions_are_told_to_those_who_do_not_see() {
+    let all = samples::all();
+    let text_of = |figure: &str, tag: &str| {
+        let (_, drawing) = all.iter().find(|(name, _)| *name == figure).unwrap();
+        let svg = drawing.svg();
+        let document = parse(&svg);
+        let node = document
+            .descendants()
+            .find(|it| it.has_tag_name(("http://www.w3.org/2000/svg", tag)));
+        node.and_then(|node| node.text()).map(str::to_owned)
+    };
+    assert_eq!(text_of("flow", "title").unwrap(), "w = 2.75 d & <test>");
     assert_eq!(
-        samples
-            .children()
-            .filter(roxmltree::Node::is_element)
-            .count(),
-        3,
-        "three pieces remain"
+        text_of("widths", "title").unwrap(),
+        "flow rate, J/Jmax against time, t/T"
     );
+    assert!(text_of("widths", "desc").unwrap().starts_with("Four runs;"));
+    assert_eq!(text_of("flow", "desc"), None);
+}
+
+#[test]
+fn many_rows_make_a_file_of_reasonable_size() {
+    let x: Vec<f64> = (0..10_000).map(f64::from).collect();
+    let y: Vec<f64> = x.iter().map(|x| libm::sin(x / 300.0)).collect();
+    let draw = |layer: ChartLayer| {
+        let figure = ChartFigure::new(ChartPanel::new("x", "y").with(layer));
+        figure.draw().unwrap().svg().len()
+    };
+    let points = draw(Points::new("", &x, &y).into());
+    let line = draw(Line::new("", &x, &y).into());
+    assert!(points < 900_000 && points > 200_000, "{points}");
+    assert!(line < 60_000, "{line}");
+    let flow = |periods| samples::flow(periods).unwrap().svg().len();
+    assert!(flow(5000) < 300_000, "{}", flow(5000));
+    assert!(flow(5000) > 2 * flow(12), "the envelope must not be empty");
+    let field = samples::space_time().unwrap().svg();
+    assert_eq!(field.matches("<image").count(), 2, "field and colour bar");
+    assert!(field.len() < 60_000, "{} bytes", field.len());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_by_name() {
+    let panel = || ChartPanel::new("x", "y");
+    let logarithmic = || panel().y_scale(Scale::Logarithmic);
+    let (x, y) = ([1.0, 2.0], [3.0, 0.0]);
+    let points = || Points::new("*τ* of runs", &x, &y);
+    let line = |values: &[f64]| panel().with(Line::new("a", &x, values));
+    let refused = |figure: ChartFigure| figure.draw().expect_err("not drawable").to_string();
+    let column = |column: &str, found: usize| {
+        format!("the series `τ of runs` has {found} rows of its {column}; there must be 2")
+    };
+    for (panel, reason) in [
+        (
+            logarithmic().with(points()),
+            "row 1 of the series `τ of runs` is 0 on the logarithmic y axis; it must be positive"
+                .to_owned(),
+        ),
+        (
+            panel()
+                .x_scale(Scale::Logarithmic)
+                .with(Line::new("", &[-1.0, 1.0], &x)),
+            "row 0 of the series `line` is -1 on the logarithmic x axis".to_owned(),
+        ),
+        (
+            panel().with(Points::new("*τ* of runs", &x, &[1.0])),
+            column("y", 1),
+        ),
+        (
+            panel().with(points().y_errors(&[1.0])),
+            column("errors of y", 1),
+        ),
+        (
+            panel().with(points().lower_limits(&[true])),
+            column("lower limits", 1),
+        ),
+        (
+            panel().with(Bars::new("a", &x, &y)),
+            "the series `a` has 2 rows of its edges; there must be 3".to_owned(),
+        ),
+        (
+            line(&[f64::NAN; 2]),
+            "no finite point to draw (2 rows)".to_owned(),
+        ),
+        (
+            panel().with(Line::new("a", &x, &y).tint(Tint::Value(1.0))),
+            "`a` is coloured by its value, but the chart has no scale".to_owned(),
+        ),
+        (
+            panel().with(Field::new(&[1.0], 1, (0.0, 1.0), (0.0, 1.0))),
+            "`field` is coloured by its value, but the chart has no scale".to_owned(),
+        ),
+        (
+            line(&x).with(Reference::horizontal(f64::NAN)),
+            "NaN, not a finite number".to_owned(),
+        ),
+        (
+            logarithmic().y_range(0.0..).with(Line::new("a", &x, &x)),
+            "range of the y axis is 0 to".to_owned(),
+        ),
+        (panel(), "range of the x axis".to_owned()),
+    ] {
+        let found = refused(ChartFigure::new(panel));
+        assert!(found.contains(&reason), "{found}: not {reason}");
+    }
+    let mixed = [line(&x), logarithmic().with(Line::new("", &x, &x))];
+    assert!(refused(ChartFigure::grid(2, mixed).share_y()).contains("share their y axis"));
+    assert!(refused(ChartFigure::grid(2, [])).contains("`chart`"));
+    assert!(refused(ChartFigure::new(line(&x)).panel_height(0.0)).contains("must be positive"));
+    let field = |values: &[f64]| {
+        let panel = panel().with(Field::new(values, 2, (0.0, 1.0), (0.0, 1.0)));
+        ChartFigure::new(panel)
+            .colour_scale(ColourScale::new("", 0.0, 1.0))
+            .draw()
+    };
+    assert!(matches!(
+        field(&[1.0, 2.0, 3.0]),
+        Err(FigureError::GridSize {
+            rows: 2,
+            found: 3,
+            ..
+        })
+    ));
+    assert!(matches!(
+        field(&[f64::NAN; 4]),
+        Err(FigureError::EmptySeries { .. })
+    ));
+}
+
+#[test]
+fn no_number_of_a_gap_reaches_the_page() {
+    let panel = ChartPanel::new("x", "y").with_all([
+        ChartLayer::from(Line::new(
+            "",
+            &[0.0, f64::NAN, 2.0, 3.0],
+            &[0.0, 1.0, f64::INFINITY, 3.0],
+        )),
+        Points::new("", &[0.0, 1.0], &[f64::NEG_INFINITY, 1.0])
+            .y_errors(&[1.0, f64::INFINITY])
+            .into(),
+        Band::new("", &[0.0, 1.0, 2.0], &[0.0, f64::NAN, 0.0], &[1.0; 3]).into(),
+        Bars::new("", &[0.0, 1.0, 2.0], &[1.0, f64::NAN]).into(),
+    ]);
+    let svg = ChartFigure::new(panel).draw().unwrap().svg();
+    assert!(!svg.contains("NaN") && !svg.contains("inf\""));
+    assert_eq!(svg.matches("class=\"lines\"").count(), 1);
 }

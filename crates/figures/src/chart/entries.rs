@@ -1,64 +1,55 @@
 //! What the layers of a panel mean, as its legend says it.
 
-use super::layer::ChartLayer;
-use super::paint::{BAND_OPACITY, BAR_OPACITY, Painter, WINDOW_OPACITY, arrow};
-use crate::drawing::{Point, Stroke};
+use super::layer::{ChartLayer, Kind};
+use super::paint::{BAND_OPACITY, BAR_OPACITY, Painter, WINDOW_OPACITY, arrow, join_stroke};
+use crate::geometry::Point;
 use crate::legend::{Entry, Mark};
+
+/// How far a lower limit stands below the middle of its row, so that its arrow has room; the arrow is shorter there.
+const LIMIT_DROP: f64 = 2.0;
+const ARROW_PART: f64 = 0.55;
 
 impl Painter<'_> {
     /// What the layers mean; layers of one name share an entry.
     pub(super) fn entries(&self) -> Vec<Entry> {
         let mut entries: Vec<Entry> = Vec::new();
-        for (number, layer) in self.numbered() {
-            for entry in self.entries_of(number, layer) {
-                let fits = |other: &&mut Entry| {
-                    other.meaning == entry.meaning
-                        && !(other.line.is_some() && entry.line.is_some())
-                        && !(other.mark.is_some() && entry.mark.is_some())
-                        && !(other.band.is_some() && entry.band.is_some())
-                };
-                match entries.iter_mut().find(fits) {
-                    _ if entry.meaning.is_empty() => {}
-                    Some(other) => {
-                        other.line = other.line.or(entry.line);
-                        other.band = other.band.or(entry.band);
-                        other.mark = other.mark.take().or(entry.mark);
-                    }
-                    None => entries.push(entry),
+        let of_layers = self.numbered();
+        let all = of_layers.flat_map(|(number, layer)| self.entries_of(number, layer));
+        for entry in all.filter(|entry| !entry.meaning.is_empty()) {
+            match entries.iter_mut().find(|other| other.takes(&entry)) {
+                Some(other) => {
+                    other.line = other.line.or(entry.line);
+                    other.band = other.band.or(entry.band);
+                    other.mark = other.mark.take().or(entry.mark);
                 }
+                None => entries.push(entry),
             }
         }
         entries
     }
 
     fn entries_of(&self, number: usize, layer: &ChartLayer) -> Vec<Entry> {
+        let colour = self.colour(number, layer.look().unwrap_or_default());
         let named = |meaning: &str| Entry {
             meaning: meaning.to_owned(),
             ..Entry::default()
         };
-        match layer {
-            ChartLayer::Points(points) => {
-                let origin = Point { x: 0.0, y: 0.0 };
+        match &layer.0 {
+            Kind::Points(points) => {
+                let below = Point::new(0.0, LIMIT_DROP);
+                let mark = self.mark(number, points, true);
+                let shorter = |end: Point| Point::new(end.x, ARROW_PART * end.y).from(below);
                 let limit = Mark {
-                    bars: arrow(origin)
-                        .map(|bar| {
-                            bar.map(|end| Point {
-                                y: 0.55 * end.y + 2.0,
-                                ..end
-                            })
-                        })
+                    outline: mark.outline.at([below]),
+                    bars: arrow(Point::new(0.0, 0.0))
+                        .map(|bar| bar.map(shorter))
                         .to_vec(),
-                    ..self.mark(number, points, true)
+                    ..mark
                 };
-                let limit = Mark {
-                    outline: limit.outline.lowered(2.0),
-                    ..limit
-                };
-                let colour = self.colour(number, points.look).faint(0.55);
                 vec![
                     Entry {
                         mark: Some(self.mark(number, points, points.open)),
-                        line: points.joined.then_some(Stroke::solid(colour, 0.6)),
+                        line: points.joined.then_some(join_stroke(colour)),
                         ..named(&points.name)
                     },
                     Entry {
@@ -67,29 +58,33 @@ impl Painter<'_> {
                     },
                 ]
             }
-            ChartLayer::Line(line) => vec![Entry {
-                line: Some(self.line_stroke(number, line)),
+            Kind::Line(line) => vec![Entry {
+                line: Some(line.stroke(colour)),
                 ..named(&line.name)
             }],
-            ChartLayer::Band(band) => vec![Entry {
-                band: Some(self.colour(number, band.look).faint(BAND_OPACITY)),
+            Kind::Band(band) => vec![Entry {
+                band: Some(colour.faint(BAND_OPACITY)),
                 ..named(&band.name)
             }],
-            ChartLayer::Bars(bars) => {
-                let colour = self.colour(number, bars.look);
-                vec![Entry {
-                    band: (!bars.outlined).then_some(colour.faint(BAR_OPACITY)),
-                    line: bars
-                        .outlined
-                        .then_some(Stroke::solid(colour, self.outline_weight(bars))),
-                    ..named(&bars.name)
-                }]
-            }
-            ChartLayer::Window(window) => vec![Entry {
-                band: Some(self.tint(window.tint).faint(WINDOW_OPACITY * 1.4)),
+            Kind::Bars(bars) => vec![Entry {
+                band: Some(colour.faint(BAR_OPACITY)),
+                ..named(&bars.name)
+            }],
+            Kind::Window(window) => vec![Entry {
+                band: Some(colour.faint(WINDOW_OPACITY * 1.4)),
                 ..named(&window.name)
             }],
-            ChartLayer::Reference(_) | ChartLayer::Note(_) => Vec::new(),
+            Kind::Field(_) | Kind::Spheres(_) | Kind::Reference(_) | Kind::Note(_) => Vec::new(),
         }
+    }
+}
+
+impl Entry {
+    /// Whether another entry means the same by another sample.
+    fn takes(&self, other: &Self) -> bool {
+        self.meaning == other.meaning
+            && !(self.line.is_some() && other.line.is_some())
+            && !(self.mark.is_some() && other.mark.is_some())
+            && !(self.band.is_some() && other.band.is_some())
     }
 }

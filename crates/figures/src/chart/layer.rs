@@ -1,7 +1,26 @@
 //! What a panel of a chart shows, one layer upon the other.
 
-use super::look::{Look, Pattern, Tint};
-use super::points::Points;
+use super::look::{Look, Tint};
+use crate::drawing::Pattern;
+
+/// Measured points, with errors where they are known.
+///
+/// A row with a coordinate that is not finite is left out; an error that is not finite is unknown and has no bar. Each
+/// point takes some 60 bytes of an SVG, with its error bar 140: ten thousand are a file of a megabyte.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Points {
+    pub(super) name: String,
+    pub(super) x: Vec<f64>,
+    pub(super) y: Vec<f64>,
+    /// Empty where no errors are known, and so for y.
+    pub(super) x_errors: Vec<f64>,
+    pub(super) y_errors: Vec<f64>,
+    pub(super) lower_limits: Vec<bool>,
+    pub(super) limit_name: String,
+    pub(super) look: Look,
+    pub(super) open: bool,
+    pub(super) joined: bool,
+}
 
 /// A curve; rows that are not finite leave gaps.
 ///
@@ -27,7 +46,6 @@ pub struct Band {
     pub(super) lower: Vec<f64>,
     pub(super) upper: Vec<f64>,
     pub(super) look: Look,
-    pub(super) stepped: bool,
 }
 
 /// A histogram: bars between consecutive edges.
@@ -39,7 +57,28 @@ pub struct Bars {
     pub(super) edges: Vec<f64>,
     pub(super) heights: Vec<f64>,
     pub(super) look: Look,
-    pub(super) outlined: bool,
+}
+
+/// A field on a grid of equal cells, coloured by the chart's scale: the flow rate of each wave of the tube against time.
+///
+/// Values that are not finite are missing and grey. Cells too narrow to be seen are averaged, so that the file stays
+/// small however long the run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Field {
+    pub(super) values: Vec<f64>,
+    pub(super) rows: usize,
+    pub(super) x: (f64, f64),
+    pub(super) y: (f64, f64),
+}
+
+/// Spheres of given sizes before each other, on axes with [equal scales](super::ChartFigure::equal_scales).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Spheres {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) diameter: Vec<f64>,
+    /// On the chart's scale of colours; without values the spheres are faint discs.
+    pub(crate) values: Vec<f64>,
 }
 
 /// A straight line from side to side at one value, with a label where it covers least.
@@ -49,7 +88,7 @@ pub struct Reference {
     pub(super) vertical: bool,
     pub(super) label: String,
     pub(super) pattern: Pattern,
-    pub(super) tint: Tint,
+    pub(super) look: Look,
 }
 
 /// A shaded interval of x, from the bottom to the top of the panel.
@@ -58,22 +97,15 @@ pub struct Window {
     pub(super) name: String,
     pub(super) from: f64,
     pub(super) to: f64,
-    pub(super) tint: Tint,
+    pub(super) look: Look,
 }
 
-/// A line of text.
+/// A line of text in a corner of the panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Note {
     pub(super) text: String,
-    pub(super) place: Place,
-    pub(super) tint: Tint,
-}
-
-/// Where a note stands.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Place {
-    At(f64, f64),
-    In(Corner),
+    pub(super) corner: Corner,
+    pub(super) look: Look,
 }
 
 /// A corner of a panel.
@@ -91,21 +123,96 @@ pub enum Corner {
 
 /// Anything that a panel shows.
 #[derive(Clone, Debug, PartialEq)]
-pub enum ChartLayer {
-    /// Points with errors.
+pub struct ChartLayer(pub(super) Kind);
+
+/// The kinds of layers.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Kind {
     Points(Points),
-    /// A curve.
     Line(Line),
-    /// An area between curves.
     Band(Band),
-    /// A histogram.
     Bars(Bars),
-    /// A line at one value.
+    Field(Field),
+    Spheres(Spheres),
     Reference(Reference),
-    /// A shaded interval.
     Window(Window),
-    /// A text.
     Note(Note),
+}
+
+impl Points {
+    /// Points of a series; its name, in markup, stands in the legend unless it is empty.
+    pub fn new(name: &str, x: &[f64], y: &[f64]) -> Self {
+        Self {
+            name: name.to_owned(),
+            x: x.to_vec(),
+            y: y.to_vec(),
+            x_errors: Vec::new(),
+            y_errors: Vec::new(),
+            lower_limits: Vec::new(),
+            limit_name: String::new(),
+            look: Look::default(),
+            open: false,
+            joined: false,
+        }
+    }
+
+    /// Errors of x, the same to both sides.
+    #[must_use]
+    pub fn x_errors(mut self, errors: &[f64]) -> Self {
+        self.x_errors = errors.to_vec();
+        self
+    }
+
+    /// Errors of y, the same to both sides.
+    #[must_use]
+    pub fn y_errors(mut self, errors: &[f64]) -> Self {
+        self.y_errors = errors.to_vec();
+        self
+    }
+
+    /// Which rows are lower limits only, such as transition times that were not seen: open, with an arrow upwards.
+    #[must_use]
+    pub fn lower_limits(mut self, limits: &[bool]) -> Self {
+        self.lower_limits = limits.to_vec();
+        self
+    }
+
+    /// What the legend says of the lower limits, in markup; nothing unless given.
+    #[must_use]
+    pub fn limit_name(mut self, name: &str) -> Self {
+        name.clone_into(&mut self.limit_name);
+        self
+    }
+
+    /// Markers with a white inside.
+    #[must_use]
+    pub fn open(mut self) -> Self {
+        self.open = true;
+        self
+    }
+
+    /// A thin line from point to point that guides the eye.
+    #[must_use]
+    pub fn joined(mut self) -> Self {
+        self.joined = true;
+        self
+    }
+
+    /// The rows with a place.
+    pub(super) fn rows(&self) -> impl Iterator<Item = usize> {
+        (0..self.x.len()).filter(|&row| self.x[row].is_finite() && self.y[row].is_finite())
+    }
+
+    pub(super) fn is_limit(&self, row: usize) -> bool {
+        self.lower_limits.get(row).copied().unwrap_or(false)
+    }
+}
+
+/// Ends of the error bar of a value in a row; the value itself where its error is unknown.
+pub(super) fn error_ends(errors: &[f64], row: usize, value: f64) -> [f64; 2] {
+    let error = errors.get(row).copied().filter(|error| error.is_finite());
+    let error = error.unwrap_or(0.0).abs();
+    [value - error, value + error]
 }
 
 impl Line {
@@ -124,36 +231,22 @@ impl Line {
 
     /// Each value holds until the next x, as in a survival curve.
     #[must_use]
-    pub fn stepped(self) -> Self {
-        Self {
-            stepped: true,
-            ..self
-        }
+    pub fn stepped(mut self) -> Self {
+        self.stepped = true;
+        self
     }
 
     /// Pattern of the line.
     #[must_use]
-    pub fn pattern(self, pattern: Pattern) -> Self {
-        Self { pattern, ..self }
+    pub fn pattern(mut self, pattern: Pattern) -> Self {
+        self.pattern = pattern;
+        self
     }
 
     /// Weight in points, 1 unless given; a heavy line below a light one keeps both readable where they coincide.
     #[must_use]
-    pub fn weight(self, weight: f64) -> Self {
-        Self { weight, ..self }
-    }
-
-    /// Number of the series, which decides the colour.
-    #[must_use]
-    pub fn series(mut self, number: usize) -> Self {
-        self.look.series = Some(number);
-        self
-    }
-
-    /// Another colour than that of the series.
-    #[must_use]
-    pub fn tint(mut self, tint: Tint) -> Self {
-        self.look.tint = Some(tint);
+    pub fn weight(mut self, weight: f64) -> Self {
+        self.weight = weight;
         self
     }
 }
@@ -167,31 +260,7 @@ impl Band {
             lower: lower.to_vec(),
             upper: upper.to_vec(),
             look: Look::default(),
-            stepped: false,
         }
-    }
-
-    /// Each pair of values holds until the next x.
-    #[must_use]
-    pub fn stepped(self) -> Self {
-        Self {
-            stepped: true,
-            ..self
-        }
-    }
-
-    /// Number of the series, which decides the colour.
-    #[must_use]
-    pub fn series(mut self, number: usize) -> Self {
-        self.look.series = Some(number);
-        self
-    }
-
-    /// Another colour than that of the series.
-    #[must_use]
-    pub fn tint(mut self, tint: Tint) -> Self {
-        self.look.tint = Some(tint);
-        self
     }
 }
 
@@ -203,31 +272,28 @@ impl Bars {
             edges: edges.to_vec(),
             heights: heights.to_vec(),
             look: Look::default(),
-            outlined: false,
         }
     }
+}
 
-    /// Only the outline, so that several histograms can lie over each other.
-    #[must_use]
-    pub fn outlined(self) -> Self {
+impl Field {
+    /// The field over ranges of x and y that the cells fill, row by row from the lowest, each from left to right.
+    pub fn new(values: &[f64], rows: usize, x: (f64, f64), y: (f64, f64)) -> Self {
         Self {
-            outlined: true,
-            ..self
+            values: values.to_vec(),
+            rows,
+            x,
+            y,
         }
     }
+}
 
-    /// Number of the series, which decides the colour.
-    #[must_use]
-    pub fn series(mut self, number: usize) -> Self {
-        self.look.series = Some(number);
-        self
-    }
-
-    /// Another colour than that of the series.
-    #[must_use]
-    pub fn tint(mut self, tint: Tint) -> Self {
-        self.look.tint = Some(tint);
-        self
+impl Spheres {
+    /// Adds a sphere before all others.
+    pub(crate) fn push(&mut self, x: f64, y: f64, diameter: f64) {
+        self.x.push(x);
+        self.y.push(y);
+        self.diameter.push(diameter);
     }
 }
 
@@ -239,7 +305,7 @@ impl Reference {
             vertical: false,
             label: String::new(),
             pattern: Pattern::Dotted,
-            tint: Tint::Black,
+            look: Look::of(Tint::Black),
         }
     }
 
@@ -253,23 +319,16 @@ impl Reference {
 
     /// What is written along the line, in markup.
     #[must_use]
-    pub fn label(self, label: &str) -> Self {
-        Self {
-            label: label.to_owned(),
-            ..self
-        }
+    pub fn label(mut self, label: &str) -> Self {
+        label.clone_into(&mut self.label);
+        self
     }
 
     /// Pattern of the line, dotted unless given.
     #[must_use]
-    pub fn pattern(self, pattern: Pattern) -> Self {
-        Self { pattern, ..self }
-    }
-
-    /// Colour of line and label, black unless given.
-    #[must_use]
-    pub fn tint(self, tint: Tint) -> Self {
-        Self { tint, ..self }
+    pub fn pattern(mut self, pattern: Pattern) -> Self {
+        self.pattern = pattern;
+        self
     }
 }
 
@@ -280,50 +339,115 @@ impl Window {
             name: name.to_owned(),
             from,
             to,
-            tint: Tint::Grey,
+            look: Look::of(Tint::Grey),
         }
-    }
-
-    /// Its colour, grey unless given.
-    #[must_use]
-    pub fn tint(self, tint: Tint) -> Self {
-        Self { tint, ..self }
     }
 }
 
 impl Note {
-    /// A text, in markup, that starts at a place of the axes, moved into the panel where it would leave it.
-    pub fn at(x: f64, y: f64, text: &str) -> Self {
-        Self {
-            text: text.to_owned(),
-            place: Place::At(x, y),
-            tint: Tint::Black,
-        }
-    }
-
     /// A text, in markup, in a corner of the panel.
     pub fn corner(corner: Corner, text: &str) -> Self {
         Self {
-            place: Place::In(corner),
-            ..Self::at(0.0, 0.0, text)
+            text: text.to_owned(),
+            corner,
+            look: Look::of(Tint::Black),
         }
-    }
-
-    /// Its colour, black unless given.
-    #[must_use]
-    pub fn tint(self, tint: Tint) -> Self {
-        Self { tint, ..self }
     }
 }
 
-macro_rules! layers {
+/// What every coloured layer offers.
+macro_rules! coloured {
     ($($kind:ident),*) => {
-        $(impl From<$kind> for ChartLayer {
-            fn from(layer: $kind) -> Self {
-                Self::$kind(layer)
+        $(impl $kind {
+            /// Number of the series, which decides the colour, and the marker of points; without it, the layers of a
+            /// panel are counted from 0.
+            #[must_use]
+            pub fn series(mut self, number: usize) -> Self {
+                self.look.series = Some(number);
+                self
+            }
+
+            /// Another colour than that of the series.
+            #[must_use]
+            pub fn tint(mut self, tint: Tint) -> Self {
+                self.look.tint = Some(tint);
+                self
             }
         })*
     };
 }
 
-layers!(Points, Line, Band, Bars, Reference, Window, Note);
+coloured!(Points, Line, Band, Bars, Reference, Window, Note);
+
+macro_rules! layers {
+    ($($kind:ident),*) => {
+        $(impl From<$kind> for ChartLayer {
+            fn from(layer: $kind) -> Self {
+                Self(Kind::$kind(layer))
+            }
+        })*
+    };
+}
+
+layers!(Points, Line, Band, Bars, Field, Reference, Window, Note);
+
+impl From<Spheres> for ChartLayer {
+    fn from(layer: Spheres) -> Self {
+        Self(Kind::Spheres(layer))
+    }
+}
+
+impl ChartLayer {
+    /// What decides the layer's colour, where it has one.
+    pub(super) fn look(&self) -> Option<Look> {
+        match &self.0 {
+            Kind::Points(Points { look, .. })
+            | Kind::Line(Line { look, .. })
+            | Kind::Band(Band { look, .. })
+            | Kind::Bars(Bars { look, .. })
+            | Kind::Reference(Reference { look, .. })
+            | Kind::Window(Window { look, .. })
+            | Kind::Note(Note { look, .. }) => Some(*look),
+            Kind::Field(_) | Kind::Spheres(_) => None,
+        }
+    }
+
+    /// Whether the layer is one of those that are counted for their colours.
+    pub(super) fn is_series(&self) -> bool {
+        matches!(
+            self.0,
+            Kind::Points(_) | Kind::Line(_) | Kind::Band(_) | Kind::Bars(_)
+        )
+    }
+
+    /// Whether the chart's scale colours areas of the layer, which even its lightest colours set off.
+    pub(super) fn is_coloured_area(&self) -> bool {
+        match &self.0 {
+            Kind::Field(_) => true,
+            Kind::Spheres(spheres) => !spheres.values.is_empty(),
+            _ => false,
+        }
+    }
+
+    /// Whether the chart's scale of colours must say what its colours mean.
+    pub(super) fn needs_scale(&self) -> bool {
+        let tint = self.look().and_then(|look| look.tint);
+        self.is_coloured_area() || matches!(tint, Some(Tint::Value(_)))
+    }
+
+    /// The name without markup, or what the layer is where it has none.
+    pub(super) fn name(&self) -> String {
+        let (name, kind) = match &self.0 {
+            Kind::Points(points) => (points.name.as_str(), "points"),
+            Kind::Line(line) => (line.name.as_str(), "line"),
+            Kind::Band(band) => (band.name.as_str(), "band"),
+            Kind::Bars(bars) => (bars.name.as_str(), "bars"),
+            Kind::Field(_) => ("", "field"),
+            Kind::Spheres(_) => ("", "spheres"),
+            Kind::Reference(reference) => (reference.label.as_str(), "reference line"),
+            Kind::Window(window) => (window.name.as_str(), "window"),
+            Kind::Note(note) => (note.text.as_str(), "note"),
+        };
+        crate::text::plain(if name.is_empty() { kind } else { name })
+    }
+}

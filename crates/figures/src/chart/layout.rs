@@ -1,14 +1,17 @@
 //! Where the panels of a chart stand on the page.
 
-use super::ChartFigure;
 use super::check::Checked;
+use super::frame::{Frame, Surround};
 use super::paint::ARROW;
-use super::panel::{AxisWish, ChartPanel, MARGIN};
-use crate::axis::{Axis, Tick};
-use crate::drawing::{Drawing, Rectangle};
+use super::panel::AxisWish;
+use super::{ChartFigure, HEADER_SPACE};
+use crate::axis::{Axis, Tick, widest};
 use crate::error::FigureError;
-use crate::panel::{BOTTOM_MARGIN, Labels, Panel, TICK_GAP, Ticks, title_space};
-use crate::style::{LABEL_BASELINE, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_SIZE, Width};
+use crate::geometry::Rectangle;
+use crate::style::{
+    LABEL_BASELINE, LABEL_SPACE, POINTS_PER_MILLIMETRE, RIGHT_MARGIN, TICK_GAP, TICK_SIZE,
+    TICK_SPACE, Width,
+};
 use crate::text::Text;
 
 /// Height of a frame over its width: in a lone panel two columns wide, and otherwise.
@@ -17,8 +20,6 @@ const ASPECT: f64 = 0.72;
 /// A frame is no lower than this unless it is asked for.
 const LEAST_HEIGHT: f64 = 85.0;
 const TOP_MARGIN: f64 = 4.0;
-/// Space above a frame for its letter and title.
-const HEADER_SPACE: f64 = 9.5;
 /// Space between frames that share an axis.
 const GAP: f64 = 6.0;
 /// Space between the name of a vertical axis and its numbers.
@@ -39,13 +40,14 @@ const USUAL_LEFT: f64 = 32.0;
 /// The panels on the page.
 pub(super) struct Layout {
     pub(super) seats: Vec<Seat>,
+    /// Lower end of the panels with their labels.
+    pub(super) bottom: f64,
 }
 
 /// A panel on the page.
 pub(super) struct Seat {
-    pub(super) panel: Panel,
-    ticks: Ticks,
-    bears_x: bool,
+    pub(super) frame: Frame,
+    pub(super) around: Surround,
 }
 
 /// The axes of a panel before it has a place.
@@ -55,102 +57,109 @@ struct Axes {
 }
 
 impl Layout {
-    pub(super) fn of(figure: &ChartFigure) -> Result<Self, FigureError> {
-        let page = figure.width.points();
+    /// Places the panels below a title that takes some space.
+    pub(super) fn of(figure: &ChartFigure, title_space: f64) -> Result<Self, FigureError> {
         let columns = figure.columns;
-        let count = figure.panels.len();
-        let guess = (page - USUAL_LEFT * columns as f64 - RIGHT_MARGIN) / columns as f64;
-        let aspect = if columns == 1 && figure.width == Width::DoubleColumn {
-            WIDE_ASPECT
-        } else {
-            ASPECT
-        };
-        let height = figure
-            .panel_height
-            .map_or((guess * aspect).max(LEAST_HEIGHT), |height| {
-                height * POINTS_PER_MILLIMETRE
-            });
+        let mut height = usual_height(figure);
         let axes = axes(figure, height)?;
-        let spaces = Spaces::of(figure, &axes, height);
-        let width = (page - spaces.right - spaces.left.iter().sum::<f64>()) / columns as f64;
-        let rows = count.div_ceil(columns);
-
-        let header = if figure.has_headers() {
-            HEADER_SPACE
-        } else {
-            0.0
-        };
-        let mut seats = Vec::with_capacity(count);
-        let mut top = title_space(&figure.title) + TOP_MARGIN + header;
-        for row in 0..rows {
-            let mut left = 0.0;
-            let mut has_names = false;
-            for (column, space) in spaces.left.iter().enumerate() {
-                let index = row * columns + column;
-                left += space;
-                if index < count {
-                    let frame = Rectangle {
-                        left,
-                        top,
-                        width,
-                        height,
-                    };
-                    has_names |= bears_x(figure, index);
-                    let Axes { x, y } = axes[index];
-                    let y_ticks = y_ticks(&y, height);
-                    let baseline = left - TICK_GAP - widest(&y_ticks) - NAME_GAP;
-                    seats.push(Seat {
-                        panel: Panel { frame, x, y },
-                        ticks: Ticks {
-                            x: x_ticks(&x, width),
-                            y: y_ticks,
-                            y_baseline: bears_y(figure, index).then_some(baseline),
-                        },
-                        bears_x: bears_x(figure, index),
-                    });
-                }
-                left += width;
-            }
-            let below = if has_names { BOTTOM_MARGIN + GAP } else { GAP };
-            top += height + below + header;
+        let mut spaces = Spaces::of(figure, &axes, height);
+        if figure.equal_scales {
+            let length = |axis: &Axis| axis.range().1 - axis.range().0;
+            let aspect = length(&axes[0].y) / length(&axes[0].x);
+            // The numbers on the vertical axis need room that the height, and so they, depend on.
+            spaces = Spaces::of(figure, &axes, aspect * spaces.width);
+            height = aspect * spaces.width;
         }
-        Ok(Self { seats })
-    }
-
-    /// Lower end of the panels with their labels.
-    pub(super) fn bottom(&self) -> f64 {
-        self.span().bottom() + BOTTOM_MARGIN
+        // Names of axes below each other stand in one line.
+        let numbers = |column: usize| {
+            let panels = axes.iter().skip(column).step_by(columns);
+            let widths = panels.map(|axes| widest(&y_ticks(&axes.y, height)));
+            widths.fold(0.0, f64::max)
+        };
+        let mut seats = Vec::with_capacity(axes.len());
+        let mut bottom = title_space;
+        for (row, panels) in axes.chunks(columns).enumerate() {
+            let first = row * columns;
+            let indices = first..first + panels.len();
+            let has_header = indices.clone().any(|it| !figure.header(it).is_empty());
+            let header = if has_header { HEADER_SPACE } else { 0.0 };
+            let gap = if row == 0 { TOP_MARGIN } else { GAP };
+            let top = bottom + gap + header;
+            let mut left = 0.0;
+            for (axes, (index, space)) in panels.iter().zip(indices.clone().zip(&spaces.left)) {
+                left += space;
+                let baseline = left - TICK_GAP - numbers(index % columns) - NAME_GAP;
+                seats.push(Seat {
+                    frame: Frame {
+                        area: Rectangle {
+                            left,
+                            top,
+                            width: spaces.width,
+                            height,
+                        },
+                        x: axes.x,
+                        y: axes.y,
+                    },
+                    around: Surround {
+                        x_ticks: x_ticks(&axes.x, spaces.width),
+                        y_ticks: y_ticks(&axes.y, height),
+                        has_x_numbers: bears_x(figure, index),
+                        y_baseline: bears_y(figure, index).then_some(baseline),
+                    },
+                });
+                left += spaces.width;
+            }
+            let below = indices.map(|index| space_below(figure, index));
+            bottom = top + height + below.fold(0.0, f64::max);
+        }
+        Ok(Self { seats, bottom })
     }
 
     /// The smallest rectangle around all frames.
     pub(super) fn span(&self) -> Rectangle {
-        let frames = || self.seats.iter().map(|seat| seat.panel.frame);
-        let least =
-            |of: fn(&Rectangle) -> f64| frames().map(|frame| of(&frame)).fold(f64::MAX, f64::min);
-        let most =
-            |of: fn(&Rectangle) -> f64| frames().map(|frame| of(&frame)).fold(f64::MIN, f64::max);
-        let (left, top) = (least(|frame| frame.left), least(|frame| frame.top));
+        let areas = || self.seats.iter().map(|seat| seat.frame.area);
+        let (left, top) = areas().fold((f64::MAX, f64::MAX), |least, area| {
+            (least.0.min(area.left), least.1.min(area.top))
+        });
+        let (right, bottom) = areas().fold((f64::MIN, f64::MIN), |most, area| {
+            (most.0.max(area.right()), most.1.max(area.bottom()))
+        });
         Rectangle {
             left,
             top,
-            width: most(Rectangle::right) - left,
-            height: most(Rectangle::bottom) - top,
+            width: right - left,
+            height: bottom - top,
         }
     }
 }
 
-/// Free space beside the frames, in points.
+/// Height of the frames in points, unless their scales decide it.
+fn usual_height(figure: &ChartFigure) -> f64 {
+    if let Some(height) = figure.panel_height {
+        return height * POINTS_PER_MILLIMETRE;
+    }
+    let columns = figure.columns as f64;
+    let width = (figure.width.points() - USUAL_LEFT * columns - RIGHT_MARGIN) / columns;
+    let is_wide = figure.columns == 1 && figure.width == Width::DoubleColumn;
+    let aspect = if is_wide { WIDE_ASPECT } else { ASPECT };
+    (width * aspect).max(LEAST_HEIGHT)
+}
+
+/// Free space beside the frames, and what it leaves them, in points.
 struct Spaces {
     /// At the left of each column.
     left: Vec<f64>,
-    /// At the right of the last.
-    right: f64,
+    /// Of each frame.
+    width: f64,
 }
 
 impl Spaces {
     fn of(figure: &ChartFigure, axes: &[Axes], height: f64) -> Self {
-        let (columns, count) = (figure.columns, axes.len());
-        let panels = |column: usize| (column..count).step_by(columns);
+        let columns = figure.columns;
+        let panels = |column: usize| (column..axes.len()).step_by(columns);
+        let width_beside = |left: &[f64], right: f64| {
+            (figure.width.points() - right - left.iter().sum::<f64>()) / columns as f64
+        };
         // Name and numbers of the widest vertical axis.
         let names = |column: usize| {
             let outer = if column == 0 { 0.0 } else { GAP };
@@ -162,13 +171,13 @@ impl Spaces {
                 })
                 .fold(outer, f64::max)
         };
-        let left: Vec<f64> = (0..columns).map(names).collect();
-        let right = figure
-            .colour_scale
-            .as_ref()
-            .map_or(RIGHT_MARGIN, |scale| scale.space(height));
+        let mut left: Vec<f64> = (0..columns).map(names).collect();
+        let right = match &figure.colour_scale {
+            Some(scale) if !figure.has_bar_below => scale.space(height),
+            _ => RIGHT_MARGIN,
+        };
         // The numbers at the ends of a horizontal axis reach over it, nearly alike for nearly equal widths.
-        let width = (figure.width.points() - right - left.iter().sum::<f64>()) / columns as f64;
+        let width = width_beside(&left, right);
         let over = |index: usize| {
             if bears_x(figure, index) {
                 overhang(&axes[index].x, width)
@@ -176,22 +185,13 @@ impl Spaces {
                 (0.0, 0.0)
             }
         };
-        let between = |column: usize| {
-            panels(column)
-                .filter(|_| column > 0)
-                .map(|index| over(index - 1).1 + over(index).0 + NUMBER_GAP)
-                .fold(0.0, f64::max)
-        };
-        Self {
-            right: panels(columns - 1)
-                .map(|index| over(index).1 + 2.0)
-                .fold(right, f64::max),
-            left: left
-                .into_iter()
-                .enumerate()
-                .map(|(column, space)| space.max(between(column)))
-                .collect(),
+        for (column, space) in left.iter_mut().enumerate().skip(1) {
+            let between = |index: usize| over(index - 1).1 + over(index).0 + NUMBER_GAP;
+            *space = panels(column).map(between).fold(*space, f64::max);
         }
+        let last = panels(columns - 1).map(|index| over(index).1 + 2.0);
+        let width = width_beside(&left, last.fold(right, f64::max));
+        Self { left, width }
     }
 }
 
@@ -205,15 +205,15 @@ fn bears_y(figure: &ChartFigure, index: usize) -> bool {
     !figure.shares_y || index.is_multiple_of(figure.columns)
 }
 
-impl Seat {
-    /// The frame with its ticks and the names of its axes.
-    pub(super) fn draw_frame(&self, drawing: &mut Drawing, chart: &ChartPanel) {
-        let labels = Labels {
-            x: self.bears_x.then_some(chart.x.label.as_str()),
-            y: &chart.y.label,
-            letter: None,
-        };
-        self.panel.draw_ticked_frame(drawing, &labels, &self.ticks);
+/// Space below a panel for numbers and name of its horizontal axis.
+fn space_below(figure: &ChartFigure, index: usize) -> f64 {
+    match (
+        bears_x(figure, index),
+        figure.panels[index].x.label.as_str(),
+    ) {
+        (false, _) => 0.0,
+        (true, "") => TICK_SPACE,
+        (true, _) => TICK_SPACE + LABEL_SPACE,
     }
 }
 
@@ -222,10 +222,10 @@ fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
     let checked: Vec<Checked> = figure
         .panels
         .iter()
-        .map(|panel| panel.checked(figure.colour_scale.is_some()))
+        .map(|panel| Checked::new(panel, figure.colour_scale.is_some()))
         .collect::<Result<_, _>>()?;
     if checked.is_empty() {
-        return Err(FigureError::EmptyLayer {
+        return Err(FigureError::EmptySeries {
             series: "chart".to_owned(),
             length: 0,
         });
@@ -233,32 +233,29 @@ fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
     let columns = figure.columns;
     (0..checked.len())
         .map(|index| {
-            let in_column = |other: &usize| {
-                *other == index || figure.shares_x && other % columns == index % columns
+            let those = |shares: bool, place: &dyn Fn(usize) -> usize| -> Vec<usize> {
+                let with = |it: &usize| *it == index || shares && place(*it) == place(index);
+                (0..checked.len()).filter(with).collect()
             };
-            let in_row = |other: &usize| {
-                *other == index || figure.shares_y && other / columns == index / columns
-            };
-            let column: Vec<usize> = (0..checked.len()).filter(in_column).collect();
-            let row: Vec<usize> = (0..checked.len()).filter(in_row).collect();
-            let x = shared("x", &column, |other| {
-                (&figure.panels[other].x, checked[other].x)
-            })?;
-            let y = shared("y", &row, |other| {
-                (&figure.panels[other].y, checked[other].y)
-            })?;
-            let has_limits = row.iter().any(|&other| checked[other].has_limits);
+            let column = those(figure.shares_x, &|it| it % columns);
+            let row = those(figure.shares_y, &|it| it / columns);
+            let x = shared("x", &column, |it| (&figure.panels[it].x, checked[it].x))?;
+            let y = shared("y", &row, |it| (&figure.panels[it].y, checked[it].y))?;
             // All that share an axis must have the same free space on it.
-            let mut y_free = row.iter().fold((f64::INFINITY, 0.0_f64), |free, &other| {
-                let (below, above) = checked[other].y_free;
-                (free.0.min(below), free.1.max(above))
-            });
-            if has_limits {
-                y_free.1 = y_free.1.max((ARROW + 3.0) / height).min(0.4);
+            let (mut below, mut above, mut x_free) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+            for other in row.iter().map(|&other| checked[other]) {
+                below = below.min(other.y_free.0);
+                above = above.max(other.y_free.1);
+                if other.has_limits {
+                    above = above.max((ARROW + 3.0) / height).min(0.4);
+                }
+            }
+            for &other in &column {
+                x_free = x_free.max(checked[other].x_free);
             }
             Ok(Axes {
-                x: x.0.axis("x", x.1, (MARGIN, MARGIN))?,
-                y: y.0.axis("y", y.1, y_free)?,
+                x: x.0.axis("x", x.1, (x_free, x_free))?,
+                y: y.0.axis("y", y.1, (below, above))?,
             })
         })
         .collect()
@@ -272,45 +269,34 @@ fn shared<'a>(
 ) -> Result<(AxisWish, (f64, f64)), FigureError> {
     let (wish, mut data) = of(panels[0]);
     let mut wish = wish.clone();
+    let both = |one: Option<f64>, other: Option<f64>, of: fn(f64, f64) -> f64| {
+        one.zip(other)
+            .map(|(one, other)| of(one, other))
+            .or(one)
+            .or(other)
+    };
     for &panel in &panels[1..] {
         let (other, range) = of(panel);
         if other.scale != wish.scale {
             return Err(FigureError::SharedScale { axis: name });
         }
         data = (data.0.min(range.0), data.1.max(range.1));
-        wish.least = match (wish.least, other.least) {
-            (Some(one), Some(other)) => Some(one.min(other)),
-            (one, other) => one.or(other),
-        };
-        wish.largest = match (wish.largest, other.largest) {
-            (Some(one), Some(other)) => Some(one.max(other)),
-            (one, other) => one.or(other),
-        };
+        wish.least = both(wish.least, other.least, f64::min);
+        wish.largest = both(wish.largest, other.largest, f64::max);
     }
     Ok((wish, data))
 }
 
 fn x_ticks(axis: &Axis, width: f64) -> Vec<Tick> {
-    axis.fitting_ticks(
-        width,
-        ((width / ROOM_ACROSS) as usize).min(MOST_ACROSS),
-        |label| Text::new(label, TICK_SIZE).width + NUMBER_GAP,
-    )
-}
-
-fn y_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
-    axis.fitting_ticks(height, ((height / ROOM_UP) as usize).min(MOST_UP), |_| {
-        NUMBER_ROOM
+    let most = ((width / ROOM_ACROSS) as usize).min(MOST_ACROSS);
+    axis.fitting_ticks(width, most, |label| {
+        Text::new(label, TICK_SIZE).width + NUMBER_GAP
     })
 }
 
-fn widest(ticks: &[Tick]) -> f64 {
-    ticks
-        .iter()
-        .filter_map(|tick| tick.label.as_ref())
-        .fold(0.0, |widest: f64, label| {
-            widest.max(Text::new(label, TICK_SIZE).width)
-        })
+fn y_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
+    let most = ((height / ROOM_UP) as usize).min(MOST_UP);
+    axis.fitting_ticks(height, most, |_| NUMBER_ROOM)
 }
 
 /// How far the first and the last number of a horizontal axis reach over its ends.

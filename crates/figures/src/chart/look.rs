@@ -1,12 +1,12 @@
-//! How the layers of a chart look: colours, markers and patterns of lines.
+//! How the layers of a chart look: colours and markers.
 
 use crate::colour::{
-    BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, sequential,
+    AGAINST, ALONG, BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION,
 };
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Dash, Outline, Point};
+use crate::geometry::{Path, Point};
 
-/// A colour of a layer: one of Okabe and Ito's, or that of a value on the chart's scale of colours.
+/// A colour of a layer: one of Okabe and Ito's, that of a direction, or that of a value on the chart's scale of colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tint {
     /// Blue, the first series.
@@ -25,37 +25,12 @@ pub enum Tint {
     Black,
     /// Grey, for what stands behind.
     Grey,
+    /// Red, for motion along the wave.
+    Along,
+    /// Blue, for motion against the wave.
+    Against,
     /// The colour of this value on the scale of the chart.
     Value(f64),
-}
-
-/// Shape of the mark of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Marker {
-    /// A disc, the first series.
-    Circle,
-    /// A square, the second series.
-    Square,
-    /// A triangle on its base, the third series.
-    Triangle,
-    /// A square on its corner, the fourth series.
-    Diamond,
-    /// A triangle on its corner, the fifth series.
-    InvertedTriangle,
-}
-
-/// Pattern of a line.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Pattern {
-    /// Unbroken.
-    #[default]
-    Solid,
-    /// Strokes.
-    Dashed,
-    /// Dots.
-    Dotted,
-    /// Long and short strokes in turn.
-    DashDotted,
 }
 
 /// What decides the colour of a layer: its series, unless a tint is given.
@@ -75,15 +50,21 @@ const TINTS: [Tint; 7] = [
     Tint::Black,
 ];
 
-const MARKERS: [Marker; 5] = [
-    Marker::Circle,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::Diamond,
-    Marker::InvertedTriangle,
+/// Outlines of markers about as large as a disc of radius 1: a square, a triangle on its base, a square on its corner, a
+/// triangle on its corner; before them all the disc itself.
+const POLYGONS: [&[(f64, f64)]; 4] = [
+    &[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)],
+    &[(0.0, -1.35), (1.17, 0.68), (-1.17, 0.68)],
+    &[(0.0, -1.32), (1.32, 0.0), (0.0, 1.32), (-1.32, 0.0)],
+    &[(0.0, 1.35), (1.17, -0.68), (-1.17, -0.68)],
 ];
 
 impl Look {
+    pub(super) fn of(tint: Tint) -> Self {
+        let tint = Some(tint);
+        Self { series: None, tint }
+    }
+
     /// Colour of the layer; `number` counts the layers of the panel.
     pub(super) fn colour(self, number: usize, scale: Option<&ColourScale>) -> Colour {
         let number = self.series.unwrap_or(number);
@@ -96,43 +77,21 @@ impl Look {
             Tint::Sky => SKY,
             Tint::Black => BLACK,
             Tint::Grey => GREY,
-            Tint::Value(value) => scale.map_or(sequential(0.0), |scale| scale.colour(value)),
+            Tint::Along => ALONG,
+            Tint::Against => AGAINST,
+            Tint::Value(value) => scale.map_or(GREY, |scale| scale.colour(value)),
         }
     }
 
-    /// Marker of the layer, unless one was chosen.
-    pub(super) fn marker(self, number: usize) -> Marker {
-        MARKERS[self.series.unwrap_or(number) % MARKERS.len()]
-    }
-}
-
-impl Marker {
-    /// Outline of a mark about as large as a disc of a radius, in points.
-    pub(super) fn outline(self, radius: f64) -> Outline {
-        let polygon = |corners: &[(f64, f64)]| {
-            let corner = |&(x, y): &(f64, f64)| Point {
-                x: x * radius,
-                y: y * radius,
-            };
-            Outline::Polygon(corners.iter().map(corner).collect())
-        };
-        match self {
-            Self::Circle => Outline::Circle { radius },
-            Self::Square => polygon(&[(-0.9, -0.9), (0.9, -0.9), (0.9, 0.9), (-0.9, 0.9)]),
-            Self::Triangle => polygon(&[(0.0, -1.35), (1.17, 0.68), (-1.17, 0.68)]),
-            Self::Diamond => polygon(&[(0.0, -1.32), (1.32, 0.0), (0.0, 1.32), (-1.32, 0.0)]),
-            Self::InvertedTriangle => polygon(&[(0.0, 1.35), (1.17, -0.68), (-1.17, -0.68)]),
-        }
-    }
-}
-
-impl Pattern {
-    pub(super) fn dash(self) -> Dash {
-        match self {
-            Self::Solid => Dash::Solid,
-            Self::Dashed => Dash::Dashed,
-            Self::Dotted => Dash::Dotted,
-            Self::DashDotted => Dash::Alternating,
+    /// Outline of the layer's marker around the origin, about as large as a disc of a radius in points.
+    pub(super) fn marker(self, number: usize, radius: f64) -> Path {
+        let origin = Point::new(0.0, 0.0);
+        match self.series.unwrap_or(number) % (POLYGONS.len() + 1) {
+            0 => Path::circle(origin, radius),
+            shape => {
+                let corners = POLYGONS[shape - 1].iter();
+                Path::polygon(corners.map(|(x, y)| Point::new(x * radius, y * radius)))
+            }
         }
     }
 }

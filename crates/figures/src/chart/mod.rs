@@ -1,4 +1,4 @@
-//! Charts of ensembles: panels with points, curves, bands, histograms and reference lines, on linear or logarithmic axes.
+//! Charts of ensembles: panels with points, curves, bands, histograms, fields and reference lines, on linear or logarithmic axes.
 //!
 //! A [`ChartFigure`] is one [`ChartPanel`] or a grid of them; a panel is two axes and a list of layers. Layers own their
 //! columns. Rows that are not finite leave gaps; a value that is not positive on a logarithmic axis is an error that
@@ -27,30 +27,33 @@
 //! ```
 
 mod check;
+mod curve;
 mod entries;
+mod frame;
 mod layer;
 mod layout;
 mod look;
 mod paint;
 mod panel;
-mod path;
 mod placement;
-mod points;
 #[cfg(test)]
 mod tests;
 mod texts;
 
-pub use layer::{Band, Bars, ChartLayer, Corner, Line, Note, Reference, Window};
-pub use look::{Marker, Pattern, Tint};
+pub(crate) use layer::Spheres;
+pub use layer::{Band, Bars, ChartLayer, Corner, Field, Line, Note, Points, Reference, Window};
+pub use look::Tint;
 pub use panel::ChartPanel;
-pub use points::Points;
 
+pub use crate::drawing::Pattern;
+
+use crate::colour::BLACK;
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Anchor, Drawing, Rectangle};
+use crate::drawing::{Anchor, Drawing};
 use crate::error::{FigureError, positive};
+use crate::geometry::Rectangle;
 use crate::legend::{Entry, Legend, TOP_SPACE};
-use crate::panel::draw_title;
-use crate::style::{LABEL_SIZE, Width};
+use crate::style::{LABEL_SIZE, RIGHT_MARGIN, TITLE_SIZE, TITLE_SPACE, Width};
 use crate::text::Text;
 use layout::{Layout, Seat};
 use paint::Painter;
@@ -65,11 +68,13 @@ pub struct ChartFigure {
     columns: usize,
     width: Width,
     panel_height: Option<f64>,
+    equal_scales: bool,
     shares_x: bool,
     shares_y: bool,
-    letters: bool,
+    has_letters: bool,
     legend: LegendPlace,
     colour_scale: Option<ColourScale>,
+    has_bar_below: bool,
 }
 
 /// Where the meanings of the layers are written.
@@ -84,6 +89,11 @@ pub enum LegendPlace {
     Hidden,
 }
 
+/// Space above a frame for its letter and title.
+const HEADER_SPACE: f64 = 9.5;
+/// Free space at the sides of what stands below the panels.
+const SIDE: f64 = 4.0;
+
 impl ChartFigure {
     /// A figure of one panel, one column of a journal wide.
     pub fn new(panel: ChartPanel) -> Self {
@@ -97,90 +107,81 @@ impl ChartFigure {
             title: String::new(),
             description: String::new(),
             columns: columns.clamp(1, panels.len().max(1)),
-            letters: panels.len() > 1,
+            has_letters: panels.len() > 1,
             panels,
             width: Width::SingleColumn,
             panel_height: None,
+            equal_scales: false,
             shares_x: false,
             shares_y: false,
             legend: LegendPlace::Inside,
             colour_scale: None,
+            has_bar_below: false,
         }
     }
 
     /// A line above the figure, in markup.
     #[must_use]
-    pub fn title(self, title: &str) -> Self {
-        Self {
-            title: title.to_owned(),
-            ..self
-        }
+    pub fn title(mut self, title: &str) -> Self {
+        title.clone_into(&mut self.title);
+        self
     }
 
     /// What can be seen, in words for those who do not see it.
     #[must_use]
-    pub fn description(self, description: &str) -> Self {
-        Self {
-            description: description.to_owned(),
-            ..self
-        }
+    pub fn description(mut self, description: &str) -> Self {
+        description.clone_into(&mut self.description);
+        self
     }
 
     /// Width on the journal's page.
     #[must_use]
-    pub fn width(self, width: Width) -> Self {
-        Self { width, ..self }
+    pub fn width(mut self, width: Width) -> Self {
+        self.width = width;
+        self
     }
 
     /// Height of the frame of each panel in millimetres; without it, a fraction of its width.
     #[must_use]
-    pub fn panel_height(self, millimetres: f64) -> Self {
-        Self {
-            panel_height: Some(millimetres),
-            ..self
-        }
+    pub fn panel_height(mut self, millimetres: f64) -> Self {
+        self.panel_height = Some(millimetres);
+        self
+    }
+
+    /// Panels of places: one length on both axes of the first panel, whose height all have, no letters, and the bar of
+    /// colours below.
+    #[must_use]
+    pub(crate) fn equal_scales(mut self) -> Self {
+        (self.equal_scales, self.has_letters, self.has_bar_below) = (true, false, true);
+        self
     }
 
     /// Panels in a column have one horizontal axis, with numbers below the lowest.
     #[must_use]
-    pub fn share_x(self) -> Self {
-        Self {
-            shares_x: true,
-            ..self
-        }
+    pub fn share_x(mut self) -> Self {
+        self.shares_x = true;
+        self
     }
 
     /// Panels in a row have one vertical axis, with numbers at the left of the first.
     #[must_use]
-    pub fn share_y(self) -> Self {
-        Self {
-            shares_y: true,
-            ..self
-        }
-    }
-
-    /// Several panels without letters.
-    #[must_use]
-    pub fn without_letters(self) -> Self {
-        Self {
-            letters: false,
-            ..self
-        }
+    pub fn share_y(mut self) -> Self {
+        self.shares_y = true;
+        self
     }
 
     /// Where the legend stands.
     #[must_use]
-    pub fn legend(self, legend: LegendPlace) -> Self {
-        Self { legend, ..self }
+    pub fn legend(mut self, legend: LegendPlace) -> Self {
+        self.legend = legend;
+        self
     }
 
-    /// What the colours [`Tint::Value`] mean, drawn as a bar at the right of the panels.
+    /// What the colours of fields and of [`Tint::Value`] mean, drawn as a bar at the right of the panels.
     #[must_use]
-    pub fn colour_scale(self, scale: ColourScale) -> Self {
-        Self {
-            colour_scale: Some(scale.on_white()),
-            ..self
-        }
+    pub fn colour_scale(mut self, scale: ColourScale) -> Self {
+        self.colour_scale = Some(scale);
+        self
     }
 
     /// Lays the figure out.
@@ -196,30 +197,58 @@ impl ChartFigure {
         if let Some(scale) = &self.colour_scale {
             scale.check()?;
         }
-        let layout = Layout::of(self)?;
+        let has_title = !self.title.is_empty();
+        let layout = Layout::of(self, if has_title { TITLE_SPACE } else { 0.0 })?;
         let width = self.width.points();
-        let bottom = layout.bottom();
         // The height of the page is known when the legends have their places.
-        let mut drawing = Drawing::new(width, bottom, &self.summary());
-        draw_title(&mut drawing, &self.title, width);
+        let mut drawing = Drawing::new(width, layout.bottom, &self.summary());
+        if has_title {
+            let text = Text::fitted(&self.title, TITLE_SIZE, width - 2.0 * RIGHT_MARGIN);
+            let layer = drawing.layer("title", None);
+            layer.text((width / 2.0, 9.0), Anchor::Middle, text, BLACK);
+        }
+        let scale = self.shown_scale();
+        let below = self.draw_panels(&mut drawing, &layout, scale.as_ref());
+        let mut bottom = layout.bottom;
+        if let Some(scale) = &scale {
+            if self.has_bar_below {
+                bottom += scale.draw_bar_below(&mut drawing, layout.span(), bottom);
+            } else {
+                scale.draw_bar_beside(&mut drawing, layout.span());
+            }
+        }
+        let legend = Legend::new(below, width - 2.0 * SIDE);
+        legend.draw(&mut drawing, SIDE, width - SIDE, bottom);
+        drawing.extend_to(bottom + legend.height() + 3.0);
+        Ok(drawing.with_description(&self.description))
+    }
+
+    /// Draws the panels; returns the entries of the legend below the figure.
+    fn draw_panels(
+        &self,
+        drawing: &mut Drawing,
+        layout: &Layout,
+        scale: Option<&ColourScale>,
+    ) -> Vec<Entry> {
         // Panels often hold the same series: each is explained once.
         let mut explained: Vec<Entry> = Vec::new();
         let mut below: Vec<Entry> = Vec::new();
         for (number, (seat, chart)) in layout.seats.iter().zip(&self.panels).enumerate() {
             let painter = Painter {
-                panel: seat.panel,
+                frame: seat.frame,
                 chart,
-                scale: self.colour_scale.as_ref(),
+                scale,
             };
-            let mut obstacles = painter.draw_layers(&mut drawing);
-            seat.draw_frame(&mut drawing, chart);
-            self.draw_header(&mut drawing, seat, chart, number);
-            painter.draw_texts(&mut drawing, &mut obstacles);
+            let mut obstacles = painter.draw_layers(drawing);
+            let names = [&*chart.x.label, &*chart.y.label];
+            seat.frame.draw(drawing, &seat.around, names);
+            self.draw_header(drawing, seat, number);
+            painter.draw_texts(drawing, &mut obstacles);
             let mut entries = painter.entries();
             entries.retain(|entry| !explained.contains(entry));
             explained.extend(entries.iter().cloned());
             let placed = match self.legend {
-                LegendPlace::Inside => draw_inside(&mut drawing, seat, &obstacles, &entries),
+                LegendPlace::Inside => draw_inside(drawing, seat, &obstacles, &entries),
                 LegendPlace::Below => false,
                 LegendPlace::Hidden => true,
             };
@@ -227,17 +256,15 @@ impl ChartFigure {
                 below.extend(entries);
             }
         }
-        if let Some(scale) = &self.colour_scale {
-            scale.draw_bar(&mut drawing, layout.span());
-        }
-        let legend = Legend::new(below, width - 8.0);
-        legend.draw(&mut drawing, 4.0, width - 4.0, bottom);
-        drawing.extend_to(bottom + legend.height() + 3.0);
-        if self.description.is_empty() {
-            Ok(drawing)
-        } else {
-            Ok(drawing.with_description(&self.description))
-        }
+        below
+    }
+
+    /// The scale of colours, without those that would be lost on white where it colours lines and points.
+    fn shown_scale(&self) -> Option<ColourScale> {
+        let mut layers = self.panels.iter().flat_map(|panel| &panel.layers);
+        let has_areas = layers.any(ChartLayer::is_coloured_area);
+        let scale = self.colour_scale.clone()?;
+        Some(if has_areas { scale } else { scale.on_white() })
     }
 
     /// Title, or what stands against what, for the document.
@@ -250,35 +277,26 @@ impl ChartFigure {
         }
     }
 
-    /// Whether a line stands above each frame.
-    fn has_headers(&self) -> bool {
-        self.letters || self.panels.iter().any(|panel| !panel.title.is_empty())
+    /// Letter and title of a panel.
+    fn header(&self, number: usize) -> String {
+        let title = &self.panels[number].title;
+        match (self.has_letters, title.is_empty()) {
+            (false, _) => title.clone(),
+            (true, true) => format!("({})", letter(number)),
+            (true, false) => format!("({})  {title}", letter(number)),
+        }
     }
 
-    /// Letter and title of a panel, above its frame where they can cover nothing.
-    fn draw_header(&self, drawing: &mut Drawing, seat: &Seat, chart: &ChartPanel, number: usize) {
-        let letter = if self.letters {
-            format!("({})", letter(number))
-        } else {
-            String::new()
-        };
-        let gap = if self.letters && !chart.title.is_empty() {
-            "  "
-        } else {
-            ""
-        };
-        let header = format!("{letter}{gap}{}", chart.title);
+    /// Draws letter and title of a panel above its frame, where they can cover nothing.
+    fn draw_header(&self, drawing: &mut Drawing, seat: &Seat, number: usize) {
+        let header = self.header(number);
         if header.is_empty() {
             return;
         }
-        let frame = seat.panel.frame;
-        let text = Text::fitted(&header, LABEL_SIZE, frame.width);
-        drawing.layer("headers", None).text(
-            (frame.left, frame.top - 3.0),
-            Anchor::Start,
-            text,
-            crate::colour::BLACK,
-        );
+        let area = seat.frame.area;
+        let text = Text::fitted(&header, LABEL_SIZE, area.width);
+        let layer = drawing.layer("headers", None);
+        layer.text((area.left, area.top - 3.0), Anchor::Start, text, BLACK);
     }
 }
 
@@ -307,7 +325,7 @@ fn draw_inside(
         let legend = Legend::list(entries.to_vec(), columns);
         let height = legend.height() - TOP_SPACE;
         if let Some(Rectangle { left, top, .. }) =
-            obstacles.free_place(seat.panel.frame, legend.width(), height)
+            obstacles.free_place(seat.frame.area, legend.width(), height)
         {
             legend.draw(drawing, left, left + legend.width(), top - TOP_SPACE);
             return true;

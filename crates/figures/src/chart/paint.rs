@@ -1,16 +1,18 @@
 //! The layers of a panel as shapes on the page, and what they keep others from covering.
 
-use super::layer::{Band, Bars, ChartLayer, Line, Reference};
+use super::curve::{pieces, steps, thinned};
+use super::frame::Frame;
+use super::layer::{
+    Band, Bars, ChartLayer, Field, Kind, Line, Points, Reference, Spheres, Window, error_ends,
+};
 use super::look::{Look, Tint};
 use super::panel::ChartPanel;
-use super::path::{Row, pieces, steps, thinned};
 use super::placement::Obstacles;
-use super::points::Points;
-use crate::colour::Colour;
+use crate::colour::{BLACK, Colour, GREY, WHITE};
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Drawing, Outline, Point, Rectangle, Stroke};
+use crate::drawing::{Drawing, Fill, Image, Stroke};
+use crate::geometry::{Path, Point, Rectangle};
 use crate::legend::Mark;
-use crate::panel::Panel;
 
 /// Radius of a mark in points, by the number of points of a series up to which it is used.
 const RADII: [(usize, f64); 3] = [(150, 1.9), (1500, 1.3), (usize::MAX, 0.8)];
@@ -25,23 +27,42 @@ pub(super) const BAR_OPACITY: f64 = 0.38;
 pub(super) const WINDOW_OPACITY: f64 = 0.16;
 const REFERENCE_WEIGHT: f64 = 0.7;
 const GUIDE_WEIGHT: f64 = 0.45;
+/// Colour of cells without a value.
+pub(super) const MISSING: Colour = Colour::new(190, 190, 190);
+/// Fill and edge of a sphere without a value, and edge of one with a value.
+const FAINT_SPHERE: Colour = GREY.faint(0.16);
+const FAINT_EDGE: Stroke = Stroke::solid(GREY.faint(0.55), 0.3);
+const SPHERE_EDGE: Stroke = Stroke::solid(BLACK.faint(0.65), 0.25);
+
 /// Draws the layers of one panel.
 pub(super) struct Painter<'a> {
-    pub(super) panel: Panel,
+    pub(super) frame: Frame,
     pub(super) chart: &'a ChartPanel,
     pub(super) scale: Option<&'a ColourScale>,
 }
 
-/// A layer with its number among those that have no series of their own.
-type Numbered<'a> = (usize, &'a ChartLayer);
+/// Which of the layers that are drawn upon each other comes first.
+fn depth(layer: &ChartLayer) -> usize {
+    match layer.0 {
+        Kind::Field(_) => 0,
+        Kind::Window(_) => 1,
+        Kind::Band(_) => 2,
+        Kind::Bars(_) => 3,
+        Kind::Spheres(_) => 4,
+        Kind::Reference(_) => 5,
+        Kind::Line(_) => 6,
+        Kind::Points(_) => 7,
+        Kind::Note(_) => 8,
+    }
+}
 
 impl Painter<'_> {
-    pub(super) fn numbered(&self) -> impl Iterator<Item = Numbered<'_>> {
+    /// The layers, each with its number among those that have no series of their own.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &ChartLayer)> {
         self.chart.layers.iter().scan(0, |next, layer| {
             let number = *next;
-            if look(layer).is_some_and(|look| look.series.is_none()) {
-                *next += 1;
-            }
+            let has_series = layer.look().is_some_and(|look| look.series.is_some());
+            *next += usize::from(layer.is_series() && !has_series);
             Some((number, layer))
         })
     }
@@ -50,99 +71,86 @@ impl Painter<'_> {
         look.colour(number, self.scale)
     }
 
-    pub(super) fn tint(&self, tint: Tint) -> Colour {
-        let tint = Some(tint);
-        self.colour(0, Look { series: None, tint })
-    }
-
     /// Everything but frame and texts; returns what must not be covered.
     pub(super) fn draw_layers(&self, drawing: &mut Drawing) -> Obstacles {
         let mut obstacles = Obstacles::default();
-        self.draw_windows(drawing);
-        for (number, layer) in self.numbered() {
-            if let ChartLayer::Band(band) = layer {
-                self.draw_band(drawing, &mut obstacles, number, band);
-            }
-        }
-        for (number, layer) in self.numbered() {
-            if let ChartLayer::Bars(bars) = layer {
-                self.draw_bars(drawing, &mut obstacles, number, bars);
-            }
-        }
-        for (_, layer) in self.numbered() {
-            if let ChartLayer::Reference(reference) = layer {
-                self.draw_reference(drawing, &mut obstacles, reference);
-            }
-        }
-        for (number, layer) in self.numbered() {
-            if let ChartLayer::Line(line) = layer {
-                self.draw_line(drawing, &mut obstacles, number, line);
-            }
-        }
-        for (number, layer) in self.numbered() {
-            if let ChartLayer::Points(points) = layer {
-                self.draw_points(drawing, &mut obstacles, number, points);
+        let mut layers: Vec<(usize, &ChartLayer)> = self.numbered().collect();
+        layers.sort_by_key(|(_, layer)| depth(layer));
+        for (number, layer) in layers {
+            let look = layer.look().unwrap_or_default();
+            let colour = self.colour(number, look);
+            match &layer.0 {
+                Kind::Field(field) => self.draw_field(drawing, &mut obstacles, field),
+                Kind::Window(window) => self.draw_window(drawing, window, colour),
+                Kind::Band(band) => self.draw_band(drawing, &mut obstacles, band, colour),
+                Kind::Bars(bars) => self.draw_bars(drawing, &mut obstacles, bars, colour),
+                Kind::Spheres(spheres) => self.draw_spheres(drawing, &mut obstacles, spheres),
+                Kind::Reference(it) => self.draw_reference(drawing, &mut obstacles, it, colour),
+                Kind::Line(line) => self.draw_line(drawing, &mut obstacles, line, colour),
+                Kind::Points(points) => {
+                    self.draw_points(drawing, &mut obstacles, points, colour);
+                    self.draw_marks(drawing, &mut obstacles, (number, points));
+                }
+                Kind::Note(_) => {}
             }
         }
         obstacles
     }
 
-    fn draw_windows(&self, drawing: &mut Drawing) {
-        let frame = self.panel.frame;
-        for (_, layer) in self.numbered() {
-            if let ChartLayer::Window(window) = layer {
-                let [from, to] = [window.from, window.to].map(|x| self.panel.across(x));
-                let area = Rectangle {
-                    left: from.min(to),
-                    width: (to - from).abs(),
-                    ..frame
-                };
-                let colour = self.tint(window.tint).faint(WINDOW_OPACITY);
-                drawing
-                    .layer("windows", Some(frame))
-                    .rectangle(area, colour);
+    fn draw_field(&self, drawing: &mut Drawing, obstacles: &mut Obstacles, field: &Field) {
+        let Some(scale) = self.scale else { return };
+        let (columns, values) = field.shown(&self.frame);
+        let colour = |value: f64| {
+            if value.is_finite() {
+                scale.colour(value)
+            } else {
+                MISSING
             }
-        }
+        };
+        let [start, end] =
+            [(field.x.0, field.y.1), (field.x.1, field.y.0)].map(|(x, y)| self.frame.place(x, y));
+        let area = Rectangle {
+            left: start.x,
+            top: start.y,
+            width: end.x - start.x,
+            height: end.y - start.y,
+        };
+        obstacles.area(area);
+        let image = Image::of_cells(area, columns, values.into_iter().map(colour));
+        drawing.layer("field", Some(self.frame.area)).image(image);
+    }
+
+    fn draw_window(&self, drawing: &mut Drawing, window: &Window, colour: Colour) {
+        let [from, to] = [window.from, window.to].map(|x| self.frame.across(x));
+        let area = Rectangle {
+            left: from.min(to),
+            width: (to - from).abs(),
+            ..self.frame.area
+        };
+        let path = Path::polygon(area.corners());
+        let layer = drawing.layer("windows", Some(self.frame.area));
+        layer.fill(path, colour.faint(WINDOW_OPACITY));
     }
 
     fn draw_band(
         &self,
         drawing: &mut Drawing,
         obstacles: &mut Obstacles,
-        number: usize,
         band: &Band,
+        colour: Colour,
     ) {
-        let colour = self.colour(number, band.look).faint(BAND_OPACITY);
-        let layer = drawing.layer("bands", Some(self.panel.frame));
-        let rows = |bound: &[f64], other: &[f64]| -> Vec<Row> {
-            (0..band.x.len())
-                .map(|row| {
-                    // A row without its partner is in neither curve.
-                    let y = if other[row].is_finite() {
-                        bound[row]
-                    } else {
-                        f64::NAN
-                    };
-                    (band.x[row], y)
-                })
-                .collect()
-        };
-        let curves = [
-            pieces(&self.panel, &rows(&band.upper, &band.lower)),
-            pieces(&self.panel, &rows(&band.lower, &band.upper)),
-        ];
-        let [uppers, lowers] = curves;
+        let layer = drawing.layer("bands", Some(self.frame.area));
+        let [uppers, lowers] = [band.upper_of_pairs(), band.lower_of_pairs()]
+            .map(|bound| pieces(&self.frame, &band.x, &bound));
         for (upper, lower) in uppers.into_iter().zip(lowers) {
             for (above, below) in upper.iter().zip(&lower) {
                 obstacles.line(&[*above, *below]);
             }
-            let [upper, lower] = [upper, lower].map(|curve| {
-                let curve = if band.stepped { steps(&curve) } else { curve };
-                thinned(&self.panel, curve)
-            });
+            let [upper, lower] = [upper, lower].map(|curve| thinned(&self.frame, curve));
             obstacles.line(&upper);
             obstacles.line(&lower);
-            layer.polygon(upper.into_iter().chain(lower.into_iter().rev()), colour);
+            let path = Path::polygon(upper.into_iter().chain(lower.into_iter().rev()));
+            layer.fill(path, colour.faint(BAND_OPACITY));
         }
     }
 
@@ -150,20 +158,19 @@ impl Painter<'_> {
         &self,
         drawing: &mut Drawing,
         obstacles: &mut Obstacles,
-        number: usize,
         bars: &Bars,
+        colour: Colour,
     ) {
-        let colour = self.colour(number, bars.look);
-        let foot = self.panel.up(0.0).min(self.panel.frame.bottom());
-        let layer = drawing.layer("bars", Some(self.panel.frame));
-        let mut outline = Vec::new();
+        let foot = self.frame.up(0.0).min(self.frame.area.bottom());
+        let end = |edge: f64| Point::new(self.frame.across(edge), foot);
+        let mut outline: Vec<Point> = bars.edges.first().copied().map(end).into_iter().collect();
         for (edges, &height) in bars.edges.windows(2).zip(&bars.heights) {
             let top = if height.is_finite() {
-                self.panel.up(height)
+                self.frame.up(height)
             } else {
                 foot
             };
-            let [left, right] = [edges[0], edges[1]].map(|edge| self.panel.across(edge));
+            let [left, right] = [edges[0], edges[1]].map(|edge| self.frame.across(edge));
             let area = Rectangle {
                 left,
                 top: top.min(foot),
@@ -173,40 +180,44 @@ impl Painter<'_> {
             if area.height > 0.0 {
                 obstacles.area(area);
             }
-            outline.extend([(left, top), (right, top)].map(|(x, y)| Point { x, y }));
+            outline.extend([left, right].map(|x| Point::new(x, top)));
         }
-        if let (Some(&first), Some(&last)) = (outline.first(), outline.last()) {
-            outline.insert(0, Point { y: foot, ..first });
-            outline.push(Point { y: foot, ..last });
-        }
-        if !bars.outlined {
-            layer.polygon(outline.iter().copied(), colour.faint(BAR_OPACITY));
-        }
-        layer.line(outline, Stroke::solid(colour, self.outline_weight(bars)));
+        outline.extend(bars.edges.last().copied().map(end));
+        let layer = drawing.layer("bars", Some(self.frame.area));
+        layer.path(
+            Path::line(outline),
+            Some(Fill::Flat(colour.faint(BAR_OPACITY))),
+            Some(Stroke::solid(colour, BAR_WEIGHT)),
+        );
     }
 
-    pub(super) fn outline_weight(&self, bars: &Bars) -> f64 {
-        if bars.outlined { 1.0 } else { 0.6 }
-    }
-
-    fn reference_stroke(&self, reference: &Reference) -> Stroke {
-        let weight = if reference.tint == Tint::Grey {
-            GUIDE_WEIGHT
-        } else {
-            REFERENCE_WEIGHT
-        };
-        Stroke::solid(self.tint(reference.tint), weight).dashed(reference.pattern.dash())
+    fn draw_spheres(&self, drawing: &mut Drawing, obstacles: &mut Obstacles, spheres: &Spheres) {
+        let layer = drawing.layer("spheres", Some(self.frame.area));
+        let (from, to) = self.frame.x.range();
+        let scale = self.frame.area.width / (to - from);
+        let places = spheres.x.iter().zip(&spheres.y).zip(&spheres.diameter);
+        for (index, ((&x, &y), diameter)) in places.enumerate() {
+            let centre = self.frame.place(x, y);
+            let value = spheres.values.get(index).zip(self.scale);
+            let (fill, edge) = match value {
+                Some((value, scale)) => (Fill::Sphere(scale.colour(*value)), SPHERE_EDGE),
+                None => (Fill::Flat(FAINT_SPHERE), FAINT_EDGE),
+            };
+            obstacles.line(&[centre]);
+            let path = Path::circle(centre, scale * diameter / 2.0);
+            layer.path(path, Some(fill), Some(edge));
+        }
     }
 
     /// The line of a reference from side to side.
     pub(super) fn reference_line(&self, reference: &Reference) -> [Point; 2] {
-        let frame = self.panel.frame;
+        let area = self.frame.area;
         if reference.vertical {
-            let x = self.panel.across(reference.value);
-            [frame.bottom(), frame.top].map(|y| Point { x, y })
+            let x = self.frame.across(reference.value);
+            [area.bottom(), area.top].map(|y| Point::new(x, y))
         } else {
-            let y = self.panel.up(reference.value);
-            [frame.left, frame.right()].map(|x| Point { x, y })
+            let y = self.frame.up(reference.value);
+            [area.left, area.right()].map(|x| Point::new(x, y))
         }
     }
 
@@ -215,130 +226,117 @@ impl Painter<'_> {
         drawing: &mut Drawing,
         obstacles: &mut Obstacles,
         reference: &Reference,
+        colour: Colour,
     ) {
         let line = self.reference_line(reference);
         obstacles.line(&line);
-        drawing
-            .layer("references", Some(self.panel.frame))
-            .segments(vec![line], self.reference_stroke(reference));
+        let is_guide = reference.look.tint == Some(Tint::Grey);
+        let stroke = Stroke {
+            colour,
+            weight: if is_guide {
+                GUIDE_WEIGHT
+            } else {
+                REFERENCE_WEIGHT
+            },
+            pattern: reference.pattern,
+        };
+        let layer = drawing.layer("references", Some(self.frame.area));
+        layer.stroke(Path::line(line), stroke);
     }
 
     fn draw_line(
         &self,
         drawing: &mut Drawing,
         obstacles: &mut Obstacles,
-        number: usize,
         line: &Line,
+        colour: Colour,
     ) {
-        let stroke = self.line_stroke(number, line);
-        let rows: Vec<Row> = line.x.iter().copied().zip(line.y.iter().copied()).collect();
-        let layer = drawing.layer("lines", Some(self.panel.frame));
-        for piece in pieces(&self.panel, &rows) {
+        let layer = drawing.layer("lines", Some(self.frame.area));
+        for piece in pieces(&self.frame, &line.x, &line.y) {
             let piece = if line.stepped { steps(&piece) } else { piece };
-            let piece = thinned(&self.panel, piece);
+            let piece = thinned(&self.frame, piece);
             obstacles.line(&piece);
             match piece.as_slice() {
                 // A lone point has no line, but it must be seen.
-                [lone] => layer.marks(
-                    Outline::Circle {
-                        radius: 0.7 * stroke.weight,
-                    },
-                    vec![*lone],
-                    stroke.colour,
-                    Stroke::solid(stroke.colour, 0.1),
-                ),
-                _ => layer.line(piece, stroke),
+                [lone] => layer.fill(Path::circle(*lone, 0.7 * line.weight), colour),
+                _ => layer.stroke(Path::line(piece), line.stroke(colour)),
             }
         }
     }
 
-    pub(super) fn line_stroke(&self, number: usize, line: &Line) -> Stroke {
-        Stroke::solid(self.colour(number, line.look), line.weight).dashed(line.pattern.dash())
-    }
-
+    /// The line that joins points, and their error bars.
     fn draw_points(
         &self,
         drawing: &mut Drawing,
         obstacles: &mut Obstacles,
-        number: usize,
         points: &Points,
+        colour: Colour,
     ) {
-        let colour = self.colour(number, points.look);
-        let frame = self.panel.frame;
-        let rows: Vec<usize> = (0..points.x.len())
-            .filter(|&row| points.x[row].is_finite() && points.y[row].is_finite())
-            .collect();
-        let place = |row: usize| self.panel.place(points.x[row], points.y[row]);
+        let area = self.frame.area;
+        let place = |row: usize| self.frame.place(points.x[row], points.y[row]);
         if points.joined {
-            let line: Vec<Point> = rows.iter().map(|&row| place(row)).collect();
+            let line: Vec<Point> = points.rows().map(place).collect();
             obstacles.line(&line);
-            drawing
-                .layer("joins", Some(frame))
-                .line(line, Stroke::solid(colour.faint(0.55), 0.6));
+            let layer = drawing.layer("joins", Some(area));
+            layer.stroke(Path::line(line), join_stroke(colour));
         }
         let mut bars = Vec::new();
-        for &row in &rows {
+        for row in points.rows() {
             bars.extend(self.error_bars(points, row));
-            if is_limit(points, row) {
+            if points.is_limit(row) {
                 bars.extend(arrow(place(row)));
             }
         }
         for bar in &bars {
             obstacles.line(bar);
         }
-        drawing
-            .layer("error bars", Some(frame))
-            .segments(bars, Stroke::solid(colour, BAR_WEIGHT));
+        let layer = drawing.layer("error bars", Some(area));
+        layer.stroke(Path::segments(bars), Stroke::solid(colour, BAR_WEIGHT));
+    }
+
+    /// The marks of points.
+    fn draw_marks(
+        &self,
+        drawing: &mut Drawing,
+        obstacles: &mut Obstacles,
+        (number, points): (usize, &Points),
+    ) {
+        let place = |row: usize| self.frame.place(points.x[row], points.y[row]);
         // A mark on the frame is whole; one beyond it would stand on the labels.
-        let shown: Vec<usize> = rows
-            .into_iter()
-            .filter(|&row| within(frame, place(row)))
-            .collect();
-        for row in &shown {
-            obstacles.line(&[place(*row)]);
-        }
+        let rows = points.rows();
+        let shown = rows.filter(|&row| self.frame.area.holds(place(row)));
         let (limits, measured): (Vec<usize>, Vec<usize>) =
-            shown.into_iter().partition(|&row| is_limit(points, row));
+            shown.partition(|&row| points.is_limit(row));
         let layer = drawing.layer("points", None);
         for (rows, open) in [(measured, points.open), (limits, true)] {
-            if !rows.is_empty() {
-                let mark = self.mark(number, points, open);
-                let places = rows.into_iter().map(place).collect();
-                layer.marks(mark.outline, places, mark.fill, mark.stroke);
+            let mark = self.mark(number, points, open);
+            let places: Vec<Point> = rows.into_iter().map(place).collect();
+            for place in &places {
+                obstacles.line(&[*place]);
             }
+            layer.path(
+                mark.outline.at(places),
+                Some(Fill::Flat(mark.fill)),
+                Some(mark.stroke),
+            );
         }
     }
 
     /// Bars with caps of the errors of a row.
     fn error_bars(&self, points: &Points, row: usize) -> Vec<[Point; 2]> {
         let (x, y) = (points.x[row], points.y[row]);
-        let centre = self.panel.place(x, y);
+        let centre = self.frame.place(x, y);
+        // An end that has no place on a logarithmic axis lies at the frame, where the window cuts its cap.
+        let up = error_ends(&points.y_errors, row, y).map(|end| self.frame.up(end));
+        let across = error_ends(&points.x_errors, row, x).map(|end| self.frame.across(end));
         let mut bars = Vec::new();
-        let point = |x: f64, y: f64| Point { x, y };
-        if let Some(errors) = &points.y_errors {
-            let (low, high) = errors.ends(row, y);
-            // An end that has no place on a logarithmic axis lies at the frame, where the window cuts its cap.
-            let [bottom, top] = [low, high].map(|end| self.panel.up(end));
-            if high > low {
-                bars.push([point(centre.x, bottom), point(centre.x, top)]);
-                for (end, is_there) in [(bottom, low < y), (top, high > y)] {
-                    if is_there {
-                        bars.push([point(centre.x - CAP, end), point(centre.x + CAP, end)]);
-                    }
-                }
-            }
+        if up[0] != up[1] {
+            bars.push(up.map(|end| Point::new(centre.x, end)));
+            bars.extend(up.map(|end| [-CAP, CAP].map(|side| Point::new(centre.x + side, end))));
         }
-        if let Some(errors) = &points.x_errors {
-            let (low, high) = errors.ends(row, x);
-            let [left, right] = [low, high].map(|end| self.panel.across(end));
-            if high > low {
-                bars.push([point(left, centre.y), point(right, centre.y)]);
-                for (end, is_there) in [(left, low < x), (right, high > x)] {
-                    if is_there {
-                        bars.push([point(end, centre.y - CAP), point(end, centre.y + CAP)]);
-                    }
-                }
-            }
+        if across[0] != across[1] {
+            bars.push(across.map(|end| Point::new(end, centre.y)));
+            bars.extend(across.map(|end| [-CAP, CAP].map(|side| Point::new(end, centre.y + side))));
         }
         bars
     }
@@ -349,17 +347,15 @@ impl Painter<'_> {
             .iter()
             .find(|(most, _)| points.x.len() <= *most)
             .map_or(RADII[0].1, |(_, radius)| *radius);
-        let marker = points.marker.unwrap_or_else(|| points.look.marker(number));
-        let white = crate::colour::WHITE;
         Mark {
-            outline: marker.outline(radius),
+            outline: points.look.marker(number, radius),
             // An open mark lets see what lies below it.
-            fill: if open { white.faint(0.2) } else { colour },
+            fill: if open { WHITE.faint(0.2) } else { colour },
             // A white edge keeps marks apart that lie over each other.
             stroke: if open {
                 Stroke::solid(colour, 0.75)
             } else {
-                Stroke::solid(white, 0.3)
+                Stroke::solid(WHITE, 0.3)
             },
             bars: Vec::new(),
             bar_stroke: Stroke::solid(colour, BAR_WEIGHT),
@@ -367,35 +363,24 @@ impl Painter<'_> {
     }
 }
 
-fn look(layer: &ChartLayer) -> Option<Look> {
-    match layer {
-        ChartLayer::Points(points) => Some(points.look),
-        ChartLayer::Line(line) => Some(line.look),
-        ChartLayer::Band(band) => Some(band.look),
-        ChartLayer::Bars(bars) => Some(bars.look),
-        ChartLayer::Reference(_) | ChartLayer::Window(_) | ChartLayer::Note(_) => None,
+impl Line {
+    pub(super) fn stroke(&self, colour: Colour) -> Stroke {
+        Stroke {
+            colour,
+            weight: self.weight,
+            pattern: self.pattern,
+        }
     }
 }
 
-fn is_limit(points: &Points, row: usize) -> bool {
-    points.lower_limits.get(row).copied().unwrap_or(false)
+/// The line from point to point.
+pub(super) fn join_stroke(colour: Colour) -> Stroke {
+    Stroke::solid(colour.faint(0.55), 0.6)
 }
 
 /// An arrow upwards from a place.
 pub(super) fn arrow(from: Point) -> [[Point; 2]; 3] {
-    let tip = Point {
-        y: from.y - ARROW,
-        ..from
-    };
-    let barb = |side: f64| Point {
-        x: tip.x + side * ARROW_HEAD,
-        y: tip.y + 1.3 * ARROW_HEAD,
-    };
+    let tip = Point::new(from.x, from.y - ARROW);
+    let barb = |side: f64| Point::new(side * ARROW_HEAD, 1.3 * ARROW_HEAD).from(tip);
     [[from, tip], [barb(-1.0), tip], [barb(1.0), tip]]
-}
-
-fn within(frame: Rectangle, place: Point) -> bool {
-    const SLACK: f64 = 1e-6;
-    (frame.left - SLACK..=frame.right() + SLACK).contains(&place.x)
-        && (frame.top - SLACK..=frame.bottom() + SLACK).contains(&place.y)
 }

@@ -2,15 +2,14 @@
 
 use std::ops::{Bound, RangeBounds};
 
-use super::check::Checked;
 use super::layer::ChartLayer;
 use crate::axis::{Axis, Scale};
 use crate::error::FigureError;
 
 /// A panel of a chart: two axes with their labels in markup, and layers.
 ///
-/// Whatever the order in which layers are added, windows lie at the bottom, then bands, bars, reference lines, curves,
-/// points and notes, each kind in its order.
+/// Whatever the order in which layers are added, fields lie at the bottom, then windows, bands, bars, reference lines,
+/// curves, points and notes, each kind in its order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChartPanel {
     pub(super) title: String,
@@ -46,11 +45,9 @@ impl ChartPanel {
 
     /// A line above the panel, in markup.
     #[must_use]
-    pub fn title(self, title: &str) -> Self {
-        Self {
-            title: title.to_owned(),
-            ..self
-        }
+    pub fn title(mut self, title: &str) -> Self {
+        title.clone_into(&mut self.title);
+        self
     }
 
     /// Scale of the horizontal axis.
@@ -93,11 +90,6 @@ impl ChartPanel {
     pub fn with_all(mut self, layers: impl IntoIterator<Item = impl Into<ChartLayer>>) -> Self {
         self.layers.extend(layers.into_iter().map(Into::into));
         self
-    }
-
-    /// The layers with what was found in checking them.
-    pub(super) fn checked(&self, coloured: bool) -> Result<Checked, FigureError> {
-        Checked::new(self, coloured)
     }
 }
 
@@ -166,7 +158,7 @@ impl AxisWish {
             self.least.unwrap_or_else(|| back(low - free.0 * length)),
             self.largest.unwrap_or_else(|| back(high + free.1 * length)),
         );
-        Ok(Axis::exact(self.scale, ends))
+        Ok(Axis::new(self.scale, ends))
     }
 }
 

@@ -1,6 +1,6 @@
 //! Free places in a panel: where a label or a legend covers no data.
 
-use crate::drawing::{Point, Rectangle};
+use crate::geometry::{Point, Rectangle};
 
 /// What must not be covered, as straight lines on the page.
 #[derive(Clone, Debug, Default)]
@@ -27,13 +27,7 @@ impl Obstacles {
 
     /// A box, by its outline and its diagonals.
     pub(super) fn area(&mut self, area: Rectangle) {
-        let [a, b, c, d] = [
-            (area.left, area.top),
-            (area.right(), area.top),
-            (area.right(), area.bottom()),
-            (area.left, area.bottom()),
-        ]
-        .map(|(x, y)| Point { x, y });
+        let [a, b, c, d] = area.corners();
         self.line(&[a, b, c, d, a, c]);
         self.line(&[b, d]);
     }

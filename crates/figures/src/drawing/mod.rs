@@ -1,12 +1,15 @@
 //! A page with everything on it at its place, ready to be written as SVG or as PNG.
+//!
+//! Every shape is one of three: a path that is filled or drawn along, an image of pixels, or a line of type.
 
 mod png;
 mod svg;
 
-use crate::colour::{Colour, WHITE};
+use crate::colour::{BLACK, Colour, WHITE};
 use crate::error::FigureError;
+use crate::geometry::{Path, Point, Rectangle};
 use crate::style::POINTS_PER_MILLIMETRE;
-use crate::text::Text;
+use crate::text::{Text, plain};
 
 /// A finished figure: one list of shapes that both output formats draw.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,9 +19,7 @@ pub struct Drawing {
     /// Points down.
     height: f64,
     title: String,
-    description: Option<String>,
-    /// What the names of definitions in the SVG begin with.
-    prefix: String,
+    description: String,
     /// Colour of the page.
     paper: Colour,
     /// How finely the page is painted.
@@ -37,50 +38,28 @@ pub struct Raster {
     pub pixels: Vec<u8>,
 }
 
-/// A place on the page in points, from the top left corner, y downwards.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Point {
-    pub(crate) x: f64,
-    pub(crate) y: f64,
-}
-
-/// A rectangle on the page, in points.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Rectangle {
-    pub(crate) left: f64,
-    pub(crate) top: f64,
-    pub(crate) width: f64,
-    pub(crate) height: f64,
-}
-
-impl Rectangle {
-    pub(crate) fn right(&self) -> f64 {
-        self.left + self.width
-    }
-
-    pub(crate) fn bottom(&self) -> f64 {
-        self.top + self.height
-    }
-}
-
 /// Pattern of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Dash {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Pattern {
+    /// Unbroken.
+    #[default]
     Solid,
+    /// Strokes.
     Dashed,
+    /// Dots.
     Dotted,
     /// Long and short strokes in turn.
-    Alternating,
+    DashDotted,
 }
 
-impl Dash {
+impl Pattern {
     /// Lengths of strokes and gaps in points; empty for a solid line.
     fn lengths(self) -> &'static [f32] {
         match self {
             Self::Solid => &[],
             Self::Dashed => &[4.0, 2.2],
             Self::Dotted => &[0.9, 1.6],
-            Self::Alternating => &[4.0, 1.7, 0.9, 1.7],
+            Self::DashDotted => &[4.0, 1.7, 0.9, 1.7],
         }
     }
 }
@@ -91,7 +70,7 @@ pub(crate) struct Stroke {
     pub(crate) colour: Colour,
     /// Points.
     pub(crate) weight: f64,
-    pub(crate) dash: Dash,
+    pub(crate) pattern: Pattern,
 }
 
 impl Stroke {
@@ -99,12 +78,8 @@ impl Stroke {
         Self {
             colour,
             weight,
-            dash: Dash::Solid,
+            pattern: Pattern::Solid,
         }
-    }
-
-    pub(crate) const fn dashed(self, dash: Dash) -> Self {
-        Self { dash, ..self }
     }
 }
 
@@ -123,7 +98,7 @@ pub(crate) enum Reading {
     Upward,
 }
 
-/// How a circle is filled.
+/// How a path is filled.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Fill {
     Flat(Colour),
@@ -131,47 +106,29 @@ pub(crate) enum Fill {
     Sphere(Colour),
 }
 
+/// Where the light of a sphere is brightest, as a fraction of the box around it, from the left and from the top.
+const SPHERE_CENTRE: f64 = 0.36;
+/// Distance from there to the darkest shade, as a fraction of the box.
+const SPHERE_REACH: f64 = 0.72;
+
+/// The shades of a sphere from its brightest place outwards, with the fraction of the reach where each stands.
+fn sphere_shades(colour: Colour) -> [(f64, Colour); 3] {
+    [
+        (0.0, colour.towards(WHITE, 0.5)),
+        (0.45, colour),
+        (1.0, colour.towards(BLACK, 0.42)),
+    ]
+}
+
 /// One thing on the page.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Shape {
-    Line {
-        points: Vec<Point>,
-        stroke: Stroke,
-    },
-    Polygon {
-        points: Vec<Point>,
-        fill: Colour,
-    },
-    Circle {
-        centre: Point,
-        radius: f64,
-        fill: Fill,
+    Path {
+        path: Path,
+        fill: Option<Fill>,
         stroke: Option<Stroke>,
     },
-    /// The same mark at many places.
-    Marks {
-        outline: Outline,
-        places: Vec<Point>,
-        fill: Colour,
-        stroke: Stroke,
-    },
-    /// Straight lines apart from each other, each from its first to its second point.
-    Segments {
-        segments: Vec<[Point; 2]>,
-        stroke: Stroke,
-    },
-    /// Equal cells of one colour each, row by row from the top left.
-    Cells {
-        area: Rectangle,
-        columns: usize,
-        colours: Vec<Colour>,
-    },
-    /// Bytes of red, green and blue, as many pixels as the area has where it is painted.
-    Picture {
-        area: Rectangle,
-        columns: usize,
-        pixels: Vec<u8>,
-    },
+    Image(Image),
     Text {
         start: Point,
         reading: Reading,
@@ -180,34 +137,34 @@ pub(crate) enum Shape {
     },
 }
 
-/// Closed outline of a mark, relative to its place.
+/// Equal cells that fill an area, one pixel each.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Outline {
-    Circle { radius: f64 },
-    Polygon(Vec<Point>),
+pub(crate) struct Image {
+    pub(crate) area: Rectangle,
+    pub(crate) columns: usize,
+    /// Bytes of red, green and blue, row by row from the top left.
+    pub(crate) pixels: Vec<u8>,
+    /// Whether colours run into each other where the image is enlarged.
+    pub(crate) is_smooth: bool,
 }
 
-impl Outline {
-    /// The same outline lower on the page; a circle becomes a polygon, for only those stand off their place.
-    pub(crate) fn lowered(&self, by: f64) -> Self {
-        const CORNERS: u32 = 24;
-        let corners = match self {
-            Self::Circle { radius } => (0..CORNERS)
-                .map(|corner| {
-                    let angle = std::f64::consts::TAU * f64::from(corner) / f64::from(CORNERS);
-                    Point {
-                        x: radius * libm::cos(angle),
-                        y: radius * libm::sin(angle),
-                    }
-                })
-                .collect(),
-            Self::Polygon(corners) => corners.clone(),
-        };
-        let lowered = |corner: Point| Point {
-            y: corner.y + by,
-            ..corner
-        };
-        Self::Polygon(corners.into_iter().map(lowered).collect())
+impl Image {
+    /// Cells of one colour each.
+    pub(crate) fn of_cells(
+        area: Rectangle,
+        columns: usize,
+        colours: impl IntoIterator<Item = Colour>,
+    ) -> Self {
+        Self {
+            area,
+            columns,
+            pixels: colours.into_iter().flat_map(Colour::srgb).collect(),
+            is_smooth: false,
+        }
+    }
+
+    fn rows(&self) -> usize {
+        self.pixels.len() / (3 * self.columns).max(1)
     }
 }
 
@@ -222,51 +179,24 @@ pub(crate) struct Layer {
 impl Drawing {
     /// A white page; width and height in points.
     pub(crate) fn new(width: f64, height: f64, title: &str) -> Self {
-        let title = Text::new(title, 1.0).characters;
         Self {
             width,
             height,
-            title,
-            description: None,
-            prefix: String::new(),
+            title: plain(title),
+            description: String::new(),
             paper: WHITE,
             pixels_per_point: png::PIXELS_PER_POINT,
             layers: Vec::new(),
         }
     }
 
-    /// The same figure with another `<title>` in its SVG, in markup: what a reader who does not see is told first.
-    #[must_use]
-    pub fn with_title(self, title: &str) -> Self {
-        let title = Text::new(title, 1.0).characters;
-        Self { title, ..self }
-    }
-
-    /// The same figure with a `<desc>` in its SVG, in markup: what can be seen, in words.
-    #[must_use]
-    pub fn with_description(self, description: &str) -> Self {
-        let description = Some(Text::new(description, 1.0).characters);
+    /// The same with a `<desc>` in its SVG, in markup: what can be seen, in words.
+    pub(crate) fn with_description(self, description: &str) -> Self {
+        let description = plain(description);
         Self {
             description,
             ..self
         }
-    }
-
-    /// The same figure with every `id` in its SVG beginning with a prefix, so that many figures can stand in one web
-    /// page without sharing an `id`; characters other than ASCII letters, digits, `-` and `_` become `-`.
-    ///
-    /// Without a prefix an `id` is made from what it names, so figures that share one mean the same by it.
-    #[must_use]
-    pub fn with_prefix(self, prefix: &str) -> Self {
-        let allowed = |character: char| {
-            if character.is_ascii_alphanumeric() || character == '_' {
-                character
-            } else {
-                '-'
-            }
-        };
-        let prefix = prefix.chars().map(allowed).collect();
-        Self { prefix, ..self }
     }
 
     /// Width of the page in millimetres.
@@ -281,7 +211,16 @@ impl Drawing {
 
     /// The figure as a stand-alone SVG document, with text as outlines and its characters as accessible labels.
     pub fn svg(&self) -> String {
-        svg::document(self)
+        self.svg_with_prefix("")
+    }
+
+    /// The same with every `id` beginning with a prefix, so that many figures can stand in one web page without sharing
+    /// an `id`; characters other than ASCII letters, digits, `-` and `_` become `-`.
+    ///
+    /// Without a prefix an `id` is made from what it names, so figures that share one mean the same by it.
+    pub fn svg_with_prefix(&self, prefix: &str) -> String {
+        let is_other = |character: char| !character.is_ascii_alphanumeric() && character != '_';
+        svg::document(self, &prefix.replace(is_other, "-"))
     }
 
     /// The figure as a PNG picture, at 300 dots per inch unless it is made of pixels itself.
@@ -289,7 +228,7 @@ impl Drawing {
     /// # Errors
     /// If the page is too large for memory or the encoder fails.
     pub fn png(&self) -> Result<Vec<u8>, FigureError> {
-        png::picture(self)
+        png::encoded(self)
     }
 
     /// Pixels across and down of [`Drawing::png`].
@@ -340,159 +279,87 @@ impl Drawing {
             .flat_map(|layer| &layer.shapes)
             .collect()
     }
+
+    /// The paths of all layers of a name.
+    #[cfg(test)]
+    pub(crate) fn paths(&self, name: &str) -> Vec<&Path> {
+        let mut paths = Vec::new();
+        for shape in self.shapes(name) {
+            if let Shape::Path { path, .. } = shape {
+                paths.push(path);
+            }
+        }
+        paths
+    }
+
+    /// The lines of type of all layers of a name, with their starts.
+    #[cfg(test)]
+    pub(crate) fn texts(&self, name: &str) -> Vec<(Point, &str)> {
+        let text = |shape| match shape {
+            &Shape::Text {
+                start, ref text, ..
+            } => Some((start, text.characters.as_str())),
+            _ => None,
+        };
+        self.shapes(name).into_iter().filter_map(text).collect()
+    }
 }
 
 impl Layer {
-    /// An open line through the points.
-    pub(crate) fn line(&mut self, points: impl IntoIterator<Item = Point>, stroke: Stroke) {
-        self.shapes.push(Shape::Line {
-            points: points.into_iter().collect(),
-            stroke,
-        });
-    }
-
-    /// A straight line.
-    pub(crate) fn segment(&mut self, from: (f64, f64), to: (f64, f64), stroke: Stroke) {
-        self.line(
-            [
-                Point {
-                    x: from.0,
-                    y: from.1,
-                },
-                Point { x: to.0, y: to.1 },
-            ],
-            stroke,
-        );
-    }
-
-    /// A filled polygon.
-    pub(crate) fn polygon(&mut self, points: impl IntoIterator<Item = Point>, fill: Colour) {
-        self.shapes.push(Shape::Polygon {
-            points: points.into_iter().collect(),
-            fill,
-        });
-    }
-
-    /// A filled rectangle.
-    pub(crate) fn rectangle(&mut self, area: Rectangle, fill: Colour) {
-        let corners = [
-            (area.left, area.top),
-            (area.right(), area.top),
-            (area.right(), area.bottom()),
-            (area.left, area.bottom()),
-        ];
-        self.polygon(corners.map(|(x, y)| Point { x, y }), fill);
-    }
-
-    /// The outline of a rectangle, its first side repeated so that the corner closes.
-    pub(crate) fn outline(&mut self, area: Rectangle, stroke: Stroke) {
-        let (left, top, right, bottom) = (area.left, area.top, area.right(), area.bottom());
-        let corners = [
-            (left, top),
-            (right, top),
-            (right, bottom),
-            (left, bottom),
-            (left, top),
-            (right, top),
-        ];
-        self.line(corners.map(|(x, y)| Point { x, y }), stroke);
-    }
-
-    /// A disc.
-    pub(crate) fn circle(
-        &mut self,
-        centre: Point,
-        radius: f64,
-        fill: Fill,
-        stroke: Option<Stroke>,
-    ) {
-        self.shapes.push(Shape::Circle {
-            centre,
-            radius,
-            fill,
-            stroke,
-        });
-    }
-
-    /// The same mark at many places.
-    pub(crate) fn marks(
-        &mut self,
-        outline: Outline,
-        places: Vec<Point>,
-        fill: Colour,
-        stroke: Stroke,
-    ) {
-        self.shapes.push(Shape::Marks {
-            outline,
-            places,
-            fill,
-            stroke,
-        });
-    }
-
-    /// Straight lines apart from each other; nothing for none.
-    pub(crate) fn segments(&mut self, segments: Vec<[Point; 2]>, stroke: Stroke) {
-        if !segments.is_empty() {
-            self.shapes.push(Shape::Segments { segments, stroke });
+    /// A path that is filled, drawn along, or both; nothing for a path without steps.
+    pub(crate) fn path(&mut self, path: Path, fill: Option<Fill>, stroke: Option<Stroke>) {
+        if !path.steps.is_empty() {
+            self.shapes.push(Shape::Path { path, fill, stroke });
         }
     }
 
-    /// Equal cells that fill an area, row by row from the top left.
-    pub(crate) fn cells(&mut self, area: Rectangle, columns: usize, colours: Vec<Colour>) {
-        self.shapes.push(Shape::Cells {
-            area,
-            columns,
-            colours,
-        });
+    pub(crate) fn fill(&mut self, path: Path, colour: Colour) {
+        self.path(path, Some(Fill::Flat(colour)), None);
     }
 
-    /// A picture of red, green and blue bytes.
-    pub(crate) fn picture(&mut self, area: Rectangle, columns: usize, pixels: &[u8]) {
-        self.shapes.push(Shape::Picture {
-            area,
-            columns,
-            pixels: pixels.to_owned(),
-        });
+    pub(crate) fn stroke(&mut self, path: Path, stroke: Stroke) {
+        self.path(path, None, Some(stroke));
+    }
+
+    pub(crate) fn image(&mut self, image: Image) {
+        self.shapes.push(Shape::Image(image));
     }
 
     /// A line of type with its start, middle or end at a place.
-    pub(crate) fn text(&mut self, place: (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
-        self.place_text(place, anchor, Reading::Rightward, text, colour);
+    pub(crate) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
+        let start = Point::new(x - text.before(anchor), y);
+        self.place_text(start, Reading::Rightward, text, colour);
     }
 
     /// A line of type that reads upwards.
     pub(crate) fn upward_text(
         &mut self,
-        place: (f64, f64),
-        anchor: Anchor,
-        text: Text,
-        colour: Colour,
-    ) {
-        self.place_text(place, anchor, Reading::Upward, text, colour);
-    }
-
-    fn place_text(
-        &mut self,
         (x, y): (f64, f64),
         anchor: Anchor,
-        reading: Reading,
         text: Text,
         colour: Colour,
     ) {
-        let back = match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => text.width / 2.0,
-            Anchor::End => text.width,
-        };
-        let start = match reading {
-            Reading::Rightward => Point { x: x - back, y },
-            Reading::Upward => Point { x, y: y + back },
-        };
+        let start = Point::new(x, y + text.before(anchor));
+        self.place_text(start, Reading::Upward, text, colour);
+    }
+
+    fn place_text(&mut self, start: Point, reading: Reading, text: Text, colour: Colour) {
         self.shapes.push(Shape::Text {
             start,
             reading,
             text,
             colour,
         });
+    }
+}
+
+impl Text {
+    /// How much of the line stands before its anchor, in points.
+    fn before(&self, anchor: Anchor) -> f64 {
+        match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => self.width / 2.0,
+            Anchor::End => self.width,
+        }
     }
 }

@@ -6,64 +6,60 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-use ttf_parser::OutlineBuilder;
-
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 
-use super::{Drawing, Fill, Layer, Outline, Point, Reading, Shape, Stroke};
-use crate::colour::Colour;
-use crate::drawing::png::{
-    SPHERE_CENTRE, SPHERE_REACH, cells_picture, pixels_picture, sphere_stops,
+use super::png::encode;
+use super::{
+    Drawing, Fill, Image, Layer, Reading, SPHERE_CENTRE, SPHERE_REACH, Shape, Stroke, sphere_shades,
 };
-use crate::text::{Face, Glyph};
+use crate::colour::Colour;
+use crate::geometry::{Path, Point, Rectangle, Step};
+use crate::text::{Face, Glyph, Text};
 
-/// The whole document.
-pub(super) fn document(drawing: &Drawing) -> String {
-    let title = escape(&drawing.title);
-    let mut out = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {} {}\" role=\"img\">\n<title>{title}</title>\n",
+/// Adds formatted text to a string.
+macro_rules! push {
+    ($out:expr, $($arguments:tt)*) => {
+        write!($out, $($arguments)*).expect("writing to a string cannot fail")
+    };
+}
+
+/// The whole document, every `id` in it beginning with a prefix.
+pub(super) fn document(drawing: &Drawing, prefix: &str) -> String {
+    let mut out = String::new();
+    let [width, height] = [drawing.width, drawing.height].map(number);
+    push!(
+        out,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n",
         number(drawing.width_millimetres()),
         number(drawing.height_millimetres()),
-        number(drawing.width),
-        number(drawing.height),
+        escape(&drawing.title),
     );
-    if let Some(description) = &drawing.description {
-        push(
-            &mut out,
-            format_args!("<desc>{}</desc>\n", escape(description)),
-        );
+    if !drawing.description.is_empty() {
+        push!(out, "<desc>{}</desc>\n", escape(&drawing.description));
     }
-    out.push_str(&definitions(&drawing.layers, &drawing.prefix));
-    push(
-        &mut out,
-        format_args!(
-            "<rect width=\"{}\" height=\"{}\" fill=\"#{}\"/>\n",
-            number(drawing.width),
-            number(drawing.height),
-            drawing.paper.hexadecimal()
-        ),
+    push_definitions(&mut out, &drawing.layers, prefix);
+    let paper = drawing.paper.hexadecimal();
+    push!(
+        out,
+        "<rect width=\"{width}\" height=\"{height}\" fill=\"#{paper}\"/>\n"
     );
     for layer in &drawing.layers {
-        push_layer(&mut out, layer, &drawing.prefix);
+        push_layer(&mut out, layer, prefix);
     }
     out.push_str("</svg>\n");
     out
 }
 
-fn definitions(layers: &[Layer], prefix: &str) -> String {
+/// The glyphs and the shadings that the layers refer to.
+fn push_definitions(out: &mut String, layers: &[Layer], prefix: &str) {
     let mut glyphs = BTreeSet::new();
     let mut spheres = BTreeMap::new();
     for shape in layers.iter().flat_map(|layer| &layer.shapes) {
         match shape {
-            Shape::Text { text, .. } => glyphs.extend(
-                text.glyphs
-                    .iter()
-                    .filter(|placed| placed.glyph.ink().is_some())
-                    .map(|placed| placed.glyph),
-            ),
-            Shape::Circle {
-                fill: Fill::Sphere(colour),
+            Shape::Text { text, .. } => glyphs.extend(text.inked().map(|placed| placed.glyph)),
+            Shape::Path {
+                fill: Some(Fill::Sphere(colour)),
                 ..
             } => {
                 spheres.insert(colour.hexadecimal(), *colour);
@@ -71,197 +67,113 @@ fn definitions(layers: &[Layer], prefix: &str) -> String {
             _ => {}
         }
     }
-    let mut out = String::from("<defs>\n");
+    out.push_str("<defs>\n");
     for (name, colour) in spheres {
-        push(
-            &mut out,
-            format_args!(
-                "<radialGradient id=\"{prefix}sphere-{name}\" cx=\"{SPHERE_CENTRE}\" cy=\"{SPHERE_CENTRE}\" r=\"{SPHERE_REACH}\">"
-            ),
+        push!(
+            out,
+            "<radialGradient id=\"{prefix}sphere-{name}\" cx=\"{SPHERE_CENTRE}\" cy=\"{SPHERE_CENTRE}\" r=\"{SPHERE_REACH}\">"
         );
-        for (offset, shade) in sphere_stops(colour) {
-            push(
-                &mut out,
-                format_args!(
-                    "<stop offset=\"{offset}\" stop-color=\"#{}\"/>",
-                    shade.hexadecimal()
-                ),
-            );
+        for (offset, shade) in sphere_shades(colour) {
+            let shade = shade.hexadecimal();
+            push!(out, "<stop offset=\"{offset}\" stop-color=\"#{shade}\"/>");
         }
         out.push_str("</radialGradient>\n");
     }
     for glyph in glyphs {
-        let mut outline = GlyphPath(String::new());
-        glyph.outline(&mut outline);
-        push(
-            &mut out,
-            format_args!(
-                "<path id=\"{prefix}{}\" d=\"{}\"/>\n",
-                glyph_name(glyph),
-                outline.0
-            ),
-        );
+        let (name, path) = (glyph_name(glyph), path_data(&glyph.outline()));
+        push!(out, "<path id=\"{prefix}{name}\" d=\"{path}\"/>\n");
     }
     out.push_str("</defs>\n");
-    out
 }
 
 fn push_layer(out: &mut String, layer: &Layer, prefix: &str) {
-    let end = match &layer.window {
+    let name = layer.name;
+    let end = match layer.window {
         None => {
-            push(out, format_args!("<g class=\"{}\">\n", layer.name));
+            push!(out, "<g class=\"{name}\">\n");
             "</g>\n"
         }
         Some(window) => {
-            let [x, y, width, height] =
-                [window.left, window.top, window.width, window.height].map(number);
-            push(
+            let [x, y, width, height] = box_numbers(window);
+            push!(
                 out,
-                format_args!(
-                    "<svg class=\"{}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\" overflow=\"hidden\">\n",
-                    layer.name
-                ),
+                "<svg class=\"{name}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\" overflow=\"hidden\">\n"
             );
             "</svg>\n"
         }
     };
     for shape in &layer.shapes {
-        push_shape(out, shape, prefix);
+        match shape {
+            Shape::Path { path, fill, stroke } => {
+                let fill = match fill {
+                    None => " fill=\"none\"".to_owned(),
+                    Some(Fill::Flat(colour)) => paint("fill", *colour),
+                    Some(Fill::Sphere(colour)) => {
+                        format!(" fill=\"url(#{prefix}sphere-{})\"", colour.hexadecimal())
+                    }
+                };
+                let stroke = stroke.as_ref().map(stroke_attributes).unwrap_or_default();
+                push!(out, "<path d=\"{}\"{fill}{stroke}/>\n", path_data(path));
+            }
+            Shape::Image(image) => push_image(out, image),
+            Shape::Text {
+                start,
+                reading,
+                text,
+                colour,
+            } => push_text(out, (*start, *reading), text, *colour, prefix),
+        }
     }
     out.push_str(end);
 }
 
-fn push_shape(out: &mut String, shape: &Shape, prefix: &str) {
-    match shape {
-        Shape::Line { points, stroke } => {
-            push(
-                out,
-                format_args!(
-                    "<path d=\"{}\" fill=\"none\"{}/>\n",
-                    polyline(points),
-                    stroke_attributes(stroke)
-                ),
-            );
-        }
-        Shape::Polygon { points, fill } => {
-            push(
-                out,
-                format_args!(
-                    "<path d=\"{}Z\"{}/>\n",
-                    polyline(points),
-                    paint("fill", *fill)
-                ),
-            );
-        }
-        Shape::Circle {
-            centre,
-            radius,
-            fill,
-            stroke,
-        } => {
-            let fill = match fill {
-                Fill::Flat(colour) => paint("fill", *colour),
-                Fill::Sphere(colour) => {
-                    format!(" fill=\"url(#{prefix}sphere-{})\"", colour.hexadecimal())
-                }
-            };
-            let stroke = stroke.as_ref().map(stroke_attributes).unwrap_or_default();
-            let [x, y, radius] = [centre.x, centre.y, *radius].map(number);
-            push(
-                out,
-                format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{fill}{stroke}/>\n"),
-            );
-        }
-        Shape::Marks {
-            outline,
-            places,
-            fill,
-            stroke,
-        } => {
-            push(
-                out,
-                format_args!(
-                    "<path d=\"{}\"{}{}/>\n",
-                    marks(outline, places),
-                    paint("fill", *fill),
-                    stroke_attributes(stroke)
-                ),
-            );
-        }
-        Shape::Segments { segments, stroke } => {
-            let path: String = segments.iter().map(|ends| polyline(ends)).collect();
-            push(
-                out,
-                format_args!("<path d=\"{path}\"{}/>\n", stroke_attributes(stroke)),
-            );
-        }
-        Shape::Cells {
-            area,
-            columns,
-            colours,
-        } => {
-            let [x, y, width, height] = [area.left, area.top, area.width, area.height].map(number);
-            let picture = STANDARD.encode(cells_picture(*columns, colours));
-            push(
-                out,
-                format_args!(
-                    "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{picture}\"/>\n"
-                ),
-            );
-        }
-        Shape::Picture {
-            area,
-            columns,
-            pixels,
-        } => {
-            let [x, y, width, height] = [area.left, area.top, area.width, area.height].map(number);
-            let picture = STANDARD.encode(pixels_picture(*columns, pixels));
-            push(
-                out,
-                format_args!(
-                    "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\" href=\"data:image/png;base64,{picture}\"/>\n"
-                ),
-            );
-        }
-        Shape::Text {
-            start,
-            reading,
-            text,
-            colour,
-        } => {
-            let turn = match reading {
-                Reading::Rightward => "",
-                Reading::Upward => " rotate(-90)",
-            };
-            push(
-                out,
-                format_args!(
-                    "<g role=\"img\" aria-label=\"{}\" transform=\"translate({} {}){turn}\"{}>",
-                    escape(&text.characters),
-                    number(start.x),
-                    number(start.y),
-                    paint("fill", *colour)
-                ),
-            );
-            for placed in text
-                .glyphs
-                .iter()
-                .filter(|placed| placed.glyph.ink().is_some())
-            {
-                push(
-                    out,
-                    format_args!(
-                        "<use href=\"#{prefix}{}\" transform=\"translate({} {}) scale({:.6})\"/>",
-                        glyph_name(placed.glyph),
-                        number(placed.x),
-                        number(placed.y),
-                        placed.scale
-                    ),
-                );
-            }
-            out.push_str("</g>\n");
-        }
+fn push_image(out: &mut String, image: &Image) {
+    let [x, y, width, height] = box_numbers(image.area);
+    let size = [image.columns as u32, image.rows() as u32];
+    let picture = encode(size, &image.pixels, None)
+        .expect("writing a picture of whole rows to memory cannot fail");
+    let style = if image.is_smooth {
+        ""
+    } else {
+        " style=\"image-rendering:pixelated\""
+    };
+    push!(
+        out,
+        "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\"{style} href=\"data:image/png;base64,{}\"/>\n",
+        STANDARD.encode(picture)
+    );
+}
+
+fn push_text(
+    out: &mut String,
+    (start, reading): (Point, Reading),
+    text: &Text,
+    colour: Colour,
+    prefix: &str,
+) {
+    let turn = match reading {
+        Reading::Rightward => "",
+        Reading::Upward => " rotate(-90)",
+    };
+    push!(
+        out,
+        "<g role=\"img\" aria-label=\"{}\" transform=\"translate({} {}){turn}\"{}>",
+        escape(&text.characters),
+        number(start.x),
+        number(start.y),
+        paint("fill", colour)
+    );
+    for placed in text.inked() {
+        push!(
+            out,
+            "<use href=\"#{prefix}{}\" transform=\"translate({} {}) scale({:.6})\"/>",
+            glyph_name(placed.glyph),
+            number(placed.x),
+            number(placed.y),
+            placed.scale
+        );
     }
+    out.push_str("</g>\n");
 }
 
 fn glyph_name(glyph: Glyph) -> String {
@@ -272,77 +184,59 @@ fn glyph_name(glyph: Glyph) -> String {
     format!("{face}-{}", glyph.index)
 }
 
-fn polyline(points: &[Point]) -> String {
-    let mut out = String::with_capacity(12 * points.len());
-    for (index, point) in points.iter().enumerate() {
-        out.push(if index == 0 { 'M' } else { 'L' });
-        push(
-            &mut out,
-            format_args!("{} {}", number(point.x), number(point.y)),
-        );
+fn path_data(path: &Path) -> String {
+    let mut out = String::with_capacity(12 * path.steps.len());
+    for step in &path.steps {
+        match *step {
+            Step::Move(to) => push_step(&mut out, 'M', &[to]),
+            Step::Line(to) => push_step(&mut out, 'L', &[to]),
+            Step::Quadratic(control, to) => push_step(&mut out, 'Q', &[control, to]),
+            Step::Cubic(first, second, to) => push_step(&mut out, 'C', &[first, second, to]),
+            Step::Circle(centre, radius) => {
+                push_step(&mut out, 'M', &[Point::new(centre.x - radius, centre.y)]);
+                let [radius, diameter] = [radius, 2.0 * radius].map(number);
+                push!(
+                    out,
+                    "a{radius} {radius} 0 1 0 {diameter} 0a{radius} {radius} 0 1 0-{diameter} 0z"
+                );
+            }
+            Step::Close => out.push('Z'),
+        }
     }
     out
 }
 
-/// One path of all marks: absolute to each place, relative around it.
-fn marks(outline: &Outline, places: &[Point]) -> String {
-    let (start, rest) = match outline {
-        Outline::Circle { radius } => {
-            let (radius, diameter) = (number(*radius), number(2.0 * radius));
-            let start = Point { x: 0.0, y: 0.0 };
-            (
-                start,
-                format!(
-                    "m-{radius} 0a{radius} {radius} 0 1 0 {diameter} 0a{radius} {radius} 0 1 0-{diameter} 0z"
-                ),
-            )
-        }
-        Outline::Polygon(corners) => {
-            let steps = corners.windows(2).map(|pair| {
-                format!(
-                    "l{} {}",
-                    number(pair[1].x - pair[0].x),
-                    number(pair[1].y - pair[0].y)
-                )
-            });
-            (corners[0], steps.chain(["z".to_owned()]).collect())
-        }
-    };
-    places
-        .iter()
-        .map(|place| {
-            format!(
-                "M{} {}{rest}",
-                number(place.x + start.x),
-                number(place.y + start.y)
-            )
-        })
-        .collect()
-}
-
-fn paint(property: &str, colour: Colour) -> String {
-    if colour.opacity < 1.0 {
-        format!(
-            " {property}=\"#{}\" {property}-opacity=\"{}\"",
-            colour.hexadecimal(),
-            number(colour.opacity)
-        )
-    } else {
-        format!(" {property}=\"#{}\"", colour.hexadecimal())
+fn push_step(out: &mut String, letter: char, points: &[Point]) {
+    for (index, point) in points.iter().enumerate() {
+        let before = if index == 0 { letter } else { ' ' };
+        push!(out, "{before}{} {}", number(point.x), number(point.y));
     }
 }
 
+fn box_numbers(area: Rectangle) -> [String; 4] {
+    [area.left, area.top, area.width, area.height].map(number)
+}
+
+fn paint(property: &str, colour: Colour) -> String {
+    let mut out = format!(" {property}=\"#{}\"", colour.hexadecimal());
+    if colour.opacity < 1.0 {
+        push!(out, " {property}-opacity=\"{}\"", number(colour.opacity));
+    }
+    out
+}
+
 fn stroke_attributes(stroke: &Stroke) -> String {
-    let mut out = format!(
-        "{} stroke-width=\"{}\" stroke-linejoin=\"round\"",
-        paint("stroke", stroke.colour),
-        number(stroke.weight)
-    );
-    if let [first, rest @ ..] = stroke.dash.lengths() {
-        let lengths = rest
-            .iter()
-            .fold(first.to_string(), |list, length| format!("{list} {length}"));
-        push(&mut out, format_args!(" stroke-dasharray=\"{lengths}\""));
+    let mut out = paint("stroke", stroke.colour);
+    let weight = number(stroke.weight);
+    push!(out, " stroke-width=\"{weight}\" stroke-linejoin=\"round\"");
+    let lengths: Vec<String> = stroke
+        .pattern
+        .lengths()
+        .iter()
+        .map(f32::to_string)
+        .collect();
+    if !lengths.is_empty() {
+        push!(out, " stroke-dasharray=\"{}\"", lengths.join(" "));
     }
     out
 }
@@ -351,11 +245,7 @@ fn stroke_attributes(stroke: &Stroke) -> String {
 fn number(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" {
-        "0".to_owned()
-    } else {
-        text.to_owned()
-    }
+    if text == "-0" { "0" } else { text }.to_owned()
 }
 
 fn escape(text: &str) -> String {
@@ -372,53 +262,6 @@ fn escape(text: &str) -> String {
         }
     }
     out
-}
-
-fn push(out: &mut String, arguments: std::fmt::Arguments<'_>) {
-    out.write_fmt(arguments)
-        .expect("writing to a string cannot fail");
-}
-
-/// Path data of a glyph in font units, turned so that y runs downwards.
-struct GlyphPath(String);
-
-impl GlyphPath {
-    fn command(&mut self, letter: char, coordinates: &[f32]) {
-        self.0.push(letter);
-        for (index, pair) in coordinates.chunks_exact(2).enumerate() {
-            let gap = if index == 0 { "" } else { " " };
-            push(
-                &mut self.0,
-                format_args!(
-                    "{gap}{} {}",
-                    number(f64::from(pair[0])),
-                    number(-f64::from(pair[1]))
-                ),
-            );
-        }
-    }
-}
-
-impl OutlineBuilder for GlyphPath {
-    fn move_to(&mut self, x: f32, y: f32) {
-        self.command('M', &[x, y]);
-    }
-
-    fn line_to(&mut self, x: f32, y: f32) {
-        self.command('L', &[x, y]);
-    }
-
-    fn quad_to(&mut self, x1: f32, y1: f32, x: f32, y: f32) {
-        self.command('Q', &[x1, y1, x, y]);
-    }
-
-    fn curve_to(&mut self, x1: f32, y1: f32, x2: f32, y2: f32, x: f32, y: f32) {
-        self.command('C', &[x1, y1, x2, y2, x, y]);
-    }
-
-    fn close(&mut self) {
-        self.0.push('Z');
-    }
 }
 
 #[cfg(test)]

@@ -2,7 +2,9 @@
 
 use std::sync::LazyLock;
 
-use ttf_parser::{GlyphId, OutlineBuilder, Rect};
+use ttf_parser::{GlyphId, Rect};
+
+use crate::geometry::Path;
 
 /// One of the two faces of the typeface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -65,9 +67,14 @@ impl Glyph {
         self.face.font().glyph_bounding_box(GlyphId(self.index))
     }
 
-    /// Sends the outline, in font units with y upwards, to a builder.
-    pub(crate) fn outline(self, builder: &mut dyn OutlineBuilder) {
+    /// The outline in font units with y downwards; empty for a space.
+    pub(crate) fn outline(self) -> Path {
+        let mut path = Path::default();
         // A space has no outline, and nothing is drawn for it.
-        let _ = self.face.font().outline_glyph(GlyphId(self.index), builder);
+        let _ = self
+            .face
+            .font()
+            .outline_glyph(GlyphId(self.index), &mut path);
+        path
     }
 }

@@ -16,6 +16,12 @@ const SUPERSCRIPT_RISE: f64 = 0.36;
 const DOT_GAP: f64 = 0.07;
 const COMBINING_DOT: char = '\u{307}';
 
+/// The characters of a label without markup.
+pub(crate) fn plain(markup: &str) -> String {
+    let letters = letters(markup);
+    letters.iter().map(|letter| letter.character).collect()
+}
+
 /// Height of a digit above the baseline, in ems.
 pub(crate) const DIGIT_HEIGHT: f64 = 0.71;
 
@@ -77,6 +83,12 @@ impl Text {
             characters: letters.iter().map(|letter| letter.character).collect(),
             width: pen,
         }
+    }
+
+    /// The glyphs that leave ink.
+    pub(crate) fn inked(&self) -> impl Iterator<Item = &PlacedGlyph> {
+        let has_ink = |placed: &&PlacedGlyph| placed.glyph.ink().is_some();
+        self.glyphs.iter().filter(has_ink)
     }
 
     /// Sets a label in type of the given size, or smaller where it would be longer than the room that there is.

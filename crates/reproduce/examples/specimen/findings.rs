@@ -3,9 +3,8 @@
 use std::f64::consts::TAU;
 
 use peristalsis_analysis::{Interval, Uncertain};
-use peristalsis_figures::{
-    Drawing, FigureError, FlowFigure, LateMean, NewtonianReference, Series, Transition, Width,
-};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Reference, Tint};
+use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_reproduce::report::{Program, Report};
 use peristalsis_reproduce::{
     Claim, ClaimError, Evidence, Examination, Finding, Prose, Quantity, ReportFigure, ReportTable,
@@ -114,33 +113,16 @@ fn flow(periods: usize, onset: f64, width: Width) -> Result<Drawing, FigureError
         middles.push(period as f64 + 0.5);
         averages.push(level(period as f64 + 0.5));
     }
-    FlowFigure {
-        title: "*w* = 2.75 *d*, *ε\u{307}* = 0.05, *ρ* = 0.15, *N* = 202",
-        samples: Series {
-            x: &time,
-            y: &ratio,
-        },
-        averages: Some(Series {
-            x: &middles,
-            y: &averages,
-        }),
-        threshold: Some(0.5),
-        transition: Some(Transition {
-            period: onset,
-            time: 20.0 * onset,
-            unit: "(*m*/*k*)^{1/2}",
-        }),
-        newtonian: Some(NewtonianReference {
-            ratio: 0.052,
-            clear_bore: Some(0.113),
-        }),
-        late_mean: Some(LateMean {
-            mean: 0.961,
-            error: 0.012,
-        }),
-        width,
-    }
-    .draw()
+    let panel = ChartPanel::new("time, *t*/*T*", "flow rate, *J*/*J*_{max}")
+        .y_range(0.0..=1.05)
+        .with(Line::new("samples", &time, &ratio).tint(Tint::Sky))
+        .with(Line::new("mean over a period", &middles, &averages).tint(Tint::Blue))
+        .with(Reference::horizontal(0.5).label("threshold"))
+        .with(Reference::vertical(onset).tint(Tint::Vermillion));
+    ChartFigure::new(panel)
+        .title("*w* = 2.75 *d*, *ε\u{307}* = 0.05, *ρ* = 0.15, *N* = 202")
+        .width(width)
+        .draw()
 }
 
 fn quantity(name: &str, symbol: &str, source: Option<f64>, ours: Option<Uncertain>) -> Quantity {

@@ -1,8 +1,8 @@
 //! Q4: length of the tube, and where a jam begins.
 
 use peristalsis_analysis::{Family, Transition, Uncertain, ensembles_by_width, power_exponent};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
-use peristalsis_figures::{Quantity as Axis, Scale, SpaceTimeFigure, Width};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Field, Points};
+use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
 use super::label;
 use crate::branches::{Branch, BranchPoint};
@@ -250,18 +250,18 @@ fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> 
              waves at *w* = {} *d*.",
             run.waves, run.width
         ),
-        drawing: SpaceTimeFigure {
-            values: &values,
-            rows,
-            x_range: (0.0, columns as f64),
-            y_range: (0.0, rows as f64),
-            x_label: &label(Axis::Period),
-            y_label: &label(Axis::Wave),
-            value_label: &label(Axis::FlowRateRatio),
-            value_range: Some((0.0, 1.0)),
-            width: Width::DoubleColumn,
-            ..SpaceTimeFigure::default()
-        }
+        drawing: ChartFigure::new(
+            ChartPanel::new(&label(Axis::Period), &label(Axis::Wave)).with(Field::new(
+                &values,
+                rows,
+                (0.0, columns as f64),
+                (0.0, rows as f64),
+            )),
+        )
+        .description("Flow rate of each wave against time.")
+        .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
+        .panel_height(50.0)
+        .width(Width::DoubleColumn)
         .draw()?,
     }))
 }

@@ -2,7 +2,7 @@
 
 use peristalsis_analysis::{Uncertain, mean_and_error};
 use peristalsis_figures::{
-    SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotStack, SnapshotWall, Width,
+    Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Width,
 };
 use peristalsis_formats::Table;
 
@@ -229,28 +229,27 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure, ClaimError> {
     for picture in pictures {
         drawn.push((picture, picture.drawn()?));
     }
-    let snapshots: Vec<(&str, SnapshotFigure<'_>)> = drawn
+    let snapshots: Vec<Snapshot<'_>> = drawn
         .iter()
         .map(|(picture, (grains, wall))| {
             let wavelength = picture.row.wavelength();
             let length = wavelength * picture.row.number("waves");
-            let figure = SnapshotFigure {
+            Snapshot {
+                label: &picture.name,
                 grains,
                 wall: SnapshotWall::Spheres(wall),
                 length,
-                period: Some(length),
-                wavelength: Some(wavelength),
-                ..SnapshotFigure::default()
-            };
-            (picture.name.as_str(), figure)
+                period: length,
+                wavelength,
+            }
         })
         .collect();
-    let stack = SnapshotStack {
+    let figure = SnapshotFigure {
         title: "",
         snapshots: &snapshots,
         width: Width::DoubleColumn,
     };
     let first = &pictures[0].row;
     let periods = number(first.time() * first.strain_rate(), 0);
-    Ok(PROSE.figure("flow-fields", &[("periods", &periods)], stack.draw()?))
+    Ok(PROSE.figure("flow-fields", &[("periods", &periods)], figure.draw()?))
 }

@@ -1,0 +1,440 @@
+//! Grains in a part of the tube, seen from the side.
+
+use crate::axis::{decimal, extent};
+use crate::chart::{ChartFigure, ChartPanel, Line, Spheres, Tint};
+use crate::colour_scale::{ColourScale, Palette};
+use crate::drawing::Drawing;
+use crate::error::{FigureError, finite, positive};
+use crate::style::Width;
+
+/// A sphere as the side view needs it, lengths in one unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SnapshotSphere {
+    /// Coordinate along the tube, drawn to the right.
+    pub along: f64,
+    /// Coordinate across the tube from its axis, drawn upwards.
+    pub across: f64,
+    /// Coordinate towards the viewer, from the plane through the axis.
+    pub depth: f64,
+    /// Diameter.
+    pub diameter: f64,
+}
+
+/// A grain with its velocity.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SnapshotGrain {
+    /// Place and size.
+    pub sphere: SnapshotSphere,
+    /// Axial velocity over the wave speed, positive along the wave.
+    pub axial_velocity: f64,
+}
+
+/// How the wall is drawn.
+#[derive(Clone, Copy, Debug)]
+pub enum SnapshotWall<'a> {
+    /// The wall spheres within three quarters of a diameter of the plane through the tube's axis, as faint discs.
+    Spheres(&'a [SnapshotSphere]),
+    /// The radius of the wall at places along the tube, as two curves.
+    Outline {
+        /// Places along the tube.
+        along: &'a [f64],
+        /// Radius at each.
+        radius: &'a [f64],
+    },
+}
+
+/// Side view of a part of a periodic tube: grains coloured by their axial velocity over the wave speed, blue against the
+/// wave, white at rest and red along it.
+#[derive(Clone, Copy, Debug)]
+pub struct Snapshot<'a> {
+    /// Line above the snapshot, in markup; none if empty.
+    pub label: &'a str,
+    /// The grains; those outside of the part are not drawn.
+    pub grains: &'a [SnapshotGrain],
+    /// The wall.
+    pub wall: SnapshotWall<'a>,
+    /// Length of the part from the tube's beginning.
+    pub length: f64,
+    /// Length of the tube: spheres also show where their images lie in the part.
+    pub period: f64,
+    /// Wavelength, so that a part can say how many of the tube's waves it shows.
+    pub wavelength: f64,
+}
+
+/// Snapshots above each other, for instance unjammed flow above jammed, with one scale of length and one of velocity; a
+/// long part is broken into rows that read like lines of text.
+#[derive(Clone, Copy, Debug)]
+pub struct SnapshotFigure<'a> {
+    /// Line above the figure, in markup; none if empty.
+    pub title: &'a str,
+    /// The snapshots from top to bottom.
+    pub snapshots: &'a [Snapshot<'a>],
+    /// Width of the figure.
+    pub width: Width,
+}
+
+/// A mean grain is drawn no smaller than this across, in points, as long as the page allows.
+const LEAST_GRAIN: f64 = 7.5;
+/// A row is never shorter than this many grain diameters.
+const SHORTEST_ROW: f64 = 10.0;
+/// About the space beside a row, in points.
+const BESIDE: f64 = 40.0;
+/// Free space above and below the outermost sphere, as a fraction of the half height of a row.
+const MARGIN: f64 = 0.06;
+/// Greatest distance of a drawn wall sphere from the plane of the cut, in diameters: half a diameter would leave gaps
+/// where the wall is stretched.
+const SLICE: f64 = 0.75;
+/// Axial velocity, over the wave speed, of the deepest colours.
+const DEEPEST: f64 = 1.0;
+
+impl SnapshotFigure<'_> {
+    /// Lays the figure out.
+    ///
+    /// # Errors
+    /// If there is no snapshot, if a length or a diameter is not positive, if a coordinate or velocity is not finite, or if
+    /// a snapshot has neither a grain nor a wall.
+    pub fn draw(&self) -> Result<Drawing, FigureError> {
+        let empty = FigureError::EmptySeries {
+            series: "snapshots".to_owned(),
+            length: 0,
+        };
+        let mut parts = Vec::with_capacity(self.snapshots.len());
+        for snapshot in self.snapshots {
+            parts.push(Part::of(snapshot)?);
+        }
+        let (_, reach) = extent(parts.iter().map(Part::reach));
+        if parts.is_empty() || reach <= 0.0 {
+            return Err(empty);
+        }
+        let (diameter, _) = extent(parts.iter().map(Part::diameter));
+        let (_, longest) = extent(parts.iter().map(|part| part.snapshot.length));
+        let row = row_length(longest, self.width.points() - BESIDE, diameter);
+        let extents: Vec<String> = self.snapshots.iter().map(Snapshot::extent).collect();
+        let is_one_extent = extents.windows(2).all(|pair| pair[0] == pair[1]);
+        let mut panels = Vec::new();
+        for (index, part) in parts.iter().enumerate() {
+            let label = part.snapshot.label;
+            let header = match (is_one_extent, &*extents[index]) {
+                (true, _) | (_, "") => label.to_owned(),
+                (false, extent) => format!("{label}  ({extent})"),
+            };
+            let rows = (part.snapshot.length / row - 1e-9).ceil().max(1.0) as usize;
+            for number in 0..rows {
+                let is_last = index + 1 == parts.len() && number + 1 == rows;
+                let name = match (is_last, &*extents[0]) {
+                    (false, _) => String::new(),
+                    (true, extent) if is_one_extent && !extent.is_empty() => {
+                        format!("*z*/*d*  ({extent})")
+                    }
+                    (true, _) => "*z*/*d*".to_owned(),
+                };
+                let title = if number == 0 { &*header } else { "" };
+                let from = row * number as f64;
+                let panel = ChartPanel::new(&name, "*x*/*d*")
+                    .title(title)
+                    .x_range(from..=from + row)
+                    .y_range(-reach * (1.0 + MARGIN)..=reach * (1.0 + MARGIN));
+                panels.push(part.add_to(panel, (from, from + row)));
+            }
+        }
+        let grains = self.snapshots.iter().flat_map(|snapshot| snapshot.grains);
+        let name = "axial velocity along the wave, *v_z*/*c*";
+        let scale = ColourScale::new(name, -DEEPEST, DEEPEST)
+            .palette(Palette::Diverging)
+            .showing(extent(grains.map(|grain| grain.axial_velocity)));
+        ChartFigure::grid(1, panels)
+            .title(self.title)
+            .description("The tube from the side, its grains coloured by their axial velocity.")
+            .width(self.width)
+            .equal_scales()
+            .colour_scale(scale)
+            .draw()
+    }
+}
+
+impl Snapshot<'_> {
+    /// How much of the tube is shown, in markup; nothing where it is all of it.
+    fn extent(&self) -> String {
+        if self.length >= self.period * (1.0 - 1e-9) {
+            return String::new();
+        }
+        let number = |length: f64| {
+            let number = decimal(length / self.wavelength, 1);
+            number.strip_suffix(".0").unwrap_or(&number).to_owned()
+        };
+        format!(
+            "{} of {} waves shown",
+            number(self.length),
+            number(self.period)
+        )
+    }
+}
+
+/// A snapshot, checked and in the order of drawing.
+struct Part<'a> {
+    snapshot: &'a Snapshot<'a>,
+    /// From the furthest to the nearest.
+    grains: Vec<SnapshotGrain>,
+    /// Those of the wall in the cut.
+    spheres: Vec<SnapshotSphere>,
+}
+
+impl<'a> Part<'a> {
+    fn of(snapshot: &'a Snapshot<'a>) -> Result<Self, FigureError> {
+        positive("length of the snapshot", snapshot.length)?;
+        positive("period of the tube", snapshot.period)?;
+        positive("wavelength", snapshot.wavelength)?;
+        let mut grains = snapshot.grains.to_vec();
+        for (index, grain) in grains.iter().enumerate() {
+            check_sphere("grains", index, &grain.sphere)?;
+            finite("axial velocity of a grain", grain.axial_velocity)?;
+        }
+        grains.sort_by(|one, other| one.sphere.depth.total_cmp(&other.sphere.depth));
+        let mut spheres = match snapshot.wall {
+            SnapshotWall::Spheres(spheres) => spheres.to_vec(),
+            SnapshotWall::Outline { .. } => Vec::new(),
+        };
+        for (index, sphere) in spheres.iter().enumerate() {
+            check_sphere("wall", index, sphere)?;
+        }
+        spheres.retain(|sphere| sphere.depth.abs() < SLICE * sphere.diameter);
+        Ok(Self {
+            snapshot,
+            grains,
+            spheres,
+        })
+    }
+
+    fn all(&self) -> impl Iterator<Item = &SnapshotSphere> {
+        let grains = self.grains.iter().map(|grain| &grain.sphere);
+        self.spheres.iter().chain(grains)
+    }
+
+    /// Height of the outermost thing that is drawn.
+    fn reach(&self) -> f64 {
+        let outline = match self.snapshot.wall {
+            SnapshotWall::Outline { radius, .. } => radius,
+            SnapshotWall::Spheres(_) => &[],
+        };
+        let heights = self.all().map(|it| it.across.abs() + it.diameter / 2.0);
+        extent(heights.chain(outline.iter().copied())).1
+    }
+
+    /// Mean diameter of the grains, of the wall spheres where there are none, or 1.
+    fn diameter(&self) -> f64 {
+        let walls = if self.grains.is_empty() {
+            self.spheres.len()
+        } else {
+            0
+        };
+        let counted = || self.all().skip(self.spheres.len() - walls);
+        match counted().count() {
+            0 => 1.0,
+            count => counted().map(|sphere| sphere.diameter).sum::<f64>() / count as f64,
+        }
+    }
+
+    /// Adds what shows between two places along the tube.
+    fn add_to(&self, panel: ChartPanel, (from, to): (f64, f64)) -> ChartPanel {
+        let to = to.min(self.snapshot.length);
+        // Places of a sphere and of its periodic images.
+        let places = |sphere: &SnapshotSphere| {
+            let (along, radius) = (sphere.along, sphere.diameter / 2.0);
+            [0.0, -self.snapshot.period, self.snapshot.period]
+                .map(|shift| along + shift)
+                .into_iter()
+                .filter(move |along| along + radius > from && along - radius < to)
+        };
+        let (mut wall, mut grains) = (Spheres::default(), Spheres::default());
+        for sphere in &self.spheres {
+            places(sphere).for_each(|along| wall.push(along, sphere.across, sphere.diameter));
+        }
+        for SnapshotGrain {
+            sphere,
+            axial_velocity,
+        } in &self.grains
+        {
+            for along in places(sphere) {
+                grains.push(along, sphere.across, sphere.diameter);
+                grains.values.push(*axial_velocity);
+            }
+        }
+        let mut panel = panel.with(wall).with(grains);
+        if let SnapshotWall::Outline { along, radius } = self.snapshot.wall {
+            for side in [1.0, -1.0] {
+                let edge: Vec<f64> = radius.iter().map(|radius| side * radius).collect();
+                panel = panel.with(Line::new("", along, &edge).tint(Tint::Grey));
+            }
+        }
+        panel
+    }
+}
+
+fn check_sphere(
+    group: &'static str,
+    index: usize,
+    sphere: &SnapshotSphere,
+) -> Result<(), FigureError> {
+    let values = [sphere.along, sphere.across, sphere.depth, sphere.diameter];
+    if values.iter().any(|value| !value.is_finite()) {
+        return Err(FigureError::NonFiniteSphere { group, index });
+    }
+    positive("diameter of a sphere", sphere.diameter).map(|_| ())
+}
+
+/// Length of a row: all rows equal, as few as show the grains large enough.
+fn row_length(length: f64, room: f64, diameter: f64) -> f64 {
+    let longest = (room / LEAST_GRAIN).max(SHORTEST_ROW) * diameter;
+    length / (length / longest - 1e-9).ceil().max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::colour::diverging;
+    use crate::drawing::{Fill, Shape};
+    use crate::geometry::{Point, Step};
+
+    const NO_WALL: SnapshotWall<'_> = SnapshotWall::Spheres(&[]);
+
+    fn grain(along: f64, depth: f64, axial_velocity: f64) -> SnapshotGrain {
+        SnapshotGrain {
+            sphere: SnapshotSphere {
+                along,
+                across: 0.0,
+                depth,
+                diameter: 1.0,
+            },
+            axial_velocity,
+        }
+    }
+
+    /// A tube of eight diameters and one wave.
+    fn snapshot<'a>(grains: &'a [SnapshotGrain], wall: SnapshotWall<'a>) -> Snapshot<'a> {
+        Snapshot {
+            label: "",
+            grains,
+            wall,
+            length: 8.0,
+            period: 8.0,
+            wavelength: 8.0,
+        }
+    }
+
+    fn draw(snapshots: &[Snapshot<'_>]) -> Result<Drawing, FigureError> {
+        let (title, width) = ("", Width::SingleColumn);
+        SnapshotFigure {
+            title,
+            snapshots,
+            width,
+        }
+        .draw()
+    }
+
+    /// Centre, radius and fill of every sphere.
+    fn spheres(snapshot: Snapshot<'_>) -> Vec<(Point, f64, Fill)> {
+        let drawing = draw(&[snapshot]).expect("drawable");
+        let sphere = |shape| match shape {
+            &Shape::Path {
+                ref path,
+                fill: Some(fill),
+                ..
+            } => match path.steps[0] {
+                Step::Circle(centre, radius) => Some((centre, radius, fill)),
+                _ => None,
+            },
+            _ => None,
+        };
+        drawing
+            .shapes("spheres")
+            .into_iter()
+            .filter_map(sphere)
+            .collect()
+    }
+
+    #[test]
+    fn near_grains_are_drawn_last_and_both_axes_have_one_scale() {
+        let mut grains = [grain(2.0, 0.5, 1.0), grain(4.0, -0.5, -1.0)];
+        grains[1].sphere.across = 1.0;
+        let [(far, radius, far_fill), (near, _, near_fill)] =
+            spheres(snapshot(&grains, NO_WALL))[..]
+        else {
+            panic!("two grains")
+        };
+        assert!(near.x < far.x, "the far grain stands further along");
+        assert!(((far.x - near.x) / radius - 4.0).abs() < 1e-9);
+        assert!(((near.y - far.y) / radius - 2.0).abs() < 1e-9);
+        assert_eq!(
+            (far_fill, near_fill),
+            (Fill::Sphere(diverging(-1.0)), Fill::Sphere(diverging(1.0)))
+        );
+    }
+
+    #[test]
+    fn a_grain_at_the_seam_shows_at_both_ends() {
+        let grains = [grain(0.1, 0.0, 0.0)];
+        assert_eq!(spheres(snapshot(&grains, NO_WALL)).len(), 2);
+    }
+
+    #[test]
+    fn only_wall_spheres_in_the_cut_are_drawn() {
+        let sphere = |depth| SnapshotSphere {
+            along: 1.0,
+            across: 1.5,
+            depth,
+            diameter: 1.0,
+        };
+        let wall = [sphere(0.0), sphere(0.7), sphere(-0.8)];
+        assert_eq!(
+            spheres(snapshot(&[], SnapshotWall::Spheres(&wall))).len(),
+            2
+        );
+    }
+
+    #[test]
+    fn a_long_tube_is_broken_into_equal_rows() {
+        assert!((row_length(100.0, 480.0, 1.0) - 50.0).abs() < 1e-9);
+        assert!((row_length(20.0, 480.0, 1.0) - 20.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_part_of_the_tube_says_how_much_it_is() {
+        let grains = [grain(1.0, 0.0, 2.0)];
+        let part = Snapshot {
+            period: 40.0,
+            label: "fast",
+            ..snapshot(&grains, NO_WALL)
+        };
+        let names =
+            |snapshots: &[Snapshot<'_>]| -> String { draw(snapshots).expect("drawable").svg() };
+        assert!(names(&[part]).contains("z/d  (1 of 5 waves shown)"));
+        let whole = Snapshot {
+            period: 8.0,
+            ..part
+        };
+        let both = names(&[part, whole]);
+        assert!(both.contains("fast  (1 of 5 waves shown)") && both.contains("\"z/d\""));
+        assert!(both.contains("≥ 1") && !both.contains("≤"), "v/c is 2");
+    }
+
+    #[test]
+    fn what_has_no_place_or_shows_nothing_is_refused() {
+        let grains = [grain(0.0, 0.0, 0.0), grain(f64::NAN, 0.0, 0.0)];
+        let refused = |snapshots: &[Snapshot<'_>]| draw(snapshots).expect_err("nothing to draw");
+        assert!(matches!(
+            refused(&[snapshot(&grains, NO_WALL)]),
+            FigureError::NonFiniteSphere { index: 1, .. }
+        ));
+        for nothing in [&[][..], &[snapshot(&[], NO_WALL)]] {
+            assert!(matches!(refused(nothing), FigureError::EmptySeries { .. }));
+        }
+        let no_length = Snapshot {
+            length: 0.0,
+            ..snapshot(&grains[..1], NO_WALL)
+        };
+        assert!(matches!(
+            refused(&[no_length]),
+            FigureError::NotPositive { .. }
+        ));
+    }
+}

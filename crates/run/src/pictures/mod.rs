@@ -1,0 +1,278 @@
+//! The figures of a run: what is measured as charts, and the tube from the side.
+
+mod profile;
+mod snapshot;
+
+use peristalsis_analysis::number::{plain, with_error};
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter, Waveform};
+use peristalsis_figures::chart::{
+    Band, ChartFigure, ChartPanel, Field, LegendPlace, Line, Pattern, Points, Reference, Tint,
+};
+use peristalsis_figures::{ColourScale, Drawing, FigureError, Palette, Quantity, Units, Width};
+
+use crate::error::RunError;
+use crate::portrait::time_unit;
+use crate::run::Run;
+use crate::summary::Summary;
+use crate::tables::late_profile;
+
+use self::profile::{profile, wall};
+use self::snapshot::snapshot;
+pub use self::snapshot::snapshot_stack;
+
+/// Periods up to which the mean over each has its own mark.
+const MARKED_PERIODS: usize = 60;
+/// Periods from which the axis of time ends at a whole one, though the last sample may fall a little short.
+const MANY_PERIODS: f64 = 5.0;
+/// Heights of panels in millimetres: against one quantity, and of space and time.
+const HEIGHT: f64 = 42.0;
+const SPACE_TIME_HEIGHT: f64 = 50.0;
+
+/// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
+/// draw.
+pub(crate) fn draw_all(
+    run: &Run,
+    summary: &Summary,
+) -> Result<Vec<(&'static str, Drawing)>, RunError> {
+    let configuration = run.configuration();
+    let mut drawings = Vec::new();
+    let mut add = |name: &'static str, drawing: Result<Drawing, FigureError>| {
+        drawing
+            .map(|drawing| drawings.push((name, drawing)))
+            .map_err(|source| RunError::Figure {
+                figure: name,
+                source,
+            })
+    };
+    let has_ratios = run
+        .recorder()
+        .samples()
+        .iter()
+        .any(|sample| sample.flow_rate_ratio.is_finite());
+    if has_ratios {
+        add("flow", flow(run, summary))?;
+    }
+    // The late part may have no grain left inside.
+    if has_ratios
+        && late_profile(run)
+            .iter()
+            .any(|bin| bin.axial_velocity.0.is_finite())
+    {
+        add("profile", profile(run))?;
+    }
+    if configuration.grains.number > 0 {
+        add("snapshot", snapshot(run))?;
+    }
+    if matches!(configuration.drive.control, Control::Stress { .. })
+        && !run.recorder().samples().is_empty()
+    {
+        add("wall", wall(run))?;
+    }
+    Ok(drawings)
+}
+
+/// The parameters of a run in one line of markup.
+fn title(configuration: &Configuration) -> String {
+    let value = |parameter, constant| scheduled_value(configuration, parameter, constant);
+    let (control, density) = match configuration.drive.control {
+        Control::Strain { width } => (
+            format!("*w* = {} *d*", value(ScheduledParameter::Width, width)),
+            format!("*ρ* = {:.3}", configuration.volume_fraction()),
+        ),
+        Control::Stress {
+            force_amplitude, ..
+        } => (
+            format!(
+                "*f*^{{P}} = {} *Yd*^{{2}}",
+                value(ScheduledParameter::ForceAmplitude, force_amplitude)
+            ),
+            format!("*n* = {:.3}", configuration.number_density()),
+        ),
+    };
+    format!(
+        "{control},  *ε\u{307}* = {},  {density},  {}",
+        value(
+            ScheduledParameter::StrainRate,
+            configuration.drive.strain_rate
+        ),
+        particular(configuration)
+            .unwrap_or_else(|| format!("*N* = {}", configuration.grains.number))
+    )
+}
+
+/// What sets a run apart from most: its waveform, its body force.
+fn particular(configuration: &Configuration) -> Option<String> {
+    let waveform = match configuration.drive.waveform {
+        Waveform::Sine => None,
+        Waveform::Bolus => Some("bolus".to_owned()),
+        Waveform::Roller => Some("roller".to_owned()),
+    };
+    let force = configuration.drive.body_force;
+    let force = (force != 0.0).then(|| format!("*g* = {force}").replace('-', "−"));
+    let words: Vec<String> = waveform.into_iter().chain(force).collect();
+    (!words.is_empty()).then(|| words.join(",  "))
+}
+
+/// A drive parameter as a title shows it: its value, or the first and the last of its schedule.
+fn scheduled_value(
+    configuration: &Configuration,
+    parameter: ScheduledParameter,
+    constant: f64,
+) -> String {
+    match configuration.drive.schedule(parameter) {
+        Some(schedule) => {
+            let last = configuration.run.periods.unwrap_or(f64::INFINITY);
+            format!("{} to {}", schedule.value(0.0), schedule.value(last))
+        }
+        None => constant.to_string(),
+    }
+}
+
+fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let recorder = run.recorder();
+    let samples = recorder.samples();
+    // A sample is the mean over the interval that ends with it, an average that over so many intervals.
+    let end = |samples_before: usize| match samples_before {
+        0 => 0.0,
+        number => samples[number - 1].period,
+    };
+    let middles = |count: usize, intervals: usize| -> Vec<f64> {
+        (0..count)
+            .map(|k| 0.5 * (end(k * intervals) + end((k + 1) * intervals)))
+            .collect()
+    };
+    let time = middles(samples.len(), 1);
+    let ratio: Vec<f64> = samples.iter().map(|it| it.flow_rate_ratio).collect();
+    let averages = recorder.averages();
+    let periods = middles(
+        averages.len(),
+        configuration.observe.samples_per_period as usize,
+    );
+    let last = time.iter().copied().fold(0.0, f64::max);
+    let last = if last < MANY_PERIODS {
+        last
+    } else {
+        last.ceil()
+    };
+    let guide = |ratio| {
+        Reference::horizontal(ratio)
+            .tint(Tint::Grey)
+            .pattern(Pattern::Solid)
+    };
+    let mut panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::FlowRateRatio))
+        .x_range(0.0..=last)
+        .with_all([guide(0.0), guide(1.0)])
+        .with(
+            Line::new("samples", &time, &ratio)
+                .tint(Tint::Sky)
+                .weight(0.6),
+        );
+    if averages.iter().any(|average| average.is_finite()) {
+        let name = "mean over a period";
+        panel = panel.with(
+            Line::new(name, &periods, averages)
+                .tint(Tint::Blue)
+                .weight(1.1),
+        );
+        if averages.len() <= MARKED_PERIODS {
+            panel = panel.with(
+                Points::new(name, &periods, averages)
+                    .tint(Tint::Blue)
+                    .series(0),
+            );
+        }
+    }
+    let threshold = configuration.observe.transition_threshold;
+    panel = panel.with(Reference::horizontal(threshold).label("threshold"));
+    let (mean, error) = (summary.flow_rate_ratio, summary.flow_rate_ratio_error);
+    if mean.is_finite() && error.is_finite() {
+        let name = format!("late mean {}", with_error(mean, error));
+        let late = [(1.0 - run.late_fraction()) * last, last];
+        panel = panel
+            .with(Line::new(&name, &late, &[mean; 2]).tint(Tint::Orange))
+            .with(
+                Band::new(&name, &late, &[mean - error; 2], &[mean + error; 2]).tint(Tint::Orange),
+            );
+    }
+    for (ratio, name, pattern) in [
+        (
+            summary.newtonian_flow_rate_ratio,
+            "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*",
+            Pattern::Dashed,
+        ),
+        (
+            summary.newtonian_flow_rate_ratio_clear_bore,
+            "the same, clear bore, *φ* = *b*/(*a* − *d*/2)",
+            Pattern::DashDotted,
+        ),
+    ] {
+        if let Some(ratio) = ratio {
+            let level = Line::new(name, &[0.0, last], &[ratio; 2]);
+            panel = panel.with(level.tint(Tint::Green).pattern(pattern));
+        }
+    }
+    if let Some(time) = summary.transition_time {
+        let passed = samples.partition_point(|sample| sample.time <= time);
+        let start = if passed == 0 {
+            0.0
+        } else {
+            samples[passed - 1].time
+        };
+        let (before, after) = (end(passed), end((passed + 1).min(samples.len())));
+        let period = before + (after - before) * (time - start) / samples[0].time;
+        let words = format!("*τ* = {} {}", plain(time), time_unit(configuration));
+        let transition = Reference::vertical(period).label(&words);
+        panel = panel.with(transition.tint(Tint::Vermillion).pattern(Pattern::Solid));
+    }
+    ChartFigure::new(panel)
+        .title(&title(configuration))
+        .description("Flow rate against time in periods of the wave.")
+        .panel_height(HEIGHT)
+        .legend(LegendPlace::Below)
+        .draw()
+}
+
+fn label(quantity: Quantity) -> String {
+    // None of these has a unit that depends on the law of contact.
+    quantity.label(Units::Linear)
+}
+
+/// The space-time diagram of a run: J/Jmax of the grains of each wave, period by period.
+///
+/// # Errors
+/// [`RunError::Picture`] where no period has been measured whole; [`RunError::Figure`] where there is nothing to draw.
+pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
+    let flows = run.recorder().waves();
+    let waves = run.configuration().tube.waves as usize;
+    let (Some(first), Some(last)) = (flows.first(), flows.last()) else {
+        return Err(RunError::Picture {
+            reason: "the run has measured no whole period of its wave yet".to_owned(),
+            help: "let it run for a period at least, with a wave that moves".to_owned(),
+        });
+    };
+    let value = |(wave, period): (usize, usize)| flows[period * waves + wave].flow_rate_ratio;
+    let periods = flows.len() / waves.max(1);
+    let values: Vec<f64> = (0..waves)
+        .flat_map(|wave| (0..periods).map(move |period| (wave, period)))
+        .map(value)
+        .collect();
+    let step = first
+        .period
+        .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
+    let title = title(run.configuration());
+    let x = ((first.period - step).max(0.0), last.period);
+    let field = Field::new(&values, waves, x, (0.0, waves as f64));
+    let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave)).with(field);
+    ChartFigure::new(panel)
+        .title(&title)
+        .description("Flow rate of each wave against time.")
+        .colour_scale(ColourScale::new("*J*/*J*_{max}", -1.0, 1.0).palette(Palette::Diverging))
+        .panel_height(SPACE_TIME_HEIGHT)
+        .width(Width::DoubleColumn)
+        .draw()
+        .map_err(|source| RunError::Figure {
+            figure: "space-time",
+            source,
+        })
+}

@@ -1,0 +1,180 @@
+//! Flow and wall along the wave at rest.
+
+use peristalsis_figures::chart::{
+    Band, ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Reference, Tint,
+};
+use peristalsis_figures::{Drawing, FigureError, Quantity};
+use peristalsis_observe::ProfileBin;
+
+use super::{HEIGHT, label, title};
+use crate::portrait::pressure_unit;
+use crate::run::Run;
+use crate::tables::late_profile;
+
+/// Height of a panel in millimetres.
+const PANEL_HEIGHT: f64 = 19.0;
+/// How far a picture of the tube reaches, in its largest radius.
+const REACH: f64 = 1.12;
+
+/// A value with its error.
+type Value = (f64, f64);
+
+/// The late profile over one wavelength, its last bin also before the first and its first after the last.
+fn closed_profile(run: &Run) -> Vec<ProfileBin> {
+    let mut bins = late_profile(run);
+    if let (Some(&first), Some(&last)) = (bins.first(), bins.last()) {
+        let moved = |bin: ProfileBin, by: f64| ProfileBin {
+            position: bin.position + by,
+            ..bin
+        };
+        bins.insert(0, moved(last, -1.0));
+        bins.push(moved(first, 1.0));
+    }
+    bins
+}
+
+fn column(bins: &[ProfileBin], value: impl Fn(&ProfileBin) -> f64) -> Vec<f64> {
+    bins.iter().map(value).collect()
+}
+
+fn panel(label_of_value: &str) -> ChartPanel {
+    ChartPanel::new(&label(Quantity::Phase), label_of_value).x_range(0.0..=1.0)
+}
+
+/// A thin line at nought.
+fn nought() -> Reference {
+    let line = Reference::horizontal(0.0);
+    line.tint(Tint::Grey).pattern(Pattern::Solid)
+}
+
+/// Profiles along the wave at rest: the tube, density, axial velocity and granular temperature, and stress on the wall where
+/// it is known.
+pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let bins = closed_profile(run);
+    let speed = configuration.wave_speed();
+    let unit = pressure_unit(configuration);
+    let curve = |label: &str, tint: Tint, of: fn(&ProfileBin) -> Value| {
+        with_curve(panel(label), tint, &bins, of)
+    };
+    let mut panels = vec![
+        tube(&bins),
+        curve("*n*_{1} *d*", Tint::Blue, |bin| bin.density).y_range(0.0..),
+        velocity(&bins, speed),
+        curve("*T*_{g}", Tint::Purple, |bin| bin.temperature).y_range(0.0..),
+    ];
+    if bins.iter().any(|bin| bin.wall_pressure.0.is_finite()) {
+        let (pressure, shear) = (format!("*p*{unit}"), format!("*τ*{unit}"));
+        panels.push(curve(&pressure, Tint::Orange, |bin| bin.wall_pressure).y_range(0.0..));
+        panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(nought()));
+    }
+    ChartFigure::grid(1, panels)
+        .title(&title(configuration))
+        .description(
+            "Tube, density, velocity, temperature and stress on the wall in the wave frame.",
+        )
+        .panel_height(PANEL_HEIGHT)
+        .share_x()
+        .draw()
+}
+
+/// Adds the curve of a value of each bin with the band of its error.
+fn with_curve(
+    panel: ChartPanel,
+    tint: Tint,
+    bins: &[ProfileBin],
+    of: impl Fn(&ProfileBin) -> Value,
+) -> ChartPanel {
+    let x = column(bins, |bin| bin.position);
+    let bound = |side: f64| {
+        column(bins, |bin| {
+            let (value, error) = of(bin);
+            value + if error.is_finite() { side * error } else { 0.0 }
+        })
+    };
+    panel
+        .with(Band::new("", &x, &bound(-1.0), &bound(1.0)).tint(tint))
+        .with(Line::new("", &x, &bound(0.0)).tint(tint))
+}
+
+/// The tube in section: its bore white between two lines of wall, all outside of it grey.
+fn tube(bins: &[ProfileBin]) -> ChartPanel {
+    let x = column(bins, |bin| bin.position);
+    let largest = bins
+        .iter()
+        .fold(0.0_f64, |largest, bin| largest.max(bin.radius));
+    let end = REACH * largest;
+    let mut panel = panel("*r*/*d*").y_range(-end..=end).with(nought());
+    for side in [1.0, -1.0] {
+        let wall = column(bins, |bin| side * bin.radius);
+        let outside = vec![side * end; x.len()];
+        panel = panel
+            .with(Band::new("", &x, &wall, &outside).tint(Tint::Grey))
+            .with(Line::new("", &x, &wall).tint(Tint::Black));
+    }
+    panel
+}
+
+/// The axial velocity over a speed: red along the wave, blue against it, the area to nought faint in the same colour.
+fn velocity(bins: &[ProfileBin], speed: f64) -> ChartPanel {
+    let mut bins = bins.to_vec();
+    for index in (1..bins.len()).rev() {
+        let (before, after) = (bins[index - 1], bins[index]);
+        let (from, to) = (before.axial_velocity, after.axial_velocity);
+        // The curve changes its colour where it crosses nought, between two bins.
+        if from.0 * to.0 < 0.0 {
+            let between = |one: f64, other: f64| one + from.0 / (from.0 - to.0) * (other - one);
+            bins.insert(
+                index,
+                ProfileBin {
+                    position: between(before.position, after.position),
+                    axial_velocity: (0.0, between(from.1, to.1)),
+                    ..after
+                },
+            );
+        }
+    }
+    let x = column(&bins, |bin| bin.position);
+    let rest = vec![0.0; x.len()];
+    let mut panel = panel("*v_z*/*c*").with(nought());
+    for (side, tint) in [(1.0, Tint::Along), (-1.0, Tint::Against)] {
+        let on_side = |bin: &ProfileBin| {
+            let (value, error) = bin.axial_velocity;
+            let value = if side * value >= 0.0 { value } else { f64::NAN };
+            (value / speed, error / speed)
+        };
+        let values = column(&bins, |bin| on_side(bin).0);
+        if values.iter().any(|value| value.is_finite()) {
+            let area = Band::new("", &x, &rest, &values).tint(tint);
+            panel = with_curve(panel.with(area), tint, &bins, on_side);
+        }
+    }
+    panel
+}
+
+/// Radius of the wall against the phase: its mean, and the band between its least and its largest value.
+pub(super) fn wall(run: &Run) -> Result<Drawing, FigureError> {
+    let configuration = run.configuration();
+    let bins = closed_profile(run);
+    let x = column(&bins, |bin| bin.position);
+    let [mean, least, largest] = [
+        column(&bins, |bin| bin.radius),
+        column(&bins, |bin| bin.least_radius),
+        column(&bins, |bin| bin.largest_radius),
+    ];
+    let rest = [configuration.tube.radius; 2];
+    let panel = panel("wall radius, *R*/*d*")
+        .with(Line::new("mean", &x, &mean).tint(Tint::Blue).weight(1.1))
+        .with(Band::new("least to largest", &x, &least, &largest).tint(Tint::Blue))
+        .with(
+            Line::new("tube at rest", &[0.0, 1.0], &rest)
+                .tint(Tint::Grey)
+                .pattern(Pattern::Dashed),
+        );
+    ChartFigure::new(panel)
+        .title(&title(configuration))
+        .description("Radius of the wall against the phase of the wave.")
+        .panel_height(HEIGHT)
+        .legend(LegendPlace::Below)
+        .draw()
+}

@@ -1,0 +1,128 @@
+//! Runs from the side.
+
+use peristalsis_figures::{
+    Drawing, FigureError, Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall,
+    Width,
+};
+use peristalsis_observe::TubeShape;
+
+use super::title;
+use crate::run::Run;
+use crate::spheres::{SeenSphere, seen_spheres};
+
+/// Length of tube that a snapshot shows at most, in wavelengths.
+const WAVES: u32 = 4;
+/// How far from the axis a snapshot shows spheres, in radii of the tube.
+const RADII: f64 = 2.5;
+/// Places at which a snapshot knows the radius of a prescribed wall.
+const OUTLINE_POINTS: u32 = 400;
+
+/// The final state of a run.
+pub(super) fn snapshot(run: &Run) -> Result<Drawing, FigureError> {
+    let cycles = run.simulation().wall().cycles();
+    let title = format!("{},  *t*/*T* = {cycles:.2}", title(run.configuration()));
+    draw(&title, &[("", run)])
+}
+
+/// The final states of several runs above each other, each with a label in markup: one scale, one bar of colours.
+///
+/// # Errors
+/// If a figure cannot be drawn, for instance without a run.
+pub fn snapshot_stack(runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
+    draw("", runs)
+}
+
+fn draw(title: &str, runs: &[(&str, &Run)]) -> Result<Drawing, FigureError> {
+    let views: Vec<SideView> = runs.iter().map(|(_, run)| SideView::of(run)).collect();
+    let labelled = runs.iter().zip(&views);
+    let snapshots: Vec<Snapshot<'_>> = labelled
+        .map(|((label, _), view)| view.snapshot(label))
+        .collect();
+    SnapshotFigure {
+        title,
+        snapshots: &snapshots,
+        width: Width::DoubleColumn,
+    }
+    .draw()
+}
+
+/// What a snapshot shows of a run.
+struct SideView {
+    grains: Vec<SnapshotGrain>,
+    /// Where the wall is, place by place.
+    outline: (Vec<f64>, Vec<f64>),
+    /// The spheres of an elastic wall.
+    spheres: Vec<SnapshotSphere>,
+    length: f64,
+    tube: f64,
+    wavelength: f64,
+}
+
+impl SideView {
+    fn snapshot<'a>(&'a self, label: &'a str) -> Snapshot<'a> {
+        Snapshot {
+            label,
+            grains: &self.grains,
+            wall: if self.spheres.is_empty() {
+                SnapshotWall::Outline {
+                    along: &self.outline.0,
+                    radius: &self.outline.1,
+                }
+            } else {
+                SnapshotWall::Spheres(&self.spheres)
+            },
+            length: self.length,
+            period: self.tube,
+            wavelength: self.wavelength,
+        }
+    }
+
+    fn of(run: &Run) -> Self {
+        let configuration = run.configuration();
+        let simulation = run.simulation();
+        let tube = simulation.wall().lattice().length();
+        let heading = simulation.wall().heading();
+        let speed = configuration.wave_speed();
+        // Drawn with the wave running to the right.
+        let along = |z: f64| if heading > 0.0 { z } else { tube - z };
+        let length = configuration.tube.wavelength * f64::from(configuration.tube.waves.min(WAVES));
+        // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
+        let shows = |seen: &SeenSphere| {
+            let sphere = seen.sphere;
+            let (place, margin) = (sphere.along, sphere.diameter);
+            sphere.across.hypot(sphere.depth) < RADII * configuration.tube.radius
+                && (place < length + margin || place > tube - margin)
+        };
+        let (grains, wall): (Vec<SeenSphere>, Vec<SeenSphere>) = seen_spheres(run)
+            .into_iter()
+            .filter(shows)
+            .partition(|seen| seen.is_grain);
+        let grains = grains
+            .into_iter()
+            .map(|seen| SnapshotGrain {
+                sphere: seen.sphere,
+                axial_velocity: if speed > 0.0 {
+                    seen.axial_velocity / speed
+                } else {
+                    0.0
+                },
+            })
+            .collect();
+        let spheres = wall.into_iter().map(|seen| seen.sphere).collect();
+        let shape = TubeShape::of(simulation);
+        let outline: (Vec<f64>, Vec<f64>) = (0..=OUTLINE_POINTS)
+            .map(|point| {
+                let place = length * f64::from(point) / f64::from(OUTLINE_POINTS);
+                (place, shape.radius(along(place).rem_euclid(tube)))
+            })
+            .unzip();
+        Self {
+            grains,
+            outline,
+            spheres,
+            length,
+            tube,
+            wavelength: configuration.tube.wavelength,
+        }
+    }
+}
