@@ -19,11 +19,11 @@ pub struct PictureFigure<'a> {
     /// Pixels across.
     pub columns: u32,
     /// Notes above the picture in markup, the first at its left, the last at its right.
-    pub notes: &'a [&'a str],
+    pub notes: &'a [String],
     /// Places along the upper edge.
-    pub marks: &'a [PlaceMark<'a>],
+    pub marks: &'a [PlaceMark],
     /// The length that is shown for scale.
-    pub scale_bar: Option<ScaleBar<'a>>,
+    pub scale_bar: Option<&'a ScaleBar>,
     /// What the colours mean.
     pub colours: Option<&'a ColourScale>,
     /// Colour of the page around.
@@ -34,20 +34,20 @@ pub struct PictureFigure<'a> {
 
 /// A place along the upper edge of a picture, with a word.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlaceMark<'a> {
+pub struct PlaceMark {
     /// Part of the width, from the left.
     pub place: f64,
     /// What is there, in markup.
-    pub label: &'a str,
+    pub label: &'static str,
 }
 
 /// A length in a picture.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ScaleBar<'a> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScaleBar {
     /// Part of the width.
     pub length: f64,
     /// How long that is, in markup.
-    pub label: &'a str,
+    pub label: String,
 }
 
 /// The page that a picture is on.
@@ -246,7 +246,7 @@ impl PictureFigure<'_> {
         segments.extend([left, right].map(|x| [-end, end].map(|up| Point::new(x, middle + up))));
         layer.stroke(Path::segments(segments), Stroke::solid(ink, 1.0));
         let baseline = middle + 0.5 * DIGIT_HEIGHT * LABEL_SIZE;
-        let text = Text::new(bar.label, LABEL_SIZE);
+        let text = Text::new(&bar.label, LABEL_SIZE);
         let start = right + 4.0;
         let end = start + text.width + ROOM_BESIDE_SCALE;
         layer.text((start, baseline), Anchor::Start, text, ink);
@@ -258,11 +258,16 @@ impl PictureFigure<'_> {
 mod tests {
     use super::*;
 
-    fn figure(pixels: &[u8]) -> PictureFigure<'_> {
+    fn draw(pixels: &[u8]) -> Result<Drawing, FigureError> {
+        let notes = ["*t*/*T* = 1.5", "*J*/*J*_{max} = 0.9"].map(str::to_owned);
+        let scale_bar = ScaleBar {
+            length: 0.25,
+            label: "10 *d*".to_owned(),
+        };
         PictureFigure {
             pixels,
             columns: 400,
-            notes: &["*t*/*T* = 1.5", "*J*/*J*_{max} = 0.9"],
+            notes: &notes,
             marks: &[
                 PlaceMark {
                     place: 0.3,
@@ -270,15 +275,13 @@ mod tests {
                 },
                 PlaceMark {
                     place: 0.31,
-                    label: "crest",
+                    label: "belly",
                 },
             ],
-            scale_bar: Some(ScaleBar {
-                length: 0.25,
-                label: "10 *d*",
-            }),
+            scale_bar: Some(&scale_bar),
             ..PictureFigure::default()
         }
+        .draw()
     }
 
     #[test]
@@ -286,7 +289,7 @@ mod tests {
         let pixels: Vec<u8> = (0..400 * 90_u32)
             .flat_map(|it| [it as u8, (it / 400) as u8, 7])
             .collect();
-        let drawing = figure(&pixels).draw().expect("drawable");
+        let drawing = draw(&pixels).expect("drawable");
         let raster = drawing.raster().expect("small");
         assert_eq!(raster.width, 400);
         let row = |number: usize| &raster.pixels[1200 * number..1200 * (number + 1)];
@@ -307,7 +310,7 @@ mod tests {
     #[test]
     fn words_do_not_stand_on_each_other_and_the_scale_is_as_long_as_it_says() {
         let pixels = vec![255; 1200 * 60];
-        let drawing = figure(&pixels).draw().expect("drawable");
+        let drawing = draw(&pixels).expect("drawable");
         assert_eq!(drawing.texts("marks").len(), 1);
         let [from, to, ..] = drawing.paths("scale")[0].points()[..] else {
             panic!("a scale is of segments");
@@ -318,10 +321,7 @@ mod tests {
     #[test]
     fn pixels_that_are_no_picture_are_refused() {
         for pixels in [&[][..], &[0; 1201]] {
-            assert!(matches!(
-                figure(pixels).draw(),
-                Err(FigureError::GridSize { .. })
-            ));
+            assert!(matches!(draw(pixels), Err(FigureError::GridSize { .. })));
         }
     }
 }

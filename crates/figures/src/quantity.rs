@@ -1,6 +1,6 @@
 //! The quantities that stand on axes, with their symbols and units, so that every figure says the same.
 
-/// The unit of time, and with it of force.
+/// The unit of time, and with it of force and pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Units {
     /// Linear contacts: mass m and diameter d of a grain, stiffness k of a contact.
@@ -43,6 +43,40 @@ pub enum Quantity {
     AxialVelocity,
 }
 
+impl Units {
+    /// Unit of time in markup.
+    pub fn time(self) -> &'static str {
+        match self {
+            Self::Linear => "(*m*/*k*)^{1/2}",
+            Self::Hertz => "*t*^{\\*}",
+        }
+    }
+
+    /// Unit of pressure in markup.
+    pub fn pressure(self) -> &'static str {
+        match self {
+            Self::Linear => "*k*/*d*",
+            Self::Hertz => "*Y*",
+        }
+    }
+
+    /// What makes a number of a pressure, in markup.
+    pub fn per_pressure(self) -> &'static str {
+        match self {
+            Self::Linear => " *d*/*k*",
+            Self::Hertz => "/*Y*",
+        }
+    }
+
+    /// What makes a number of a force, in markup.
+    fn per_force(self) -> &'static str {
+        match self {
+            Self::Linear => "/*kd*",
+            Self::Hertz => "/*Yd*^{2}",
+        }
+    }
+}
+
 impl Quantity {
     /// Label of an axis in markup: words and the symbol in units of the model, so that the axis bears plain numbers.
     ///
@@ -70,11 +104,9 @@ impl Quantity {
             Self::Phase => ("position in the wave frame", "(*z* − *ct*)/*λ*"),
             Self::AxialVelocity => ("axial velocity", "*v_z*/*c*"),
         };
-        let per_unit = match (self, units) {
-            (Self::StrainRate, Units::Linear) => " (*m*/*k*)^{1/2}",
-            (Self::StrainRate, Units::Hertz) => " *t*^{\\*}",
-            (Self::ForceAmplitude, Units::Linear) => "/*kd*",
-            (Self::ForceAmplitude, Units::Hertz) => "/*Yd*^{2}",
+        let per_unit = match self {
+            Self::StrainRate => &format!(" {}", units.time()),
+            Self::ForceAmplitude => units.per_force(),
             _ => "",
         };
         format!("{words}, {symbol}{per_unit}")

@@ -8,7 +8,7 @@
 mod common;
 
 use peristalsis_run::{
-    Aspect, Field, Frame, FrameSource, Look, Picture, Place, Portrait, Run, Span, Trajectory,
+    Aspect, Field, Frame, FrameSource, Look, Picture, PictureScene, Place, Run, Span, Trajectory,
     TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, WallLook, Window, space_time,
 };
 
@@ -27,13 +27,15 @@ fn look(width: u32) -> Look {
 /// The bare picture of a run as it is.
 fn picture(run: &Run, look: Look) -> Picture {
     let frame = FrameSource::now(run, look.field == Field::Pressure);
-    let portrait = Portrait::new(run, look, std::slice::from_ref(&frame)).unwrap();
-    portrait.picture(&frame).unwrap()
+    let scene = PictureScene::new(run, look, std::slice::from_ref(&frame)).unwrap();
+    scene.picture(&frame).unwrap()
 }
 
 fn refusal(run: &Run, look: Look) -> String {
     let frame = FrameSource::now(run, true);
-    Portrait::new(run, look, &[frame]).unwrap_err().to_string()
+    PictureScene::new(run, look, &[frame])
+        .unwrap_err()
+        .to_string()
 }
 
 /// Pixels that are clearly red, and clearly blue.
@@ -108,8 +110,8 @@ fn a_grain_is_where_it_is_and_in_its_colour() {
         }),
     ] {
         let frame = one_grain(&run, [0.4, 0.0, 0.25 * length], heading * ratio * speed);
-        let portrait = Portrait::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
-        let picture = portrait.picture(&frame).unwrap();
+        let scene = PictureScene::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
+        let picture = scene.picture(&frame).unwrap();
         // The wave runs to the right, towards -z, so that z = L/4 is at three quarters of the picture.
         let scale = 500.0 / (length + 1.2);
         let column = (0.6 + 0.75 * length) * scale;
@@ -139,8 +141,8 @@ fn a_mirrored_tube_gives_the_mirrored_outline() {
     let length = run.simulation().wall().lattice().length();
     let outline = |z: f64| -> Vec<Vec<bool>> {
         let frame = one_grain(&run, [0.3, 0.1, z], 0.0);
-        let portrait = Portrait::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
-        let picture = portrait.picture(&frame).unwrap();
+        let scene = PictureScene::new(&run, bare, std::slice::from_ref(&frame)).unwrap();
+        let picture = scene.picture(&frame).unwrap();
         let rows = picture.pixels().chunks_exact(3 * 300);
         rows.map(|row| {
             row.chunks_exact(3)
@@ -219,7 +221,7 @@ fn a_static_wave_has_no_speed_to_compare_with_and_no_grains_are_no_failure() {
         "there is a wall"
     );
     let frame = FrameSource::now(&run, false);
-    Portrait::new(&run, look(200), std::slice::from_ref(&frame))
+    PictureScene::new(&run, look(200), std::slice::from_ref(&frame))
         .unwrap()
         .draw(&frame)
         .unwrap();
@@ -340,8 +342,8 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
         &["tube.waves=3", "grains.number=40"],
     ))
     .unwrap();
-    let portrait = Portrait::new(&other, look(64), &[FrameSource::now(&other, false)]).unwrap();
-    let words = portrait.picture(&read[0]).unwrap_err().to_string();
+    let scene = PictureScene::new(&other, look(64), &[FrameSource::now(&other, false)]).unwrap();
+    let words = scene.picture(&read[0]).unwrap_err().to_string();
     assert!(
         words.contains("20 d long") && words.contains("30 d"),
         "{words}"

@@ -401,16 +401,17 @@ fn picture() -> Drawn {
         .flat_map(|it| [(it % 800 / 4) as u8, (it / 800) as u8, 90])
         .collect();
     let mark = |place, label| PlaceMark { place, label };
+    let scale_bar = ScaleBar {
+        length: 0.2,
+        label: "5 *d*".to_owned(),
+    };
     PictureFigure {
         title: "pixels",
         pixels: &pixels,
         columns: 800,
-        notes: &["*t*/*T* = 1.5", "wave →", "*J*/*J*_{max} = 0.9"],
+        notes: &["*t*/*T* = 1.5", "wave →", "*J*/*J*_{max} = 0.9"].map(str::to_owned),
         marks: &[mark(0.25, "belly"), mark(0.75, "throat")],
-        scale_bar: Some(ScaleBar {
-            length: 0.2,
-            label: "5 *d*",
-        }),
+        scale_bar: Some(&scale_bar),
         colours: Some(&ColourScale::new("*v_z*/*c*", -1.0, 1.0).palette(Palette::Diverging)),
         ..PictureFigure::default()
     }

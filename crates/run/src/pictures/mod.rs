@@ -11,8 +11,8 @@ use peristalsis_figures::chart::{
 use peristalsis_figures::{ColourScale, Drawing, FigureError, Palette, Quantity, Units, Width};
 
 use crate::error::RunError;
-use crate::portrait::time_unit;
 use crate::run::Run;
+use crate::scene::{refused, units};
 use crate::summary::Summary;
 use crate::tables::late_profile;
 
@@ -221,7 +221,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         };
         let (before, after) = (end(passed), end((passed + 1).min(samples.len())));
         let period = before + (after - before) * (time - start) / samples[0].time;
-        let words = format!("*τ* = {} {}", plain(time), time_unit(configuration));
+        let words = format!("*τ* = {} {}", plain(time), units(configuration).time());
         let transition = Reference::vertical(period).label(&words);
         panel = panel.with(transition.tint(Tint::Vermillion).pattern(Pattern::Solid));
     }
@@ -246,10 +246,10 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
     let flows = run.recorder().waves();
     let waves = run.configuration().tube.waves as usize;
     let (Some(first), Some(last)) = (flows.first(), flows.last()) else {
-        return Err(RunError::Picture {
-            reason: "the run has measured no whole period of its wave yet".to_owned(),
-            help: "let it run for a period at least, with a wave that moves".to_owned(),
-        });
+        return Err(refused(
+            "the run has measured no whole period of its wave yet",
+            "let it run for a period at least, with a wave that moves",
+        ));
     };
     let value = |(wave, period): (usize, usize)| flows[period * waves + wave].flow_rate_ratio;
     let periods = flows.len() / waves.max(1);

@@ -7,8 +7,8 @@ use peristalsis_figures::{Drawing, FigureError, Quantity};
 use peristalsis_observe::ProfileBin;
 
 use super::{HEIGHT, label, title};
-use crate::portrait::pressure_unit;
 use crate::run::Run;
+use crate::scene::units;
 use crate::tables::late_profile;
 
 /// Height of a panel in millimetres.
@@ -53,7 +53,7 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
     let configuration = run.configuration();
     let bins = closed_profile(run);
     let speed = configuration.wave_speed();
-    let unit = pressure_unit(configuration);
+    let unit = units(configuration).per_pressure();
     let curve = |label: &str, tint: Tint, of: fn(&ProfileBin) -> Value| {
         with_curve(panel(label), tint, &bins, of)
     };

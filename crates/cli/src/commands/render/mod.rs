@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use peristalsis_formats::atomic::{self, Pending};
 use peristalsis_run::{
-    Drawing, Field, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, Portrait, Run,
+    Drawing, Field, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, PictureScene, Run,
     RunError, RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window,
     space_time,
 };
@@ -220,7 +220,7 @@ fn still(
 /// The picture of the last of some frames.
 fn draw(run: &Run, look: Look, frames: &[Frame]) -> Result<Drawing, RunError> {
     let last = &frames[frames.len() - 1];
-    Portrait::new(run, look, frames)?.draw(last)
+    PictureScene::new(run, look, frames)?.draw(last)
 }
 
 fn request(every: Option<Span>, window: Window) -> TrajectoryRequest {
@@ -273,7 +273,7 @@ fn make_film(
             "the last {lost} of the trajectory's frames were cut short and are left out"
         ));
     }
-    let portrait = Portrait::new(&drawn, look, &source.samples()?)?;
+    let scene = PictureScene::new(&drawn, look, &source.samples()?)?;
     let plan = FilmPlan {
         frames: source.frames() as u32,
         frames_per_second: arguments.fps,
@@ -298,7 +298,7 @@ fn make_film(
         let Some(frame) = source.step()? else {
             continue;
         };
-        let picture = picture(&portrait.draw(&frame)?)?;
+        let picture = picture(&scene.draw(&frame)?)?;
         film.add(&picture).map_err(RunError::from)?;
         size = (picture.width(), picture.height());
         done += 1;

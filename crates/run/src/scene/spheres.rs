@@ -4,12 +4,13 @@ use glam::DVec3;
 use peristalsis_formats::Frame;
 use peristalsis_render::{Colour, Finish, Sphere};
 
-use super::{Aspect, Eye, Place, Portrait, SECTION, WallLook};
+use super::caption::cycles;
+use super::{Aspect, Eye, PictureScene, Place, SECTION, WallLook};
 
 /// Colour of the wall.
 const STONE: [u8; 3] = [207, 202, 193];
 
-impl Portrait {
+impl PictureScene {
     /// What z of a picture is less than z of the tube \[d\], up to whole lengths.
     pub(super) fn shift(&self, cycles: f64) -> f64 {
         let lattice = self.wall.lattice();
@@ -28,7 +29,7 @@ impl Portrait {
     pub(super) fn spheres(&self, frame: &Frame, values: &[f64]) -> Vec<Sphere> {
         let lattice = self.wall.lattice();
         let length = lattice.length();
-        let shift = self.shift(super::words::cycles(frame));
+        let shift = self.shift(cycles(frame));
         let shown = match self.look.aspect {
             Aspect::Side => 0.0..self.shown,
             Aspect::Section(_) => {

@@ -1,11 +1,11 @@
 //! What the grains of a picture are coloured by.
 
-use peristalsis_configuration::NormalLaw;
 use peristalsis_engine::Wall;
-use peristalsis_figures::{ColourScale, Palette};
+use peristalsis_figures::{ColourScale, Palette, Units};
 use peristalsis_formats::Frame;
 
-use super::words::{cycles, time_unit};
+use super::caption::cycles;
+use super::{refused, units};
 use crate::error::RunError;
 use crate::run::Run;
 
@@ -54,41 +54,31 @@ const COVERED: f64 = 0.98;
 
 impl Coloured {
     pub(super) fn new(field: Field, run: &Run, samples: &[Frame]) -> Result<Self, RunError> {
-        let refused = |reason: &str, help: &str| {
-            Err(RunError::Picture {
-                reason: reason.to_owned(),
-                help: help.to_owned(),
-            })
-        };
         let (first, last) = (&samples[0], &samples[samples.len() - 1]);
         if field == Field::AngularVelocity && first.rotation.is_none() {
-            return refused(
+            return Err(refused(
                 "grains without friction do not rotate, and have no angular velocity",
                 "take another field",
-            );
+            ));
         }
         let touch = |frame: &Frame| coordination(frame).iter().any(|contacts| *contacts > 0.0);
         if field == Field::Pressure
             && samples.iter().all(|frame| frame.contacts.is_empty())
             && samples.iter().any(touch)
         {
-            return refused(
+            return Err(refused(
                 "the frames hold no forces of contacts, of which pressure is made",
                 "a GSD trajectory has none: draw from the saved state or from the start",
-            );
+            ));
         }
         let wall = run.simulation().wall();
         let is_moving = wall.frequency(first.time) != 0.0;
-        let (speed_unit, time) = if is_moving {
-            ("*c*", "")
-        } else {
-            ("*d*", time_unit(run.configuration()))
-        };
+        let units = units(run.configuration());
         let per = |symbol: &str| {
             if is_moving {
-                format!("{symbol}/{speed_unit}")
+                format!("{symbol}/*c*")
             } else {
-                format!("{symbol} [{speed_unit}/{time}]")
+                format!("{symbol} [*d*/{}]", units.time())
             }
         };
         let label = match field {
@@ -99,13 +89,7 @@ impl Coloured {
             Field::AngularVelocity => format!("speed of rotation, {}", per("½|*ω*|*d_i*")),
             Field::Phase => "phase of the wave, (*z* \u{2212} *ct*)/*λ*".to_owned(),
             Field::Coordination => "contacts of a grain".to_owned(),
-            Field::Pressure => format!(
-                "pressure [{}]",
-                match run.configuration().contact.normal {
-                    NormalLaw::Linear { .. } => "*k*/*d*",
-                    NormalLaw::Hertz { .. } => "*Y*",
-                }
-            ),
+            Field::Pressure => format!("pressure [{}]", units.pressure()),
         };
         let heading = wall.heading();
         let mut coloured = Self {
@@ -116,9 +100,9 @@ impl Coloured {
             range: (0.0, 1.0),
             is_moving,
             label,
-            usual_pressure: match run.configuration().contact.normal {
-                NormalLaw::Linear { .. } => USUAL_PRESSURES[0],
-                NormalLaw::Hertz { .. } => USUAL_PRESSURES[1],
+            usual_pressure: match units {
+                Units::Linear => USUAL_PRESSURES[0],
+                Units::Hertz => USUAL_PRESSURES[1],
             },
         };
         let mut found = Vec::new();
@@ -179,14 +163,14 @@ impl Coloured {
     /// The field's value of each grain.
     pub(super) fn values(&self, frame: &Frame, wall: &Wall) -> Result<Vec<f64>, RunError> {
         if frame.grains != self.origin.len() {
-            return Err(RunError::Picture {
-                reason: format!(
-                    "the frame has {} grains, and the first had {}",
-                    frame.grains,
-                    self.origin.len()
+            let expected = self.origin.len();
+            return Err(refused(
+                &format!(
+                    "the frame has {} grains, and the first had {expected}",
+                    frame.grains
                 ),
-                help: "name the trajectory of this run".to_owned(),
-            });
+                "name the trajectory of this run",
+            ));
         }
         let heading = wall.heading();
         let wavelength = wall.lattice().wavelength;

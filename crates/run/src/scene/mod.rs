@@ -1,20 +1,21 @@
 //! The tube as it looks: pictures of single instants, with what is needed to read them.
 
+mod caption;
 mod field;
-mod scene;
-mod words;
+mod spheres;
 
+use peristalsis_configuration::{Configuration, NormalLaw};
 use peristalsis_engine::Wall;
-use peristalsis_figures::{ColourScale, Drawing, Paper, PictureFigure, Width};
+use peristalsis_figures::{ColourScale, Drawing, Paper, PictureFigure, Units, Width};
 use peristalsis_formats::Frame;
 use peristalsis_render::{Colour, Picture, Scene, View, render};
 
 use crate::error::RunError;
 use crate::run::Run;
 
+use self::caption::Caption;
 use self::field::Coloured;
 pub use self::field::Field;
-pub(crate) use self::words::{pressure_unit, time_unit};
 
 /// From where a tube is looked at; the wave always runs to the right, or towards the eye.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,7 +60,7 @@ pub enum Eye {
 /// What is written around a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Writing {
-    /// Time, flow rate, crest and throat, scale and colours.
+    /// Time, flow rate, belly and throat, scale and colours.
     #[default]
     Full,
     /// Nothing: the bare picture.
@@ -105,6 +106,57 @@ impl Default for Look {
     }
 }
 
+impl Look {
+    /// Refuses what shows nothing of a tube of a length \[d\].
+    fn check(&self, length: f64) -> Result<(), RunError> {
+        if !WIDTHS.contains(&self.width) {
+            return Err(refused(
+                &format!("a width of {} pixels is beyond reach", self.width),
+                "take 16 to 16384 pixels",
+            ));
+        }
+        if !(self.waves > 0.0 && self.waves.is_finite()) {
+            return Err(refused(
+                &format!("a view of {} waves shows nothing", self.waves),
+                "take a positive number of waves",
+            ));
+        }
+        if let Some((least, largest)) = self.range
+            && !(least.is_finite() && largest.is_finite() && least < largest)
+        {
+            return Err(refused(
+                &format!("the colours cannot go from {least} to {largest}"),
+                "take FROM:TO with FROM less than TO",
+            ));
+        }
+        if let Aspect::Section(Place::At(z)) = self.aspect
+            && !(0.0..length).contains(&z)
+        {
+            return Err(refused(
+                &format!("there is no place z = {z} in this tube"),
+                &format!("take 0 to {length} d"),
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// A picture that cannot be, and what to ask for instead.
+pub(crate) fn refused(reason: &str, help: &str) -> RunError {
+    RunError::Picture {
+        reason: reason.to_owned(),
+        help: help.to_owned(),
+    }
+}
+
+/// The units that follow from the law of contact.
+pub(crate) fn units(configuration: &Configuration) -> Units {
+    match configuration.contact.normal {
+        NormalLaw::Linear { .. } => Units::Linear,
+        NormalLaw::Hertz { .. } => Units::Hertz,
+    }
+}
+
 /// White round the tube \[d\].
 const MARGIN: f64 = 0.6;
 /// Thickness of a section, in diameters of wall spheres.
@@ -118,11 +170,10 @@ const MOST_DOWN: f64 = 16_384.0;
 
 /// Draws the tube of one run, instant by instant, always from the same place, on the same scale and in the same colours.
 #[derive(Clone, Debug)]
-pub struct Portrait {
+pub struct PictureScene {
     look: Look,
     wall: Wall,
-    /// Unit of time in markup.
-    time_unit: &'static str,
+    units: Units,
     /// Distance from the axis that is shown \[d\].
     radius: f64,
     /// Length of the tube that is shown \[d\].
@@ -131,73 +182,39 @@ pub struct Portrait {
     scale: ColourScale,
 }
 
-impl Portrait {
+impl PictureScene {
     /// Prepares to draw a run. `samples` are instants, one at least, from which the room and the range of colours follow
     /// that all pictures share; the first is what displacements are counted from.
     ///
     /// # Errors
     /// [`RunError::Picture`] where the look is not possible for this run.
     pub fn new(run: &Run, look: Look, samples: &[Frame]) -> Result<Self, RunError> {
-        let refused = |reason: String, help: &str| RunError::Picture {
-            reason,
-            help: help.to_owned(),
-        };
         let [first, ..] = samples else {
-            return Err(refused(
-                "there is nothing to draw".to_owned(),
-                "take a longer window",
-            ));
+            return Err(refused("there is nothing to draw", "take a longer window"));
         };
-        if !WIDTHS.contains(&look.width) {
-            return Err(refused(
-                format!("a width of {} pixels is beyond reach", look.width),
-                "take 16 to 16384 pixels",
-            ));
-        }
-        if !(look.waves > 0.0 && look.waves.is_finite()) {
-            return Err(refused(
-                format!("a view of {} waves shows nothing", look.waves),
-                "take a positive number of waves",
-            ));
-        }
-        if let Some((least, largest)) = look.range
-            && !(least.is_finite() && largest.is_finite() && least < largest)
-        {
-            return Err(refused(
-                format!("the colours cannot go from {least} to {largest}"),
-                "take FROM:TO with FROM less than TO",
-            ));
-        }
         let wall = run.simulation().wall().clone();
         let lattice = wall.lattice();
-        if let Aspect::Section(Place::At(z)) = look.aspect
-            && !(0.0..lattice.length()).contains(&z)
-        {
-            return Err(refused(
-                format!("there is no place z = {z} in this tube"),
-                &format!("take 0 to {} d", lattice.length()),
-            ));
-        }
+        look.check(lattice.length())?;
         let shown = lattice.length().min(look.waves * lattice.wavelength);
         let coloured = Coloured::new(look.field, run, samples)?;
         let scale = coloured.scale(look.range);
-        let portrait = Self {
+        let scene = Self {
             look,
-            time_unit: words::time_unit(run.configuration()),
+            units: units(run.configuration()),
             radius: shown_radius(&wall, first, samples),
             wall,
             shown,
             coloured,
             scale,
         };
-        let view = portrait.size();
-        if view.1 > MOST_DOWN {
+        let (_, down) = scene.size();
+        if down > MOST_DOWN {
             return Err(refused(
-                format!("the picture would be {:.0} pixels high", view.1),
+                &format!("the picture would be {down:.0} pixels high"),
                 "take fewer pixels across, or show more waves",
             ));
         }
-        Ok(portrait)
+        Ok(scene)
     }
 
     /// Pixels a unit of length, and pixels down.
@@ -220,17 +237,15 @@ impl Portrait {
     /// is not one of this run.
     pub fn draw(&self, frame: &Frame) -> Result<Drawing, RunError> {
         let picture = self.picture(frame)?;
-        let words = words::Words::of(self, frame);
-        let notes = words.notes();
-        let marks = words.marks();
+        let caption = Caption::of(self, frame);
         let full = self.look.writing == Writing::Full;
         PictureFigure {
-            title: &words.title,
+            title: &caption.title,
             pixels: picture.pixels(),
             columns: picture.width(),
-            notes: if full { &notes } else { &[] },
-            marks: if full { &marks } else { &[] },
-            scale_bar: full.then(|| words.scale_bar()),
+            notes: if full { &caption.notes } else { &[] },
+            marks: if full { &caption.marks } else { &[] },
+            scale_bar: full.then_some(&caption.scale_bar),
             colours: full.then_some(&self.scale),
             paper: self.look.paper,
             width: match self.look.aspect {
@@ -248,17 +263,17 @@ impl Portrait {
     /// The bare picture of an instant.
     ///
     /// # Errors
-    /// As [`Portrait::draw`].
+    /// As [`PictureScene::draw`].
     pub fn picture(&self, frame: &Frame) -> Result<Picture, RunError> {
         let length = self.wall.lattice().length();
         if (frame.length - length).abs() > 1e-3 * length {
-            return Err(RunError::Picture {
-                reason: format!(
-                    "the frame is of a tube {} d long, and that of the run is {length} d",
-                    frame.length
+            let found = frame.length;
+            return Err(refused(
+                &format!(
+                    "the frame is of a tube {found} d long, and that of the run is {length} d"
                 ),
-                help: "name the trajectory of this run".to_owned(),
-            });
+                "name the trajectory of this run",
+            ));
         }
         let values = self.coloured.values(frame, &self.wall)?;
         let [red, green, blue] = self.look.paper.srgb();
@@ -269,7 +284,7 @@ impl Portrait {
         Ok(render(&scene, &self.view())?)
     }
 
-    /// The view of what [`Portrait::spheres`] places.
+    /// The view of what [`PictureScene::spheres`] places.
     fn view(&self) -> View {
         let (scale, height) = self.size();
         let heading = self.wall.heading();

@@ -1,0 +1,102 @@
+//! What is written around a picture.
+
+use peristalsis_analysis::number::decimal;
+use peristalsis_figures::{PlaceMark, ScaleBar};
+use peristalsis_formats::Frame;
+
+use super::{Aspect, MARGIN, PictureScene, Place};
+
+/// Wavelengths that the wave has run.
+pub(super) fn cycles(frame: &Frame) -> f64 {
+    frame.value("period").unwrap_or(0.0)
+}
+
+/// Lengths that a scale shows \[d\]: the largest that is a modest part of the picture.
+const SCALES: [f64; 9] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0];
+/// Largest part of the picture that a scale takes.
+const SCALE_PART: f64 = 0.26;
+
+/// What is written around the picture of an instant.
+pub(super) struct Caption {
+    pub(super) title: String,
+    pub(super) notes: Vec<String>,
+    pub(super) marks: Vec<PlaceMark>,
+    pub(super) scale_bar: ScaleBar,
+}
+
+impl Caption {
+    pub(super) fn of(scene: &PictureScene, frame: &Frame) -> Self {
+        let lattice = scene.wall.lattice();
+        let is_moving = scene.wall.frequency(frame.time) != 0.0;
+        let (place, across) = match scene.look.aspect {
+            Aspect::Side => {
+                let arrow = if is_moving { "wave →" } else { "" };
+                (arrow.to_owned(), scene.shown + 2.0 * MARGIN)
+            }
+            Aspect::Section(place) => {
+                let words = match place {
+                    Place::At(z) => format!("*z* = {z:.1} *d*"),
+                    Place::Phase(phase) => format!("phase {phase:.2}"),
+                };
+                (words, 2.0 * (scene.radius + MARGIN))
+            }
+        };
+        let notes = if is_moving {
+            let flow = match frame.value("flow_rate_ratio") {
+                Some(ratio) if ratio.is_finite() => format!(" = {}", decimal(ratio, 2)),
+                _ => ": not yet".to_owned(),
+            };
+            vec![
+                format!("*t*/*T* = {:.2}", cycles(frame)),
+                place,
+                format!("*J*/*J*_{{max}}{flow}"),
+            ]
+        } else {
+            let time = format!("*t* = {:.1} {}", frame.time, scene.units.time());
+            vec![time, place]
+        };
+        let length = SCALES
+            .into_iter()
+            .filter(|length| *length <= SCALE_PART * across)
+            .fold(SCALES[0], f64::max);
+        Self {
+            title: format!(
+                "The tube after {:.2} periods, {:.0} d long, {} grains",
+                cycles(frame),
+                lattice.length(),
+                frame.grains
+            ),
+            notes,
+            marks: if is_moving && scene.look.aspect == Aspect::Side {
+                marks(scene, frame)
+            } else {
+                Vec::new()
+            },
+            scale_bar: ScaleBar {
+                length: length / across,
+                label: format!("{length} *d*"),
+            },
+        }
+    }
+}
+
+/// Bellies and throats of the wave from the left.
+fn marks(scene: &PictureScene, frame: &Frame) -> Vec<PlaceMark> {
+    let wavelength = scene.wall.lattice().wavelength;
+    let heading = scene.wall.heading();
+    let throat = scene.wall.throat();
+    let mut marks = Vec::new();
+    for (phase, label) in [(throat, "throat"), (throat + 0.5, "belly")] {
+        // z of the picture, along the wave, is lambda (phase + cycles) + a whole number of lambda - shift.
+        let along = wavelength * (phase + cycles(frame)) - heading * scene.shift(cycles(frame));
+        let from_left = along + if heading < 0.0 { scene.shown } else { 0.0 };
+        let mut along = from_left.rem_euclid(wavelength);
+        while along <= scene.shown {
+            let place = (along + MARGIN) / (scene.shown + 2.0 * MARGIN);
+            marks.push(PlaceMark { place, label });
+            along += wavelength;
+        }
+    }
+    marks.sort_by(|one, other| one.place.total_cmp(&other.place));
+    marks
+}
