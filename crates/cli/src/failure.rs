@@ -9,8 +9,6 @@ use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
 use peristalsis_reproduce::ClaimError;
-use peristalsis_reproduce::report::ReportError;
-use peristalsis_reproduce::textbook::ValidateError;
 use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
 use peristalsis_viewer::ViewerError;
@@ -57,15 +55,9 @@ pub(crate) enum Failure {
     /// A study or its store.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// The claims or their studies.
+    /// Claims, textbook cases or the report of them.
     #[error(transparent)]
     Claim(ClaimError),
-    /// The report.
-    #[error(transparent)]
-    Report(#[from] ReportError),
-    /// The textbook experiments.
-    #[error(transparent)]
-    Validate(#[from] ValidateError),
     /// The viewer.
     #[error(transparent)]
     Viewer(#[from] ViewerError),
@@ -132,18 +124,15 @@ impl Failure {
                 | StudyError::Trial(_) => BAD_INPUT,
                 _ => FAILED,
             },
-            Self::Claim(ClaimError::NoSuchClaim { .. } | ClaimError::Folder { .. })
-            | Self::Validate(
-                ValidateError::NoSuchCase { .. }
-                | ValidateError::Folder { .. }
-                | ValidateError::Read { .. }
-                | ValidateError::NoPlace { .. },
+            Self::Claim(
+                ClaimError::NoSuchExperiment { .. }
+                | ClaimError::Folder { .. }
+                | ClaimError::Read { .. }
+                | ClaimError::NoPlace { .. },
             ) => BAD_INPUT,
             Self::Write { .. }
             | Self::Trajectory { .. }
             | Self::Claim(_)
-            | Self::Report(_)
-            | Self::Validate(_)
             | Self::Viewer(_)
             | Self::Signals(_)
             | Self::Output(_) => FAILED,
@@ -206,23 +195,19 @@ impl Failure {
             Self::Run(error @ RunError::Engine(EngineError::Diverged { .. })) => {
                 error.against_divergence().map(str::to_owned)
             }
-            Self::Claim(ClaimError::NoSuchClaim { known, .. }) => {
-                Some(format!("claims: {}", known.join(", ")))
+            Self::Claim(ClaimError::NoSuchExperiment { kind, known, .. }) => {
+                Some(format!("{kind}s: {}", known.join(", ")))
             }
-            Self::Validate(ValidateError::NoSuchCase { known, .. }) => {
-                Some(format!("cases: {}", known.join(", ")))
-            }
-            Self::Validate(ValidateError::NoPlace { block, .. }) => Some(format!(
+            Self::Claim(ClaimError::NoPlace { block, .. }) => Some(format!(
                 "put the lines <!-- validate {block} --> and <!-- /validate --> where the results are to stand"
             )),
-            Self::Claim(ClaimError::Folder { .. })
-            | Self::Validate(ValidateError::Folder { .. }) => {
+            Self::Claim(ClaimError::Folder { .. }) => {
                 Some("name another folder with --out".to_owned())
             }
             Self::Viewer(ViewerError::Listen { .. }) => {
                 Some("name another port with --port, or leave it out to get a free one".to_owned())
             }
-            Self::Report(_) => {
+            Self::Claim(ClaimError::Format(_) | ClaimError::Figure(_)) => {
                 Some("nothing that was finished is lost: mend the disk and call again".to_owned())
             }
             Self::Study(StudyError::OtherStudy { .. }) => {

@@ -1,20 +1,25 @@
-//! What was found of a claim.
+//! Findings of experiments.
 
 use peristalsis_analysis::{Interval, Uncertain};
 use peristalsis_figures::Drawing;
+use peristalsis_formats::Table;
 use serde::{Serialize, Serializer};
 
-/// What our runs say of a claim.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+use crate::check::{Check, Convergence};
+use crate::prose::{Prose, Values};
+
+/// The verdict on a claim or a textbook case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
-    /// What the source says holds within our errors.
+    /// The statement of the source holds within our errors; every check of a textbook case passed.
     Reproduced,
-    /// It does not.
+    /// It does not hold.
     Differs,
     /// A question that the source left open has an answer.
     Answered,
-    /// The statistics do not allow a verdict, or what they show is none.
+    /// There are too few runs for a verdict, or they show neither.
+    #[default]
     Open,
 }
 
@@ -31,8 +36,8 @@ impl Verdict {
     }
 }
 
-/// How much is behind a finding: strain rates and runs of the parts that are compared together, the fewest widths and
-/// replicates of any.
+/// The number of runs behind a finding: strain rates and runs of all parts that are compared, the fewest widths and replicates
+/// of any part.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Statistics {
     /// Strain rates.
@@ -46,7 +51,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// What a verdict takes: 4 strain rates, 8 widths at each, 10 replicates of each point.
+    /// The least for a verdict: 4 strain rates, 8 widths at each, 10 replicates of each point.
     pub const FOR_A_VERDICT: Self = Self {
         strain_rates: 4,
         widths: 8,
@@ -54,7 +59,7 @@ impl Statistics {
         runs: 320,
     };
 
-    /// What is behind runs at one strain rate, from what is varied in each.
+    /// Statistics of runs at one strain rate, from the value in each run of the parameter that is varied.
     pub(crate) fn at_one_rate(varied: impl Iterator<Item = f64>) -> Self {
         let mut varied: Vec<f64> = varied.collect();
         varied.sort_by(f64::total_cmp);
@@ -70,8 +75,8 @@ impl Statistics {
         }
     }
 
-    /// What is behind several parts that are compared: their strain rates and runs together, and the fewest widths and
-    /// replicates of any; nothing where there is no part.
+    /// Statistics of several parts that are compared: all strain rates and runs, and the fewest widths and replicates of any
+    /// part; zero where there is no part.
     #[must_use]
     pub fn weakest(parts: impl Iterator<Item = Self>) -> Self {
         parts
@@ -84,7 +89,7 @@ impl Statistics {
             .unwrap_or_default()
     }
 
-    /// Whether there is as much as that in every respect.
+    /// Whether these are at least the needed ones in every respect.
     #[must_use]
     pub fn suffice(&self, needed: &Self) -> bool {
         self.strain_rates >= needed.strain_rates
@@ -96,15 +101,15 @@ impl Statistics {
 /// A number that a claim is about.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Quantity {
-    /// What it is, in words, such as "exponent of the mean transition time, fine lattice, strain rate 0.1".
+    /// Its name in words, such as "exponent of the mean transition time, fine lattice, strain rate 0.1".
     pub name: String,
     /// Symbol in the markup of figures, such as `*α*`.
     pub symbol: String,
     /// Unit, empty for a pure number.
     pub unit: String,
-    /// What the source says, where it gives a number.
+    /// The value of the source, where it gives one.
     pub source: Option<f64>,
-    /// What we find; `None` where the runs do not determine it.
+    /// Our value; `None` where the runs do not determine it.
     #[serde(serialize_with = "uncertain")]
     pub ours: Option<Uncertain>,
     /// How it was got, in a few words.
@@ -114,7 +119,7 @@ pub struct Quantity {
 /// A table of the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportTable {
-    /// What it shows, one sentence.
+    /// Its subject in one sentence.
     pub caption: String,
     /// Heads of the columns, in markup.
     pub head: Vec<String>,
@@ -122,40 +127,61 @@ pub struct ReportTable {
     pub rows: Vec<Vec<String>>,
 }
 
+impl ReportTable {
+    /// A table from its caption, the heads of its columns and its rows.
+    pub(crate) fn new<H: Into<String>>(
+        caption: &str,
+        head: impl IntoIterator<Item = H>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Self {
+        Self {
+            caption: caption.to_owned(),
+            head: head.into_iter().map(Into::into).collect(),
+            rows: rows.into_iter().collect(),
+        }
+    }
+}
+
 /// A figure of the report.
 #[derive(Clone, Debug)]
 pub struct ReportFigure {
     /// Short name, used for files: letters, digits and hyphens.
     pub name: String,
-    /// What it shows and how to read it, in markup.
+    /// Its subject and how to read it, in markup.
     pub caption: String,
     /// The drawing.
     pub drawing: Drawing,
 }
 
-/// What was found of a claim.
-#[derive(Clone, Debug)]
+/// The finding on a claim, or on a textbook case.
+#[derive(Clone, Debug, Default)]
 pub struct Finding {
     /// The verdict.
     pub verdict: Verdict,
     /// Why this verdict, in one or two sentences with numbers, in markup.
     pub summary: String,
-    /// What is behind it.
+    /// The runs behind it.
     pub statistics: Statistics,
-    /// What a verdict would take.
+    /// The runs that a verdict takes.
     pub needed: Statistics,
-    /// What is varied at each strain rate: "width", "force", "back pressure".
+    /// The parameter that is varied at each strain rate: "width", "force", "back pressure".
     pub varied: &'static str,
     /// Numbers, the most important first.
     pub quantities: Vec<Quantity>,
+    /// Numbers beside their expected values.
+    pub checks: Vec<Check>,
+    /// Errors against the time step.
+    pub convergences: Vec<Convergence>,
     /// Paragraphs about method and outcome, in markup.
     pub paragraphs: Vec<String>,
-    /// What a critical reader should know, in markup.
+    /// Objections that a reader should know, in markup.
     pub weaknesses: Vec<String>,
     /// Tables.
     pub tables: Vec<ReportTable>,
     /// Figures, the most important first.
     pub figures: Vec<ReportFigure>,
+    /// Everything that was measured, for programs.
+    pub data: Option<Table>,
 }
 
 /// A number with its error as JSON: ends of intervals that are open are null.
@@ -180,7 +206,7 @@ fn uncertain<S: Serializer>(number: &Option<Uncertain>, serializer: S) -> Result
 }
 
 impl Finding {
-    /// A finding of which nothing but the verdict is known yet; the verdict is open where the statistics do not suffice.
+    /// A finding with a verdict and nothing else yet; the verdict is open where the statistics do not suffice.
     #[must_use]
     pub fn new(
         verdict: Verdict,
@@ -188,22 +214,18 @@ impl Finding {
         statistics: Statistics,
         needed: &Statistics,
     ) -> Self {
-        let verdict = if statistics.suffice(needed) {
-            verdict
-        } else {
-            Verdict::Open
-        };
+        let is_sufficient = statistics.suffice(needed);
         Self {
-            verdict,
+            verdict: if is_sufficient {
+                verdict
+            } else {
+                Verdict::Open
+            },
             summary,
             statistics,
             needed: *needed,
             varied: "width",
-            quantities: Vec::new(),
-            paragraphs: Vec::new(),
-            weaknesses: Vec::new(),
-            tables: Vec::new(),
-            figures: Vec::new(),
+            ..Self::default()
         }
     }
 
@@ -211,5 +233,27 @@ impl Finding {
     #[must_use]
     pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
         Self::new(Verdict::Open, reason.to_owned(), statistics, needed)
+    }
+
+    /// A finding of a textbook case that holds its method, as its text describes it, and nothing else yet.
+    pub(crate) fn described(prose: &Prose, values: &Values<'_>) -> Self {
+        Self {
+            paragraphs: prose.paragraphs("method", values),
+            ..Self::default()
+        }
+    }
+
+    /// The verdict that follows from checks and orders alone; open where nothing was checked.
+    pub(crate) fn verdict_of_checks(&self) -> Verdict {
+        let all_pass = self.checks.iter().all(|check| check.passed)
+            && self
+                .convergences
+                .iter()
+                .all(|convergence| convergence.passed);
+        match all_pass {
+            _ if self.checks.is_empty() => Verdict::Open,
+            true => Verdict::Reproduced,
+            false => Verdict::Differs,
+        }
     }
 }

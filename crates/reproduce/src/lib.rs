@@ -9,13 +9,16 @@
 #[allow(dead_code, reason = "claims move to it one after the other")]
 mod branch;
 mod branches;
+mod check;
 mod claim;
 mod claims;
 mod collapse;
+mod columns;
 mod critical;
 mod crossing;
 mod error;
 mod evidence;
+mod examination;
 #[allow(dead_code, reason = "claims move to it one after the other")]
 mod exhibit;
 mod finding;
@@ -33,14 +36,16 @@ pub mod textbook;
 #[allow(dead_code, reason = "claims move to it one after the other")]
 mod thresholds;
 
+pub use check::{Check, Convergence};
 pub use claim::Claim;
 pub use claims::CLAIMS;
 pub use error::ClaimError;
 pub use evidence::{Evidence, StudyResults};
+pub use examination::Examination;
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
 pub use prose::Prose;
 pub use reproduction::{
-    Event, Examination, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
+    Event, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
 };
 pub use row::{Lattice, Row, Start};
 pub use runs::Run;

@@ -1,6 +1,6 @@
 //! The study files behind the claims, as they stand in `studies/` of this repository.
 
-/// How large a design is run.
+/// The size of a design, or of a textbook case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// A few runs of everything: minutes.
@@ -10,13 +10,18 @@ pub enum Size {
 }
 
 impl Size {
+    /// One of two values.
+    pub(crate) fn choose<T>(self, quick: T, full: T) -> T {
+        match self {
+            Self::Quick => quick,
+            Self::Full => full,
+        }
+    }
+
     /// "quick" or "full".
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Full => "full",
-        }
+        self.choose("quick", "full")
     }
 }
 
@@ -71,10 +76,7 @@ impl StudyFile {
     /// The text of the study file.
     #[must_use]
     pub fn text(&self, size: Size) -> &'static str {
-        match size {
-            Size::Quick => self.quick,
-            Size::Full => self.full,
-        }
+        size.choose(self.quick, self.full)
     }
 
     /// The study of this name.

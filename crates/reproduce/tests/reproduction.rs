@@ -106,7 +106,7 @@ fn run(reproduction: &Reproduction) -> (Outcome, Vec<&'static str>) {
     let mut examined = Vec::new();
     let outcome = reproduction.run(EFFORT, &|| false, &mut |event| {
         if let Event::Examined(examination) = event {
-            examined.push(examination.claim.id);
+            examined.push(examination.experiment.id);
         }
     });
     (outcome, examined)
@@ -130,7 +130,7 @@ fn claims_are_examined_as_their_studies_end_and_one_that_fails_loses_no_other() 
     let ids: Vec<&str> = outcome
         .examinations
         .iter()
-        .map(|examination| examination.claim.id)
+        .map(|examination| examination.experiment.id)
         .collect();
     assert_eq!(ids, ["F1", "F2", "F3", "F4"]);
     assert_eq!(
@@ -337,7 +337,7 @@ fn claims_are_chosen_by_name() {
     assert_eq!(names(&["f3", " F1"]).unwrap(), ["F1", "F3"]);
     assert_eq!(names(&[]).unwrap(), ["F1", "F2", "F3", "F4"]);
     match names(&["F1", "F10"]) {
-        Err(ClaimError::NoSuchClaim { asked, known }) => {
+        Err(ClaimError::NoSuchExperiment { asked, known, .. }) => {
             assert_eq!(asked, "F10");
             assert_eq!(known, ["F1", "F2", "F3", "F4"]);
         }

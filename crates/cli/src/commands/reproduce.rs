@@ -108,7 +108,7 @@ fn is_well(outcome: &Outcome) -> bool {
             .all(|study| study.failure.is_none() && study.failed == 0)
 }
 
-/// What an import gave, a line a study.
+/// The result of an import, a line a study.
 fn imported(import: &Import) -> String {
     let mut lines = vec![format!("{} tables of finished runs", import.tables)];
     for (path, reason) in &import.skipped {
@@ -145,7 +145,7 @@ fn whole(stage: &Stage<'_>) -> Whole {
 /// A claim's verdict in one line.
 fn verdict(examination: &Examination) -> String {
     let Examination {
-        claim,
+        experiment: claim,
         finding,
         failure,
     } = examination;
@@ -170,9 +170,9 @@ fn summary(report: &Report) -> String {
         .map(|examination| {
             format!(
                 "{:<4} {:<11} {}\n",
-                examination.claim.id,
+                examination.experiment.id,
                 examination.finding.verdict.name(),
-                plain_text(examination.claim.prose.title())
+                plain_text(examination.experiment.prose.title())
             )
         })
         .collect()

@@ -3,9 +3,8 @@
 use std::process::ExitCode;
 use std::time::Instant;
 
-use peristalsis_reproduce::textbook::{
-    CASES, Examination, Extent, ValidateError, Validation, chosen,
-};
+use peristalsis_reproduce::textbook::{CASES, Case, Validation, chosen};
+use peristalsis_reproduce::{ClaimError, Examination, Size};
 
 use crate::arguments::ValidateArguments;
 use crate::commands::{print, say};
@@ -16,10 +15,10 @@ use crate::stop::Stop;
 /// Runs the cases.
 pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let extent = if arguments.quick {
-        Extent::Quick
+    let size = if arguments.quick {
+        Size::Quick
     } else {
-        Extent::Full
+        Size::Full
     };
     let cases = chosen(CASES, &arguments.only)?;
     // A document without places for the results is better refused before the work than after it.
@@ -35,13 +34,13 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
         "{} case{}, {}, in {}",
         cases.len(),
         if cases.len() == 1 { "" } else { "s" },
-        extent.name(),
+        size.name(),
         arguments.out.display()
     ));
     stop.keep_results();
     let mut began = Instant::now();
     let outcome = Validation::run(
-        extent,
+        size,
         &cases,
         &|| stop.requested().is_some(),
         &mut |examination| {
@@ -54,7 +53,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
         },
     );
     let validation = match outcome {
-        Err(ValidateError::Stopped) => {
+        Err(ClaimError::Stopped) => {
             tell("stopped, nothing is written");
             return Ok(ExitCode::from(stop.requested().unwrap_or(1)));
         }
@@ -79,7 +78,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
 }
 
 /// A case in one line.
-fn line(examination: &Examination) -> String {
+fn line(examination: &Examination<Case>) -> String {
     let finding = &examination.finding;
     let verdict = if examination.passed() {
         "passed"
@@ -88,14 +87,14 @@ fn line(examination: &Examination) -> String {
     };
     format!(
         "{:<15} {verdict}  {} checks, {} orders",
-        examination.case.name,
+        examination.experiment.name,
         finding.checks.len(),
         finding.convergences.len()
     )
 }
 
-/// What failed of a case, a line each.
-fn failures(examination: &Examination) -> Vec<String> {
+/// The failed parts of a case, a line each.
+fn failures(examination: &Examination<Case>) -> Vec<String> {
     let finding = &examination.finding;
     let checks = finding
         .checks

@@ -1,4 +1,4 @@
-//! Writes a report of made-up findings into a folder, to look at: `cargo run -p peristalsis-report --example specimen -- FOLDER`.
+//! Writes a report of made-up findings into a folder, to look at: `cargo run -p peristalsis-reproduce --example specimen -- FOLDER`.
 
 mod findings;
 

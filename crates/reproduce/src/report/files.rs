@@ -3,9 +3,10 @@
 use std::collections::HashSet;
 
 use crate::{Examination, Quantity, ReportFigure, ReportTable};
-use peristalsis_analysis::Interval;
-use peristalsis_formats::{Column, FormatError, Table, Values};
+use peristalsis_analysis::Uncertain;
+use peristalsis_formats::{FormatError, Table};
 
+use crate::columns::Columns;
 use crate::report::Report;
 use crate::report::markup::plain_text;
 
@@ -87,21 +88,18 @@ pub(crate) fn plain_name(name: &str) -> String {
 /// Every table of the report with the name of its file: the quantities of all claims, then the tables of each.
 pub(crate) fn table_files(report: &Report) -> Result<Vec<(String, Table)>, FormatError> {
     let mut files = Vec::new();
-    if report
-        .examinations
-        .iter()
-        .any(|examination| !examination.finding.quantities.is_empty())
-    {
-        files.push((
-            "quantities.csv".to_owned(),
-            quantities(&report.examinations)?,
-        ));
+    let quantities = quantities(&report.examinations);
+    if !quantities.is_empty() {
+        files.push(("quantities.csv".to_owned(), quantity_table(&quantities)?));
     }
     for examination in &report.examinations {
-        let tables = examination.finding.tables.iter();
-        for (number, table) in tables.filter(|table| !table.head.is_empty()).enumerate() {
-            let claim = plain_name(examination.claim.id);
-            files.push((format!("{claim}-{}.csv", number + 1), plain_table(table)?));
+        for (name, table) in table_names(examination)
+            .into_iter()
+            .zip(&examination.finding.tables)
+        {
+            if let Some(name) = name {
+                files.push((name, plain_table(table)?));
+            }
         }
     }
     Ok(files)
@@ -109,7 +107,7 @@ pub(crate) fn table_files(report: &Report) -> Result<Vec<(String, Table)>, Forma
 
 /// Names of the files of a claim's tables, in their order; none for a table without columns.
 pub(crate) fn table_names(examination: &Examination) -> Vec<Option<String>> {
-    let claim = plain_name(examination.claim.id);
+    let claim = plain_name(examination.experiment.id);
     let mut number = 0;
     let tables = examination.finding.tables.iter();
     tables
@@ -122,95 +120,72 @@ pub(crate) fn table_names(examination: &Examination) -> Vec<Option<String>> {
         .collect()
 }
 
-fn quantities(examinations: &[Examination]) -> Result<Table, FormatError> {
-    let rows: Vec<(&str, &Quantity)> = examinations
-        .iter()
-        .flat_map(|examination| {
-            let id = examination.claim.id;
-            examination
-                .finding
+/// A quantity with the name of its claim.
+type ClaimQuantity<'a> = (&'a str, &'a Quantity);
+
+fn quantities(examinations: &[Examination]) -> Vec<ClaimQuantity<'_>> {
+    let mut all = Vec::new();
+    for Examination {
+        experiment,
+        finding,
+        ..
+    } in examinations
+    {
+        all.extend(
+            finding
                 .quantities
                 .iter()
-                .map(move |quantity| (id, quantity))
-        })
-        .collect();
-    let texts =
-        |of: &dyn Fn(&(&str, &Quantity)) -> String| Values::Text(rows.iter().map(of).collect());
+                .map(|quantity| (experiment.id, quantity)),
+        );
+    }
+    all
+}
+
+fn quantity_table(quantities: &[ClaimQuantity<'_>]) -> Result<Table, FormatError> {
     // Open ends of intervals are missing values, as in the JSON file.
     let finite = |value: f64| if value.is_finite() { value } else { f64::NAN };
-    let reals = |of: &dyn Fn(&Quantity) -> Option<f64>| {
-        let values = rows
-            .iter()
-            .map(|(_, quantity)| of(quantity).map_or(f64::NAN, finite));
-        Values::Real(values.collect())
+    let ours = |of: fn(&Uncertain) -> f64| {
+        move |(_, quantity): &ClaimQuantity<'_>| finite(quantity.ours.as_ref().map_or(f64::NAN, of))
     };
-    let ours = |of: fn(&peristalsis_analysis::Uncertain) -> f64| {
-        reals(&move |quantity: &Quantity| quantity.ours.as_ref().map(of))
+    let text = |of: fn(&Quantity) -> &String| {
+        move |(_, quantity): &ClaimQuantity<'_>| plain_cell(of(quantity))
     };
-    let narrow = |of: fn(&Interval) -> f64| {
-        reals(&move |quantity: &Quantity| quantity.ours.as_ref().map(|ours| of(&ours.interval_68)))
-    };
-    let wide = |of: fn(&Interval) -> f64| {
-        reals(&move |quantity: &Quantity| quantity.ours.as_ref().map(|ours| of(&ours.interval_95)))
-    };
-    let columns = [
-        ("claim", texts(&|(id, _)| (*id).to_owned())),
-        (
-            "quantity",
-            texts(&|(_, quantity)| plain_cell(&quantity.name)),
-        ),
-        (
-            "symbol",
-            texts(&|(_, quantity)| plain_cell(&quantity.symbol)),
-        ),
-        ("unit", texts(&|(_, quantity)| plain_cell(&quantity.unit))),
-        ("source", reals(&|quantity| quantity.source)),
-        ("value", ours(|ours| ours.value)),
-        ("error", ours(|ours| ours.error)),
-        ("lower_68", narrow(|interval| interval.lower)),
-        ("upper_68", narrow(|interval| interval.upper)),
-        ("lower_95", wide(|interval| interval.lower)),
-        ("upper_95", wide(|interval| interval.upper)),
-        (
-            "method",
-            texts(&|(_, quantity)| plain_cell(&quantity.method)),
-        ),
-    ];
-    Table::builder()
-        .columns(columns.map(|(name, values)| column(name, values)))
-        .build()
+    let source = |(_, quantity): &ClaimQuantity<'_>| finite(quantity.source.unwrap_or(f64::NAN));
+    Columns::of(quantities)
+        .word("claim", "", |(claim, _)| (*claim).to_owned())
+        .word("quantity", "", text(|quantity| &quantity.name))
+        .word("symbol", "", text(|quantity| &quantity.symbol))
+        .word("unit", "", text(|quantity| &quantity.unit))
+        .number("source", "", "", source)
+        .number("value", "", "", ours(|ours| ours.value))
+        .number("error", "", "", ours(|ours| ours.error))
+        .number("lower_68", "", "", ours(|ours| ours.interval_68.lower))
+        .number("upper_68", "", "", ours(|ours| ours.interval_68.upper))
+        .number("lower_95", "", "", ours(|ours| ours.interval_95.lower))
+        .number("upper_95", "", "", ours(|ours| ours.interval_95.upper))
+        .word("method", "", text(|quantity| &quantity.method))
+        .table()
 }
 
 /// A table of the report with texts for cells.
 fn plain_table(table: &ReportTable) -> Result<Table, FormatError> {
     let mut taken = HashSet::new();
-    let columns = table.head.iter().enumerate().map(|(place, head)| {
-        let name = plain_cell(head);
-        let mut name = if name.is_empty() {
-            format!("column {}", place + 1)
-        } else {
-            name
-        };
+    let mut columns = Columns::of(&table.rows);
+    for (place, head) in table.head.iter().enumerate() {
+        let mut name = plain_cell(head);
+        if name.is_empty() {
+            name = format!("column {}", place + 1);
+        }
         while !taken.insert(name.clone()) {
             name.push('\'');
         }
-        let cells = table.rows.iter().map(|row| {
+        columns = columns.word(&name, "", |row| {
             row.get(place)
-                .map_or_else(String::new, |cell| plain_cell(cell))
+                .map(|cell| plain_cell(cell))
+                .unwrap_or_default()
         });
-        column(name, Values::Text(cells.collect()))
-    });
-    Table::builder().columns(columns).build()
-}
-
-/// A column that says all in its name.
-fn column(name: impl Into<String>, values: Values) -> Column {
-    Column {
-        name: name.into(),
-        unit: String::new(),
-        description: String::new(),
-        values,
     }
+    columns.table()
 }
 
 /// A cell without markup, its minus signs as programs read them.

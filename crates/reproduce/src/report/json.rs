@@ -26,9 +26,9 @@ struct Claim<'a> {
     verdict: Verdict,
     summary: &'a str,
     statistics: Statistics,
-    /// What `widths` counts.
+    /// The parameter that `widths` counts.
     varied: &'a str,
-    /// What a verdict takes.
+    /// The least for a verdict.
     needed: Statistics,
     sufficient: bool,
     failure: Option<&'a str>,
@@ -78,10 +78,14 @@ pub(crate) fn text(report: &Report) -> String {
             .map(|(place, examination)| claim(report, &figures, place, examination))
             .collect(),
     };
-    let mut text = serde_json::to_string_pretty(&document)
+    json_text(&document)
+}
+
+/// A document as indented JSON with a line break at its end.
+pub(crate) fn json_text(document: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(document)
         .expect("all keys are texts, and numbers that are not finite become null");
-    text.push('\n');
-    text
+    text + "\n"
 }
 
 fn claim<'a>(
@@ -91,7 +95,7 @@ fn claim<'a>(
     examination: &'a Examination,
 ) -> Claim<'a> {
     let Examination {
-        claim,
+        experiment: claim,
         finding,
         failure,
     } = examination;

@@ -47,7 +47,7 @@ pub(crate) fn rich(markup: &str) -> Markup {
 /// A text in the markup of figures as plain text: italics are dropped, scripts begin with `_` or `^`.
 ///
 /// ```
-/// assert_eq!(peristalsis_report::plain_text("*J*_{max} = 10^{−3}"), "J_max = 10^−3");
+/// assert_eq!(peristalsis_reproduce::report::plain_text("*J*_{max} = 10^{−3}"), "J_max = 10^−3");
 /// ```
 #[must_use]
 pub fn plain_text(markup: &str) -> String {
@@ -67,7 +67,7 @@ pub fn plain_text(markup: &str) -> String {
     plain
 }
 
-/// A whole subscript or superscript, of which the first stretch has been taken.
+/// A whole subscript or superscript; `first` is its first stretch, `rest` the stretches after it.
 fn script<'a>(first: &Stretch, rest: &'a [Stretch]) -> (Markup, &'a [Stretch]) {
     let more = rest
         .iter()

@@ -1,28 +1,29 @@
-//! From findings to what a person reads: one page, one JSON file, figures and tables.
+//! Findings as one page, one JSON file, figures and tables.
 //!
-//! [`Report`] holds the claims with what was found of them and the studies behind them; [`Report::html`] is a page that needs
+//! [`Report`] holds the claims with their findings and the studies behind them; [`Report::html`] is a page that needs
 //! no other file, [`Report::json`] the same for programs, and [`Report::write`] puts both into a folder with every figure as
 //! SVG and PNG and every table as CSV. Nothing in them depends on when or how the runs were computed: the same runs give the
 //! same bytes. Nothing here prints or exits.
 
-mod error;
 mod files;
 mod json;
+pub(crate) mod markdown;
 mod markup;
-
 mod page;
 mod picture;
 
-pub use error::ReportError;
 pub use markup::plain_text;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::{Examination, Outcome, Size, StudyOutcome};
+use peristalsis_figures::Drawing;
 use peristalsis_formats::{atomic, csv};
 
 use self::files::{figure_files, table_files};
+use crate::error::{ClaimError, make_folder};
+use crate::{Examination, Outcome, Size, StudyOutcome};
+
+pub(crate) use json::json_text;
 
 /// The page.
 const PAGE: &str = "report.html";
@@ -52,7 +53,7 @@ impl Program {
     }
 }
 
-/// The claims with what was found of them, and the studies behind them.
+/// The claims with their findings, and the studies behind them.
 #[derive(Clone, Debug)]
 pub struct Report {
     /// Size of the designs.
@@ -94,29 +95,17 @@ impl Report {
     ///
     /// # Errors
     /// Errors of making folders and writing files, and of drawing pictures.
-    pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, ClaimError> {
         let (figures, tables) = (figure_files(&self.examinations), table_files(self)?);
-        for folder in [
-            Some(folder.to_owned()),
-            (!figures.is_empty()).then(|| folder.join("figures")),
-            (!tables.is_empty()).then(|| folder.join("tables")),
-        ]
-        .into_iter()
-        .flatten()
-        {
-            fs::create_dir_all(&folder).map_err(|source| ReportError::Folder {
-                path: folder.clone(),
-                source,
-            })?;
+        make_folder(folder)?;
+        if !figures.is_empty() {
+            make_folder(&folder.join("figures"))?;
+        }
+        if !tables.is_empty() {
+            make_folder(&folder.join("tables"))?;
         }
         for (name, figure) in figures.files() {
-            let path = folder.join("figures").join(name);
-            atomic::write(&path.with_extension("svg"), figure.drawing.svg().as_bytes())?;
-            let picture = figure.drawing.png().map_err(|source| ReportError::Figure {
-                name: name.to_owned(),
-                source,
-            })?;
-            atomic::write(&path.with_extension("png"), &picture)?;
+            write_drawing(&folder.join("figures"), name, &figure.drawing)?;
         }
         for (name, table) in &tables {
             csv::write(&folder.join("tables").join(name), table)?;
@@ -132,4 +121,16 @@ impl Report {
     pub(crate) fn study(&self, name: &str) -> Option<&StudyOutcome> {
         self.studies.iter().find(|study| study.file.name == name)
     }
+}
+
+/// Writes a figure as `NAME.svg` and `NAME.png` into a folder.
+pub(crate) fn write_drawing(
+    folder: &Path,
+    name: &str,
+    drawing: &Drawing,
+) -> Result<(), ClaimError> {
+    let path = folder.join(name);
+    atomic::write(&path.with_extension("svg"), drawing.svg().as_bytes())?;
+    atomic::write(&path.with_extension("png"), &drawing.png()?)?;
+    Ok(())
 }

@@ -1,22 +1,20 @@
 //! From claims to findings: the studies that they need, worked on one after the other, and each claim examined as soon as
 //! its studies have ended.
 
-mod examination;
 mod import;
 mod order;
 
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use peristalsis_study::{Board, Effort, Ending, Specification, State, Store, StudyError, work_on};
 
 use crate::claim::Claim;
-use crate::error::ClaimError;
+use crate::error::{ClaimError, make_folder};
 use crate::evidence::Evidence;
+use crate::examination::{Examination, experiments_named, without_panic};
 use crate::studies::{Products, Size, StudyFile};
-pub use examination::Examination;
 pub use import::{Import, ImportedRuns};
 
 /// Folder of the stores below that of the results.
@@ -165,23 +163,9 @@ pub struct Outcome {
 /// The claims of these names, in the order of `all`; every claim where no name is given. Case does not matter.
 ///
 /// # Errors
-/// [`ClaimError::NoSuchClaim`].
+/// [`ClaimError::NoSuchExperiment`].
 pub fn chosen(all: &[Claim], names: &[String]) -> Result<Vec<Claim>, ClaimError> {
-    let is = |claim: &Claim, name: &str| claim.id.eq_ignore_ascii_case(name.trim());
-    if let Some(unknown) = names
-        .iter()
-        .find(|name| !all.iter().any(|claim| is(claim, name)))
-    {
-        return Err(ClaimError::NoSuchClaim {
-            asked: unknown.clone(),
-            known: all.iter().map(|claim| claim.id).collect(),
-        });
-    }
-    Ok(all
-        .iter()
-        .filter(|claim| names.is_empty() || names.iter().any(|name| is(claim, name)))
-        .copied()
-        .collect())
+    experiments_named("claim", all, |claim| claim.id, names)
 }
 
 impl Reproduction {
@@ -198,10 +182,8 @@ impl Reproduction {
         studies: &[StudyFile],
     ) -> Result<Self, ClaimError> {
         let stores = folder.join(STORES);
-        fs::create_dir_all(&stores).map_err(|source| ClaimError::Folder {
-            path: folder.to_owned(),
-            source,
-        })?;
+        make_folder(folder)?;
+        make_folder(&stores)?;
         let mut works: Vec<Work> = Vec::new();
         for name in claims.iter().flat_map(|claim| claim.studies) {
             if works.iter().any(|work| work.file.name == *name) {
@@ -447,11 +429,25 @@ impl<'a> Course<'a> {
         for claim in &self.reproduction.claims {
             let is_ready = claim.studies.iter().all(|name| self.ended.contains(name));
             if is_ready && !self.examinations.contains_key(claim.id) {
-                let examination = Examination::of(claim, &self.evidence, &self.failures);
+                let examination = self.examine(claim);
                 watch(Event::Examined(&examination));
                 self.examinations.insert(claim.id, examination);
             }
         }
+    }
+
+    fn examine(&self, claim: &Claim) -> Examination {
+        let outcome = without_panic(|| (claim.examine)(&self.evidence));
+        // An error of a claim follows from the failure of one of its studies, if one failed.
+        let failed_study = || {
+            let failure = |name| Some(format!("study {name}: {}", self.failures.get(name)?));
+            claim.studies.iter().copied().find_map(failure)
+        };
+        let outcome = outcome.map_err(|error| match error {
+            ClaimError::Panicked => error.to_string(),
+            error => failed_study().unwrap_or_else(|| error.to_string()),
+        });
+        Examination::new(*claim, outcome)
     }
 
     fn outcome_of(&self, work: &Work) -> StudyOutcome {

@@ -1,50 +1,25 @@
 //! A case: one textbook experiment with its reference.
 
-use crate::textbook::error::ValidateError;
-use crate::textbook::finding::Finding;
+use crate::error::ClaimError;
+use crate::finding::Finding;
+use crate::prose::Prose;
+use crate::studies::Size;
 
-/// How much is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Extent {
-    /// Some twenty seconds: fewer points and replicates, the same tolerances for what does not scatter.
-    Quick,
-    /// All of it, in minutes.
-    Full,
-}
-
-impl Extent {
-    /// The word for it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Full => "full",
-        }
-    }
-
-    /// One of two numbers.
-    pub(crate) fn choose<T>(self, quick: T, full: T) -> T {
-        match self {
-            Self::Quick => quick,
-            Self::Full => full,
-        }
-    }
-}
-
-/// What a case may know of the world: how much to compute, and whether to go on.
+/// Circumstances of an examination: how much to compute, and whether to go on.
 #[derive(Clone, Copy)]
 pub struct Circumstances<'a> {
-    /// How much is computed.
-    pub extent: Extent,
+    /// How much is computed: some twenty seconds with fewer points and replicates, or minutes. Tolerances are the same for
+    /// everything that does not scatter.
+    pub size: Size,
     /// Whether somebody asked to stop.
     pub stops: &'a dyn Fn() -> bool,
 }
 
 impl Circumstances<'_> {
     /// An error once somebody asked to stop.
-    pub(crate) fn go_on(&self) -> Result<(), ValidateError> {
+    pub(crate) fn go_on(&self) -> Result<(), ClaimError> {
         if (self.stops)() {
-            Err(ValidateError::Stopped)
+            Err(ClaimError::Stopped)
         } else {
             Ok(())
         }
@@ -56,10 +31,8 @@ impl Circumstances<'_> {
 pub struct Case {
     /// Short name: letters and hyphens.
     pub name: &'static str,
-    /// What it is, in a few words.
-    pub title: &'static str,
-    /// Where experiment and reference come from: author and year.
-    pub source: &'static str,
-    /// Does it.
-    pub examine: fn(Circumstances<'_>) -> Result<Finding, ValidateError>,
+    /// Its title, author and year of experiment and reference, its method and the captions of its figures.
+    pub prose: Prose,
+    /// Examines it.
+    pub examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
 }

@@ -1,84 +1,58 @@
-//! The cases in turn, and how what they found is written.
+//! The cases in turn, and how their findings are written.
 
 use std::fs;
-use std::panic::{self, AssertUnwindSafe};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use peristalsis_formats::{atomic, csv};
 use serde::Serialize;
 
-use crate::textbook::case::{Case, Circumstances, Extent};
-use crate::textbook::document;
-use crate::textbook::error::ValidateError;
-use crate::textbook::finding::{Check, Convergence, Finding};
+use crate::check::{Check, Convergence, verdict};
+use crate::error::{ClaimError, make_folder};
+use crate::examination::{Examination, without_panic};
+use crate::finding::ReportTable;
+use crate::report::{json_text, markdown, write_drawing};
+use crate::studies::Size;
+use crate::textbook::case::{Case, Circumstances};
 
 /// Version of the layout of `validation.json`.
 const FORMAT: u32 = 1;
 
-/// A case with what was found of it.
-#[derive(Clone)]
-pub struct Examination {
-    /// The case.
-    pub case: Case,
-    /// What it found; empty where it failed.
-    pub finding: Finding,
-    /// Why it could not be examined, if so.
-    pub failure: Option<String>,
-}
+/// Folder of figures beside a document.
+const FIGURES: &str = "docs/images/validation";
 
-impl Examination {
-    /// Whether it was examined and everything passed.
-    #[must_use]
-    pub fn passed(&self) -> bool {
-        self.failure.is_none() && self.finding.passed()
-    }
-}
-
-/// What was found of several cases.
+/// The findings of several cases.
 #[derive(Clone)]
 pub struct Validation {
     /// How much was computed.
-    pub extent: Extent,
+    pub size: Size,
     /// The cases in their order.
-    pub examinations: Vec<Examination>,
+    pub examinations: Vec<Examination<Case>>,
 }
 
 impl Validation {
     /// Examines cases in turn, telling of each as it ends. A case that fails, even by a panic, costs no other.
     ///
     /// # Errors
-    /// [`ValidateError::Stopped`] once `stops` says so.
+    /// [`ClaimError::Stopped`] once `stops` says so.
     pub fn run(
-        extent: Extent,
+        size: Size,
         cases: &[Case],
         stops: &dyn Fn() -> bool,
-        tell: &mut dyn FnMut(&Examination),
-    ) -> Result<Self, ValidateError> {
+        tell: &mut dyn FnMut(&Examination<Case>),
+    ) -> Result<Self, ClaimError> {
         let mut examinations = Vec::with_capacity(cases.len());
         for case in cases {
-            let circumstances = Circumstances { extent, stops };
-            let outcome = panic::catch_unwind(AssertUnwindSafe(|| (case.examine)(circumstances)));
-            let (finding, failure) = match outcome {
-                Ok(Ok(finding)) => (finding, None),
-                Ok(Err(ValidateError::Stopped)) => return Err(ValidateError::Stopped),
-                Ok(Err(error)) => (Finding::default(), Some(error.to_string())),
-                Err(_) => (
-                    Finding::default(),
-                    Some("an error of this program: it panicked".to_owned()),
-                ),
+            let outcome = without_panic(|| (case.examine)(Circumstances { size, stops }));
+            let outcome = match outcome {
+                Err(ClaimError::Stopped) => return Err(ClaimError::Stopped),
+                outcome => outcome.map_err(|error| error.to_string()),
             };
-            let examination = Examination {
-                case: *case,
-                finding,
-                failure,
-            };
+            let mut examination = Examination::new(*case, outcome);
+            examination.finding.verdict = examination.finding.verdict_of_checks();
             tell(&examination);
             examinations.push(examination);
         }
-        Ok(Self {
-            extent,
-            examinations,
-        })
+        Ok(Self { size, examinations })
     }
 
     /// Whether every case passed.
@@ -90,16 +64,12 @@ impl Validation {
     /// Everything for programs.
     #[must_use]
     pub fn json(&self) -> String {
-        let document = Document {
+        json_text(&Document {
             format: FORMAT,
-            extent: self.extent.name(),
+            extent: self.size.name(),
             passed: self.passed(),
             cases: self.examinations.iter().map(CaseDocument::of).collect(),
-        };
-        let mut text = serde_json::to_string_pretty(&document)
-            .expect("all keys are texts, and numbers that are not finite become null");
-        text.push('\n');
-        text
+        })
     }
 
     /// Writes into a folder `validation.json`, `NAME.md` and `NAME.csv` of every case, and `figures/FIGURE.svg` and `.png`,
@@ -107,100 +77,140 @@ impl Validation {
     ///
     /// # Errors
     /// Errors of making folders, drawing and writing.
-    pub fn write(&self, folder: &Path) -> Result<(), ValidateError> {
+    pub fn write(&self, folder: &Path) -> Result<(), ClaimError> {
         let figures = folder.join("figures");
-        make(&figures)?;
+        make_folder(&figures)?;
         for examination in &self.examinations {
-            let path = folder.join(examination.case.name);
-            if let Some(table) = &examination.finding.table {
-                csv::write(&path.with_extension("csv"), table)?;
+            let path = folder.join(examination.experiment.name);
+            if let Some(data) = &examination.finding.data {
+                csv::write(&path.with_extension("csv"), data)?;
             }
-            let text = document::text_of(examination, "figures");
+            let text = block(examination, "figures");
             atomic::write(&path.with_extension("md"), text.as_bytes())?;
-            self.write_figures(examination, &figures)?;
+            for figure in &examination.finding.figures {
+                write_drawing(&figures, &figure.name, &figure.drawing)?;
+            }
         }
         atomic::write(&folder.join("validation.json"), self.json().as_bytes())?;
-        Ok(())
-    }
-
-    fn write_figures(&self, examination: &Examination, folder: &Path) -> Result<(), ValidateError> {
-        for figure in &examination.finding.figures {
-            let path = folder.join(figure.name);
-            atomic::write(&path.with_extension("svg"), figure.drawing.svg().as_bytes())?;
-            atomic::write(&path.with_extension("png"), &figure.drawing.png()?)?;
-        }
         Ok(())
     }
 
     /// Whether a document has a place for each of these cases.
     ///
     /// # Errors
-    /// [`ValidateError::Read`] and [`ValidateError::NoPlace`].
-    pub fn check_places(path: &Path, cases: &[Case]) -> Result<(), ValidateError> {
-        let text = read(path)?;
-        for case in cases {
-            document::replaced(&text, case.name, "").map_err(no_place(path))?;
-        }
-        Ok(())
+    /// [`ClaimError::Read`] and [`ClaimError::NoPlace`].
+    pub fn check_places(path: &Path, cases: &[Case]) -> Result<(), ClaimError> {
+        let mut document = MarkdownFile::read(path)?;
+        cases
+            .iter()
+            .try_for_each(|case| document.replace(case.name, ""))
     }
 
-    /// Replaces in a Markdown document what stands between `<!-- validate NAME -->` and `<!-- /validate -->` for each case,
+    /// Replaces in a Markdown document the text between `<!-- validate NAME -->` and `<!-- /validate -->` for each case,
     /// and, where all cases were examined, for `summary`; figures go to `docs/images/validation` beside the document.
     ///
     /// # Errors
-    /// [`ValidateError::Read`], and [`ValidateError::NoPlace`] where a marker is missing; nothing is changed then.
-    pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<(), ValidateError> {
-        let mut text = read(path)?;
+    /// [`ClaimError::Read`], and [`ClaimError::NoPlace`] where a marker is missing; nothing is changed then.
+    pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<(), ClaimError> {
+        let mut document = MarkdownFile::read(path)?;
         for examination in &self.examinations {
-            let block = document::text_of(examination, FIGURES);
-            text =
-                document::replaced(&text, examination.case.name, &block).map_err(no_place(path))?;
+            document.replace(examination.experiment.name, &block(examination, FIGURES))?;
         }
-        let is_whole = all_cases.iter().all(|case| {
-            self.examinations
-                .iter()
-                .any(|examination| examination.case.name == case.name)
-        });
-        if is_whole {
-            let summary = document::summary(&self.examinations);
-            text = document::replaced(&text, "summary", &summary).map_err(no_place(path))?;
+        let was_examined = |case: &Case| {
+            let mut examined = self.examinations.iter().map(|one| one.experiment.name);
+            examined.any(|name| name == case.name)
+        };
+        if all_cases.iter().all(was_examined) {
+            document.replace("summary", &markdown::table(&self.summary()))?;
         }
         let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
-        make(&figures)?;
-        for examination in &self.examinations {
-            for figure in &examination.finding.figures {
-                let file = figures.join(figure.name).with_extension("svg");
-                atomic::write(&file, figure.drawing.svg().as_bytes())?;
-            }
+        make_folder(&figures)?;
+        for figure in self
+            .examinations
+            .iter()
+            .flat_map(|one| &one.finding.figures)
+        {
+            let file = figures.join(&figure.name).with_extension("svg");
+            atomic::write(&file, figure.drawing.svg().as_bytes())?;
         }
-        atomic::write(path, text.as_bytes())?;
+        atomic::write(path, document.text.as_bytes())?;
         Ok(())
     }
-}
 
-/// Where the figures of a document stand, beside it.
-const FIGURES: &str = "docs/images/validation";
-
-fn read(path: &Path) -> Result<String, ValidateError> {
-    fs::read_to_string(path).map_err(|source| ValidateError::Read {
-        path: path.to_owned(),
-        source,
-    })
-}
-
-fn no_place(path: &Path) -> impl Fn((String, String)) -> ValidateError {
-    |(block, line)| ValidateError::NoPlace {
-        path: path.to_owned(),
-        block,
-        line,
+    /// All cases, a row each.
+    fn summary(&self) -> ReportTable {
+        let row = |examination: &Examination<Case>| {
+            let finding = &examination.finding;
+            let used = finding
+                .checks
+                .iter()
+                .map(|check| check.deviation / check.tolerance);
+            let orders = finding.convergences.iter().filter_map(|one| one.order);
+            let [least, largest] = orders
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |ends, order| {
+                    [ends[0].min(order), ends[1].max(order)]
+                });
+            vec![
+                examination.experiment.name.to_owned(),
+                finding.checks.len().to_string(),
+                format!("{:.2}", used.fold(0.0, f64::max)),
+                if least > largest {
+                    "–".to_owned()
+                } else {
+                    format!("{least:.2} – {largest:.2}")
+                },
+                verdict(examination.passed()).to_owned(),
+            ]
+        };
+        let head = [
+            "case",
+            "checks",
+            "largest deviation over what is allowed",
+            "orders",
+            "",
+        ];
+        ReportTable::new("", head, self.examinations.iter().map(row))
     }
 }
 
-fn make(folder: &Path) -> Result<(), ValidateError> {
-    fs::create_dir_all(folder).map_err(|source| ValidateError::Folder {
-        path: PathBuf::from(folder),
-        source,
-    })
+/// The text on a case; `figures` is the folder of its pictures as the document sees it.
+fn block(examination: &Examination<Case>, figures: &str) -> String {
+    let Case { name, prose, .. } = examination.experiment;
+    let (title, source) = (prose.title(), prose.source());
+    let verdict = verdict(examination.passed());
+    let mut text =
+        format!("**{title}** – {source}. `peristalsis validate --only {name}`: {verdict}.\n");
+    if let Some(failure) = &examination.failure {
+        text.push_str(&format!("\nIt could not be examined: {failure}.\n"));
+    }
+    text + &markdown::finding(&examination.finding, figures)
+}
+
+/// A document with places for findings.
+struct MarkdownFile<'a> {
+    path: &'a Path,
+    text: String,
+}
+
+impl<'a> MarkdownFile<'a> {
+    fn read(path: &'a Path) -> Result<Self, ClaimError> {
+        let text = fs::read_to_string(path).map_err(|source| ClaimError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
+        Ok(Self { path, text })
+    }
+
+    fn replace(&mut self, name: &str, block: &str) -> Result<(), ClaimError> {
+        self.text = markdown::replaced(&self.text, name, block).map_err(|(block, line)| {
+            ClaimError::NoPlace {
+                path: self.path.to_owned(),
+                block,
+                line,
+            }
+        })?;
+        Ok(())
+    }
 }
 
 #[derive(Serialize)]
@@ -225,22 +235,18 @@ struct CaseDocument<'a> {
 }
 
 impl<'a> CaseDocument<'a> {
-    fn of(examination: &'a Examination) -> Self {
-        let Examination {
-            case,
-            finding,
-            failure,
-        } = examination;
+    fn of(examination: &'a Examination<Case>) -> Self {
+        let finding = &examination.finding;
         Self {
-            name: case.name,
-            title: case.title,
-            source: case.source,
+            name: examination.experiment.name,
+            title: examination.experiment.prose.title(),
+            source: examination.experiment.prose.source(),
             passed: examination.passed(),
-            failure: failure.as_deref(),
+            failure: examination.failure.as_deref(),
             paragraphs: &finding.paragraphs,
             checks: &finding.checks,
             convergences: &finding.convergences,
-            figures: finding.figures.iter().map(|figure| figure.name).collect(),
+            figures: finding.figures.iter().map(|figure| &*figure.name).collect(),
         }
     }
 }

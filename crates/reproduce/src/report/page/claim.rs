@@ -15,7 +15,7 @@ const COLUMN: f64 = 120.0;
 /// All that is said of a claim.
 pub(super) fn section(report: &Report, place: usize, examination: &Examination) -> Markup {
     let Examination {
-        claim,
+        experiment: claim,
         finding,
         failure,
     } = examination;
@@ -63,7 +63,7 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
     }
 }
 
-/// What is behind the finding, and whether it is enough.
+/// The runs behind the finding, and whether they are enough.
 fn statistics(examination: &Examination) -> Markup {
     let found = examination.finding.statistics;
     let needed = examination.finding.needed;

@@ -55,11 +55,11 @@ fn navigation(report: &Report) -> Markup {
                 li { a href="#overview" { "The claims at a glance" } }
                 @for examination in &report.examinations {
                     li {
-                        a href={ "#" (anchor(examination.claim.id)) } {
+                        a href={ "#" (anchor(examination.experiment.id)) } {
                             span.mark.(examination.finding.verdict.name()) aria-hidden="true" {}
-                            span.id { (examination.claim.id) }
+                            span.id { (examination.experiment.id) }
                             " "
-                            span { (rich(examination.claim.prose.title())) }
+                            span { (rich(examination.experiment.prose.title())) }
                         }
                     }
                 }
@@ -123,8 +123,8 @@ fn overview(report: &Report) -> Markup {
                         @for examination in &report.examinations {
                             tr {
                                 th scope="row" {
-                                    a href={ "#" (anchor(examination.claim.id)) } {
-                                        span.id { (examination.claim.id) } " " (rich(examination.claim.prose.title()))
+                                    a href={ "#" (anchor(examination.experiment.id)) } {
+                                        span.id { (examination.experiment.id) } " " (rich(examination.experiment.prose.title()))
                                     }
                                 }
                                 td { (verdict_badge(examination)) }

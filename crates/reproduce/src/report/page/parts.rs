@@ -30,7 +30,7 @@ pub(crate) fn verdict_badge(examination: &Examination) -> Markup {
     }
 }
 
-/// What became of the runs of a study, such as "60 of 72 runs finished, 2 failed, 10 missing".
+/// The states of the runs of a study, such as "60 of 72 runs finished, 2 failed, 10 missing".
 pub(crate) fn counts(study: &StudyOutcome) -> String {
     let mut text = format!("{} of {} runs finished", study.done, study.runs);
     for (number, state) in [(study.failed, "failed"), (study.missing(), "missing")] {

@@ -29,7 +29,7 @@ fn entry(report: &Report, study: &StudyOutcome) -> Markup {
     let claims: Vec<&str> = report
         .examinations
         .iter()
-        .map(|examination| &examination.claim)
+        .map(|examination| &examination.experiment)
         .filter(|claim| claim.studies.contains(&study.file.name))
         .map(|claim| claim.id)
         .collect();

@@ -2,23 +2,30 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Points, Tint};
-use peristalsis_figures::{Drawing, Width};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Tint};
+use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_physics::contact::{
     DissipationForm, LinearSpringDashpot, Normal, ViscoelasticHertz,
 };
 
-use super::study::{error_figure, evenly, numbers, table, words};
+use super::errors::{Steps, convergences, error_drawing};
+use super::plot::{curve, points};
+use crate::check::Check;
+use crate::columns::Columns;
+use crate::error::ClaimError;
+use crate::exhibit::spaced;
+use crate::finding::Finding;
+use crate::prose::Prose;
 use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::error::ValidateError;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::chain::Chain;
-use crate::textbook::finding::{CaseFigure, Check, Convergence, Finding};
+use crate::textbook::reference::hertz;
+
+const PROSE: Prose = Prose::new(include_str!("chain.md"));
 
 pub(super) const CASE: Case = Case {
     name: "chain",
-    title: "Sound in a chain of grains: dispersion, speed, order in the time step",
-    source: "Brillouin 1946; Nesterenko 1983 (Hertz, precompressed)",
+    prose: PROSE,
     examine,
 };
 
@@ -32,193 +39,189 @@ const HERTZ: ViscoelasticHertz = ViscoelasticHertz {
     dissipation_time: 0.0,
     dissipation_form: DissipationForm::Viscoelastic,
 };
+/// xi_0 \[d\]
+const OVERLAP: f64 = 0.01;
 /// Grains of the chains whose dispersion is measured.
 const GRAINS: usize = 32;
 /// Steps h sqrt(k/m).
-const STEPS: [f64; 4] = [0.1, 0.05, 0.025, 0.0125];
+const STEPS: Steps = Steps {
+    unit: "sqrt(m/k)",
+    label: "*h* √(*k*/*m*)",
+    lengths: [0.1, 0.05, 0.025, 0.0125],
+};
 
-/// A chain with the stiffness that small waves feel.
-struct Row {
+/// A chain with its stiffness for small waves.
+struct Experiment {
     name: &'static str,
     chain: Chain,
     stiffness: f64,
 }
 
-fn rows(grains: usize) -> [Row; 2] {
-    let overlap = 0.01;
+fn experiments(grains: usize) -> [Experiment; 2] {
     let chain = |normal: Normal| Chain {
         normal,
         grains,
-        overlap,
+        overlap: OVERLAP,
         amplitude: 1e-4,
     };
-    // (3/2) kappa sqrt(xi_0), kappa = 2 Y sqrt(R)/(3 (1 - nu^2)) with R = 1/4.
-    let nu = HERTZ.poisson_ratio;
-    let kappa = 2.0 * 0.5 / (3.0 * (1.0 - nu * nu));
     [
-        Row {
+        Experiment {
             name: "linear law",
             chain: chain(LINEAR),
             stiffness: 1.0,
         },
-        Row {
+        Experiment {
             name: "Hertz law",
             chain: chain(Normal::Hertz(HERTZ)),
-            stiffness: 1.5 * kappa * overlap.sqrt(),
+            // (3/2) kappa sqrt(xi_0); the reduced radius of two equal grains is d/4.
+            stiffness: 1.5 * hertz::stiffness(&HERTZ, 0.25) * OVERLAP.sqrt(),
         },
     ]
 }
 
-impl Row {
+impl Experiment {
     /// omega(k) = 2 sqrt(k/m) |sin(k a/2)|.
     fn expected(&self, mode: usize) -> f64 {
         2.0 * self.stiffness.sqrt() * libm::sin(PI * mode as f64 / self.chain.grains as f64)
     }
 
-    /// h of a step in units of sqrt(m/k).
-    fn time_step(&self, scaled: f64) -> f64 {
-        scaled / self.stiffness.sqrt()
+    /// The frequency of a mode; the step is in units of sqrt(m/k).
+    fn frequency(
+        &self,
+        mode: usize,
+        half_periods: usize,
+        means: Means,
+        step: f64,
+    ) -> Result<f64, ClaimError> {
+        let time_step = step / self.stiffness.sqrt();
+        self.chain.frequency(mode, half_periods, means, time_step)
     }
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
-    let half_periods = circumstances.extent.choose(4, 10);
-    let mut finding = Finding {
-        paragraphs: vec![
-            "A ring of grains on the axis of the tube, closed by its period; each overlaps its neighbours by xi_0 = 0.01 (spacing a \
-             = d - xi_0). The frequency of a standing wave of amplitude 1e-4 xi_0 is that of the passages of its mode through 0. \
-             Under the Hertz law k = (3/2) kappa sqrt(xi_0). Speed of sound: omega/k of one wave around a ring of 128 grains, whose \
-             dispersion takes 1e-4 off a sqrt(k/m)."
-                .to_owned(),
-        ],
-        ..Finding::default()
-    };
-    let mut measured: Vec<(&str, f64, f64, f64)> = Vec::new();
-    for row in rows(GRAINS) {
-        let time_step = row.time_step(STEPS[3]);
+/// A mode of a chain.
+struct Row {
+    law: &'static str,
+    /// k a
+    wavenumber: f64,
+    expected: f64,
+    found: f64,
+    /// Frequency in units of sqrt(k/m).
+    scaled: f64,
+}
+
+fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+    let half_periods = circumstances.size.choose(4, 10);
+    let mut finding = Finding::described(&PROSE, &[]);
+    let mut rows: Vec<Row> = Vec::new();
+    for experiment in experiments(GRAINS) {
         for mode in [1, 2, 4, 8, 12, 16] {
             circumstances.go_on()?;
-            let found = row
-                .chain
-                .frequency(mode, half_periods, Means::USUAL, time_step)?;
-            let expected = row.expected(mode);
-            let wavenumber = row.chain.wavenumber(mode) * row.chain.spacing();
-            measured.push((row.name, wavenumber, expected, found));
+            let row = Row::measure(&experiment, mode, half_periods)?;
             if [1, 8, 16].contains(&mode) {
-                let setting = format!("{}, k a = {:.3} pi", row.name, wavenumber / PI);
-                let check = Check::relative("frequency", &setting, expected, found, 1e-4);
+                let setting = format!("{}, k a = {:.3} pi", row.law, row.wavenumber / PI);
+                let check = Check::relative("frequency", &setting, row.expected, row.found, 1e-4);
                 finding.checks.push(check.by("2 sqrt(k/m) sin(k a/2)"));
             }
+            rows.push(row);
         }
-        let plain = |means| row.chain.frequency(8, half_periods, means, time_step);
         for means in Means::INTEGRATORS {
-            let check = Check::relative(
-                "frequency, fast kernel against plain",
-                &format!("{}, {}", row.name, means.name()),
-                plain(means.plainly())?,
-                plain(means)?,
-                1e-9,
-            );
-            finding.checks.push(check.by("the plain kernel"));
-            let mut errors = Vec::new();
-            for step in STEPS {
-                circumstances.go_on()?;
-                let found = row
-                    .chain
-                    .frequency(8, half_periods, means, row.time_step(step))?;
-                // Amplitudes are small, but the Hertz law is not linear: the limit of small amplitude is what is expected.
-                errors.push((found / row.expected(8) - 1.0).abs());
-            }
-            finding.convergences.push(Convergence::new(
-                "frequency",
-                &format!("{}, k a = pi/2, {}", row.name, means.name()),
-                "sqrt(m/k)",
-                &STEPS,
-                &errors,
-                [1.8, 2.2],
-            ));
+            finding
+                .checks
+                .push(kernels_agree(&experiment, half_periods, means)?);
         }
+        let setting = format!("{}, k a = pi/2", experiment.name);
+        let error = |means, step| {
+            circumstances.go_on()?;
+            let found = experiment.frequency(8, half_periods, means, step)?;
+            // The expected value is the limit of small amplitude: amplitudes are small, but the Hertz law is not linear.
+            Ok((found / experiment.expected(8) - 1.0).abs())
+        };
+        let errors = convergences(("frequency", &setting), &STEPS, [1.8, 2.2], error)?;
+        finding.convergences.extend(errors);
     }
-    for row in rows(128) {
+    for experiment in experiments(128) {
         circumstances.go_on()?;
-        let time_step = row.time_step(STEPS[1]);
-        let frequency = row.chain.frequency(1, 4, Means::USUAL, time_step)?;
-        let found = frequency / row.chain.wavenumber(1);
-        let expected = row.chain.spacing() * row.stiffness.sqrt();
-        let check = Check::relative("speed of sound", row.name, expected, found, 3e-4);
+        let frequency = experiment.frequency(1, 4, Means::USUAL, STEPS.lengths[1])?;
+        let found = frequency / experiment.chain.wavenumber(1);
+        let expected = experiment.chain.spacing() * experiment.stiffness.sqrt();
+        let check = Check::relative("speed of sound", experiment.name, expected, found, 3e-4);
         finding.checks.push(check.by("a sqrt(k/m)"));
     }
-    finding.figures.push(CaseFigure {
-        name: "chain",
-        caption: "Frequencies of standing waves in chains under the linear and the Hertz law against the wavenumber, with 2 sin(ka/2) \
-                  and the line of sound.",
-        drawing: dispersion(&measured)?,
-    });
-    let linear = finding.convergences[..2].iter().collect();
-    finding.figures.push(CaseFigure {
-        name: "chain-errors",
-        caption: "Error of the frequency at ka = π/2 against the time step, linear law; that under the Hertz law is the same.",
-        drawing: error_figure(
-            "Errors of the frequency fall with the square of the time step.",
-            "*h* √(*k*/*m*)",
-            &[("", linear)],
-        )?,
-    });
-    finding.table = table([
-        words(
-            "law",
-            "contact law",
-            measured.iter().map(|row| row.0.to_owned()).collect(),
+    finding.figures = vec![
+        PROSE.figure("chain", &[], dispersion(&rows)?),
+        PROSE.figure(
+            "chain-errors",
+            &[],
+            error_drawing(
+                "Errors of the frequency fall with the square of the time step.",
+                &STEPS,
+                &[("", &finding.convergences[..2])],
+            )?,
         ),
-        numbers(
-            "wavenumber",
-            "1/a",
-            "k a",
-            measured.iter().map(|row| row.1).collect(),
-        ),
-        numbers(
-            "expected",
-            "1/t",
-            "frequency",
-            measured.iter().map(|row| row.2).collect(),
-        ),
-        numbers(
-            "found",
-            "1/t",
-            "frequency",
-            measured.iter().map(|row| row.3).collect(),
-        ),
-    ])?;
+    ];
+    finding.data = Some(
+        Columns::of(&rows)
+            .word("law", "contact law", |row| row.law.to_owned())
+            .number("wavenumber", "1/a", "k a", |row| row.wavenumber)
+            .number("expected", "1/t", "frequency", |row| row.expected)
+            .number("found", "1/t", "frequency", |row| row.found)
+            .table()?,
+    );
     Ok(finding)
 }
 
-fn dispersion(measured: &[(&str, f64, f64, f64)]) -> Result<Drawing, ValidateError> {
-    let wavenumbers = evenly(0.0, PI, 80);
-    let over_pi = |values: &[f64]| -> Vec<f64> { values.iter().map(|k| k / PI).collect() };
-    let curve: Vec<f64> = wavenumbers
-        .iter()
-        .map(|k| 2.0 * libm::sin(0.5 * k))
-        .collect();
-    let sound = [0.0, 0.6 * PI];
+impl Row {
+    fn measure(
+        experiment: &Experiment,
+        mode: usize,
+        half_periods: usize,
+    ) -> Result<Self, ClaimError> {
+        let found = experiment.frequency(mode, half_periods, Means::USUAL, STEPS.lengths[3])?;
+        Ok(Self {
+            law: experiment.name,
+            wavenumber: experiment.chain.wavenumber(mode) * experiment.chain.spacing(),
+            expected: experiment.expected(mode),
+            found,
+            scaled: found / experiment.stiffness.sqrt(),
+        })
+    }
+}
+
+/// The fast kernels against the plain one.
+fn kernels_agree(
+    experiment: &Experiment,
+    half_periods: usize,
+    means: Means,
+) -> Result<Check, ClaimError> {
+    let frequency = |means| experiment.frequency(8, half_periods, means, STEPS.lengths[3]);
+    let (plain, fast) = (frequency(means.plainly())?, frequency(means)?);
+    let quantity = "frequency, fast kernel against plain";
+    let setting = format!("{}, {}", experiment.name, means.name());
+    Ok(Check::relative(quantity, &setting, plain, fast, 1e-9).by("the plain kernel"))
+}
+
+fn dispersion(rows: &[Row]) -> Result<Drawing, FigureError> {
+    let over_pi = spaced(0.0, 1.0, 80);
+    let sound = [0.0, 0.6];
     let mut panel = ChartPanel::new("*ka*/π", "*ω* / √(*k*/*m*)")
         .x_range(0.0..=1.05)
         .y_range(0.0..=2.2)
         .with(
-            Line::new("sound", &over_pi(&sound), &sound)
+            Line::new("sound", &sound, &sound.map(|k| PI * k))
                 .tint(Tint::Grey)
                 .weight(2.0),
         )
-        .with(Line::new("2 sin(*ka*/2)", &over_pi(&wavenumbers), &curve).tint(Tint::Black));
-    for (series, row) in rows(GRAINS).iter().enumerate() {
-        let of_law = measured.iter().filter(|point| point.0 == row.name);
-        let (x, y): (Vec<f64>, Vec<f64>) = of_law
-            .map(|point| (point.1 / PI, point.3 / row.stiffness.sqrt()))
-            .unzip();
-        let points = Points::new(row.name, &x, &y).series(series);
+        .with(
+            curve("2 sin(*ka*/2)", &over_pi, |k| 2.0 * libm::sin(0.5 * PI * k)).tint(Tint::Black),
+        );
+    for (series, experiment) in experiments(GRAINS).iter().enumerate() {
+        let mine = rows.iter().filter(|row| row.law == experiment.name);
+        let coordinates = |row: &Row| (row.wavenumber / PI, row.scaled);
+        let points = points(experiment.name, mine, coordinates).series(series);
         panel = panel.with(if series == 0 { points } else { points.open() });
     }
-    Ok(ChartFigure::new(panel)
+    ChartFigure::new(panel)
         .description("Frequencies of both laws lie on 2 sin(ka/2), which leaves the line of sound as waves become short.")
         .width(Width::SingleColumn)
-        .draw()?)
+        .draw()
 }

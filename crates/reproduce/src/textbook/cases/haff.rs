@@ -1,22 +1,28 @@
 //! Haff's law: a gas of inelastic grains cools.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Points, Tint};
-use peristalsis_figures::{Drawing, Scale};
+use peristalsis_analysis::mean_and_error;
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Tint};
+use peristalsis_figures::{Drawing, FigureError, Scale};
 use peristalsis_physics::contact::LinearSpringDashpot;
 
+use super::plot::curve;
 use super::restitution::{linear_damping, measured_with};
-use super::study::{numbers, table};
+use crate::check::Check;
+use crate::columns::Columns;
+use crate::error::ClaimError;
+use crate::exhibit::spaced;
+use crate::finding::Finding;
+use crate::prose::Prose;
 use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::error::ValidateError;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::gas::Gas;
-use crate::textbook::finding::{CaseFigure, Check, Finding};
 use crate::textbook::reference::kinetic::CoolingGas;
+
+const PROSE: Prose = Prose::new(include_str!("haff.md"));
 
 pub(super) const CASE: Case = Case {
     name: "haff",
-    title: "Haff's law: the cooling of a homogeneous gas of inelastic grains",
-    source: "Haff 1983; van Noije & Ernst 1998",
+    prose: PROSE,
     examine,
 };
 
@@ -42,7 +48,7 @@ struct Experiment {
 }
 
 impl Experiment {
-    fn new(restitution: f64) -> Result<Self, ValidateError> {
+    fn new(restitution: f64) -> Result<Self, ClaimError> {
         let law = LinearSpringDashpot {
             normal_stiffness: 1.0,
             normal_damping: linear_damping(restitution),
@@ -57,7 +63,7 @@ impl Experiment {
             temperature: 0.0,
         };
         let theory = CoolingGas {
-            // What the engine's collisions have at this step.
+            // The restitution of the engine's collisions at this step.
             restitution: measured_with(law.normal_damping, STEPS_PER_CONTACT)?,
             density: gas.density(),
             surface: 2.0 / gas.radius(),
@@ -91,53 +97,38 @@ impl Experiment {
     }
 }
 
-/// Mean and standard error.
-fn mean_and_error(values: &[f64]) -> (f64, f64) {
-    let number = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / number;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (mean, (squares / (number * (number - 1.0))).sqrt())
-}
-
 /// Part of the rate that theory and experiment may differ by besides three standard errors.
 ///
 /// Known and left out: velocities that collisions correlate (0.2 % for hard spheres at e = 0.6), terms of order 1/N (0.2 %), a
 /// third grain in 1 % of the contacts, the square of the softness, which is 2 % at the start.
 const SYSTEMATIC: f64 = 0.01;
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
-    let replicates = circumstances.extent.choose(4, 28);
-    let mut finding = Finding {
-        paragraphs: vec![
-            format!(
-                "{replicates} replicates of {GRAINS} grains each (volume fraction {VOLUME_FRACTION}, plain kernel) under the linear law, \
-                 whose e does not depend on speed. 1/sqrt(T) grows linearly in time; its slope, each piece with the weight that its \
-                 scatter gives it, divided by that of kinetic theory (contact value of Carnahan & Starling, second Sonine coefficient, \
-                 e as the engine's own collisions have it at this step), is 1. The error is that of the mean over replicates; three of \
-                 them and {:.0} % are allowed. The engine has no fully periodic box: the gas is in a cylinder that is periodic along \
-                 its axis and has a mirror for a side (the state is taken out and radial velocities of grains that leave are \
-                 reversed), which takes no energy.",
-                100.0 * SYSTEMATIC
-            ),
-            "Theory is that of this gas. (1) Grains at the mirror lack partners and gather there: the collision rate is that of \
-             hard spheres with the surface tension of Henderson & Plischke (1987), which a Monte Carlo of hard spheres in a narrow \
-             cylinder confirms within 2 % where the correction of a dilute gas is 9 % off (`cargo test -p peristalsis-validate \
-             kinetic`). (2) Soft grains turn about each other while they touch, and lose less, by 2 % at the start and 0.7 % at the \
-             end. (3) The gas does not turn about the axis at the start: the mirror keeps angular momentum, and what there is stays \
-             while the rest cools. (4) The cylinder is so small, in mean free paths, that shear along its axis decays faster than \
-             the gas cools. A wide flat cylinder without (1), (3) and (4) cools some percent more slowly."
-                .to_owned(),
+/// A sample of a cooling gas.
+struct Row {
+    restitution: f64,
+    replicate: u64,
+    /// In units of tau.
+    time: f64,
+    /// In units of T_0.
+    temperature: f64,
+}
+
+fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+    let replicates = circumstances.size.choose(4, 28);
+    let mut finding = Finding::described(
+        &PROSE,
+        &[
+            ("replicates", &replicates),
+            ("grains", &GRAINS),
+            ("fraction", &VOLUME_FRACTION),
+            ("systematic", &(100.0 * SYSTEMATIC)),
         ],
-        ..Finding::default()
-    };
-    let mut curves: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
-    let (mut all_times, mut all_temperatures) = (Vec::new(), Vec::new());
-    let (mut all_restitutions, mut all_replicates) = (Vec::new(), Vec::new());
+    );
+    let mut rows: Vec<Row> = Vec::new();
     for restitution in RESTITUTIONS {
         let experiment = Experiment::new(restitution)?;
         let tau = experiment.cooling_time();
         let mut ratios = Vec::new();
-        let mut mean = vec![[0.0; 2]; SAMPLES + 1];
         for replicate in 0..replicates {
             let course = experiment.gas.cool(
                 replicate,
@@ -148,62 +139,58 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
                 circumstances,
             )?;
             ratios.push(experiment.ratio(&course));
-            for (sum, sample) in mean.iter_mut().zip(&course) {
-                sum[0] = sample[0] / tau;
-                sum[1] += sample[1] / (experiment.gas.temperature * f64::from(replicates as u32));
-                all_times.push(sample[0] / tau);
-                all_temperatures.push(sample[1] / experiment.gas.temperature);
-                all_restitutions.push(restitution);
-                all_replicates.push(replicate as f64);
-            }
+            rows.extend(course.iter().map(|sample| Row {
+                restitution,
+                replicate,
+                time: sample[0] / tau,
+                temperature: sample[1] / experiment.gas.temperature,
+            }));
         }
         let (found, error) = mean_and_error(&ratios);
-        finding.checks.push(
-            Check::absolute(
-                "rate of cooling over that of theory",
-                &format!("e = {restitution}"),
-                1.0,
-                found,
-                3.0 * error + SYSTEMATIC,
-            )
-            .by("Haff 1983, van Noije & Ernst 1998")
-            .with_error(error),
-        );
-        curves.push((restitution, mean));
+        let quantity = "rate of cooling over that of theory";
+        let setting = format!("e = {restitution}");
+        let check = Check::absolute(quantity, &setting, 1.0, found, 3.0 * error + SYSTEMATIC)
+            .by("Haff 1983, van Noije & Ernst 1998");
+        finding.checks.push(check.with_error(error));
     }
-    finding.figures.push(CaseFigure {
-        name: "haff",
-        caption: "Temperature of gases of two restitutions, mean over replicates, against time in units of their tau from kinetic \
-                  theory, with Haff's law for hard grains (no parameter is fitted; soft ones stay 1 to 2 % warmer).",
-        drawing: drawing(&curves)?,
-    });
-    finding.table = table([
-        numbers("restitution", "", "e", all_restitutions),
-        numbers("replicate", "", "number", all_replicates),
-        numbers("time", "tau", "time", all_times),
-        numbers("temperature", "T_0", "temperature", all_temperatures),
-    ])?;
+    finding.figures = vec![PROSE.figure("haff", &[], drawing(&rows)?)];
+    finding.data = Some(
+        Columns::of(&rows)
+            .number("restitution", "", "e", |row| row.restitution)
+            .number("replicate", "", "number", |row| row.replicate as f64)
+            .number("time", "tau", "time", |row| row.time)
+            .number("temperature", "T_0", "temperature", |row| row.temperature)
+            .table()?,
+    );
     Ok(finding)
 }
 
-fn drawing(curves: &[(f64, Vec<[f64; 2]>)]) -> Result<Drawing, ValidateError> {
-    let times = super::study::evenly(0.0, TIMES_TAU, 100);
-    let law: Vec<f64> = times
-        .iter()
-        .map(|t| 1.0 / ((1.0 + t) * (1.0 + t)))
-        .collect();
+fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
+    let law = |time: f64| 1.0 / ((1.0 + time) * (1.0 + time));
     let mut panel = ChartPanel::new("time *t*/*τ*", "temperature *T*/*T*_{0}")
         .x_range(0.0..)
         .y_scale(Scale::Logarithmic)
-        .with(Line::new("(1 + *t*/*τ*)^{−2}", &times, &law).tint(Tint::Black));
-    for (series, (restitution, course)) in curves.iter().enumerate() {
-        // So many that the law shows between them.
-        let some = course.iter().step_by(SAMPLES / 15);
-        let (x, y): (Vec<f64>, Vec<f64>) = some.map(|sample| (sample[0], sample[1])).unzip();
-        let points = Points::new(&format!("*e* = {restitution}"), &x, &y).series(series);
+        .with(curve("(1 + *t*/*τ*)^{−2}", &spaced(0.0, TIMES_TAU, 100), law).tint(Tint::Black));
+    for (series, restitution) in RESTITUTIONS.into_iter().enumerate() {
+        let mine: Vec<&Row> = rows
+            .iter()
+            .filter(|row| row.restitution == restitution)
+            .collect();
+        let courses: Vec<&[&Row]> = mine.chunks(SAMPLES + 1).collect();
+        // The mean over replicates of so few samples that the law shows between them.
+        let (time, temperature): (Vec<f64>, Vec<f64>) = (0..=SAMPLES)
+            .step_by(SAMPLES / 15)
+            .map(|sample| {
+                let temperatures = courses.iter().map(|course| course[sample].temperature);
+                let mean = temperatures.sum::<f64>() / courses.len() as f64;
+                (mine[sample].time, mean)
+            })
+            .unzip();
+        let name = format!("*e* = {restitution}");
+        let points = Points::new(&name, &time, &temperature).series(series);
         panel = panel.with(if series == 0 { points } else { points.open() });
     }
-    Ok(ChartFigure::new(panel)
+    ChartFigure::new(panel)
         .description("Both gases cool along Haff's law.")
-        .draw()?)
+        .draw()
 }

@@ -1,20 +1,24 @@
 //! A sphere thrown without spin slides, and ends up rolling.
 
-use peristalsis_figures::Drawing;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Points, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
+use peristalsis_figures::{Drawing, FigureError};
 use peristalsis_physics::contact::{CundallStrack, LinearSpringDashpot, Sliding};
 
-use super::study::{numbers, table};
+use super::plot::points;
+use crate::check::Check;
+use crate::columns::Columns;
+use crate::error::ClaimError;
+use crate::finding::Finding;
+use crate::prose::Prose;
 use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::error::ValidateError;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::sliding::{Instant, Throw};
-use crate::textbook::finding::{CaseFigure, Check, Finding};
+
+const PROSE: Prose = Prose::new(include_str!("roll.md"));
 
 pub(super) const CASE: Case = Case {
     name: "slip-to-roll",
-    title: "A sphere thrown along a plane slides until it rolls at 5/7 of its speed",
-    source: "textbooks of mechanics (Coriolis 1835); LAMMPS, MFiX",
+    prose: PROSE,
     examine,
 };
 
@@ -34,25 +38,17 @@ const THROW: Throw = Throw {
     speed: 0.02,
 };
 const TIME_STEP: f64 = 0.05;
-/// How long it is looked at, over the time that it slides.
-const LOOKED_AT: f64 = 2.0;
+/// Duration over the time that it slides.
+const DURATION: f64 = 2.0;
 
 /// t_s = 2 v_0/(7 mu g), when slip ends.
 fn slip_time() -> f64 {
     2.0 * THROW.speed / (7.0 * THROW.friction.kinetic_friction * THROW.gravity)
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
-    let mut finding = Finding {
-        paragraphs: vec![
-            "Static friction 0.5, kinetic 0.4, with the default tangential dashpot, which damps what the spring still holds when \
-             slip ends. The weight is the engine's body force, which acts along the tube: the plane is the top of a sphere of \
-             the wall a million times as large as the grain. While it slides v = v_0 - mu g t, r omega = (5/2) mu g t."
-                .to_owned(),
-        ],
-        ..Finding::default()
-    };
-    let duration = LOOKED_AT * slip_time();
+fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+    let mut finding = Finding::described(&PROSE, &[]);
+    let duration = DURATION * slip_time();
     let mut usual = Vec::new();
     for means in Means::INTEGRATORS {
         for means in [means, means.plainly()] {
@@ -70,18 +66,15 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ValidateError> {
             }
         }
     }
-    let thinned: Vec<&Instant> = usual.iter().step_by(usual.len() / 24).collect();
-    let of = |read: fn(&Instant) -> f64| thinned.iter().map(|i| read(i)).collect::<Vec<f64>>();
-    finding.table = table([
-        numbers("time", "t", "since the throw", of(|i| i.time)),
-        numbers("velocity", "d/t", "of the centre", of(|i| i.velocity)),
-        numbers("rolling", "d/t", "r omega", of(|i| i.rolling)),
-    ])?;
-    finding.figures.push(CaseFigure {
-        name: "slip-to-roll",
-        caption: "Velocity and spin of a sphere thrown without spin, with the closed forms for sliding and the 5/7 of rolling.",
-        drawing: drawing(&of(|i| i.time), &of(|i| i.velocity), &of(|i| i.rolling))?,
-    });
+    let thinned: Vec<Instant> = usual.iter().copied().step_by(usual.len() / 24).collect();
+    finding.data = Some(
+        Columns::of(&thinned)
+            .number("time", "t", "since the throw", |row| row.time)
+            .number("velocity", "d/t", "of the centre", |row| row.velocity)
+            .number("rolling", "d/t", "r omega", |row| row.rolling)
+            .table()?,
+    );
+    finding.figures = vec![PROSE.figure("slip-to-roll", &[], drawing(&thinned)?)];
     Ok(finding)
 }
 
@@ -95,63 +88,60 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
         .iter()
         .find(|instant| instant.rolling >= instant.velocity)
         .map_or(f64::NAN, |instant| instant.time);
-    vec![
-        Check::relative(
+    let [slows, time] = ["v_0 - mu g t", "2 v_0/(7 mu g)"];
+    let over_start = |velocity: f64| velocity / THROW.speed;
+    [
+        (
             "v at the end, over v_0",
-            setting,
+            "5/7",
             5.0 / 7.0,
-            last.velocity / THROW.speed,
+            over_start(last.velocity),
             1e-4,
-        )
-        .by("5/7"),
-        Check::relative(
+        ),
+        (
             "r omega at the end, over v_0",
-            setting,
+            "5/7",
             5.0 / 7.0,
-            last.rolling / THROW.speed,
+            over_start(last.rolling),
             1e-4,
-        )
-        .by("5/7"),
-        Check::relative(
+        ),
+        (
             "v half way through the slip, over v_0",
-            setting,
-            1.0 - slowed / THROW.speed,
-            middle.velocity / THROW.speed,
+            slows,
+            1.0 - over_start(slowed),
+            over_start(middle.velocity),
             1e-3,
-        )
-        .by("v_0 - mu g t"),
-        Check::relative("time at which it rolls", setting, slip_time(), rolls, 5e-3)
-            .by("2 v_0/(7 mu g)"),
+        ),
+        ("time at which it rolls", time, slip_time(), rolls, 5e-3),
     ]
+    .map(|(quantity, reference, expected, found, tolerance)| {
+        Check::relative(quantity, setting, expected, found, tolerance).by(reference)
+    })
+    .to_vec()
 }
 
-fn drawing(time: &[f64], velocity: &[f64], rolling: &[f64]) -> Result<Drawing, ValidateError> {
+fn drawing(course: &[Instant]) -> Result<Drawing, FigureError> {
     let ends = [0.0, slip_time()];
     let slowed = THROW.friction.kinetic_friction * THROW.gravity / THROW.speed;
-    let scaled = |values: &[f64]| -> Vec<f64> { values.iter().map(|v| v / THROW.speed).collect() };
+    let line = |name: &str, of: fn(f64) -> f64| {
+        Line::new(name, &ends, &ends.map(|time| of(slowed * time)))
+            .tint(Tint::Black)
+            .pattern(Pattern::Dashed)
+    };
+    let series = |name: &str, of: fn(&Instant) -> f64| {
+        points(name, course, |row| (row.time, of(row) / THROW.speed))
+    };
     let panel = ChartPanel::new("time *t*", "over *v*_{0}")
         .x_range(0.0..)
         .y_range(0.0..=1.05)
-        .with(
-            Line::new("sliding", &ends, &ends.map(|t| 1.0 - slowed * t))
-                .tint(Tint::Black)
-                .pattern(Pattern::Dashed),
-        )
-        .with(
-            Line::new("", &ends, &ends.map(|t| 2.5 * slowed * t))
-                .tint(Tint::Black)
-                .pattern(Pattern::Dashed),
-        )
+        .with(line("sliding", |slowed| 1.0 - slowed))
+        .with(line("", |slowed| 2.5 * slowed))
         .with(Reference::horizontal(5.0 / 7.0).label("5/7"))
-        .with(Points::new("velocity *v*", time, &scaled(velocity)).series(0))
-        .with(
-            Points::new("spin *rω*", time, &scaled(rolling))
-                .series(1)
-                .open(),
-        );
-    Ok(ChartFigure::new(panel)
+        .with(series("velocity *v*", |row| row.velocity).series(0))
+        .with(series("spin *rω*", |row| row.rolling).series(1).open());
+    ChartFigure::new(panel)
         .description(
             "Velocity falls and spin rises until both are 5/7 of the velocity at the start.",
         )
-        .draw()?)
+        .draw()
 }

@@ -4,10 +4,10 @@ use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Simulation};
-use peristalsis_physics::contact::{ContactModel, Normal};
+use peristalsis_physics::contact::Normal;
 
-use super::{Means, far_away};
-use crate::textbook::error::ValidateError;
+use super::{Means, far_away, smooth};
+use crate::error::ClaimError;
 
 /// A ring of grains of diameter and mass 1, closed by the period of the tube; each overlaps both neighbours.
 ///
@@ -36,14 +36,14 @@ impl Chain {
     /// Frequency of a standing wave \[1/t\], from the times at which its amplitude passes 0 in so many half periods.
     ///
     /// # Errors
-    /// Those of the engine.
+    /// Errors of the engine.
     pub(crate) fn frequency(
         &self,
         mode: usize,
         half_periods: usize,
         means: Means,
         time_step: f64,
-    ) -> Result<f64, ValidateError> {
+    ) -> Result<f64, ClaimError> {
         let spacing = self.spacing();
         let shape: Vec<f64> = (0..self.grains)
             .map(|j| libm::cos(TAU * (mode * j % self.grains) as f64 / self.grains as f64))
@@ -53,12 +53,8 @@ impl Chain {
             DVec3::new(0.0, 0.0, rest(j) + self.amplitude * self.overlap * shape)
         });
         let bodies = Bodies::grains_at_rest(places.collect(), vec![1.0; self.grains]);
-        let contact = ContactModel {
-            normal: self.normal,
-            friction: None,
-        };
         let length = self.grains as f64 * spacing;
-        let parameters = means.parameters(contact, time_step, 0.3);
+        let parameters = means.parameters(smooth(self.normal), time_step, 0.3);
         let mut simulation = Simulation::new(bodies, far_away(20.0, length), parameters);
         // Amplitude of the mode and its rate.
         let amplitude = |simulation: &Simulation| {

@@ -4,13 +4,13 @@ use core::f64::consts::{PI, TAU};
 
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Simulation};
-use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
+use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-use super::{Means, far_away};
+use super::{Means, far_away, smooth};
+use crate::error::ClaimError;
 use crate::textbook::case::Circumstances;
-use crate::textbook::error::ValidateError;
 
 /// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
 ///
@@ -97,7 +97,7 @@ impl Gas {
     /// Time and temperature, `samples` times in equal parts of `duration`.
     ///
     /// # Errors
-    /// Those of the engine, and a request to stop.
+    /// Errors of the engine, and a request to stop.
     pub(crate) fn cool(
         &self,
         seed: u64,
@@ -105,11 +105,8 @@ impl Gas {
         time_step: f64,
         [duration, samples]: [f64; 2],
         circumstances: Circumstances<'_>,
-    ) -> Result<Vec<[f64; 2]>, ValidateError> {
-        let contact = ContactModel {
-            normal: Normal::Linear(self.law),
-            friction: None,
-        };
+    ) -> Result<Vec<[f64; 2]>, ClaimError> {
+        let contact = smooth(Normal::Linear(self.law));
         let radius = self.radius();
         let wall = far_away(radius + 3.0, self.length);
         let parameters = means.parameters(contact, time_step, 0.3);
@@ -136,7 +133,7 @@ impl Gas {
 /// The simulation with the grains turned back that will be outside in a time `ahead`.
 ///
 /// Half of the time between two looks: so the mirror stands where it should in the mean.
-fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulation, ValidateError> {
+fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulation, ClaimError> {
     let leaves = |position: &DVec3, velocity: &DVec3| {
         let outward = position.x * velocity.x + position.y * velocity.y;
         let place = *position + ahead * *velocity;

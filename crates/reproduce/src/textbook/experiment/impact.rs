@@ -1,12 +1,12 @@
 //! Impacts: of two grains, and of a grain on a plane.
 
 use glam::DVec3;
-use peristalsis_engine::{Bodies, Simulation, Wall};
+use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::wall::Lattice;
 
 use super::{Means, far_away, straight};
-use crate::textbook::error::ValidateError;
+use crate::error::ClaimError;
 
 /// Diameter of the wall's sphere that stands for a plane \[d\].
 ///
@@ -39,7 +39,7 @@ impl Sphere {
     }
 }
 
-/// What a sphere meets.
+/// The body that a sphere meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Partner {
     /// Another grain, at the side of negative x.
@@ -56,10 +56,10 @@ pub(crate) struct Impact {
     pub(crate) partner: Partner,
 }
 
-/// What came out of an impact.
+/// Motion after an impact, and extremes in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rebound {
-    /// Velocities after it; that of a plane is 0.
+    /// Velocities after it; a plane stays at rest.
     pub(crate) velocity: [DVec3; 2],
     /// Spins about z after it.
     pub(crate) spin: [f64; 2],
@@ -75,53 +75,91 @@ pub(crate) struct Rebound {
 const MOST_STEPS: u64 = 1 << 22;
 
 impl Impact {
-    /// Half the sum of diameters, of the grain's and its partner's \[d\].
-    pub(crate) fn reach(&self) -> f64 {
-        0.5 * (self.sphere.diameter + self.partner_diameter())
+    /// Two grains of diameter and mass 1 that meet head-on, each with this speed.
+    pub(crate) fn of_twins(contact: ContactModel, speed: f64) -> Self {
+        let velocity = |speed: f64| DVec3::new(speed, 0.0, 0.0);
+        Self::between(contact, velocity(-speed), velocity(speed))
     }
 
-    pub(crate) fn partner_diameter(&self) -> f64 {
-        match self.partner {
-            Partner::Grain(other) => other.diameter,
-            Partner::Plane => PLANE_DIAMETER,
+    /// Two grains of diameter and mass 1 with these velocities.
+    pub(crate) fn between(contact: ContactModel, one: DVec3, other: DVec3) -> Self {
+        Self {
+            contact,
+            sphere: Sphere::unit(one, 0.0),
+            partner: Partner::Grain(Sphere::unit(other, 0.0)),
         }
+    }
+
+    /// A grain of diameter and mass 1 that hits a plane.
+    pub(crate) fn on_plane(contact: ContactModel, velocity: DVec3) -> Self {
+        Self {
+            contact,
+            sphere: Sphere::unit(velocity, 0.0),
+            partner: Partner::Plane,
+        }
+    }
+
+    /// e from the velocities after the impact.
+    pub(crate) fn restitution(&self, velocity: [DVec3; 2]) -> f64 {
+        -(velocity[0].x - velocity[1].x) / self.relative_velocity().x
+    }
+
+    /// The partner as a sphere; a plane is at rest, very large and infinitely heavy.
+    pub(crate) fn other(&self) -> Sphere {
+        match self.partner {
+            Partner::Grain(other) => other,
+            Partner::Plane => Sphere {
+                diameter: PLANE_DIAMETER,
+                mass: f64::INFINITY,
+                ..Sphere::unit(DVec3::ZERO, 0.0)
+            },
+        }
+    }
+
+    /// Half the sum of the diameters \[d\].
+    pub(crate) fn reach(&self) -> f64 {
+        0.5 * (self.sphere.diameter + self.other().diameter)
     }
 
     /// d_i d_j/(2 (d_i + d_j)).
     pub(crate) fn reduced_radius(&self) -> f64 {
-        let (one, other) = (self.sphere.diameter, self.partner_diameter());
+        let (one, other) = (self.sphere.diameter, self.other().diameter);
         one * other / (2.0 * (one + other))
+    }
+
+    /// m_j/(m_i + m_j), the share of the sphere in a change of the relative velocity.
+    pub(crate) fn share(&self) -> f64 {
+        match self.partner {
+            Partner::Grain(other) => other.mass / (self.sphere.mass + other.mass),
+            Partner::Plane => 1.0,
+        }
     }
 
     /// m_i m_j/(m_i + m_j).
     pub(crate) fn reduced_mass(&self) -> f64 {
+        let mass = self.sphere.mass;
         match self.partner {
-            Partner::Grain(other) => {
-                self.sphere.mass * other.mass / (self.sphere.mass + other.mass)
-            }
-            Partner::Plane => self.sphere.mass,
+            Partner::Grain(other) => mass * other.mass / (mass + other.mass),
+            Partner::Plane => mass,
         }
     }
 
     /// v_i - v_j before the impact.
     pub(crate) fn relative_velocity(&self) -> DVec3 {
-        match self.partner {
-            Partner::Grain(other) => self.sphere.velocity - other.velocity,
-            Partner::Plane => self.sphere.velocity,
-        }
+        self.sphere.velocity - self.other().velocity
     }
 
     /// Simulates the impact in steps of `time_step`, the spheres touching a fraction `phase` of a step after a step's
     /// beginning.
     ///
     /// # Errors
-    /// Those of the engine, and spheres that do not part.
+    /// Errors of the engine, and spheres that do not part.
     pub(crate) fn simulate(
         &self,
         means: Means,
         time_step: f64,
         phase: f64,
-    ) -> Result<Rebound, ValidateError> {
+    ) -> Result<Rebound, ClaimError> {
         let lead = (1.0 + phase) * time_step;
         let mut experiment = Experiment::new(self, means, time_step, lead);
         let mut past = [experiment.look(); 3];
@@ -151,7 +189,7 @@ impl Impact {
                 return Ok(answer);
             }
         }
-        Err(ValidateError::NoRebound {
+        Err(ClaimError::NoRebound {
             steps: MOST_STEPS,
             time_step,
         })
@@ -179,29 +217,26 @@ struct Experiment {
 impl Experiment {
     /// The spheres `lead` before they touch.
     fn new(impact: &Impact, means: Means, time_step: f64, lead: f64) -> Self {
-        let Impact {
-            contact,
-            sphere,
-            partner,
-        } = *impact;
+        let sphere = impact.sphere;
         let reach = impact.reach();
         let skin = 0.3 * sphere.diameter;
-        let (wall, mut spheres, plane) = match partner {
+        let (wall, mut spheres, plane) = match impact.partner {
             Partner::Grain(other) => {
                 let length = 40.0 * reach;
                 let wall = far_away(100.0 * reach, length);
                 let centre = DVec3::new(0.0, 0.0, 0.5 * length);
                 let half = DVec3::new(0.5 * reach, 0.0, 0.0);
-                (
-                    wall,
-                    vec![(sphere, centre + half), (other, centre - half)],
-                    None,
-                )
+                let spheres = vec![(sphere, centre + half), (other, centre - half)];
+                (wall, spheres, None)
             }
             Partner::Plane => {
-                let lattice = plane_lattice();
-                let wall = straight(lattice, reach);
-                let plane = plane_centre(&wall);
+                let wall = straight(PLANE_LATTICE, reach);
+                // The sphere of the second ring stands at the side of negative x.
+                let plane = wall
+                    .prescribed_spheres()
+                    .nth(1)
+                    .expect("a ring of one sphere is followed by another")
+                    .position;
                 // The grain is near the axis, where its place has the finest grid of numbers.
                 let place = DVec3::new(plane.x + reach, plane.y, plane.z);
                 (wall, vec![(sphere, place)], Some(plane))
@@ -220,7 +255,7 @@ impl Experiment {
             bodies.inertia[i] = sphere.inertia();
             bodies.angular_velocity[i] = DVec3::new(0.0, 0.0, sphere.spin);
         }
-        let parameters = means.parameters(contact, time_step, skin);
+        let parameters = means.parameters(impact.contact, time_step, skin);
         Self {
             simulation: Simulation::new(bodies, wall, parameters),
             reach,
@@ -260,24 +295,13 @@ impl Experiment {
 }
 
 /// Two rings of one sphere each, too far apart for a grain to meet both.
-fn plane_lattice() -> Lattice {
-    Lattice {
-        spheres_per_ring: 1,
-        rings_per_wave: 2,
-        waves: 1,
-        wavelength: 4.0 * PLANE_DIAMETER,
-        sphere_diameter: PLANE_DIAMETER,
-    }
-}
-
-/// Centre of the sphere of the second ring, which stands at the side of negative x.
-fn plane_centre(wall: &Wall) -> DVec3 {
-    let mut spheres = wall.prescribed_spheres();
-    let second = spheres
-        .nth(1)
-        .expect("a ring of one sphere is followed by another");
-    second.position
-}
+const PLANE_LATTICE: Lattice = Lattice {
+    spheres_per_ring: 1,
+    rings_per_wave: 2,
+    waves: 1,
+    wavelength: 4.0 * PLANE_DIAMETER,
+    sphere_diameter: PLANE_DIAMETER,
+};
 
 /// Largest value between two instants, of the cubic through values and rates.
 fn largest_of_cubic(from: Look, to: Look, time_step: f64) -> f64 {

@@ -7,10 +7,10 @@ pub(crate) mod sliding;
 
 use peristalsis_engine::wall::PrescribedWall;
 use peristalsis_engine::{Integrator, Kernel, Parameters, Wall};
-use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::contact::{ContactModel, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 
-/// By which part of the engine a trajectory is computed.
+/// Integrator and kernel of a trajectory.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Means {
     pub(crate) integrator: Integrator,
@@ -18,7 +18,7 @@ pub(crate) struct Means {
 }
 
 impl Means {
-    /// What runs by default.
+    /// The defaults of a run.
     pub(crate) const USUAL: Self = Self {
         integrator: Integrator::Verlet,
         kernel: Kernel::Fast,
@@ -58,6 +58,14 @@ impl Means {
             kernel: self.kernel,
             body_force: 0.0,
         }
+    }
+}
+
+/// A contact without friction.
+pub(crate) fn smooth(normal: Normal) -> ContactModel {
+    ContactModel {
+        normal,
+        friction: None,
     }
 }
 

@@ -6,7 +6,7 @@ use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDash
 use peristalsis_physics::wall::Lattice;
 
 use super::{Means, straight};
-use crate::textbook::error::ValidateError;
+use crate::error::ClaimError;
 
 /// Diameter of the sphere that stands for the plane \[d\]: a path of a few d inclines it by some 1e-5 only.
 const PLANE_DIAMETER: f64 = 1e6;
@@ -41,13 +41,13 @@ impl Throw {
     /// The motion at every step up to `duration`.
     ///
     /// # Errors
-    /// Those of the engine.
+    /// Errors of the engine.
     pub(crate) fn simulate(
         &self,
         means: Means,
         time_step: f64,
         duration: f64,
-    ) -> Result<Vec<Instant>, ValidateError> {
+    ) -> Result<Vec<Instant>, ClaimError> {
         // A ring of one sphere (almost) on the axis: its top is a plane across the axis, along which the weight acts.
         let lattice = Lattice {
             spheres_per_ring: 1,

@@ -2,6 +2,16 @@
 
 use core::f64::consts::PI;
 
+use peristalsis_physics::contact::ViscoelasticHertz;
+
+use crate::textbook::experiment::impact::Impact;
+
+/// kappa of the Hertz force kappa xi^(3/2), at a reduced radius \[m d^(-1/2) t^(-2)\].
+pub(crate) fn stiffness(law: &ViscoelasticHertz, reduced_radius: f64) -> f64 {
+    let nu = law.poisson_ratio;
+    2.0 * law.young_modulus * reduced_radius.sqrt() / (3.0 * (1.0 - nu * nu))
+}
+
 /// A head-on impact of elastic spheres whose force is F = kappa xi^(3/2).
 ///
 /// xi_max = (5 m v^2/(4 kappa))^(2/5), m the reduced mass; t_c = 2 sqrt(pi) Gamma(7/5)/Gamma(9/10) xi_max/v = 2.9433 xi_max/v.
@@ -17,6 +27,15 @@ pub(crate) struct HertzImpact {
 }
 
 impl HertzImpact {
+    /// The impact under the elastic part of a law.
+    pub(crate) fn of(law: &ViscoelasticHertz, impact: &Impact) -> Self {
+        Self {
+            stiffness: stiffness(law, impact.reduced_radius()),
+            reduced_mass: impact.reduced_mass(),
+            speed: impact.relative_velocity().length(),
+        }
+    }
+
     /// xi_max \[d\]
     pub(crate) fn largest_overlap(&self) -> f64 {
         let ratio = 1.25 * self.reduced_mass * self.speed * self.speed / self.stiffness;

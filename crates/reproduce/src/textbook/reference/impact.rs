@@ -3,8 +3,8 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{CundallStrack, DissipationForm, Normal};
 
-use super::ode;
-use crate::textbook::experiment::impact::{Impact, Partner};
+use super::{hertz, ode};
+use crate::textbook::experiment::impact::Impact;
 
 /// Velocities and spins after an impact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,9 +32,7 @@ impl Law {
         let (is_hertz, stiffness, damping) = match impact.contact.normal {
             Normal::Linear(law) => (false, law.normal_stiffness, law.normal_damping),
             Normal::Hertz(law) => {
-                let nu = law.poisson_ratio;
-                let kappa = 2.0 * law.young_modulus * impact.reduced_radius().sqrt()
-                    / (3.0 * (1.0 - nu * nu));
+                let kappa = hertz::stiffness(&law, impact.reduced_radius());
                 let factor = match law.dissipation_form {
                     DissipationForm::Printed => 1.0,
                     DissipationForm::Viscoelastic => 1.5,
@@ -69,6 +67,23 @@ impl Law {
         }
     }
 
+    /// mu f_n, the largest force of friction.
+    fn friction_limit(&self, y: &State) -> f64 {
+        self.friction * self.normal_force(y[0], y[1]).max(0.0)
+    }
+
+    /// Rises through 0 in parting: where the force of the Hertz law over sqrt(xi) falls through 0, or the overlap under the
+    /// linear law.
+    fn end(&self, y: &State) -> f64 {
+        if y[1] >= 0.0 {
+            -1.0
+        } else if self.is_hertz {
+            -(self.stiffness * y[0] + self.damping * y[1])
+        } else {
+            -y[0]
+        }
+    }
+
     /// d f_n/dt, with the second derivative of the overlap.
     fn normal_force_rate(&self, overlap: f64, rate: f64, acceleration: f64) -> f64 {
         if self.is_hertz {
@@ -81,7 +96,10 @@ impl Law {
     }
 }
 
-/// How the contact acts in its plane.
+/// Tolerance of the integration over the scale of each component.
+const RELATIVE_TOLERANCE: f64 = 1e-13;
+
+/// The force of the contact in its plane.
 #[derive(Clone, Copy, PartialEq)]
 enum Mode {
     Sticks,
@@ -100,6 +118,75 @@ struct Motion {
 }
 
 impl Motion {
+    fn of(impact: &Impact) -> Self {
+        let spheres = [impact.sphere, impact.other()];
+        Self {
+            law: Law::of(impact),
+            reach: impact.reach(),
+            diameter: spheres.map(|sphere| sphere.diameter),
+            reduced_mass: impact.reduced_mass(),
+            mobility: spheres.map(|sphere| 1.0 / sphere.inertia()),
+        }
+    }
+
+    /// The state where the contact ends, from the relative velocity and the spins before it.
+    fn integrate(&self, relative: DVec3, spins: [f64; 2]) -> State {
+        let (approach, turning) = (-relative.x, relative.y / self.reach);
+        let mut y: State = [0.0, approach, 0.0, turning, spins[0], spins[1], 0.0];
+        let speed = approach + self.slip_velocity(&y).abs() + relative.y.abs();
+        let time = natural_time(&self.law, self.reduced_mass, approach);
+        let small_speed = RELATIVE_TOLERANCE * speed;
+        let tolerance = [
+            RELATIVE_TOLERANCE * approach * time,
+            small_speed,
+            small_speed / self.reach,
+            small_speed / self.reach,
+            small_speed / self.diameter[0],
+            small_speed / self.diameter[0],
+            small_speed * time,
+        ];
+        let first_step = 1e-6 * time;
+        let mut mode = first_mode(self, &y, first_step);
+        loop {
+            let (_, state, which) = ode::until(
+                |y| self.slope(y, mode),
+                y,
+                &[&|y| self.law.end(y), &|y| self.switch(y, mode)],
+                &tolerance,
+                [first_step, 1e4 * time],
+            );
+            y = state;
+            if which != 1 {
+                return y;
+            }
+            mode = match mode {
+                Mode::Sticks => Mode::Slides(y[6].signum()),
+                Mode::Slides(sign) => {
+                    y[6] = sign * self.law.friction_limit(&y) / self.law.tangential_stiffness;
+                    Mode::Sticks
+                }
+            };
+        }
+    }
+
+    /// Rises through 0 where a contact that sticks begins to slide, or the other way round.
+    fn switch(&self, y: &State, mode: Mode) -> f64 {
+        let law = &self.law;
+        match mode {
+            Mode::Sticks if law.friction > 0.0 => {
+                law.tangential_stiffness * y[6].abs() - law.friction_limit(y)
+            }
+            Mode::Slides(sign) if law.normal_force(y[0], y[1]) > 0.0 => {
+                // The bound on u grows faster than the contact slips.
+                let acceleration = self.slope(y, mode)[1];
+                let bound = law.friction / law.tangential_stiffness
+                    * law.normal_force_rate(y[0], y[1], acceleration);
+                bound - sign * self.slip_velocity(y)
+            }
+            _ => -1.0,
+        }
+    }
+
     fn slip_velocity(&self, y: &State) -> f64 {
         let [overlap, _, _, turning, one, other, _] = *y;
         let arm = |i: usize| 0.5 * (self.diameter[i] - overlap);
@@ -109,9 +196,7 @@ impl Motion {
     fn tangential_force(&self, y: &State, mode: Mode) -> f64 {
         match mode {
             Mode::Sticks => -self.law.tangential_stiffness * y[6],
-            Mode::Slides(sign) => {
-                -sign * self.law.friction * self.law.normal_force(y[0], y[1]).max(0.0)
-            }
+            Mode::Slides(sign) => -sign * self.law.friction_limit(y),
         }
     }
 
@@ -144,110 +229,25 @@ impl Motion {
 /// Polar coordinates of the separation; while a contact sticks u follows the slip, and k_t |u| = mu f_n where it slides. It
 /// ends where the force of the Hertz law vanishes, or the overlap under the linear law.
 pub(crate) fn outcome(impact: &Impact) -> Outcome {
-    let law = Law::of(impact);
-    let sphere = impact.sphere;
-    let (other_mobility, other_spin, share) = match impact.partner {
-        Partner::Grain(other) => (
-            1.0 / other.inertia(),
-            other.spin,
-            other.mass / (sphere.mass + other.mass),
-        ),
-        Partner::Plane => (0.0, 0.0, 1.0),
-    };
-    let motion = Motion {
-        law,
-        reach: impact.reach(),
-        diameter: [sphere.diameter, impact.partner_diameter()],
-        reduced_mass: impact.reduced_mass(),
-        mobility: [1.0 / sphere.inertia(), other_mobility],
-    };
+    let motion = Motion::of(impact);
     let relative = impact.relative_velocity();
-    let approach = -relative.x;
-    let mut y: State = [
-        0.0,
-        approach,
-        0.0,
-        relative.y / motion.reach,
-        sphere.spin,
-        other_spin,
-        0.0,
-    ];
-    let speed = approach + motion.slip_velocity(&y).abs() + relative.y.abs();
-    let time = natural_time(&law, motion.reduced_mass, approach);
-    let small = 1e-13;
-    let tolerance = [
-        small * approach * time,
-        small * speed,
-        small * speed / motion.reach,
-        small * speed / motion.reach,
-        small * speed / sphere.diameter,
-        small * speed / sphere.diameter,
-        small * speed * time,
-    ];
-    let first_step = 1e-6 * time;
-    let mut mode = first_mode(&motion, &y, first_step);
-    loop {
-        let ends = |y: &State| {
-            if law.is_hertz {
-                // Where the force, over sqrt(xi), falls through 0 in parting.
-                let bracket = law.stiffness * y[0] + law.damping * y[1];
-                if y[1] < 0.0 { -bracket } else { -1.0 }
-            } else if y[1] < 0.0 {
-                -y[0]
-            } else {
-                -1.0
-            }
-        };
-        let switches = |y: &State| match mode {
-            Mode::Sticks if law.friction > 0.0 => {
-                let limit = law.friction * law.normal_force(y[0], y[1]).max(0.0);
-                law.tangential_stiffness * y[6].abs() - limit
-            }
-            Mode::Slides(sign) if law.normal_force(y[0], y[1]) > 0.0 => {
-                // The bound on u grows faster than the contact slips.
-                let acceleration = motion.slope(y, mode)[1];
-                let bound = law.friction / law.tangential_stiffness
-                    * law.normal_force_rate(y[0], y[1], acceleration);
-                bound - sign * motion.slip_velocity(y)
-            }
-            _ => -1.0,
-        };
-        let (_, state, which) = ode::until(
-            |y| motion.slope(y, mode),
-            y,
-            &[&ends, &switches],
-            &tolerance,
-            [first_step, 1e4 * time],
-        );
-        y = state;
-        if which != 1 {
-            break;
-        }
-        mode = match mode {
-            Mode::Sticks => Mode::Slides(y[6].signum()),
-            Mode::Slides(sign) => {
-                let limit = law.friction * law.normal_force(y[0], y[1]).max(0.0);
-                y[6] = sign * limit / law.tangential_stiffness;
-                Mode::Sticks
-            }
-        };
-    }
-    let distance = motion.reach - y[0];
-    let (sin, cos) = libm::sincos(y[2]);
-    let (radial, lateral) = (-y[1], distance * y[3]);
+    let after = motion.integrate(relative, [impact.sphere.spin, impact.other().spin]);
+    let distance = motion.reach - after[0];
+    let (sin, cos) = libm::sincos(after[2]);
+    let (radial, lateral) = (-after[1], distance * after[3]);
     let relative_after = DVec3::new(
         radial * cos - lateral * sin,
         radial * sin + lateral * cos,
         0.0,
     );
     let change = relative_after - relative;
-    let second = match impact.partner {
-        Partner::Grain(other) => other.velocity - (1.0 - share) * change,
-        Partner::Plane => DVec3::ZERO,
-    };
+    let (share, other) = (impact.share(), impact.other());
     Outcome {
-        velocity: [sphere.velocity + share * change, second],
-        spin: [y[4], y[5]],
+        velocity: [
+            impact.sphere.velocity + share * change,
+            other.velocity - (1.0 - share) * change,
+        ],
+        spin: [after[4], after[5]],
     }
 }
 
@@ -277,7 +277,6 @@ mod tests {
     use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Sliding};
 
     use super::*;
-    use crate::textbook::experiment::impact::Sphere;
 
     const SPRING: LinearSpringDashpot = LinearSpringDashpot {
         normal_stiffness: 1.0,
@@ -285,14 +284,8 @@ mod tests {
     };
 
     fn impact(friction: Option<CundallStrack>, velocity: DVec3) -> Impact {
-        Impact {
-            contact: ContactModel {
-                normal: Normal::Linear(SPRING),
-                friction,
-            },
-            sphere: Sphere::unit(velocity, 0.0),
-            partner: Partner::Grain(Sphere::unit(DVec3::ZERO, 0.0)),
-        }
+        let normal = Normal::Linear(SPRING);
+        Impact::between(ContactModel { normal, friction }, velocity, DVec3::ZERO)
     }
 
     #[test]

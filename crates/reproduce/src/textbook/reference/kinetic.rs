@@ -16,7 +16,7 @@ pub(crate) struct CoolingGas {
 impl CoolingGas {
     /// Collisions of a grain in a unit of time over sqrt(T/m): 4 sqrt(pi) n d^2 (g_0 + w S d/V).
     ///
-    /// Grains collide as often as hard spheres would overlap if they grew: the rate is that of d F/dd, F their free energy. In
+    /// Grains collide as often as hard spheres would overlap if they grew: the rate follows from d F/dd, F their free energy. In
     /// the bulk that gives g_0 = (1 - phi/2)/(1 - phi)^3 (Carnahan & Starling 1969), and F has the part S gamma besides, by
     /// which w = (3 phi gamma' - 2 gamma)/(12 n phi), gamma(phi) in units of T/d^2. In a dilute gas w = -1/4: a centre at a
     /// distance x < d from a wall can be met from a part (1 + x/d)/2 of its surroundings only. At phi = 0.05 it is two fifths
@@ -44,7 +44,7 @@ impl CoolingGas {
     ///
     /// K = 4 sqrt(pi) e ln(1/e)/((1 - e)(pi^2 + ln^2 e)). The line of centres turns while they touch, and v_t^2/d drives them
     /// apart: to first order the squared normal velocity after the impact is e^2 v_n^2 + 4 beta e (1 + e) v_n v_t^2/(d omega^2),
-    /// omega^2 = k/m_ij, beta = eta/(2 m_ij), and v_t is what it was. The mean over all impacts has <v_n> = sqrt(pi T/m),
+    /// omega^2 = k/m_ij, beta = eta/(2 m_ij), and v_t does not change. The mean over all impacts has <v_n> = sqrt(pi T/m),
     /// <v_n^2> = <v_t^2> = 4 T/m. For 0 < e < 1.
     pub(crate) fn softness(&self) -> f64 {
         let e = self.restitution;
@@ -69,12 +69,13 @@ fn surface_tension(fraction: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
+    use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
     use rand_chacha::ChaCha8Rng;
     use rand_core::{Rng, SeedableRng};
 
     use super::*;
-    use crate::textbook::experiment::impact::{Impact, Partner, Sphere};
+    use crate::textbook::experiment::impact::Impact;
+    use crate::textbook::experiment::smooth;
     use crate::textbook::reference::impact::outcome;
 
     fn gas(restitution: f64, density: f64, surface: f64) -> CoolingGas {
@@ -183,14 +184,7 @@ mod tests {
         let temperature = 1e-6;
         let loss = |normal: f64, tangential: f64| {
             let half = 0.5 * DVec3::new(-normal, tangential, 0.0);
-            let impact = Impact {
-                contact: ContactModel {
-                    normal: Normal::Linear(law),
-                    friction: None,
-                },
-                sphere: Sphere::unit(half, 0.0),
-                partner: Partner::Grain(Sphere::unit(-half, 0.0)),
-            };
+            let impact = Impact::between(smooth(Normal::Linear(law)), half, -half);
             let [one, other] = outcome(&impact).velocity;
             4.0 * half.length_squared() - (one - other).length_squared()
         };

@@ -90,7 +90,7 @@ mod tests {
             ratio(1.05 * limit)
         );
         assert!(ratio(0.9 * limit) < 0.99, "{}", ratio(0.9 * limit));
-        // What is left of the slip, over what there was: impacts next to the normal stop their surface almost, oblique ones
+        // The slip after the impact over the slip before: impacts next to the normal stop their surface almost, oblique ones
         // turn it back (Maw et al. 1976).
         let left = |slip_ratio: f64| 1.0 - 3.5 * 2.0 * 0.1 * ratio(slip_ratio) / slip_ratio;
         let of_angle = |psi: f64| psi * 0.1 * 1.7 / 1.4;

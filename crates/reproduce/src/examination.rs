@@ -1,0 +1,82 @@
+//! An experiment with its finding.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use crate::claim::Claim;
+use crate::error::ClaimError;
+use crate::finding::{Finding, Statistics, Verdict};
+
+/// An experiment, a claim or a textbook case, with its finding.
+#[derive(Clone, Debug)]
+pub struct Examination<E = Claim> {
+    /// The experiment.
+    pub experiment: E,
+    /// The finding; open and empty where the examination failed.
+    pub finding: Finding,
+    /// Why the examination failed, if it did.
+    pub failure: Option<String>,
+}
+
+impl<E> Examination<E> {
+    /// The examination from its finding or the reason of its failure.
+    pub(crate) fn new(experiment: E, outcome: Result<Finding, String>) -> Self {
+        let (finding, failure) = match outcome {
+            Ok(finding) => (finding, None),
+            Err(reason) => {
+                let needed = &Statistics::FOR_A_VERDICT;
+                let nothing = "It could not be examined.";
+                let finding = Finding::nothing(nothing, Statistics::default(), needed);
+                (finding, Some(reason))
+            }
+        };
+        Self {
+            experiment,
+            finding,
+            failure,
+        }
+    }
+
+    /// Whether there was enough for a verdict.
+    #[must_use]
+    pub fn is_sufficient(&self) -> bool {
+        self.finding.statistics.suffice(&self.finding.needed)
+    }
+
+    /// Whether the experiment agrees with its expectation.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.finding.verdict == Verdict::Reproduced
+    }
+}
+
+/// Calls an examination; a panic, which is a bug in this one, costs no other.
+pub(crate) fn without_panic(
+    examine: impl FnOnce() -> Result<Finding, ClaimError>,
+) -> Result<Finding, ClaimError> {
+    catch_unwind(AssertUnwindSafe(examine)).unwrap_or(Err(ClaimError::Panicked))
+}
+
+/// The experiments of these names, in the order of `all`; all of them where no name is given. Case does not matter.
+///
+/// # Errors
+/// [`ClaimError::NoSuchExperiment`].
+pub(crate) fn experiments_named<E: Copy>(
+    kind: &'static str,
+    all: &[E],
+    name_of: impl Fn(&E) -> &'static str,
+    names: &[String],
+) -> Result<Vec<E>, ClaimError> {
+    let has = |experiment: &E, name: &String| name_of(experiment).eq_ignore_ascii_case(name.trim());
+    if let Some(unknown) = names
+        .iter()
+        .find(|name| !all.iter().any(|one| has(one, name)))
+    {
+        return Err(ClaimError::NoSuchExperiment {
+            kind,
+            asked: unknown.clone(),
+            known: all.iter().map(name_of).collect(),
+        });
+    }
+    let is_wanted = |one: &&E| names.is_empty() || names.iter().any(|name| has(one, name));
+    Ok(all.iter().filter(is_wanted).copied().collect())
+}
