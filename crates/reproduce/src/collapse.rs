@@ -3,22 +3,21 @@
 use peristalsis_analysis::{
     Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, Scaling, Uncertain, WidthEnsemble,
 };
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Points, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Units, Width};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
+use peristalsis_figures::{Drawing, Scale, Width};
 
-use crate::critical::{Divergence, Line};
+use crate::critical::OnLattice;
 use crate::error::ClaimError;
-use crate::finding::{Quantity, ReportFigure, ReportTable};
+use crate::exhibit::{cell_of, points, rate_colours};
+use crate::finding::{Quantity, ReportTable};
+use crate::judgement::{agrees, all_hold};
 use crate::text::{estimate, number};
+use crate::thresholds::{COLLAPSED, OVERLAP, RESOLVED};
 
 /// Searches for the best collapse, resamples for its errors, and the seed of both.
 const STARTS: usize = 12;
 const RESAMPLES: usize = 200;
 const SEED: u64 = 20_120_331;
-/// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
-const OVERLAP: f64 = 0.75;
-/// S up to which curves count as collapsed: their distance is a few of their errors.
-const COLLAPSED: f64 = 10.0;
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
@@ -40,14 +39,14 @@ pub(crate) struct Collapsed {
 
 /// Collapses a quantity of the transition times, mean or variance, that goes about as (w_c - w)^-slope; `None` where too few strain rates have it.
 pub(crate) fn collapse(
-    fits: &[(&Line<'_>, Divergence)],
+    lattice: &OnLattice<'_>,
     claimed: [f64; 2],
     slope: f64,
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
     let mut critical = Vec::new();
     let mut curves = Vec::new();
-    for (line, fit) in fits {
+    for (line, fit) in lattice.fitted() {
         let critical_width = fit.critical_width;
         let points: Vec<CurvePoint> = line
             .ensembles
@@ -57,7 +56,7 @@ pub(crate) fn collapse(
             .filter(|ensemble| {
                 ensemble
                     .naive_mean
-                    .is_some_and(|mean| mean > 3.0 * line.period())
+                    .is_some_and(|mean| mean > RESOLVED * line.period())
             })
             .filter_map(|ensemble| {
                 let found =
@@ -173,13 +172,7 @@ impl Collapsed {
             return Some(false);
         }
         let (claimed, _) = self.claimed?;
-        let each: Vec<Option<bool>> = (0..2)
-            .map(|place| super::claims::agrees(&self.exponents[place], claimed[place]))
-            .collect();
-        if each.contains(&Some(false)) {
-            return Some(false);
-        }
-        each.iter().all(Option::is_some).then_some(true)
+        all_hold(&[0, 1].map(|place| agrees(&self.exponents[place], claimed[place])))
     }
 
     /// The exponents with the quality of the collapse.
@@ -212,18 +205,15 @@ impl Collapsed {
     }
 
     /// Quality at the exponents of the source and at the best, and the fits without one curve.
-    pub(crate) fn tables(&self, of: &str) -> Vec<ReportTable> {
-        let in_table = |value: Option<f64>, digits| {
-            value.map_or("–".to_owned(), |value| number(value, digits))
-        };
+    pub(crate) fn table(&self, of: &str) -> ReportTable {
         let mut rows = Vec::new();
         if let Some((claimed, quality)) = self.claimed {
             rows.push(vec![
                 "source".to_owned(),
                 number(claimed[0], 2),
                 number(claimed[1], 2),
-                in_table(quality.map(|found| found.0), 1),
-                in_table(quality.map(|found| found.1), 2),
+                cell_of(quality, |found| number(found.0, 1)),
+                cell_of(quality, |found| number(found.1, 2)),
             ]);
         }
         rows.push(vec![
@@ -242,7 +232,7 @@ impl Collapsed {
                 String::new(),
             ]
         }));
-        vec![ReportTable {
+        ReportTable {
             caption: format!(
                 "Collapse, {of}: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
             ),
@@ -250,101 +240,76 @@ impl Collapsed {
                 .map(str::to_owned)
                 .to_vec(),
             rows,
-        }]
+        }
     }
 
-    /// The scaled points of every curve: abscissa, ordinate, error.
-    fn scaled(&self, exponents: &[f64]) -> Vec<(f64, [Vec<f64>; 3])> {
+    /// The scaled points of every curve by its strain rate: abscissa and ordinate.
+    fn scaled(&self, exponents: &[f64]) -> Vec<(f64, Vec<(f64, Uncertain)>)> {
         let scaling = Scaling::CriticalKnown(self.critical.clone());
-        self.curves
-            .iter()
-            .enumerate()
-            .map(|(place, curve)| {
-                let mut columns: [Vec<f64>; 3] = Default::default();
-                for point in &curve.points {
-                    let scaled = scaling.apply(exponents, place, curve.parameter, *point);
-                    // The scaling works in logarithms.
-                    let (x, y) = (scaled.x.exp(), scaled.y.exp());
-                    for (column, value) in columns.iter_mut().zip([x, y, y * scaled.error]) {
-                        column.push(value);
-                    }
-                }
-                (curve.parameter, columns)
-            })
-            .collect()
+        let scaled = |(place, curve): (usize, &Curve)| {
+            let points = curve.points.iter().map(|point| {
+                let point = scaling.apply(exponents, place, curve.parameter, *point);
+                // The scaling works in logarithms.
+                let (x, y) = (point.x.exp(), point.y.exp());
+                (x, Uncertain::normal(y, y * point.error))
+            });
+            (curve.parameter, points.collect())
+        };
+        self.curves.iter().enumerate().map(scaled).collect()
+    }
+
+    /// The curves in a panel, beside a line of the given slope through their middle.
+    fn panel(&self, exponents: &[f64], title: &str, labels: [&str; 2], slope: f64) -> ChartPanel {
+        let mut panel = ChartPanel::new(labels[0], labels[1])
+            .title(title)
+            .x_scale(Scale::Logarithmic)
+            .y_scale(Scale::Logarithmic);
+        let scaled = self.scaled(exponents);
+        for (number, (rate, curve)) in scaled.iter().enumerate() {
+            let points = points("", curve.iter().copied());
+            panel =
+                panel.with_all(points.map(|points| points.series(number).tint(Tint::Value(*rate))));
+        }
+        let all = || scaled.iter().flat_map(|(_, curve)| curve);
+        let least = all().map(|point| point.0).fold(f64::INFINITY, f64::min);
+        let largest = all().map(|point| point.0).fold(0.0, f64::max);
+        let middle = all()
+            .map(|(x, y)| y.value.ln() - slope * x.ln())
+            .sum::<f64>()
+            / all().count().max(1) as f64;
+        let ends = [least, largest];
+        panel.with(
+            Drawn::new("", &ends, &ends.map(|x| (middle + slope * x.ln()).exp()))
+                .tint(Tint::Black)
+                .pattern(Pattern::Dashed)
+                .weight(0.8),
+        )
     }
 }
 
 /// All curves scaled as the source says, if it does, and as collapses best: `found` with what each belongs to, and the
 /// labels of the axes at the exponents of the source (none where it gives none) and of the ordinate at the best.
-pub(crate) fn figure(
+pub(crate) fn drawing(
     found: &[(String, Collapsed)],
-    name: &str,
     claimed_labels: [&str; 2],
     best_label: &str,
     slope: f64,
-    caption: &str,
-) -> Result<ReportFigure, ClaimError> {
+) -> Result<Drawing, ClaimError> {
     let mut panels = Vec::new();
     for (of, collapsed) in found {
-        let best = &collapsed.fit.parameters;
-        let mut scalings = Vec::new();
         if let Some((claimed, _)) = collapsed.claimed {
             let title = format!("{of}, exponents of the source");
-            scalings.push((title, claimed.to_vec(), claimed_labels));
+            panels.push(collapsed.panel(&claimed, &title, claimed_labels, slope));
         }
+        let best = &collapsed.fit.parameters;
         let title = format!("{of}, {} and {}", number(best[0], 2), number(best[1], 2));
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{*b*}", best_label];
-        scalings.push((title, best.clone(), labels));
-        for (title, exponents, [x_label, y_label]) in &scalings {
-            let mut panel = ChartPanel::new(x_label, y_label)
-                .title(title)
-                .x_scale(Scale::Logarithmic)
-                .y_scale(Scale::Logarithmic);
-            let scaled = collapsed.scaled(exponents);
-            for (number, (rate, [x, y, error])) in scaled.iter().enumerate() {
-                panel = panel.with(
-                    Points::new("", x, y)
-                        .y_errors(error)
-                        .series(number)
-                        .tint(Tint::Value(*rate)),
-                );
-            }
-            let all = || scaled.iter().flat_map(|(_, [x, y, _])| x.iter().zip(y));
-            let (least, largest) = all()
-                .fold((f64::INFINITY, 0.0_f64), |(least, largest), (x, _)| {
-                    (least.min(*x), largest.max(*x))
-                });
-            let middle = all().map(|(x, y)| y.ln() - slope * x.ln()).sum::<f64>()
-                / all().count().max(1) as f64;
-            let ends = [least, largest];
-            panel = panel.with(
-                Drawn::new("", &ends, &ends.map(|x| (middle + slope * x.ln()).exp()))
-                    .tint(Tint::Black)
-                    .pattern(Pattern::Dashed)
-                    .weight(0.8),
-            );
-            panels.push(panel);
-        }
+        panels.push(collapsed.panel(best, &title, labels, slope));
     }
-    let rates = || {
-        found
-            .iter()
-            .flat_map(|(_, collapsed)| collapsed.curves.iter().map(|curve| curve.parameter))
-    };
-    let scale = ColourScale::new(
-        &Axis::StrainRate.label(Units::Linear),
-        rates().fold(f64::INFINITY, f64::min),
-        rates().fold(0.0, f64::max),
-    )
-    .logarithmic();
-    Ok(ReportFigure {
-        name: name.to_owned(),
-        caption: caption.to_owned(),
-        drawing: ChartFigure::grid(panels.len().min(2), panels)
-            .colour_scale(scale)
-            .width(Width::DoubleColumn)
-            .description("Scaled curves of several strain rates.")
-            .draw()?,
-    })
+    let curves = found.iter().flat_map(|(_, collapsed)| &collapsed.curves);
+    Ok(ChartFigure::grid(panels.len().min(2), panels)
+        .colour_scale(rate_colours(curves.map(|curve| curve.parameter)))
+        .width(Width::DoubleColumn)
+        .description("Scaled curves of several strain rates.")
+        .draw()?)
 }

@@ -6,15 +6,78 @@ use peristalsis_analysis::{
 };
 use peristalsis_run::THRESHOLDS;
 
-use crate::branches::{Branch, mean_and_error};
-use crate::crossing::behind;
+use crate::branch::{Branch, Control};
+use crate::error::ClaimError;
+use crate::evidence::Evidence;
 use crate::finding::Statistics;
-use crate::runs::{Lattice, Run, Start};
+use crate::judgement::Part;
+use crate::row::{Lattice, Row, Start, behind, by_strain_rate, grouped, longest};
+use crate::thresholds::{MOST_ESCAPED, RESOLVED, WINDOW};
 
-/// Widths closest to the critical one that a fit uses, of those at which at least half of the runs had a transition.
-pub(crate) const WINDOW: usize = 6;
-/// Mean transition time, in periods, below which averages over periods do not resolve it.
-const RESOLVED: f64 = 3.0;
+/// Both lattices with the names of their studies of transition times and of branches.
+pub(crate) const LATTICES: [(Lattice, &str, &str); 2] = [
+    (Lattice::FINE, "divergence-fine", "branches-fine"),
+    (Lattice::COARSE, "divergence-coarse", "branches-coarse"),
+];
+
+/// The transition times on one lattice.
+pub(crate) struct OnLattice<'a> {
+    /// Name of the lattice.
+    pub(crate) name: String,
+    /// By ascending strain rate, watched midway between the branches.
+    pub(crate) lines: Vec<Line<'a>>,
+}
+
+impl<'a> OnLattice<'a> {
+    /// Both lattices.
+    pub(crate) fn all(evidence: &'a Evidence) -> Result<Vec<Self>, ClaimError> {
+        LATTICES
+            .iter()
+            .map(|(lattice, divergence, branches)| {
+                let of = |study: &str| {
+                    let rows = evidence.study(study)?.rows().into_iter();
+                    Ok::<_, ClaimError>(rows.filter(|row| row.lattice() == *lattice))
+                };
+                let thresholds = Thresholds::of(of(branches)?);
+                let from_rest = of(divergence)?.filter(|row| row.start() == Start::Rest);
+                Ok(Self {
+                    name: lattice.name(),
+                    lines: by_strain_rate(from_rest)
+                        .into_iter()
+                        .map(|(rate, rows)| Line::new(rate, thresholds.at(rate), rows))
+                        .collect(),
+                })
+            })
+            .collect()
+    }
+
+    /// The lines that hold their grains.
+    pub(crate) fn tight(&self) -> impl Iterator<Item = &Line<'a>> {
+        self.lines
+            .iter()
+            .filter(|line| line.escaped() <= MOST_ESCAPED)
+    }
+
+    /// Those of them that have a fit, with it.
+    pub(crate) fn fitted(&self) -> impl Iterator<Item = (&Line<'a>, &Divergence)> {
+        self.tight()
+            .filter_map(|line| Some((line, line.fit.as_ref()?)))
+    }
+
+    /// How much is behind the fits.
+    pub(crate) fn statistics(&self) -> Statistics {
+        Statistics::weakest(self.fitted().map(|(line, _)| line.statistics()))
+    }
+
+    /// What it says of a claim about the fits.
+    pub(crate) fn part(&self, holds: Option<bool>) -> Part {
+        Part {
+            lattice: self.name.clone(),
+            holds,
+            statistics: self.statistics(),
+        }
+    }
+}
 
 /// The runs from rest of one tube at one strain rate, watched at one threshold.
 #[derive(Clone, Debug)]
@@ -23,9 +86,11 @@ pub(crate) struct Line<'a> {
     pub(crate) strain_rate: f64,
     /// J/Jmax whose crossing counts.
     pub(crate) threshold: f64,
-    runs: Vec<&'a Run>,
+    rows: Vec<Row<'a>>,
     /// The transition times at each width.
     pub(crate) ensembles: Vec<WidthEnsemble>,
+    /// The power law in the window of [`WINDOW`] widths.
+    pub(crate) fit: Option<Divergence>,
 }
 
 /// Thresholds midway between the branches at the strain rates where these are known.
@@ -36,16 +101,12 @@ pub(crate) struct Thresholds {
 }
 
 impl Thresholds {
-    /// The thresholds that the branches from rest of one lattice suggest.
-    pub(crate) fn of(runs: &[Run], lattice: Lattice) -> Self {
-        let known = strain_rates(runs.iter().filter(|run| run.lattice == lattice))
+    /// The thresholds that the branches from rest of some runs suggest.
+    pub(crate) fn of<'a>(rows: impl Iterator<Item = Row<'a>>) -> Self {
+        let threshold = |rows| Branch::of(rows, Start::Rest, Control::Width).threshold();
+        let known = by_strain_rate(rows)
             .into_iter()
-            .filter_map(|rate| {
-                let here = runs
-                    .iter()
-                    .filter(|run| run.lattice == lattice && run.strain_rate == rate);
-                Some((rate, Branch::of(here, Start::Rest).threshold()?))
-            })
+            .filter_map(|(rate, rows)| Some((rate, threshold(rows)?)))
             .collect();
         Self { known }
     }
@@ -68,80 +129,59 @@ impl Thresholds {
     }
 }
 
-/// Longest time that a run was given, in periods.
-pub(crate) fn longest<'a>(runs: impl Iterator<Item = &'a Run>) -> f64 {
-    runs.map(|run| run.time * run.strain_rate)
-        .fold(0.0, f64::max)
-        .round()
-}
-
-/// The distinct strain rates, ascending.
-pub(crate) fn strain_rates<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<f64> {
-    let mut rates: Vec<f64> = runs.map(|run| run.strain_rate).collect();
-    rates.sort_by(f64::total_cmp);
-    rates.dedup();
-    rates
-}
-
-/// The lines of a study, by ascending strain rate.
-pub(crate) fn lines<'a>(
-    runs: &'a [Run],
-    lattice: Lattice,
-    thresholds: &Thresholds,
-) -> Vec<Line<'a>> {
-    let of_lattice = || {
-        runs.iter()
-            .filter(move |run| run.lattice == lattice && run.start == Start::Rest)
-    };
-    strain_rates(of_lattice())
-        .into_iter()
-        .map(|strain_rate| {
-            let here = of_lattice().filter(|run| run.strain_rate == strain_rate);
-            Line::new(strain_rate, thresholds.at(strain_rate), here.collect())
-        })
-        .collect()
-}
-
-/// The lines of some runs, watched at the threshold nearest to that of the study.
-pub(crate) fn lines_at_own_threshold(runs: &[Run]) -> Vec<Line<'_>> {
-    let Some(lattice) = runs.first().map(|run| run.lattice) else {
-        return Vec::new();
-    };
-    let mut known: Vec<(f64, f64)> = runs
+/// The width at which half of some runs from rest have a transition at the threshold of their study; `None` where all of
+/// them have one, or none.
+pub(crate) fn crossing(rows: &[Row<'_>]) -> Option<FractionCrossing> {
+    let (width, jammed): (Vec<f64>, Vec<bool>) = rows
         .iter()
-        .map(|run| (run.strain_rate, run.transition_threshold))
-        .collect();
-    known.sort_by(|one, other| one.0.total_cmp(&other.0));
-    known.dedup_by(|one, other| one.0 == other.0);
-    lines(runs, lattice, &Thresholds { known })
+        .filter(|row| row.start() == Start::Rest)
+        .map(|row| (row.width(), row.transition().observed().is_some()))
+        .unzip();
+    fraction_crossing(&width, &jammed).ok()
 }
 
 /// Width and transition of every run at a threshold.
-fn columns(runs: &[&Run], threshold: f64) -> (Vec<f64>, Vec<Transition>) {
-    runs.iter()
-        .map(|run| (run.width, run.transition_at(threshold)))
+fn columns(rows: &[Row<'_>], threshold: f64) -> (Vec<f64>, Vec<Transition>) {
+    rows.iter()
+        .map(|row| (row.width(), row.transition_at(threshold)))
         .unzip()
 }
 
 impl<'a> Line<'a> {
-    fn new(strain_rate: f64, threshold: f64, runs: Vec<&'a Run>) -> Self {
-        let (width, transitions) = columns(&runs, threshold);
-        Self {
+    fn new(strain_rate: f64, threshold: f64, rows: Vec<Row<'a>>) -> Self {
+        let (width, transitions) = columns(&rows, threshold);
+        let mut line = Self {
             strain_rate,
             threshold,
-            runs,
+            rows,
             ensembles: ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default(),
-        }
+            fit: None,
+        };
+        line.fit = line.fit_in(WINDOW);
+        line
+    }
+
+    /// The line of some runs at one strain rate, watched at the threshold nearest to that of their study.
+    pub(crate) fn at_own_threshold(rows: &[Row<'a>]) -> Option<Self> {
+        let first = rows.first()?;
+        let known = vec![(first.strain_rate(), first.number("transition_threshold"))];
+        let threshold = Thresholds { known }.at(first.strain_rate());
+        let from_rest = rows.iter().filter(|row| row.start() == Start::Rest);
+        Some(Self::new(
+            first.strain_rate(),
+            threshold,
+            from_rest.copied().collect(),
+        ))
     }
 
     /// The same runs watched at another threshold.
     pub(crate) fn at_threshold(&self, threshold: f64) -> Self {
-        Self::new(self.strain_rate, threshold, self.runs.clone())
+        Self::new(self.strain_rate, threshold, self.rows.clone())
     }
 
     /// Width and transition of every run.
     pub(crate) fn columns(&self) -> (Vec<f64>, Vec<Transition>) {
-        columns(&self.runs, self.threshold)
+        columns(&self.rows, self.threshold)
     }
 
     /// Period of the wave \[t\].
@@ -149,40 +189,27 @@ impl<'a> Line<'a> {
         1.0 / self.strain_rate
     }
 
-    /// Distinct widths, ascending.
-    pub(crate) fn widths(&self) -> Vec<f64> {
-        let mut widths: Vec<f64> = self.runs.iter().map(|run| run.width).collect();
-        widths.sort_by(f64::total_cmp);
-        widths.dedup();
-        widths
-    }
-
     /// What is behind it.
     pub(crate) fn statistics(&self) -> Statistics {
-        behind(&self.runs)
+        behind(&self.rows, Row::width)
     }
 
     /// Largest fraction of grains outside the tube, mean over the runs at a width, of the widths that a fit looks at.
     pub(crate) fn escaped(&self) -> f64 {
         let from = self.window_from(WINDOW).unwrap_or(f64::NEG_INFINITY);
-        self.widths()
+        grouped(self.rows.iter().copied(), Row::width)
             .into_iter()
-            .filter(|width| *width >= from)
-            .map(|width| {
-                let fractions: Vec<f64> = self
-                    .runs
-                    .iter()
-                    .filter(|run| run.width == width)
-                    .map(|run| run.escaped_fraction())
-                    .collect();
-                mean_and_error(&fractions).0
+            .filter(|(width, _)| *width >= from)
+            .map(|(_, rows)| {
+                let sum: f64 = rows.iter().map(Row::escaped_fraction).sum();
+                sum / rows.len() as f64
             })
             .fold(0.0, f64::max)
     }
 
     /// Longest time that a run was given, in periods.
     pub(crate) fn periods(&self) -> f64 {
-        longest(self.runs.iter().copied())
+        longest(&self.rows)
     }
 
     /// The first of the last so many widths at which at least half of the runs had a transition that averages over periods
@@ -229,20 +256,20 @@ impl<'a> Line<'a> {
     }
 
     /// The power law in a window of so many widths next to the critical one.
-    pub(crate) fn fit(&self, number: usize) -> Option<Divergence> {
+    fn fit_in(&self, number: usize) -> Option<Divergence> {
         let (width, transitions) = self.window(number)?;
         Divergence::of(&width, &transitions)
     }
 
     /// Power laws in all windows, from four widths to all: stability against the choice.
     pub(crate) fn fits(&self) -> Vec<Divergence> {
-        let mut windows: Vec<f64> = (4..=self.widths().len())
+        let mut windows: Vec<f64> = (4..=grouped(self.rows.iter().copied(), Row::width).len())
             .filter_map(|number| self.window_from(number))
             .collect();
         // Beyond the last usable width nothing changes.
         windows.dedup();
         (4..4 + windows.len())
-            .filter_map(|number| self.fit(number))
+            .filter_map(|number| self.fit_in(number))
             .collect()
     }
 }

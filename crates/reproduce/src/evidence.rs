@@ -7,7 +7,6 @@ use peristalsis_study::Store;
 
 use crate::error::ClaimError;
 use crate::row::{Row, check, rows_of};
-use crate::runs::{Run, table_of};
 
 /// The results of one study.
 #[derive(Clone, Debug)]
@@ -16,9 +15,7 @@ pub struct StudyResults {
     store: Option<Store>,
     /// Where those are that were computed again for their products.
     again: Option<Store>,
-    /// Finished runs in the order of the axes.
-    pub runs: Vec<Run>,
-    /// The same as a table.
+    /// Finished runs, a row each, in the order of the axes.
     table: Table,
     /// Runs of the study that are not finished.
     pub missing: usize,
@@ -39,25 +36,15 @@ impl Evidence {
         let survey = store.survey()?;
         let table = store.rows()?;
         check(&table)?;
-        let runs = Run::all_of(&table)?;
-        let missing = survey.plan.runs().len().saturating_sub(runs.len());
-        self.studies.insert(
-            survey.study.name,
-            StudyResults {
-                store: Some(store),
-                again,
-                runs,
-                table,
-                missing,
-            },
-        );
+        let missing = survey.plan.runs().len().saturating_sub(table.rows());
+        let results = StudyResults {
+            store: Some(store),
+            again,
+            table,
+            missing,
+        };
+        self.studies.insert(survey.study.name, results);
         Ok(())
-    }
-
-    /// Adds runs as the results of a study, without their time series.
-    pub fn add_runs(&mut self, name: &str, runs: Vec<Run>) {
-        let table = table_of(&runs);
-        self.insert(name, runs, table);
     }
 
     /// Adds a table of runs as the results of a study, without their time series.
@@ -66,20 +53,14 @@ impl Evidence {
     /// A column that every row has is missing or of another kind.
     pub fn add_table(&mut self, name: &str, table: Table) -> Result<(), ClaimError> {
         check(&table)?;
-        let runs = Run::all_of(&table)?;
-        self.insert(name, runs, table);
-        Ok(())
-    }
-
-    fn insert(&mut self, name: &str, runs: Vec<Run>, table: Table) {
         let results = StudyResults {
             store: None,
             again: None,
-            runs,
             table,
             missing: 0,
         };
         self.studies.insert(name.to_owned(), results);
+        Ok(())
     }
 
     /// The results of a study.
@@ -104,36 +85,36 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn series(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
-        self.product(run, "timeseries.parquet")
+    pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        self.product(row, "timeseries.parquet")
     }
 
     /// The flow of each wave over each period of a run; `None` where it was not kept, or only its row was imported.
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn waves(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
-        self.product(run, "waves.parquet")
+    pub fn waves(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        self.product(row, "waves.parquet")
     }
 
     /// The profile in the wave's frame of a run, late means; `None` where it was not kept, or only its row was imported.
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn profile(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
-        self.product(run, "profile.parquet")
+    pub fn profile(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        self.product(row, "profile.parquet")
     }
 
     /// The spheres at the end of a run; `None` where they were not kept, or only its row was imported.
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn snapshot(&self, run: &impl Identified) -> Result<Option<Table>, ClaimError> {
-        self.product(run, "snapshot.parquet")
+    pub fn snapshot(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+        self.product(row, "snapshot.parquet")
     }
 
-    fn product(&self, run: &impl Identified, name: &str) -> Result<Option<Table>, ClaimError> {
-        let Ok(identity) = run.identity().parse() else {
+    fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>, ClaimError> {
+        let Ok(identity) = row.identity().parse() else {
             return Ok(None);
         };
         let stores = [&self.store, &self.again].into_iter().flatten();
@@ -147,8 +128,8 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn period_averages(&self, run: &impl Identified) -> Result<Option<Vec<f64>>, ClaimError> {
-        let Some(table) = self.series(run)? else {
+    pub fn period_averages(&self, row: &Row<'_>) -> Result<Option<Vec<f64>>, ClaimError> {
+        let Some(table) = self.series(row)? else {
             return Ok(None);
         };
         let (period, ratio) = (table.reals("period")?, table.reals("flow_rate_ratio")?);
@@ -164,29 +145,5 @@ impl StudyResults {
             }
         }
         Ok(Some(averages))
-    }
-}
-
-/// A run by its name.
-pub trait Identified {
-    /// Its name.
-    fn identity(&self) -> &str;
-}
-
-impl Identified for Run {
-    fn identity(&self) -> &str {
-        &self.identity
-    }
-}
-
-impl Identified for Row<'_> {
-    fn identity(&self) -> &str {
-        Row::identity(self)
-    }
-}
-
-impl<T: Identified> Identified for &T {
-    fn identity(&self) -> &str {
-        (*self).identity()
     }
 }

@@ -1,11 +1,13 @@
 //! Tables and figures that claims draw alike.
 
 use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{Band, Points};
+use peristalsis_figures::chart::{Band, ChartPanel, Line as Curve, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity, Units};
 
 use crate::branch::Branch;
+use crate::critical::Line;
 use crate::text::estimate;
+use crate::thresholds::WINDOW;
 
 /// What stands in a cell without a value.
 pub(crate) const NONE: &str = "–";
@@ -59,11 +61,16 @@ pub(crate) fn ends(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     (ends.0 < ends.1).then_some(ends)
 }
 
+/// Colours for strain rates of the prescribed tube.
+pub(crate) fn rate_colours(rates: impl Iterator<Item = f64>) -> ColourScale {
+    rate_colours_in(Units::Linear, rates, (0.02, 0.2))
+}
+
 /// Colours for strain rates; `otherwise` are the ends of the scale where these do not differ.
-pub(crate) fn rate_colours(
+pub(crate) fn rate_colours_in(
+    units: Units,
     rates: impl Iterator<Item = f64>,
     otherwise: (f64, f64),
-    units: Units,
 ) -> ColourScale {
     let (least, largest) = ends(rates).unwrap_or(otherwise);
     ColourScale::new(&Quantity::StrainRate.label(units), least, largest).logarithmic()
@@ -79,4 +86,29 @@ pub(crate) fn spaced(from: f64, to: f64, count: usize) -> Vec<f64> {
 /// The middles of so many periods, counted from 0.
 pub(crate) fn periods(count: usize) -> Vec<f64> {
     (0..count).map(|number| number as f64 + 0.5).collect()
+}
+
+/// A panel of J/Jmax against the width.
+pub(crate) fn flow_panel() -> ChartPanel {
+    ChartPanel::new(&label(Quantity::Width), &label(Quantity::FlowRateRatio)).y_range(-0.05..=1.1)
+}
+
+/// A fitted law in the window of its fit, as far as it stays in sight of the points; `None` where nothing of it does.
+pub(crate) fn fitted_curve(
+    line: &Line<'_>,
+    critical: f64,
+    points: &[(f64, Uncertain)],
+    law: impl Fn(f64) -> f64,
+) -> Option<Curve> {
+    let largest = points.iter().map(|one| one.1.value).fold(0.0, f64::max);
+    let (x, y): (Vec<f64>, Vec<f64>) = spaced(line.window_from(WINDOW)?, critical, 200)
+        .into_iter()
+        .map(|width| (width, law(width)))
+        .filter(|point| point.1.is_finite() && point.1 < 3.0 * largest)
+        .unzip();
+    (x.len() > 1).then(|| {
+        Curve::new("", &x, &y)
+            .tint(Tint::Value(line.strain_rate))
+            .weight(0.8)
+    })
 }

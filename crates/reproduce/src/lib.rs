@@ -6,34 +6,27 @@
 
 #![forbid(unsafe_code)]
 
-#[allow(dead_code, reason = "claims move to it one after the other")]
 mod branch;
-mod branches;
 mod check;
 mod claim;
 mod claims;
 mod collapse;
 mod columns;
 mod critical;
-mod crossing;
 mod error;
 mod evidence;
 mod examination;
-#[allow(dead_code, reason = "claims move to it one after the other")]
 mod exhibit;
 mod finding;
 mod forces;
-#[allow(dead_code, reason = "claims move to it one after the other")]
+mod judgement;
 mod prose;
 pub mod report;
 mod reproduction;
-#[allow(dead_code, reason = "claims move to it one after the other")]
 mod row;
-mod runs;
 mod studies;
 mod text;
 pub mod textbook;
-#[allow(dead_code, reason = "claims move to it one after the other")]
 mod thresholds;
 
 pub use check::{Check, Convergence};
@@ -48,5 +41,4 @@ pub use reproduction::{
     Event, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
 };
 pub use row::{Lattice, Row, Start};
-pub use runs::Run;
 pub use studies::{Products, STUDIES, Size, StudyFile};

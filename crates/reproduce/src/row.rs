@@ -130,9 +130,12 @@ impl<'a> Row<'a> {
         }
     }
 
-    /// Whether its table has a column.
-    pub(crate) fn has(&self, column: &str) -> bool {
-        self.table.column(column).is_ok()
+    /// A number; `otherwise` where the column is missing, as it is of a parameter that its study does not vary.
+    pub(crate) fn number_or(&self, column: &str, otherwise: f64) -> f64 {
+        match self.table.column(column) {
+            Ok(_) => self.number(column),
+            Err(_) => otherwise,
+        }
     }
 
     /// Name of the run.

@@ -53,9 +53,6 @@ pub(crate) const WINDOW: usize = 6;
 /// Mean transition time, in periods, below which averages over periods do not resolve it: it takes three of them to be seen.
 pub(crate) const RESOLVED: f64 = 3.0;
 
-/// What a verdict takes where a claim asks for nothing else.
-pub(crate) const FOR_A_VERDICT: Statistics = Statistics::FOR_A_VERDICT;
-
 // The stress-controlled tube.
 
 /// Periods of stationary flow behind the late mean of a run that counts for a verdict: fewer leave a slow drift unseen.
@@ -97,3 +94,121 @@ pub(crate) const LEAST_DIFFERENCE: f64 = 0.05;
 pub(crate) const LEAST_RATIO: f64 = 2.0;
 /// Pressure on the wall, as a fraction of its largest, below which grains fly freely.
 pub(crate) const FREE_FLIGHT: f64 = 0.01;
+
+// Collapse of curves.
+
+/// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
+pub(crate) const OVERLAP: f64 = 0.75;
+/// Houdayer and Hartmann's S up to which curves count as collapsed: their distance is a few of their errors.
+pub(crate) const COLLAPSED: f64 = 10.0;
+
+// F1: two kinds of flow.
+
+/// J/Jmax below which a flow is slow: half of the jammed flow.
+pub(crate) const SLOW: f64 = 0.5;
+/// J/Jmax from which on a flow is near Jmax, as the source says of the jammed flow.
+pub(crate) const NEAR_ONE: f64 = 0.9;
+/// Distance below the jump \[d\] at which the jammed flow is read off: next to the jump grains still slip back.
+pub(crate) const BELOW_THE_JUMP: f64 = 0.1;
+/// Fraction of runs that must do as the claim says: one of twenty may err, for widths next to the jump are among them.
+pub(crate) const NEARLY_ALL: f64 = 0.95;
+
+// F5: the second moment of the flow.
+
+/// Height below which the peak of the second moment is bounded: 1/4 is the variance of a number that is 0 or 1 with equal
+/// probability, and the flows scatter a little about both.
+pub(crate) const BOUNDED_MOMENT: f64 = 0.3;
+/// Houdayer and Hartmann's S up to which peaks agree within their errors; it differs from [`COLLAPSED`], which allows a few
+/// of them.
+pub(crate) const SAME_CURVE: f64 = 2.0;
+/// Least error of a peak: resampled runs that all jam at one time give none.
+pub(crate) const LEAST_ERROR_OF_A_MOMENT: f64 = 1e-4;
+/// Runs at a width below which there is no variance to speak of.
+pub(crate) const LEAST_RUNS_OF_A_MOMENT: usize = 4;
+
+// F6: the jump.
+
+/// Distance from the jump \[d\] of the widths whose runs make the histogram: near enough for both flows.
+pub(crate) const NEAR_THE_JUMP: f64 = 0.05;
+
+// F7: the slope of the critical width.
+
+/// Strain rates that a slope takes: a line through two points has no say.
+pub(crate) const LEAST_RATES_OF_A_SLOPE: usize = 3;
+/// Least error of a critical width \[d\] in a fit: half of the spacing of the widths about it.
+pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
+
+// F8: densities.
+
+/// What F8 takes: one strain rate, for it is about densities.
+pub(crate) const F8_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    ..Statistics::FOR_A_VERDICT
+};
+/// Densities that a verdict takes.
+pub(crate) const LEAST_DENSITIES: usize = 4;
+/// Change of w_c over the range of densities, as a fraction of w_c, up to which it hardly depends on them: a tenth of the
+/// change with the strain rate.
+pub(crate) const HARDLY: f64 = 0.02;
+/// Width at which the flow of all densities is compared \[d\]: all of them are jammed there.
+pub(crate) const COMPARED_WIDTH: f64 = 2.6;
+
+// F9: the loop.
+
+/// Errors of the loop's width from which on there is a loop; it differs from [`CLEAR`], since the probability below is asked
+/// for as well.
+pub(crate) const CLEAR_LOOP: f64 = 3.0;
+/// Probability of such runs with one critical width for both starts, below which there are two.
+pub(crate) const ONE_WIDTH_BY_CHANCE: f64 = 0.01;
+
+// Q1: small strain rates.
+
+/// For an answer: four strain rates, five replicates, since each run takes long.
+pub(crate) const Q1_NEEDED: Statistics = Statistics {
+    strain_rates: 4,
+    widths: 8,
+    replicates: 5,
+    runs: 300,
+};
+/// Errors by which the critical width must fall to turn back; it differs from [`CLEAR`] and is that of [`CLEAR_LOOP`], since
+/// the errors are those of brackets.
+pub(crate) const CLEAR_TURN: f64 = 3.0;
+/// J/Jmax of the threshold that first runs had.
+pub(crate) const HALF: f64 = 0.5;
+
+// Q2: roughness.
+
+/// For an answer: five lattices are asked for apart.
+pub(crate) const Q2_NEEDED: Statistics = Statistics {
+    strain_rates: 2,
+    widths: 7,
+    replicates: 5,
+    runs: 300,
+};
+/// Lattices that an answer takes.
+pub(crate) const LEAST_LATTICES: usize = 5;
+
+// Q3 to Q5 and Q11: one parameter varied at a time.
+
+/// For an answer of Q3: seven widths of each value, three replicates, since many values are compared.
+pub(crate) const Q3_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 7,
+    replicates: 3,
+    runs: 300,
+};
+/// For an answer of Q4: one strain rate, for it is about lengths.
+pub(crate) const Q4_NEEDED: Statistics = F8_NEEDED;
+/// Lengths that an answer of Q4 takes: an exponent through two has no say.
+pub(crate) const LEAST_LENGTHS: usize = 3;
+/// Difference of Akaike's criterion from which on a law is worse: the better one is then exp(2), some seven times, as likely.
+pub(crate) const WORSE: f64 = 4.0;
+/// Probability below which pure chance is excluded.
+pub(crate) const EXCLUDED: f64 = 1e-3;
+/// For an answer of Q11: one strain rate, five replicates, since each method is computed anew.
+pub(crate) const Q11_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 7,
+    replicates: 5,
+    runs: 150,
+};

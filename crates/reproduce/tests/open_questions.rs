@@ -3,125 +3,24 @@
 #![allow(missing_docs)]
 #![expect(clippy::unwrap_used, reason = "a test may")]
 
-use std::collections::{BTreeMap, BTreeSet};
+mod rows;
 
-use peristalsis_formats::{Table, Values};
-use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Verdict};
+use peristalsis_reproduce::{Finding, Verdict};
 
-/// Columns that every row has: whole numbers, then numbers.
-const WHOLE: [&str; 6] = [
-    "spheres_per_ring",
-    "rings_per_wave",
-    "grains",
-    "waves",
-    "escaped",
-    "replicate",
+use rows::{Rows, evidence, value};
+
+/// Numbers that every run here has.
+const TUBE: [(&str, f64); 6] = [
+    ("radius", 3.5),
+    ("wavelength", 20.0),
+    ("waves", 2.0),
+    ("strain_rate", 4.01e-3),
+    ("periods", 32.0),
+    ("bottleneck", 6.0),
 ];
-const NUMBERS: [&str; 11] = [
-    "width",
-    "strain_rate",
-    "volume_fraction",
-    "radius",
-    "wavelength",
-    "time",
-    "periods",
-    "flow_rate_ratio",
-    "flow_rate_ratio_error",
-    "transition_time",
-    "transition_threshold",
-];
-
-/// Rows as they are put together: texts and numbers by column.
-#[derive(Default)]
-struct Rows {
-    rows: Vec<(BTreeMap<String, String>, BTreeMap<String, f64>)>,
-}
-
-impl Rows {
-    fn add(&mut self, texts: &[(&str, &str)], numbers: &[(&str, f64)]) {
-        let texts = texts
-            .iter()
-            .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))
-            .collect();
-        let tube = [
-            ("radius", 3.5),
-            ("wavelength", 20.0),
-            ("waves", 2.0),
-            ("strain_rate", 4.01e-3),
-            ("periods", 32.0),
-            ("bottleneck", 6.0),
-        ];
-        let numbers = tube
-            .iter()
-            .chain(numbers)
-            .map(|(name, value)| ((*name).to_owned(), *value))
-            .collect();
-        self.rows.push((texts, numbers));
-    }
-
-    fn table(&self) -> Table {
-        let mut texts: BTreeSet<&str> = BTreeSet::from(["identity", "initial_state"]);
-        let mut numbers: BTreeSet<&str> = NUMBERS.into();
-        let ladder: Vec<String> = (1..=9)
-            .map(|n| format!("transition_time_{}", 10 * n))
-            .collect();
-        numbers.extend(ladder.iter().map(String::as_str));
-        for (some_texts, some_numbers) in &self.rows {
-            texts.extend(some_texts.keys().map(String::as_str));
-            numbers.extend(some_numbers.keys().map(String::as_str));
-        }
-        let mut table = Table::builder();
-        for name in texts {
-            let text = |row: &(BTreeMap<String, String>, _)| row.0.get(name).cloned();
-            let column = self
-                .rows
-                .iter()
-                .map(|row| text(row).unwrap_or_default())
-                .collect();
-            table = table.column(name, "", "", Values::Text(column));
-        }
-        for name in WHOLE {
-            let column = self
-                .rows
-                .iter()
-                .map(|row| row.1.get(name).map_or(0, |value| *value as i64))
-                .collect();
-            table = table.column(name, "", "", Values::Integer(column));
-        }
-        for name in numbers {
-            if WHOLE.contains(&name) {
-                continue;
-            }
-            let column = self
-                .rows
-                .iter()
-                .map(|row| row.1.get(name).copied().unwrap_or(f64::NAN))
-                .collect();
-            table = table.column(name, "", "", Values::Real(column));
-        }
-        table.build().unwrap()
-    }
-}
 
 fn examine(id: &str, studies: &[(&str, &Rows)]) -> Finding {
-    let claim = CLAIMS.iter().find(|claim| claim.id == id).unwrap();
-    let mut evidence = Evidence::default();
-    for name in claim.studies {
-        evidence.add_runs(name, Vec::new());
-    }
-    for (name, rows) in studies {
-        evidence.add_table(name, rows.table()).unwrap();
-    }
-    (claim.examine)(&evidence).unwrap()
-}
-
-fn value(finding: &Finding, name: &str) -> f64 {
-    let found = finding
-        .quantities
-        .iter()
-        .find(|one| one.name.contains(name))
-        .unwrap_or_else(|| panic!("{name}"));
-    found.ours.unwrap().value
+    rows::examine(id, &evidence(studies))
 }
 
 /// Small numbers that differ from replicate to replicate and add up to nothing over three.
@@ -130,7 +29,7 @@ fn noise(replicate: i32) -> f64 {
 }
 
 fn back_flow(flow: impl Fn(f64, f64) -> f64, replicates: i32) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     let mut points: Vec<(f64, f64, f64)> = [0.0, 0.1, 0.2, 0.3, 0.5, 1.0]
         .map(|friction| (friction, 0.01, 4.01e-3))
         .to_vec();
@@ -211,7 +110,7 @@ fn back_flow_is_traced_to_friction_or_to_the_wall() {
 
 /// Both kinds of grains in one kind of wall; `flow(friction, place, jammed)` with places from 0 to 7.
 fn corner(control: &str, flow: impl Fn(f64, i32, bool) -> f64) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     for friction in [0.0, 0.5] {
         for place in 0..8 {
             for (start, jammed) in [("rest", false), ("jammed", true)] {
@@ -280,7 +179,7 @@ fn each_corner_is_told_by_what_it_does() {
 
 /// Ladders of forces in three lengths at two strain rates; `variance(waves)` at the largest.
 fn ladders(variance: impl Fn(f64) -> f64) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     for rate in [1e-3, 4.01e-3] {
         for waves in [2.0, 4.0, 8.0] {
             for place in 0..6 {
@@ -305,7 +204,7 @@ fn ladders(variance: impl Fn(f64) -> f64) -> Rows {
 
 /// Sweeps up or down that pass one half at the force `passes(periods)` (10^-3).
 fn sweeps(from: f64, to: f64, passes: impl Fn(f64) -> f64) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     for rate in [1e-3, 4.01e-3] {
         for periods in [10.0, 20.0, 40.0] {
             for _ in 0..2 {
@@ -383,7 +282,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
 
 /// A pump whose flow falls as 1 - (p/p0)^2 and whose efficiency is largest, 0.6, at p0/2.
 fn pump(stop: f64) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     for waveform in ["sine", "bolus"] {
         for place in 0..9 {
             let pressure = 0.01 * f64::from(place);
@@ -455,45 +354,45 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
 #[test]
 fn a_pump_of_which_little_is_known_is_no_error() {
     let whole = pump(0.062);
-    let thinned = |keep: &dyn Fn(usize) -> bool, last: &dyn Fn(&mut BTreeMap<String, f64>)| {
-        let rows = whole.rows.iter().enumerate();
-        let mut rows: Vec<_> = rows
-            .filter(|(place, _)| keep(*place))
-            .map(|(_, row)| row.clone())
-            .collect();
-        rows.iter_mut().for_each(|row| last(&mut row.1));
-        Rows { rows }
-    };
-    let unchanged = |_: &mut BTreeMap<String, f64>| {};
-    for place in [0, 1, 8, 26, 27, 53] {
-        let one = thinned(&|other| other == place, &unchanged);
-        examine("Q9", &[("pumping-frictional", &one)]);
-        let pair = [
-            ("pumping-frictionless", &whole),
-            ("pumping-frictional", &one),
-        ];
-        examine("Q9", &pair);
+    let each = || whole.each().into_iter().enumerate();
+    for (place, one) in each() {
+        if [0, 1, 8, 26, 27, 53].contains(&place) {
+            examine("Q9", &[("pumping-frictional", &one)]);
+            let pair = [
+                ("pumping-frictionless", &whole),
+                ("pumping-frictional", &one),
+            ];
+            examine("Q9", &pair);
+        }
     }
     // Without load only, and grains that are driven back everywhere.
-    let free = thinned(&|place| place % 27 < 3, &unchanged);
-    examine("Q9", &[("pumping-frictional", &free)]);
-    let back = thinned(&|place| place > 3, &|row| {
-        row.insert("flow_rate_ratio".to_owned(), -0.2);
-        row.insert("axial_dispersion".to_owned(), f64::NAN);
-    });
-    examine("Q9", &[("pumping-frictional", &back)]);
-    examine(
-        "Q9",
+    let mut free = Rows::default();
+    let mut back = Rows::default();
+    for (place, one) in each() {
+        if place % 27 < 3 {
+            free.extend(&one);
+        }
+        if place > 3 {
+            back.extend(&one);
+        }
+    }
+    back.set("flow_rate_ratio", -0.2);
+    back.set("axial_dispersion", f64::NAN);
+    for studies in [
+        &[("pumping-frictional", &free)][..],
+        &[("pumping-frictional", &back)],
         &[
             ("pumping-frictionless", &whole),
             ("pumping-frictional", &back),
         ],
-    );
+    ] {
+        examine("Q9", studies);
+    }
 }
 
 /// Runs that jam below a critical width of each method.
 fn methods(critical: impl Fn(f64, bool) -> f64) -> Rows {
-    let mut rows = Rows::default();
+    let mut rows = Rows::with(&TUBE);
     let all = [
         (0.1, 0.3, "verlet"),
         (0.05, 0.3, "verlet"),

@@ -51,12 +51,12 @@ fn count(evidence: &Evidence, study: &str) -> Result<Finding, ClaimError> {
     let statistics = Statistics {
         strain_rates: 4,
         widths: 8,
-        replicates: results.runs.len(),
-        runs: results.runs.len(),
+        replicates: results.rows().len(),
+        runs: results.rows().len(),
     };
     Ok(Finding::new(
         Verdict::Reproduced,
-        format!("{} runs, {} missing", results.runs.len(), results.missing),
+        format!("{} runs, {} missing", results.rows().len(), results.missing),
         statistics,
         &Statistics {
             replicates: 2,
@@ -86,8 +86,8 @@ const CLAIMS: [Claim; 4] = [
     }),
     claim("F4", &["short"], |evidence| {
         // A bug of an analysis.
-        let runs = &evidence.study("short")?.runs;
-        count(evidence, &runs[runs.len()].identity)
+        let rows = evidence.study("short")?.rows();
+        count(evidence, rows[rows.len()].identity())
     }),
 ];
 
@@ -266,11 +266,11 @@ fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
         let with_series = |evidence: &Evidence| {
             let results = evidence.study("short")?;
             let mut number = 0;
-            for run in &results.runs {
-                number += usize::from(results.series(run)?.is_some());
+            for row in results.rows() {
+                number += usize::from(results.series(&row)?.is_some());
             }
             let mut finding = count(evidence, "short")?;
-            finding.summary = format!("{number} of {}", results.runs.len());
+            finding.summary = format!("{number} of {}", results.rows().len());
             Ok(finding)
         };
         let claims = [claim("F2", &["short"], with_series)];

@@ -3,11 +3,12 @@
 #![allow(missing_docs)]
 #![expect(clippy::unwrap_used, reason = "a test may")]
 
-use peristalsis_reproduce::{
-    CLAIMS, Claim, Evidence, Finding, Lattice, Run, STUDIES, Size, Start, Verdict,
-};
-use peristalsis_run::THRESHOLDS;
+mod rows;
+
+use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Lattice, STUDIES, Size, Start, Verdict};
 use peristalsis_study::{Plan, Specification};
+
+use rows::{Rows, examine, value};
 
 /// A tube whose transition times and branches follow given laws.
 #[derive(Clone, Copy)]
@@ -46,7 +47,7 @@ impl Tube {
         3.0 - self.slope * rate
     }
 
-    fn run(self, lattice: Lattice, start: Start, rate: f64, width: f64, replicate: i64) -> Run {
+    fn run(self, rows: &mut Rows, start: Start, rate: f64, width: f64, replicate: i64) {
         let distance = self.critical(rate) - width;
         let time = 1000.0 / rate;
         let tau = if distance > 0.0 && start == Start::Rest {
@@ -57,107 +58,99 @@ impl Tube {
             f64::NAN
         };
         let tau = if tau < time { tau } else { f64::NAN };
-        let end = match start {
-            Start::Rest => distance > 0.0,
-            Start::Jammed => distance + self.hysteresis > 0.0,
+        let (start, jams) = match start {
+            Start::Rest => ("rest", distance > 0.0),
+            Start::Jammed => ("jammed", distance + self.hysteresis > 0.0),
         };
         let slow = 0.3 - 0.2 * (width - self.critical(rate));
-        Run {
-            identity: String::new(),
-            start,
-            lattice,
-            width,
-            strain_rate: rate,
-            volume_fraction: 0.15,
-            grains: 203,
-            radius: 1.5,
-            wavelength: 10.0,
-            waves: 10,
-            time,
-            flow_rate_ratio: slow + if end { self.jump } else { 0.0 } + 0.002 * normal(replicate),
-            flow_rate_ratio_error: 0.002,
-            flow_rate_ratio_drift: 0.0,
-            escaped: 0,
-            transition_time: tau,
-            transition_threshold: 0.5,
-            transition_times: [tau; THRESHOLDS.len()],
-            replicate,
-            axes: Vec::new(),
-        }
+        let flow = slow + if jams { self.jump } else { 0.0 } + 0.002 * normal(replicate);
+        let columns = (1..=9).map(|place| format!("transition_time_{}", 10 * place));
+        let columns: Vec<String> = columns.collect();
+        let mut numbers = vec![
+            ("width", width),
+            ("strain_rate", rate),
+            ("time", time),
+            ("flow_rate_ratio", flow),
+            ("transition_time", tau),
+            ("replicate", replicate as f64),
+        ];
+        numbers.extend(columns.iter().map(|column| (column.as_str(), tau)));
+        rows.add(&[("initial_state", start)], &numbers);
     }
 
     /// Twelve widths about the critical one.
-    fn divergence(self, lattice: Lattice) -> Vec<Run> {
-        let mut runs = Vec::new();
+    fn divergence(self, lattice: Lattice) -> Rows {
+        let mut rows = tubes(lattice);
         for rate in RATES {
             for distance in [
                 0.3, 0.2, 0.14, 0.1, 0.07, 0.05, 0.035, 0.025, 0.018, 0.012, -0.01, -0.04,
             ] {
                 let width = self.critical(rate) - distance;
                 for replicate in 0..REPLICATES {
-                    runs.push(self.run(lattice, Start::Rest, rate, width, replicate));
+                    self.run(&mut rows, Start::Rest, rate, width, replicate);
                 }
             }
         }
-        runs
+        rows
     }
 
     /// A grid of widths from both starts.
-    fn branches(self, lattice: Lattice) -> Vec<Run> {
-        let mut runs = Vec::new();
+    fn branches(self, lattice: Lattice) -> Rows {
+        let mut rows = tubes(lattice);
         for rate in RATES {
             for place in -14..=14 {
                 // No width is the critical one itself.
                 let width = self.critical(rate) + 0.02 * f64::from(place) + 0.003;
                 for start in [Start::Rest, Start::Jammed] {
                     for replicate in 0..10 {
-                        runs.push(self.run(lattice, start, rate, width, replicate));
+                        self.run(&mut rows, start, rate, width, replicate);
                     }
                 }
             }
         }
-        runs
+        rows
+    }
+
+    fn on(self, lattice: Lattice, name: &str, evidence: &mut Evidence) {
+        let (divergence, branches) = (self.divergence(lattice), self.branches(lattice));
+        for (study, rows) in [("divergence", divergence), ("branches", branches)] {
+            let study = format!("{study}-{name}");
+            evidence.add_table(&study, rows.table()).unwrap();
+        }
     }
 
     fn evidence(self) -> Evidence {
-        let mut evidence = empty();
-        for (lattice, name) in [(Lattice::FINE, "fine"), (Lattice::COARSE, "coarse")] {
-            evidence.add_runs(&format!("divergence-{name}"), self.divergence(lattice));
-            evidence.add_runs(&format!("branches-{name}"), self.branches(lattice));
-        }
+        let mut evidence = rows::evidence(&[]);
+        self.on(Lattice::FINE, "fine", &mut evidence);
+        self.on(Lattice::COARSE, "coarse", &mut evidence);
         evidence
     }
 }
 
-/// Every study, without a run.
-fn empty() -> Evidence {
-    let mut evidence = Evidence::default();
-    for study in STUDIES {
-        evidence.add_runs(study.name, Vec::new());
-    }
-    evidence
-}
-
-fn claim(id: &str) -> &'static Claim {
-    CLAIMS.iter().find(|claim| claim.id == id).unwrap()
+/// No runs yet, of tubes with this wall.
+fn tubes(lattice: Lattice) -> Rows {
+    Rows::with(&[
+        ("spheres_per_ring", lattice.spheres_per_ring as f64),
+        ("rings_per_wave", lattice.rings_per_wave as f64),
+        ("volume_fraction", 0.15),
+        ("grains", 203.0),
+        ("radius", 1.5),
+        ("wavelength", 10.0),
+        ("waves", 10.0),
+        ("flow_rate_ratio_error", 0.002),
+        ("flow_rate_ratio_drift", 0.0),
+        ("transition_threshold", 0.5),
+    ])
 }
 
 fn find(id: &str, tube: Tube) -> Finding {
-    (claim(id).examine)(&tube.evidence()).unwrap()
-}
-
-fn value(finding: &Finding, name: &str) -> f64 {
-    let found = finding
-        .quantities
-        .iter()
-        .find(|one| one.name.contains(name));
-    found.unwrap().ours.unwrap().value
+    examine(id, &tube.evidence())
 }
 
 #[test]
 fn every_claim_is_open_without_runs_and_needs_known_studies_only() {
     for claim in CLAIMS {
-        let finding = (claim.examine)(&empty()).unwrap();
+        let finding = examine(claim.id, &rows::evidence(&[]));
         assert_eq!(finding.verdict, Verdict::Open, "{}", claim.id);
         for study in claim.studies {
             assert!(STUDIES.iter().any(|known| known.name == *study), "{study}");
@@ -167,9 +160,8 @@ fn every_claim_is_open_without_runs_and_needs_known_studies_only() {
 
 #[test]
 fn one_lattice_alone_is_examined() {
-    let mut evidence = empty();
-    evidence.add_runs("divergence-fine", SOURCE.divergence(Lattice::FINE));
-    evidence.add_runs("branches-fine", SOURCE.branches(Lattice::FINE));
+    let mut evidence = rows::evidence(&[]);
+    SOURCE.on(Lattice::FINE, "fine", &mut evidence);
     for claim in CLAIMS {
         let finding = (claim.examine)(&evidence).unwrap();
         assert!(!finding.summary.is_empty(), "{}", claim.id);
@@ -188,20 +180,67 @@ fn every_study_file_is_valid_and_named_for_itself() {
     }
 }
 
+/// Each claim on a tube that does as the source says, and on one that does not.
 #[test]
-fn the_divergence_is_judged_by_its_exponent() {
-    let as_said = find("F2", SOURCE);
-    assert_eq!(as_said.verdict, Verdict::Reproduced, "{}", as_said.summary);
-    assert!((value(&as_said, "fine lattice") - 1.0).abs() < 0.1);
-    let steeper = find(
-        "F2",
-        Tube {
+fn verdicts_follow_the_law_of_the_tube() {
+    let other = |id| match id {
+        "F1" => Tube {
+            jump: 0.4,
+            ..SOURCE
+        },
+        "F2" => Tube {
             alpha: 2.0,
             ..SOURCE
         },
-    );
-    assert_eq!(steeper.verdict, Verdict::Differs, "{}", steeper.summary);
+        "F6" => Tube {
+            jump: 0.0,
+            ..SOURCE
+        },
+        "F7" => Tube {
+            slope: 2.0,
+            ..SOURCE
+        },
+        _ => Tube {
+            hysteresis: 0.0,
+            ..SOURCE
+        },
+    };
+    for id in ["F1", "F2", "F6", "F7", "F9"] {
+        let as_said = find(id, SOURCE);
+        assert_eq!(as_said.verdict, Verdict::Reproduced, "{}", as_said.summary);
+        let differs = find(id, other(id));
+        assert_eq!(differs.verdict, Verdict::Differs, "{}", differs.summary);
+    }
+    let scatter = find("F4", SOURCE);
+    assert_eq!(scatter.verdict, Verdict::Reproduced, "{}", scatter.summary);
+    let steeper = find("F2", other("F2"));
     assert!((value(&steeper, "fine lattice") - 2.0).abs() < 0.2);
+}
+
+/// Claim, name of the quantity, its value by the law of the tube, and how near it must come.
+#[test]
+fn the_numbers_of_the_tube_are_found() {
+    for (id, name, law, within) in [
+        ("F2", "fine lattice", 1.0, 0.1),
+        // chi/tau^2 ~ 1/(w_c - w): beta = 2 alpha + 1.
+        ("F4", "variance of the transition time, fine", 3.0, 0.4),
+        ("F6", "fine lattice, mean", 0.7, 0.03),
+        (
+            "F7",
+            "slope of the critical width, fine lattice, div",
+            -3.75,
+            0.2,
+        ),
+        (
+            "F9",
+            "width of the loop, fine lattice, strain rate 0.1",
+            0.1,
+            0.03,
+        ),
+    ] {
+        let found = value(&find(id, SOURCE), name);
+        assert!((found - law).abs() < within, "{id}: {found}");
+    }
 }
 
 #[test]
@@ -212,73 +251,4 @@ fn a_collapse_finds_the_powers_of_the_strain_rate() {
         ["in the ordinate, fine", "in the distance, fine"].map(|name| value(&finding, name));
     assert!((a - b - 2.0).abs() < 0.15, "{a} {b}");
     assert!(!finding.figures.is_empty());
-}
-
-#[test]
-fn the_scatter_is_judged_by_its_exponent() {
-    // chi/tau^2 ~ 1/(w_c - w): beta = 2 alpha + 1.
-    let finding = find("F4", SOURCE);
-    assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    assert!((value(&finding, "variance of the transition time, fine") - 3.0).abs() < 0.4);
-}
-
-#[test]
-fn a_jump_is_told_from_a_slope() {
-    let jump = find("F6", SOURCE);
-    assert_eq!(jump.verdict, Verdict::Reproduced, "{}", jump.summary);
-    assert!((value(&jump, "fine lattice, mean") - 0.7).abs() < 0.03);
-    let none = find(
-        "F6",
-        Tube {
-            jump: 0.0,
-            ..SOURCE
-        },
-    );
-    assert_eq!(none.verdict, Verdict::Differs, "{}", none.summary);
-}
-
-#[test]
-fn the_slope_of_the_critical_width_is_found() {
-    let finding = find("F7", SOURCE);
-    assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    assert!((value(&finding, "slope of the critical width, fine lattice, div") + 3.75).abs() < 0.2);
-    let flatter = find(
-        "F7",
-        Tube {
-            slope: 2.0,
-            ..SOURCE
-        },
-    );
-    assert_eq!(flatter.verdict, Verdict::Differs, "{}", flatter.summary);
-}
-
-#[test]
-fn a_loop_is_seen_and_its_absence_too() {
-    let finding = find("F9", SOURCE);
-    assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    assert!(
-        (value(&finding, "width of the loop, fine lattice, strain rate 0.1") - 0.1).abs() < 0.03
-    );
-    let none = find(
-        "F9",
-        Tube {
-            hysteresis: 0.0,
-            ..SOURCE
-        },
-    );
-    assert_eq!(none.verdict, Verdict::Differs, "{}", none.summary);
-}
-
-#[test]
-fn two_kinds_of_flow_are_told_apart() {
-    let finding = find("F1", SOURCE);
-    assert_eq!(finding.verdict, Verdict::Reproduced, "{}", finding.summary);
-    let slower = find(
-        "F1",
-        Tube {
-            jump: 0.4,
-            ..SOURCE
-        },
-    );
-    assert_eq!(slower.verdict, Verdict::Differs, "{}", slower.summary);
 }

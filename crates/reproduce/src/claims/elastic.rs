@@ -44,7 +44,7 @@ pub(super) fn flow_against_force() -> ChartPanel {
 /// Colours for the strain rates of some lines, whether or not they are judged.
 pub(super) fn rate_colours(lines: &[ForceLine<'_>]) -> ColourScale {
     let rates = lines.iter().map(|line| line.strain_rate);
-    exhibit::rate_colours(rates, (1e-3, 8e-3), Units::Hertz)
+    exhibit::rate_colours_in(Units::Hertz, rates, (1e-3, 8e-3))
 }
 
 /// Both branches of each line, filled from rest and open from jammed, coloured by the strain rate.

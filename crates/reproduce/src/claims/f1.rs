@@ -1,21 +1,23 @@
 //! F1: slow unjammed flow at large widths, a transition to fast jammed flow at small ones.
 
+use peristalsis_analysis::Uncertain;
+use peristalsis_configuration::{Configuration, Sources};
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
 use peristalsis_figures::{ColourScale, Quantity as Axis, Width};
+use peristalsis_run::{Run, RunError, snapshot_stack};
 
-use peristalsis_configuration::{Configuration, Sources};
-use peristalsis_run::{RunError, snapshot_stack};
-
-use super::{LATTICES, MOST_ESCAPED, Part, judge, label};
-use crate::branches::Branch;
+use crate::branch::{Branch, Control};
 use crate::claim::Claim;
-use crate::critical::{longest, strain_rates};
+use crate::critical::LATTICES;
 use crate::error::ClaimError;
 use crate::evidence::{Evidence, StudyResults};
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
+use crate::exhibit::{ends, label, periods};
+use crate::finding::{Finding, ReportFigure, Statistics};
+use crate::judgement::{Part, judge};
 use crate::prose::Prose;
-use crate::runs::{Lattice, Run, Start};
-use crate::text::{number, with_error};
+use crate::row::{Lattice, Row, Start, by_strain_rate, longest};
+use crate::text::number;
+use crate::thresholds::{BELOW_THE_JUMP, MOST_ESCAPED, NEAR_ONE, NEARLY_ALL, SLOW};
 
 const PROSE: Prose = Prose::new(include_str!("f1.md"));
 
@@ -26,187 +28,141 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
-/// J/Jmax below which a flow is slow.
-const SLOW: f64 = 0.5;
-/// J/Jmax from which on a flow is near Jmax.
-const NEAR_ONE: f64 = 0.9;
-/// Distance below the jump \[d\] at which the jammed flow is read off.
-const BELOW: f64 = 0.1;
-/// Fraction of runs that must do as the claim says.
-const NEARLY_ALL: f64 = 0.95;
-
-/// What the branches of one lattice at one strain rate say.
+/// What the branch from rest of one lattice at one strain rate says.
 struct Kind {
     lattice: Lattice,
     strain_rate: f64,
-    /// What is behind it.
     statistics: Statistics,
     /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
     slow: f64,
     fast: f64,
-    /// J/Jmax just beyond the jump, and `BELOW` it, with errors.
-    slow_ratio: (f64, f64),
-    fast_ratio: (f64, f64),
+    /// J/Jmax just beyond the jump, and [`BELOW_THE_JUMP`].
+    slow_flow: Uncertain,
+    fast_flow: Uncertain,
     escaped: f64,
-    /// Whether the branch has a jump at all.
     jumps: bool,
 }
 
 impl Kind {
+    fn of(lattice: Lattice, strain_rate: f64, rows: &[Row<'_>]) -> Option<Self> {
+        let branch = Branch::of(rows.iter().copied(), Start::Rest, Control::Width);
+        let [before, after] = branch.step()?.controls;
+        let threshold = branch.threshold()?;
+        let fraction = |is_beyond: bool| {
+            let side = rows.iter().filter(|row| match is_beyond {
+                true => row.width() >= after,
+                false => row.width() <= before,
+            });
+            let right = |row: &&Row<'_>| (row.flow_rate_ratio() < threshold) == is_beyond;
+            side.clone().filter(right).count() as f64 / side.count().max(1) as f64
+        };
+        let mut points = branch.points.iter();
+        let fast = points
+            .clone()
+            .rfind(|point| point.control <= before - BELOW_THE_JUMP)?;
+        let slow = points.find(|point| point.control >= after)?;
+        Some(Self {
+            lattice,
+            strain_rate,
+            statistics: branch.statistics(rows.len()),
+            slow: fraction(true),
+            fast: fraction(false),
+            slow_flow: slow.flow,
+            fast_flow: fast.flow,
+            escaped: branch.escaped(),
+            jumps: branch.jumps(),
+        })
+    }
+
     fn holds(&self) -> bool {
         self.jumps
             && self.slow >= NEARLY_ALL
             && self.fast >= NEARLY_ALL
-            && self.slow_ratio.0 < SLOW
-            && self.fast_ratio.0 >= NEAR_ONE
+            && self.slow_flow.value < SLOW
+            && self.fast_flow.value >= NEAR_ONE
+    }
+
+    fn row(&self) -> Vec<String> {
+        vec![
+            self.lattice.name(),
+            number(self.strain_rate, 3),
+            number(self.slow, 2),
+            number(self.fast, 2),
+            self.slow_flow.to_string(),
+            self.fast_flow.to_string(),
+            number(self.escaped, 2),
+        ]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut kinds = Vec::new();
+    let needed = Statistics::FOR_A_VERDICT;
+    let (mut kinds, mut parts, mut counts) = (Vec::new(), Vec::new(), Vec::new());
     let mut periods: f64 = 0.0;
     for (lattice, _, branches) in LATTICES {
-        let runs = &evidence.study(branches)?.runs;
-        periods = periods.max(longest(runs.iter()));
-        for rate in strain_rates(runs.iter()) {
-            kinds.extend(kind(runs, lattice, rate));
-        }
+        let rows = evidence.study(branches)?.rows();
+        periods = periods.max(longest(&rows));
+        let from_rest = rows
+            .into_iter()
+            .filter(|row| row.lattice() == lattice && row.start() == Start::Rest);
+        let here: Vec<Kind> = by_strain_rate(from_rest)
+            .into_iter()
+            .filter_map(|(rate, rows)| Kind::of(lattice, rate, &rows))
+            .collect();
+        let tight = || here.iter().filter(|kind| kind.escaped <= MOST_ESCAPED);
+        let holding = tight().filter(|kind| kind.holds()).count();
+        let all = tight().count();
+        let name = lattice.name();
+        counts.push(PROSE.text(
+            "count",
+            &[("holding", &holding), ("all", &all), ("lattice", &name)],
+        ));
+        parts.push(Part {
+            lattice: name,
+            holds: (all > 0).then_some(holding == all),
+            statistics: Statistics::weakest(tight().map(|kind| kind.statistics)),
+        });
+        kinds.extend(here);
     }
-    let tight = |lattice: Lattice| {
-        kinds
-            .iter()
-            .filter(move |kind| kind.lattice == lattice && kind.escaped <= MOST_ESCAPED)
-    };
-    let of = |lattice: Lattice| Statistics::weakest(tight(lattice).map(|kind| kind.statistics));
-    let needed = Statistics::FOR_A_VERDICT;
-    let parts = LATTICES.map(|(lattice, ..)| Part {
-        lattice: lattice.name(),
-        holds: (tight(lattice).count() > 0).then(|| tight(lattice).all(Kind::holds)),
-        statistics: of(lattice),
-    });
     let (verdict, statistics, why) = judge(&parts, &needed);
     if kinds.is_empty() {
-        return Ok(Finding::nothing("No runs yet.", statistics, &needed));
+        return Ok(Finding::nothing(
+            &PROSE.text("nothing", &[]),
+            statistics,
+            &needed,
+        ));
     }
-    let counts: Vec<String> = LATTICES
-        .iter()
-        .map(|(lattice, ..)| {
-            format!(
-                "at {} of {} strain rates on the {} lattice",
-                tight(*lattice).filter(|kind| kind.holds()).count(),
-                tight(*lattice).count(),
-                lattice.name()
-            )
-        })
-        .collect();
-    let mut finding = Finding::new(
-        verdict,
-        format!(
-            "Slow beyond a jump (below {SLOW} *J*_{{max}}) and fast {BELOW} *d* below it (above {NEAR_ONE} *J*_{{max}}) {}.{why}",
-            counts.join(" and ")
-        ),
-        statistics,
-        &needed,
+    let summary = PROSE.text(
+        "summary",
+        &[
+            ("slow", &SLOW),
+            ("below", &BELOW_THE_JUMP),
+            ("near", &NEAR_ONE),
+            ("counts", &counts.join(" and ")),
+            ("why", &why),
+        ],
     );
-    for kind in tight(Lattice::FINE) {
-        finding.quantities.push(Quantity {
-            name: format!(
-                "flow rate of the jammed state, fine lattice, strain rate {}",
-                kind.strain_rate
-            ),
-            symbol: "*J*/*J*_{max}".to_owned(),
-            unit: String::new(),
-            source: None,
-            ours: Some(peristalsis_analysis::Uncertain::normal(
-                kind.fast_ratio.0,
-                kind.fast_ratio.1,
-            )),
-            method: format!("mean over replicates, {BELOW} d below the jump"),
-        });
+    let mut finding = Finding::new(verdict, summary, statistics, &needed);
+    let fine = |kind: &&Kind| kind.lattice == Lattice::FINE && kind.escaped <= MOST_ESCAPED;
+    for kind in kinds.iter().filter(fine) {
+        finding.quantities.push(PROSE.quantity(
+            "jammed flow",
+            &[("rate", &kind.strain_rate), ("below", &BELOW_THE_JUMP)],
+            kind.fast_flow,
+        ));
     }
-    finding.tables.push(ReportTable {
-        caption: format!(
-            "The two kinds of flow from rest: fraction of runs beyond the jump that stay slow, of runs below it that become \
-             fast, and *J*/*J*_{{max}} just beyond the jump and {BELOW} *d* below it."
-        ),
-        head: ["lattice", "*ε̇*", "stay slow", "become fast", "slow flow", "fast flow", "outside"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows: kinds
-            .iter()
-            .map(|kind| {
-                vec![
-                    kind.lattice.name(),
-                    number(kind.strain_rate, 3),
-                    number(kind.slow, 2),
-                    number(kind.fast, 2),
-                    with_error(kind.slow_ratio.0, kind.slow_ratio.1),
-                    with_error(kind.fast_ratio.0, kind.fast_ratio.1),
-                    number(kind.escaped, 2),
-                ]
-            })
-            .collect(),
-    });
-    finding.paragraphs.push(
-        "Runs that still drift at their end are left out. Where the fast flow stays below *J*_{max} the jammed grains slip back \
-         through the bottleneck: see the branches of F6."
-            .to_owned(),
-    );
-    finding.weaknesses.push(
-        format!(
-            "Which flow is the slow one is decided by where the stationary flow falls, within {} periods a run: next to *w*_{{c}} a \
-             transition may come later.",
-            periods
-        ),
-    );
+    finding.tables.push(PROSE.table(
+        "kinds",
+        &[("below", &BELOW_THE_JUMP)],
+        kinds.iter().map(Kind::row).collect(),
+    ));
+    finding.paragraphs = PROSE.paragraphs("method", &[]);
+    finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
     finding
         .figures
         .extend(in_time(evidence.study("flow-in-time")?)?);
     finding.figures.push(snapshots()?);
     Ok(finding)
-}
-
-fn kind(runs: &[Run], lattice: Lattice, strain_rate: f64) -> Option<Kind> {
-    let here = || {
-        runs.iter().filter(move |run| {
-            run.lattice == lattice && run.strain_rate == strain_rate && run.start == Start::Rest
-        })
-    };
-    let branch = Branch::of(here(), Start::Rest);
-    let drop = branch.drop()?;
-    let threshold = branch.threshold()?;
-    let fraction = |beyond: bool| {
-        let side = || {
-            here().filter(move |run| {
-                if beyond {
-                    run.width >= drop.after
-                } else {
-                    run.width <= drop.before
-                }
-            })
-        };
-        let right = side().filter(|run| (run.flow_rate_ratio < threshold) == beyond);
-        right.count() as f64 / side().count().max(1) as f64
-    };
-    let fast = branch
-        .points
-        .iter()
-        .rfind(|point| point.width <= drop.before - BELOW)?;
-    let slow = branch
-        .points
-        .iter()
-        .find(|point| point.width >= drop.after)?;
-    Some(Kind {
-        lattice,
-        strain_rate,
-        statistics: branch.statistics(here().count()),
-        slow: fraction(true),
-        fast: fraction(false),
-        slow_ratio: (slow.mean, slow.error),
-        fast_ratio: (fast.mean, fast.error),
-        escaped: branch.escaped(),
-        jumps: branch.jumps(),
-    })
 }
 
 /// J/Jmax in time for several widths, a panel a lattice; nothing where only rows were imported.
@@ -216,48 +172,32 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
     for lattice in [Lattice::COARSE, Lattice::FINE] {
         let mut panel =
             ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
-        let mut lines = 0;
-        let mut rate = 0.0;
-        for run in study
-            .runs
-            .iter()
-            .filter(|run| run.lattice == lattice && run.replicate == 0)
-        {
-            let Some(averages) = study.period_averages(run)? else {
+        let mut drawn = None;
+        let is_shown = |row: &Row<'_>| row.lattice() == lattice && row.replicate() == 0;
+        for row in study.rows().into_iter().filter(is_shown) {
+            let Some(averages) = study.period_averages(&row)? else {
                 continue;
             };
-            let period: Vec<f64> = (0..averages.len())
-                .map(|number| number as f64 + 0.5)
-                .collect();
-            panel = panel.with(Curve::new("", &period, &averages).tint(Tint::Value(run.width)));
-            widths.push(run.width);
-            rate = run.strain_rate;
-            lines += 1;
+            let curve = Curve::new("", &periods(averages.len()), &averages);
+            panel = panel.with(curve.tint(Tint::Value(row.width())));
+            widths.push(row.width());
+            drawn = Some(row.strain_rate());
         }
-        if lines > 0 {
-            panels.push(panel.title(&format!("{} lattice, *ε̇* = {rate}", lattice.name())));
-        }
+        panels.extend(
+            drawn.map(|rate| panel.title(&format!("{} lattice, *ε̇* = {rate}", lattice.name()))),
+        );
     }
-    if panels.is_empty() {
+    let Some(first) = widths.first() else {
         return Ok(None);
-    }
-    let least = widths.iter().copied().fold(f64::INFINITY, f64::min);
-    let largest = widths.iter().copied().fold(0.0, f64::max);
+    };
+    let (least, largest) = ends(widths.iter().copied()).unwrap_or((*first, first + 0.01));
     let drawing = ChartFigure::grid(2, panels)
         .share_y()
-        .colour_scale(ColourScale::new(
-            &label(Axis::Width),
-            least,
-            largest.max(least + 0.01),
-        ))
+        .colour_scale(ColourScale::new(&label(Axis::Width), least, largest))
         .width(Width::DoubleColumn)
         .description("Flow rate in time for several widths of the bottleneck.")
         .draw()?;
-    Ok(Some(ReportFigure {
-        name: "flow-in-time".to_owned(),
-        caption: "*J*/*J*_{max}, averaged over each period, from rest for several widths of the bottleneck.".to_owned(),
-        drawing,
-    }))
+    Ok(Some(PROSE.figure("flow-in-time", &[], drawing)))
 }
 
 /// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the fine lattice, after so many periods.
@@ -281,19 +221,12 @@ fn snapshots() -> Result<ReportFigure, ClaimError> {
             overrides: &overrides,
         })
         .map_err(RunError::from)?;
-        let mut run = peristalsis_run::Run::new(configuration)?;
+        let mut run = Run::new(configuration)?;
         while !run.is_complete() {
             run.advance()?;
         }
         runs.push((name, run));
     }
-    let labelled: Vec<(&str, &peristalsis_run::Run)> =
-        runs.iter().map(|(name, run)| (*name, run)).collect();
-    Ok(ReportFigure {
-        name: "snapshots".to_owned(),
-        caption: "Unjammed and jammed flow after 60 periods from rest, *ε̇* = 0.1, fine lattice; the wave runs to the right, \
-                  colours are axial velocities over the wave's speed."
-            .to_owned(),
-        drawing: snapshot_stack(&labelled)?,
-    })
+    let labelled: Vec<(&str, &Run)> = runs.iter().map(|(name, run)| (*name, run)).collect();
+    Ok(PROSE.figure("snapshots", &[], snapshot_stack(&labelled)?))
 }

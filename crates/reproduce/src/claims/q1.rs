@@ -1,19 +1,20 @@
 //! Q1: small strain rates.
 
 use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::{MOST_ESCAPED, label};
-use crate::branches::Branch;
+use crate::branch::{Branch, Control};
 use crate::claim::Claim;
-use crate::critical::{longest, strain_rates};
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::exhibit::{NONE, cell, cell_of, label, points};
+use crate::finding::{Finding, ReportFigure, Statistics, Verdict};
+use crate::judgement::best;
 use crate::prose::Prose;
-use crate::runs::Start;
-use crate::text::{estimate, number};
+use crate::row::{Row, Start, by_strain_rate, longest};
+use crate::text::number;
+use crate::thresholds::{CLEAR_TURN, HALF, LEAST_FALL, MOST_ESCAPED, Q1_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q1.md"));
 
@@ -29,21 +30,20 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
-/// For an answer: four strain rates, five replicates.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 4,
-    widths: 8,
-    replicates: 5,
-    runs: 300,
-};
+/// The lattices with their studies of small strain rates and of the usual ones.
+const LATTICES: [(&str, &str, &str); 2] = [
+    ("coarse", "small-strain-rate-coarse", "branches-coarse"),
+    ("fine", "small-strain-rate-fine", "branches-fine"),
+];
 
 /// One strain rate on one lattice.
-struct Row {
+struct Line {
     lattice: &'static str,
     strain_rate: f64,
     critical: Uncertain,
     jammed: Option<Uncertain>,
     height: Option<Uncertain>,
+    /// The width at which the flow passes one half.
     half: Option<f64>,
     /// Whether the fall counts as a jump.
     jumps: bool,
@@ -51,272 +51,218 @@ struct Row {
     both_starts: bool,
     /// Longest time of a run, in periods.
     periods: f64,
+    statistics: Statistics,
+}
+
+impl Line {
+    /// `None` where there is no branch from rest, or grains leave the tube.
+    fn of(lattice: &'static str, strain_rate: f64, rows: &[Row<'_>]) -> Option<Self> {
+        let branch = |start| Branch::of(rows.iter().copied(), start, Control::Width);
+        let (rest, jammed) = (branch(Start::Rest), branch(Start::Jammed));
+        let fall = rest.step()?;
+        let falls = jammed.step().filter(|step| -step.height.value > LEAST_FALL);
+        (rest.escaped().max(jammed.escaped()) <= MOST_ESCAPED).then(|| Self {
+            lattice,
+            strain_rate,
+            critical: fall.place(),
+            jammed: falls.map(|step| step.place()),
+            height: rest.jump().map(|jump| jump.height),
+            half: crossing_of_half(&rest),
+            jumps: rest.jumps(),
+            both_starts: !jammed.points.is_empty(),
+            periods: longest(rows),
+            statistics: rest.statistics(rows.len()),
+        })
+    }
+
+    fn row(&self) -> Vec<String> {
+        let none = if self.both_starts { "none seen" } else { NONE };
+        vec![
+            self.lattice.to_owned(),
+            number(self.strain_rate, 4),
+            self.critical.to_string(),
+            self.jammed
+                .map_or(none.to_owned(), |width| width.to_string()),
+            cell(self.height),
+            if self.jumps { "jump" } else { "none seen" }.to_owned(),
+            number(self.periods, 0),
+            cell_of(self.half, |width| number(width, 3)),
+        ]
+    }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut rows = Vec::new();
+    let mut lines: Vec<Line> = Vec::new();
     let mut all = Vec::new();
-    for (lattice, small, usual) in [
-        ("coarse", "small-strain-rate-coarse", "branches-coarse"),
-        ("fine", "small-strain-rate-fine", "branches-fine"),
-    ] {
-        let mut of_lattice = Vec::new();
-        for (name, is_small) in [(small, true), (usual, false)] {
-            let runs = &evidence.study(name)?.runs;
-            for rate in strain_rates(runs.iter()) {
-                // Strain rates of both studies are taken from the one that is about them.
-                if !is_small
-                    && rows
-                        .iter()
-                        .any(|row: &Row| row.lattice == lattice && row.strain_rate == rate)
-                {
-                    continue;
-                }
-                let here = || runs.iter().filter(move |run| run.strain_rate == rate);
-                let branch = Branch::of(here(), Start::Rest);
-                let Some(drop) = branch.drop() else { continue };
-                let jammed = Branch::of(here(), Start::Jammed);
-                if branch.escaped().max(jammed.escaped()) > MOST_ESCAPED {
-                    continue;
-                }
-                if is_small {
-                    of_lattice.push(branch.statistics(here().count()));
-                }
-                rows.push(Row {
-                    lattice,
-                    strain_rate: rate,
-                    critical: drop.width(),
-                    jammed: jammed
-                        .drop()
-                        .filter(|drop| drop.ratio.0 - drop.ratio.1 > 0.05)
-                        .map(|drop| drop.width()),
-                    height: branch.jump().map(|jump| jump.height),
-                    half: crossing_of_half(&branch),
-                    jumps: branch.jumps(),
-                    both_starts: !jammed.points.is_empty(),
-                    periods: longest(here()),
-                });
-            }
-        }
-        all.push(Statistics::weakest(of_lattice.into_iter()));
+    for (lattice, small, usual) in LATTICES {
+        let of = |study: &str| -> Result<Vec<Line>, ClaimError> {
+            let rates = by_strain_rate(evidence.study(study)?.rows()).into_iter();
+            Ok(rates
+                .filter_map(|(rate, rows)| Line::of(lattice, rate, &rows))
+                .collect())
+        };
+        let mut here = of(small)?;
+        all.push(Statistics::weakest(here.iter().map(|line| line.statistics)));
+        // Strain rates of both studies are taken from the one that is about them.
+        let is_new = |line: &Line| {
+            let mut known = here.iter().map(|known| known.strain_rate);
+            !known.any(|rate| rate == line.strain_rate)
+        };
+        let usual: Vec<Line> = of(usual)?.into_iter().filter(is_new).collect();
+        here.extend(usual);
+        here.sort_by(|one, other| one.strain_rate.total_cmp(&other.strain_rate));
+        lines.extend(here);
     }
-    let found = super::best(all.into_iter(), &NEEDED);
-    if rows.is_empty() {
-        return Ok(Finding::nothing("No runs yet.", found, &NEEDED));
+    let statistics = best(all.into_iter(), &Q1_NEEDED);
+    if lines.is_empty() {
+        let nothing = PROSE.text("nothing", &[]);
+        return Ok(Finding::nothing(&nothing, statistics, &Q1_NEEDED));
     }
-    rows.sort_by(|one, other| {
-        (one.lattice, one.strain_rate)
-            .partial_cmp(&(other.lattice, other.strain_rate))
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
-    let words: Vec<String> = ["coarse", "fine"]
-        .iter()
-        .map(|lattice| {
-            let slowest = rows.iter().find(|row| row.lattice == *lattice && row.jumps);
-            let steady = rows
-                .iter()
-                .filter(|row| row.lattice == *lattice && !row.jumps);
-            let steady: Vec<String> = steady.map(|row| row.strain_rate.to_string()).collect();
-            let jump = slowest.map_or("no jump at all".to_owned(), |row| {
-                format!(
-                    "the smallest strain rate with a jump is {}, at *w*_{{c}} = {}",
-                    row.strain_rate,
-                    estimate(&row.critical)
-                )
-            });
-            let none = if steady.is_empty() {
-                String::new()
-            } else {
-                format!(" (none seen at {})", steady.join(", "))
-            };
-            format!(
-                "{lattice} lattice: {jump}{none}; {}; {}",
-                turning(&rows, lattice),
-                turning_of_half(&rows, lattice)
-            )
-        })
-        .collect();
-    let mut finding = Finding::new(
-        Verdict::Answered,
-        format!("{}.", words.join(". ")),
-        found,
-        &NEEDED,
-    );
-    for row in rows.iter().filter(|row| row.jumps) {
-        finding.quantities.push(Quantity {
-            name: format!(
-                "critical width from rest, {} lattice, strain rate {}",
-                row.lattice, row.strain_rate
-            ),
-            symbol: "*w*_{c}".to_owned(),
-            unit: "d".to_owned(),
-            source: None,
-            ours: Some(row.critical),
-            method: "bracket of the largest fall of the stationary flow".to_owned(),
-        });
-    }
-    finding.tables.push(ReportTable {
-        caption: "Where the stationary flow falls most, from rest and from jammed, the height of the jump, and where it passes \
-                  one half."
-            .to_owned(),
-        head: ["lattice", "*ε̇*", "*w*_{c}", "*w*_{c}′", "height", "kind", "periods", "*J* = *J*_{max}/2"].map(str::to_owned).to_vec(),
-        rows: rows
+    let words = LATTICES.map(|(lattice, ..)| {
+        let here: Vec<&Line> = lines
             .iter()
-            .map(|row| {
-                vec![
-                    row.lattice.to_owned(),
-                    number(row.strain_rate, 4),
-                    estimate(&row.critical),
-                    row.jammed.map_or_else(
-                        || if row.both_starts { "none seen" } else { "–" }.to_owned(),
-                        |width| estimate(&width),
-                    ),
-                    row.height.map_or("–".to_owned(), |height| estimate(&height)),
-                    if row.jumps { "jump" } else { "none seen" }.to_owned(),
-                    number(row.periods, 0),
-                    row.half.map_or("–".to_owned(), |width| number(width, 3)),
-                ]
-            })
-            .collect(),
+            .filter(|line| line.lattice == lattice)
+            .collect();
+        in_words(lattice, &here)
     });
-    finding.paragraphs.push(
-        "Where the flow passes one half is not where it jumps if the fast flow itself falls with *w*: a threshold of one half then \
-         finds that passage, and one midway between the branches the jump."
-            .to_owned(),
-    );
-    finding.weaknesses.push(
-        "Strain rates of both studies stand side by side, with runs of other lengths: see the column of periods."
-            .to_owned(),
-    );
-    finding.figures.push(figure(&rows)?);
+    let summary = PROSE.text("summary", &[("lattices", &words.join(". "))]);
+    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q1_NEEDED);
+    for line in lines.iter().filter(|line| line.jumps) {
+        finding.quantities.push(PROSE.quantity(
+            "critical width",
+            &[("lattice", &line.lattice), ("rate", &line.strain_rate)],
+            line.critical,
+        ));
+    }
+    let rows = lines.iter().map(Line::row).collect();
+    finding.tables.push(PROSE.table("falls", &[], rows));
+    finding.paragraphs = PROSE.paragraphs("method", &[]);
+    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    finding.figures.push(figure(&lines)?);
     Ok(finding)
 }
 
+/// What the lines of one lattice say.
+fn in_words(lattice: &str, lines: &[&Line]) -> String {
+    let slowest = lines.iter().find(|line| line.jumps);
+    let jump = slowest.map_or_else(
+        || PROSE.text("no jump", &[]),
+        |line| {
+            PROSE.text(
+                "jump",
+                &[("rate", &line.strain_rate), ("width", &line.critical)],
+            )
+        },
+    );
+    let steady = lines.iter().filter(|line| !line.jumps);
+    let steady: Vec<String> = steady.map(|line| line.strain_rate.to_string()).collect();
+    let steady = match steady.is_empty() {
+        true => String::new(),
+        false => format!(
+            " {}",
+            PROSE.text("steady", &[("rates", &steady.join(", "))])
+        ),
+    };
+    PROSE.text(
+        "lattice",
+        &[
+            ("lattice", &lattice),
+            ("jump", &jump),
+            ("steady", &steady),
+            ("turning", &turning(lines)),
+            ("half", &turning_of_half(lines)),
+        ],
+    )
+}
+
 /// Whether the critical width falls toward the smallest strain rates at which there is a jump, by more than its errors.
-fn turning(rows: &[Row], lattice: &str) -> String {
-    let jumps: Vec<&Row> = rows
-        .iter()
-        .filter(|row| row.lattice == lattice && row.jumps)
-        .collect();
-    let highest = jumps
-        .iter()
-        .max_by(|one, other| one.critical.value.total_cmp(&other.critical.value));
-    let (Some(slowest), Some(highest)) = (jumps.first(), highest) else {
-        return "so that *w*_{c} cannot turn back".to_owned();
+fn turning(lines: &[&Line]) -> String {
+    let jumps = || lines.iter().filter(|line| line.jumps);
+    let width = |line: &Line| line.critical.value;
+    let highest = jumps().max_by(|one, other| width(one).total_cmp(&width(other)));
+    let (Some(slowest), Some(highest)) = (jumps().next(), highest) else {
+        return PROSE.text("cannot turn", &[]);
     };
     let fall = highest.critical.value - slowest.critical.value;
     let error = highest.critical.error.hypot(slowest.critical.error);
-    if fall > 3.0 * error {
-        format!(
-            "*w*_{{c}} turns back below *ε̇* = {}, by {} *d*",
-            highest.strain_rate,
-            number(fall, 3)
+    if fall > CLEAR_TURN * error {
+        PROSE.text(
+            "turns",
+            &[("rate", &highest.strain_rate), ("fall", &number(fall, 3))],
         )
     } else {
-        "*w*_{c} of the jump does not turn back".to_owned()
+        PROSE.text("does not turn", &[])
     }
 }
 
 /// The strain rate at which the flow passes one half in the widest tube, in words.
-fn turning_of_half(rows: &[Row], lattice: &str) -> String {
-    let halves: Vec<(f64, f64)> = rows
-        .iter()
-        .filter(|row| row.lattice == lattice)
-        .filter_map(|row| Some((row.strain_rate, row.half?)))
-        .collect();
-    let widest = halves
-        .iter()
-        .max_by(|one, other| one.1.total_cmp(&other.1))
-        .copied();
-    match (halves.first(), widest) {
-        (Some(slowest), Some(widest)) if widest.0 > slowest.0 => format!(
-            "the width at which *J* = *J*_{{max}}/2 does, below *ε̇* = {}: {} there, {} at {}",
-            widest.0,
-            number(widest.1, 3),
-            number(slowest.1, 3),
-            slowest.0
+fn turning_of_half(lines: &[&Line]) -> String {
+    let halves = || {
+        lines
+            .iter()
+            .filter_map(|line| Some((line.strain_rate, line.half?)))
+    };
+    let widest = halves().max_by(|one, other| one.1.total_cmp(&other.1));
+    match (halves().next(), widest) {
+        (Some(slowest), Some(widest)) if widest.0 > slowest.0 => PROSE.text(
+            "half turns",
+            &[
+                ("rate", &widest.0),
+                ("widest", &number(widest.1, 3)),
+                ("slowest", &number(slowest.1, 3)),
+                ("smallest", &slowest.0),
+            ],
         ),
-        _ => "the width at which *J* = *J*_{max}/2 is not seen to".to_owned(),
+        _ => PROSE.text("half does not turn", &[]),
     }
 }
 
 /// The width at which a branch passes one half, between two points on a straight line.
-fn crossing_of_half(branch: &Branch) -> Option<f64> {
-    branch
-        .points
-        .windows(2)
-        .rev()
-        .find(|pair| pair[0].mean >= 0.5 && pair[1].mean < 0.5)
-        .map(|pair| {
-            let part = (pair[0].mean - 0.5) / (pair[0].mean - pair[1].mean);
-            pair[0].width + part * (pair[1].width - pair[0].width)
-        })
+fn crossing_of_half(branch: &Branch<'_>) -> Option<f64> {
+    let mut steps: Vec<_> = branch.steps().collect();
+    steps.reverse();
+    let step = steps
+        .iter()
+        .find(|step| step.flows[0] >= HALF && step.flows[1] < HALF)?;
+    let part = (step.flows[0] - HALF) / (step.flows[0] - step.flows[1]);
+    Some(step.controls[0] + part * (step.controls[1] - step.controls[0]))
 }
 
-fn figure(rows: &[Row]) -> Result<ReportFigure, ClaimError> {
-    let mut width = ChartPanel::new(&label(Axis::StrainRate), &label(Axis::CriticalWidth))
-        .x_scale(Scale::Logarithmic);
-    let mut height = ChartPanel::new(
-        &label(Axis::StrainRate),
-        "height of the largest fall, Δ*J*/*J*_{max}",
-    )
-    .x_scale(Scale::Logarithmic)
-    .y_range(0.0..);
-    for (series, lattice) in ["coarse", "fine"].into_iter().enumerate() {
-        let of: Vec<&Row> = rows.iter().filter(|row| row.lattice == lattice).collect();
-        if of.is_empty() {
-            continue;
-        }
-        let rate: Vec<f64> = of.iter().map(|row| row.strain_rate).collect();
-        // Where nothing jumps, the largest fall has no meaning.
-        let jumping: Vec<&Row> = of.iter().copied().filter(|row| row.jumps).collect();
-        if !jumping.is_empty() {
-            let column =
-                |of: fn(&Row) -> f64| jumping.iter().map(|row| of(row)).collect::<Vec<f64>>();
-            width = width.with(
-                Points::new(
-                    &format!("{lattice}, jump"),
-                    &column(|row| row.strain_rate),
-                    &column(|row| row.critical.value),
-                )
-                .y_errors(&column(|row| row.critical.interval_95.length() / 2.0))
-                .series(series)
-                .joined(),
-            );
-        }
-        let half: Vec<f64> = of.iter().map(|row| row.half.unwrap_or(f64::NAN)).collect();
-        if half.iter().any(|width| width.is_finite()) {
-            width = width.with(
-                Points::new(&format!("{lattice}, *J* = *J*_{{max}}/2"), &rate, &half)
-                    .series(series)
-                    .open(),
-            );
-        }
-        let jump: Vec<f64> = of
-            .iter()
-            .map(|row| row.height.map_or(f64::NAN, |height| height.value))
-            .collect();
-        let jump_error: Vec<f64> = of
-            .iter()
-            .map(|row| row.height.map_or(0.0, |height| height.error))
-            .collect();
-        if jump.iter().any(|height| height.is_finite()) {
-            height = height.with(
-                Points::new(&format!("{lattice} lattice"), &rate, &jump)
-                    .y_errors(&jump_error)
-                    .series(series)
-                    .joined(),
-            );
-        }
+fn figure(lines: &[Line]) -> Result<ReportFigure, ClaimError> {
+    let panel =
+        |name: &str| ChartPanel::new(&label(Axis::StrainRate), name).x_scale(Scale::Logarithmic);
+    let mut width = panel(&label(Axis::CriticalWidth));
+    let mut height = panel("height of the largest fall, Δ*J*/*J*_{max}").y_range(0.0..);
+    for (series, (lattice, ..)) in LATTICES.iter().enumerate() {
+        let of = || lines.iter().filter(|line| line.lattice == *lattice);
+        // Where nothing jumps, the largest fall has no meaning. Bars are the brackets.
+        let jumps = of().filter(|line| line.jumps).map(|line| {
+            let half = line.critical.interval_95.length() / 2.0;
+            (
+                line.strain_rate,
+                Uncertain::normal(line.critical.value, half),
+            )
+        });
+        width = width.with_all(
+            points(&format!("{lattice}, jump"), jumps).map(|points| points.series(series).joined()),
+        );
+        let halves = of().filter_map(|line| {
+            let exact = Uncertain::normal(line.half?, 0.0);
+            Some((line.strain_rate, exact))
+        });
+        width = width.with_all(
+            points(&format!("{lattice}, *J* = *J*_{{max}}/2"), halves)
+                .map(|points| points.series(series).open()),
+        );
+        let heights = of().filter_map(|line| Some((line.strain_rate, line.height?)));
+        height = height.with_all(
+            points(&format!("{lattice} lattice"), heights)
+                .map(|points| points.series(series).joined()),
+        );
     }
-    Ok(ReportFigure {
-        name: "small-strain-rates".to_owned(),
-        caption: "Critical width (a) where there is a jump, bars: its bracket, open: where the stationary flow passes one half; \
-                  and height of the largest fall (b) against strain rate."
-            .to_owned(),
-        drawing: ChartFigure::grid(2, [width, height])
-            .width(Width::DoubleColumn)
-            .description("Critical width and height of the jump against strain rate on both lattices.")
-            .draw()?,
-    })
+    let drawing = ChartFigure::grid(2, [width, height])
+        .width(Width::DoubleColumn)
+        .description("Critical width and height of the jump against strain rate on both lattices.")
+        .draw()?;
+    Ok(PROSE.figure("small-strain-rates", &[], drawing))
 }

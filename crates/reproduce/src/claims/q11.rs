@@ -1,18 +1,18 @@
 //! Q11: what the method of computing does to the numbers.
 
-use peristalsis_analysis::{FractionCrossing, Uncertain};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
+use peristalsis_analysis::{Uncertain, mean_and_error};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel};
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 
-use super::label;
 use crate::claim::Claim;
-use crate::crossing::{behind, crossing, grouped};
+use crate::critical::crossing;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::exhibit::{NONE, label, points};
+use crate::finding::{Finding, Statistics, Verdict};
 use crate::prose::Prose;
-use crate::runs::Run;
-use crate::text::estimate;
+use crate::row::{Row, behind, grouped};
+use crate::thresholds::Q11_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q11.md"));
 
@@ -22,15 +22,6 @@ pub(super) const CLAIM: Claim = Claim {
     studies: &["method-fine", "method-coarse"],
     examine,
 };
-
-const NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 7,
-    replicates: 5,
-    runs: 150,
-};
-
-const STUDIES: [(&str, &str); 2] = [("method-fine", "fine"), ("method-coarse", "coarse")];
 
 /// How a run was computed.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -44,18 +35,18 @@ struct Method {
 }
 
 impl Method {
-    /// That of the presets.
+    /// The presets' method.
     const DEFAULT: Self = Self {
         is_adams_bashforth: false,
         time_step: 0.05,
         skin: 0.3,
     };
 
-    fn of(run: &Run) -> Self {
+    fn of(row: &Row<'_>) -> Self {
         Self {
-            is_adams_bashforth: run.axis("run.integrator=adams_bashforth").is_some(),
-            time_step: run.axis("run.time_step").unwrap_or(Self::DEFAULT.time_step),
-            skin: run.axis("run.neighbour_skin").unwrap_or(Self::DEFAULT.skin),
+            is_adams_bashforth: row.text("run.integrator") == "adams_bashforth",
+            time_step: row.number_or("run.time_step", Self::DEFAULT.time_step),
+            skin: row.number_or("run.neighbour_skin", Self::DEFAULT.skin),
         }
     }
 
@@ -71,165 +62,140 @@ impl Method {
 /// What came out with one method on one lattice.
 struct Outcome {
     method: Method,
-    critical: FractionCrossing,
+    critical: Uncertain,
     /// Mean J/Jmax at the narrowest and at the widest bottleneck.
     ends: [Uncertain; 2],
 }
 
+impl Outcome {
+    fn of(method: Method, rows: &[Row<'_>]) -> Option<Self> {
+        let critical = crossing(rows)?.width;
+        let at_widths = grouped(rows.iter().copied(), Row::width);
+        let mean = |(_, here): &(f64, Vec<Row<'_>>)| {
+            let ratios: Vec<f64> = here.iter().map(Row::flow_rate_ratio).collect();
+            let (mean, error) = mean_and_error(&ratios);
+            // A single run has no scatter.
+            Uncertain::normal(mean, if ratios.len() > 1 { error } else { 0.0 })
+        };
+        Some(Self {
+            method,
+            critical,
+            ends: [mean(at_widths.first()?), mean(at_widths.last()?)],
+        })
+    }
+
+    fn is_usual(&self) -> bool {
+        self.method == Method::DEFAULT
+    }
+
+    fn shift(&self, usual: &Self) -> Uncertain {
+        Uncertain::normal(
+            self.critical.value - usual.critical.value,
+            self.critical.error.hypot(usual.critical.error),
+        )
+    }
+
+    fn row(&self, lattice: &str, usual: &Self) -> Vec<String> {
+        let shift = match self.is_usual() {
+            true => NONE.to_owned(),
+            false => self.shift(usual).to_string(),
+        };
+        vec![
+            lattice.to_owned(),
+            self.method.integrator().to_owned(),
+            self.method.time_step.to_string(),
+            self.method.skin.to_string(),
+            self.critical.to_string(),
+            shift,
+            self.ends[0].to_string(),
+            self.ends[1].to_string(),
+        ]
+    }
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut behind_all = Vec::new();
-    let mut panels = Vec::new();
-    let mut rows = Vec::new();
-    let mut quantities = Vec::new();
-    let mut words = Vec::new();
-    for (study, lattice) in STUDIES {
-        let mut outcomes = Vec::new();
-        for (method, here) in grouped(&evidence.study(study)?.runs, |run| Method::of(run)) {
-            behind_all.push(behind(&here));
-            outcomes.extend(outcome(method, &here));
-        }
-        let Some(usual) = outcomes.iter().find(|one| one.method == Method::DEFAULT) else {
+    let (mut all, mut panels, mut words) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut rows, mut quantities) = (Vec::new(), Vec::new());
+    for (study, lattice) in [("method-fine", "fine"), ("method-coarse", "coarse")] {
+        let groups = grouped(evidence.study(study)?.rows(), Method::of);
+        all.extend(groups.iter().map(|(_, rows)| behind(rows, Row::width)));
+        let outcomes: Vec<Outcome> = groups
+            .iter()
+            .filter_map(|(method, rows)| Outcome::of(*method, rows))
+            .collect();
+        let Some(usual) = outcomes.iter().find(|one| one.is_usual()) else {
             continue;
         };
-        let usual_width = usual.critical.width;
-        let (mut most, mut most_error) = (0.0, 0.0);
-        for one in &outcomes {
-            let shift = one.critical.width.value - usual_width.value;
-            let error = one.critical.width.error.hypot(usual_width.error);
-            let is_other =
-                one.method != Method::DEFAULT && one.method.time_step <= Method::DEFAULT.time_step;
-            if is_other && shift.abs() >= f64::abs(most) {
-                (most, most_error) = (shift, error);
-            }
-            rows.push(vec![
-                lattice.to_owned(),
-                one.method.integrator().to_owned(),
-                format!("{}", one.method.time_step),
-                format!("{}", one.method.skin),
-                estimate(&one.critical.width),
-                if one.method == Method::DEFAULT {
-                    "–".to_owned()
-                } else {
-                    estimate(&Uncertain::normal(shift, error))
-                },
-                estimate(&one.ends[0]),
-                estimate(&one.ends[1]),
-            ]);
-            quantities.push(Quantity {
-                name: format!(
-                    "critical width, {lattice} lattice, {}, step {}, skin {}",
-                    one.method.integrator(),
-                    one.method.time_step,
-                    one.method.skin
-                ),
-                symbol: "*w*_{c}".to_owned(),
-                unit: "d".to_owned(),
-                source: None,
-                ours: Some(one.critical.width),
-                method: "half of the runs from rest jam".to_owned(),
-            });
-        }
-        words.push(format!(
-            "{lattice} lattice: against *h* = 0.05 with velocity Verlet no smaller step, other skin or other integrator moves \
-             *w*_{{c}} by more than {}",
-            estimate(&Uncertain::normal(most, most_error))
-        ));
+        // Larger steps are told in the table only.
+        let is_finer =
+            |one: &&Outcome| !one.is_usual() && one.method.time_step <= usual.method.time_step;
+        let most = outcomes
+            .iter()
+            .filter(is_finer)
+            .map(|one| one.shift(usual))
+            .max_by(|one, other| one.value.abs().total_cmp(&other.value.abs()))
+            .unwrap_or(Uncertain::normal(0.0, 0.0));
+        words.push(PROSE.text("lattice", &[("lattice", &lattice), ("shift", &most)]));
+        rows.extend(outcomes.iter().map(|one| one.row(lattice, usual)));
+        quantities.extend(outcomes.iter().map(|one| {
+            PROSE.quantity(
+                "critical width",
+                &[
+                    ("lattice", &lattice),
+                    ("integrator", &one.method.integrator()),
+                    ("step", &one.method.time_step),
+                    ("skin", &one.method.skin),
+                ],
+                one.critical,
+            )
+        }));
         panels.push(panel(lattice, &outcomes));
     }
     // One strain rate a lattice, whatever the number of methods.
     let statistics = Statistics {
         strain_rates: 1,
-        ..Statistics::weakest(behind_all.into_iter())
+        ..Statistics::weakest(all.into_iter())
     };
     if panels.is_empty() {
-        return Ok(Finding::nothing(
-            "No method has a critical width yet.",
-            statistics,
-            &NEEDED,
-        ));
+        let nothing = PROSE.text("nothing", &[]);
+        return Ok(Finding::nothing(&nothing, statistics, &Q11_NEEDED));
     }
-    let mut finding = Finding::new(
-        Verdict::Answered,
-        format!("{}.", words.join("; ")),
-        statistics,
-        &NEEDED,
-    );
+    let summary = PROSE.text("summary", &[("lattices", &words.join("; "))]);
+    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q11_NEEDED);
     finding.quantities = quantities;
-    finding.tables.push(ReportTable {
-        caption: "Critical width from rest by integrator, time step *h* and neighbour skin, its shift against the presets' \
-                  method, and *J*/*J*_{max} at the narrowest and at the widest bottleneck of the study."
-            .to_owned(),
-        head: ["lattice", "integrator", "*h* (*k*/*m*)^{1/2}", "skin/*d*", "*w*_{c}/*d*", "shift", "narrowest", "widest"]
-            .map(str::to_owned)
-            .to_vec(),
-        rows,
-    });
-    finding.paragraphs.push(
-        "Every method has packings of its own: methods differ by their scatter too. The skin changes only the order of sums, \
-         so that its rows show that scatter. A head-on collision at *h* = 0.05 takes 44 steps."
-            .to_owned(),
-    );
-    finding.weaknesses.push(
-        "All numbers have 53 bits; single precision is not offered, and so not compared."
-            .to_owned(),
-    );
-    finding.figures.push(ReportFigure {
-        name: "method".to_owned(),
-        caption: "Critical width against the time step for both integrators.".to_owned(),
-        drawing: ChartFigure::grid(panels.len(), panels)
-            .width(Width::DoubleColumn)
-            .description("Critical width against the time step.")
-            .draw()?,
-    });
+    finding.tables.push(PROSE.table("methods", &[], rows));
+    finding.paragraphs = PROSE.paragraphs("method", &[]);
+    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let drawing = ChartFigure::grid(panels.len(), panels)
+        .width(Width::DoubleColumn)
+        .description("Critical width against the time step.")
+        .draw()?;
+    finding.figures.push(PROSE.figure("method", &[], drawing));
     Ok(finding)
-}
-
-fn outcome(method: Method, runs: &[&Run]) -> Option<Outcome> {
-    let critical = crossing(runs)?;
-    let at_widths = grouped(runs.iter().copied(), |run| run.width);
-    let mean = |(_, here): &(f64, Vec<&Run>)| {
-        let count = here.len() as f64;
-        let mean = here.iter().map(|run| run.flow_rate_ratio).sum::<f64>() / count;
-        let squares: f64 = here
-            .iter()
-            .map(|run| (run.flow_rate_ratio - mean).powi(2))
-            .sum();
-        Uncertain::normal(mean, (squares / (count * (count - 1.0).max(1.0))).sqrt())
-    };
-    Some(Outcome {
-        method,
-        critical,
-        ends: [mean(at_widths.first()?), mean(at_widths.last()?)],
-    })
 }
 
 /// Critical width against the step, one series an integrator, at the usual skin.
 fn panel(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
-    let mut panel = ChartPanel::new(
-        "time step, *h* (*k*/*m*)^{1/2}",
-        &label(Axis::CriticalWidth),
-    )
-    .title(&format!("{lattice} lattice"))
-    .x_scale(Scale::Logarithmic);
+    let time_step = "time step, *h* (*k*/*m*)^{1/2}";
+    let mut panel = ChartPanel::new(time_step, &label(Axis::CriticalWidth))
+        .title(&format!("{lattice} lattice"))
+        .x_scale(Scale::Logarithmic);
     for (series, is_adams_bashforth) in [false, true].into_iter().enumerate() {
-        let here: Vec<&Outcome> = outcomes
-            .iter()
-            .filter(|one| one.method.is_adams_bashforth == is_adams_bashforth)
-            .filter(|one| one.method.skin == Method::DEFAULT.skin)
-            .collect();
-        let Some(first) = here.first() else {
-            continue;
+        let method = Method {
+            is_adams_bashforth,
+            ..Method::DEFAULT
         };
-        let column = |of: fn(&Outcome) -> f64| here.iter().map(|one| of(one)).collect::<Vec<f64>>();
-        let points = Points::new(
-            first.method.integrator(),
-            &column(|one| one.method.time_step),
-            &column(|one| one.critical.width.value),
-        )
-        .y_errors(&column(|one| one.critical.width.interval_95.length() / 2.0))
-        .series(series)
-        .joined();
-        panel = panel.with(points);
+        let here = outcomes
+            .iter()
+            .map(|one| (one.method, one.critical))
+            .filter(|(one, _)| one.is_adams_bashforth == is_adams_bashforth)
+            .filter(|(one, _)| one.skin == method.skin);
+        let brackets = here.map(|(method, width)| {
+            let half = width.interval_95.length() / 2.0;
+            (method.time_step, Uncertain::normal(width.value, half))
+        });
+        let points = points(method.integrator(), brackets);
+        panel = panel.with_all(points.map(|points| points.series(series).joined()));
     }
     panel
 }

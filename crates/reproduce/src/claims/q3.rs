@@ -1,17 +1,19 @@
 //! Q3: softness or geometry.
 
 use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel};
 use peristalsis_figures::{Scale, Width};
 
 use crate::claim::Claim;
-use crate::crossing::{behind, crossing, grouped};
+use crate::critical::crossing;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::exhibit::{ends, points};
+use crate::finding::{Finding, Statistics, Verdict};
 use crate::prose::Prose;
-use crate::runs::Run;
-use crate::text::{estimate, number};
+use crate::row::{Row, behind, grouped};
+use crate::text::number;
+use crate::thresholds::Q3_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q3.md"));
 
@@ -22,235 +24,179 @@ pub(super) const CLAIM: Claim = Claim {
     examine,
 };
 
-const NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 7,
-    replicates: 3,
-    runs: 300,
-};
-
-/// One parameter that is varied.
-struct Part {
-    study: &'static str,
+/// One parameter that is varied, in a study of its name.
+struct Varied {
     name: &'static str,
     axis: &'static str,
     scale: Scale,
-    value: fn(&Run) -> f64,
+    value: fn(&Row<'_>) -> f64,
+    /// Names of its series and what belongs to them.
+    series: &'static [Series],
 }
 
-/// e = exp(-pi eta/(2 m k - eta^2)^{1/2}), two equal grains.
-fn restitution(run: &Run) -> f64 {
-    let damping = run.axis("contact.normal_damping").unwrap_or(0.00548);
-    (-core::f64::consts::PI * damping / (2.0 - damping * damping).sqrt()).exp()
-}
+type Series = (&'static str, fn(&Critical) -> bool);
 
-fn softness(run: &Run) -> f64 {
-    let stiffness = run.axis("contact.normal_stiffness").unwrap_or(1.0);
-    run.strain_rate * run.wavelength / stiffness.sqrt()
-}
+const ALL: &[Series] = &[("", |_| true)];
+/// What is kept as the wavelength varies.
+const AT_FIXED: &[Series] = &[
+    ("*c* = 1", |one| (one.wave_speed - 1.0).abs() < 1e-6),
+    ("*ε̇* = 0.1", |one| (one.strain_rate - 0.1).abs() < 1e-6),
+];
 
-const PARTS: [Part; 4] = [
-    Part {
-        study: "restitution",
+const VARIED: [Varied; 4] = [
+    Varied {
         name: "restitution",
         axis: "restitution, *e*",
         scale: Scale::Linear,
         value: restitution,
+        series: ALL,
     },
-    Part {
-        study: "softness",
+    Varied {
         name: "softness",
         axis: "softness, *c*(*m*/*k*)^{1/2}/*d*",
         scale: Scale::Logarithmic,
         value: softness,
+        series: ALL,
     },
-    Part {
-        study: "wavelength",
+    Varied {
         name: "wavelength",
         axis: "wavelength, *λ*/*a*",
         scale: Scale::Logarithmic,
-        value: |run| run.wavelength / run.radius,
+        value: |row| row.wavelength() / row.radius(),
+        series: AT_FIXED,
     },
-    Part {
-        study: "radius",
+    Varied {
         name: "radius",
         axis: "radius, *a*/*d*",
         scale: Scale::Logarithmic,
-        value: |run| run.radius,
+        value: |row| row.radius(),
+        series: ALL,
     },
 ];
 
-/// Place of the wavelength among them, and what is kept as it varies.
-const WAVELENGTH: usize = 2;
-const AT_FIXED: [Kind; 2] = [
-    ("*c* = 1", |row| (row.wave_speed - 1.0).abs() < 1e-6),
-    ("*ε̇* = 0.1", |row| (row.strain_rate - 0.1).abs() < 1e-6),
-];
+/// e = exp(-pi eta/(2 m k - eta^2)^{1/2}), two equal grains.
+fn restitution(row: &Row<'_>) -> f64 {
+    let damping = row.number_or("contact.normal_damping", 0.00548);
+    (-core::f64::consts::PI * damping / (2.0 - damping * damping).sqrt()).exp()
+}
 
-/// Name of a series and what belongs to it.
-type Kind = (&'static str, fn(&Row) -> bool);
+fn softness(row: &Row<'_>) -> f64 {
+    row.wave_speed() / row.number_or("contact.normal_stiffness", 1.0).sqrt()
+}
 
 /// A critical width with what belongs to it.
-struct Row {
-    part: usize,
+struct Critical {
     value: f64,
     wave_speed: f64,
     strain_rate: f64,
     radius: f64,
-    critical: Uncertain,
+    width: Uncertain,
+}
+
+impl Critical {
+    /// w_c/(2 a).
+    fn fraction(&self) -> f64 {
+        self.width.value / (2.0 * self.radius)
+    }
+
+    fn row(&self, varied: &Varied) -> Vec<String> {
+        vec![
+            varied.name.to_owned(),
+            number(self.value, 3),
+            number(self.wave_speed, 2),
+            number(self.strain_rate, 4),
+            self.width.to_string(),
+            number(self.fraction(), 3),
+        ]
+    }
+
+    /// The parameter and w_c/(2 a), with half of the 95 per cent interval as bars.
+    fn point(&self) -> (f64, Uncertain) {
+        let half = self.width.interval_95.length() / (4.0 * self.radius);
+        (self.value, Uncertain::normal(self.fraction(), half))
+    }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let mut of_values = Vec::new();
-    let mut rows = Vec::new();
-    for (part, Part { study, value, .. }) in PARTS.iter().enumerate() {
-        let runs = &evidence.study(study)?.runs;
-        for ((value, strain_rate), here) in grouped(runs, |run| (value(run), run.strain_rate)) {
-            of_values.push(behind(&here));
-            if let Some(crossing) = crossing(&here) {
-                rows.push(Row {
-                    part,
-                    value,
-                    strain_rate,
-                    wave_speed: strain_rate * here[0].wavelength,
-                    radius: here[0].radius,
-                    critical: crossing.width,
-                });
-            }
+    let mut all = Vec::new();
+    let mut found: Vec<(&Varied, Vec<Critical>)> = Vec::new();
+    for varied in &VARIED {
+        let rows = evidence.study(varied.name)?.rows();
+        let mut of = Vec::new();
+        for ((value, rate), rows) in grouped(rows, |row| ((varied.value)(row), row.strain_rate())) {
+            all.push(behind(&rows, Row::width));
+            of.extend(crossing(&rows).map(|crossing| Critical {
+                value,
+                strain_rate: rate,
+                wave_speed: rows[0].wave_speed(),
+                radius: rows[0].radius(),
+                width: crossing.width,
+            }));
+        }
+        if !of.is_empty() {
+            found.push((varied, of));
         }
     }
-    if rows.is_empty() {
-        return Ok(Finding::nothing(
-            "No critical width yet.",
-            Statistics::default(),
-            &NEEDED,
+    if found.is_empty() {
+        let (nothing, none) = (PROSE.text("nothing", &[]), Statistics::default());
+        return Ok(Finding::nothing(&nothing, none, &Q3_NEEDED));
+    }
+    let spans: Vec<String> = found
+        .iter()
+        .filter(|(_, of)| of.len() > 1)
+        .map(|(varied, of)| {
+            let (least, largest) = ends(of.iter().map(Critical::fraction)).unwrap_or_default();
+            format!("{} with {}", number(largest - least, 3), varied.name)
+        })
+        .collect();
+    let statistics = Statistics {
+        strain_rates: 1,
+        ..Statistics::weakest(all.into_iter())
+    };
+    let summary = PROSE.text("summary", &[("spans", &spans.join(", "))]);
+    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q3_NEEDED);
+    let each = || {
+        found
+            .iter()
+            .flat_map(|(varied, of)| of.iter().map(move |one| (varied, one)))
+    };
+    let rows = each().map(|(varied, one)| one.row(varied)).collect();
+    finding
+        .tables
+        .push(PROSE.table("critical widths", &[], rows));
+    for (varied, one) in each() {
+        finding.quantities.push(PROSE.quantity(
+            "critical width",
+            &[
+                ("varied", &varied.name),
+                ("value", &number(one.value, 3)),
+                ("speed", &number(one.wave_speed, 2)),
+            ],
+            one.width,
         ));
     }
-    let span = |part: usize| -> f64 {
-        let widths = || {
-            rows.iter()
-                .filter(move |row| row.part == part)
-                .map(|row| row.critical.value / (2.0 * row.radius))
-        };
-        widths().fold(0.0, f64::max) - widths().fold(f64::INFINITY, f64::min)
-    };
-    let spans: Vec<String> = PARTS
-        .iter()
-        .enumerate()
-        .filter(|(part, _)| rows.iter().filter(|row| row.part == *part).count() > 1)
-        .map(|(part, Part { name, .. })| format!("{} with {name}", number(span(part), 3)))
-        .collect();
-    let mut finding = Finding::new(
-        Verdict::Answered,
-        format!(
-            "Over the ranges looked at, *w*_{{c}}/(2*a*) changes by {}.",
-            spans.join(", ")
-        ),
-        Statistics {
-            strain_rates: 1,
-            ..Statistics::weakest(of_values.into_iter())
-        },
-        &NEEDED,
-    );
-    finding.tables.push(ReportTable {
-        caption: "Critical width from rest on the fine lattice, one parameter varied at a time."
-            .to_owned(),
-        head: [
-            "varied",
-            "value",
-            "*c*",
-            "*ε̇*",
-            "*w*_{c}/*d*",
-            "*w*_{c}/(2*a*)",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-        rows: rows
-            .iter()
-            .map(|row| {
-                vec![
-                    PARTS[row.part].name.to_owned(),
-                    number(row.value, 3),
-                    number(row.wave_speed, 2),
-                    number(row.strain_rate, 4),
-                    estimate(&row.critical),
-                    number(row.critical.value / (2.0 * row.radius), 3),
-                ]
-            })
-            .collect(),
-    });
-    for row in &rows {
-        finding.quantities.push(Quantity {
-            name: format!(
-                "critical width, {} {}, wave speed {}",
-                PARTS[row.part].name,
-                number(row.value, 3),
-                number(row.wave_speed, 2)
-            ),
-            symbol: "*w*_{c}".to_owned(),
-            unit: "d".to_owned(),
-            source: None,
-            ours: Some(row.critical),
-            method: "half of the runs from rest jam".to_owned(),
-        });
-    }
-    finding.paragraphs.push(
-        "Grains of stiffness *k* in a wave of strain rate *ε̇* are, in units of their own, grains of stiffness 1 in one of \
-         *ε̇*/*k*^{1/2}: in a given tube the strain rate *is* the softness, and *w*_{c}(*ε̇*) the dependence on it. Only a \
-         different wavelength tells them apart: at one wave speed the softness is the same and the strain rate is not. On the \
-         radius: *λ*/*a*, *c* and the spacings of the wall's spheres are kept, and widths compared as fractions of the diameter."
-            .to_owned(),
-    );
-    finding.weaknesses.push(
-        "One threshold, 0.5; the radius at fixed fractions of the diameter. What has no row saw a transition at every width, or at none."
-            .to_owned(),
-    );
-    let panels = PARTS
-        .iter()
-        .enumerate()
-        .filter_map(|(part, Part { axis, scale, .. })| {
-            let of: Vec<&Row> = rows.iter().filter(|row| row.part == part).collect();
-            if of.is_empty() {
-                return None;
-            }
-            let mut panel = ChartPanel::new(axis, "critical width, *w*_{c}/(2*a*)").x_scale(*scale);
-            let kinds: &[Kind] = if part == WAVELENGTH {
-                &AT_FIXED
-            } else {
-                &[("", |_| true)]
-            };
-            for (series, (name, belongs)) in kinds.iter().enumerate() {
-                let of: Vec<&&Row> = of.iter().filter(|row| belongs(row)).collect();
-                if of.is_empty() {
-                    continue;
-                }
-                let x: Vec<f64> = of.iter().map(|row| row.value).collect();
-                let y: Vec<f64> = of
-                    .iter()
-                    .map(|row| row.critical.value / (2.0 * row.radius))
-                    .collect();
-                let error: Vec<f64> = of
-                    .iter()
-                    .map(|row| row.critical.interval_95.length() / (4.0 * row.radius))
-                    .map(|error| if error.is_finite() { error } else { 0.0 })
-                    .collect();
-                let points = Points::new(name, &x, &y)
-                    .y_errors(&error)
-                    .series(series)
-                    .joined();
-                panel = panel.with(if series == 1 { points.open() } else { points });
-            }
-            Some(panel)
-        });
-    let panels: Vec<ChartPanel> = panels.collect();
-    finding.figures.push(ReportFigure {
-        name: "softness-or-geometry".to_owned(),
-        caption: "Critical width as a fraction of the tube's diameter against restitution, softness, wavelength and radius."
-            .to_owned(),
-        drawing: ChartFigure::grid(2, panels)
-            .width(Width::DoubleColumn)
-            .description("Four panels: critical width against one parameter each.")
-            .draw()?,
-    });
+    finding.paragraphs = PROSE.paragraphs("method", &[]);
+    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let panels = found.iter().map(|(varied, of)| panel(varied, of));
+    let drawing = ChartFigure::grid(2, panels)
+        .width(Width::DoubleColumn)
+        .description("Four panels: critical width against one parameter each.")
+        .draw()?;
+    finding
+        .figures
+        .push(PROSE.figure("softness-or-geometry", &[], drawing));
     Ok(finding)
+}
+
+fn panel(varied: &Varied, found: &[Critical]) -> ChartPanel {
+    let mut panel =
+        ChartPanel::new(varied.axis, "critical width, *w*_{c}/(2*a*)").x_scale(varied.scale);
+    for (series, (name, belongs)) in varied.series.iter().enumerate() {
+        let of = found.iter().filter(|one| belongs(one));
+        if let Some(points) = points(name, of.map(Critical::point)) {
+            let points = points.series(series).joined();
+            panel = panel.with(if series == 1 { points.open() } else { points });
+        }
+    }
+    panel
 }

@@ -67,6 +67,22 @@ impl Rows {
         self.rows.extend(others.rows.iter().cloned());
     }
 
+    /// Each run alone.
+    pub(crate) fn each(&self) -> Vec<Self> {
+        let rows = self.rows.iter().map(|row| Self {
+            common: self.common.clone(),
+            rows: vec![row.clone()],
+        });
+        rows.collect()
+    }
+
+    /// Sets a number of all runs.
+    pub(crate) fn set(&mut self, name: &str, value: f64) {
+        for (_, numbers) in &mut self.rows {
+            numbers.insert(name.to_owned(), value);
+        }
+    }
+
     /// Those runs of which `keep` holds, given their texts and numbers.
     pub(crate) fn only(
         &self,
