@@ -2,11 +2,34 @@
 
 use std::fmt::Write;
 
+use serde::Serialize;
 use sha2::{Digest, Sha256};
+use toml::Value;
 
-use crate::configuration::Configuration;
-use crate::entries::{Entry, Role, Value};
-use crate::schedule::{Schedule, ScheduleForm, ScheduledParameter};
+use crate::configuration::{Configuration, Control};
+use crate::layers::ALTERNATIVES;
+use crate::schedule::{Schedule, ScheduleForm};
+
+/// Tables and keys that do not determine the trajectory: how long it is followed, what is measured, in which units it is
+/// told.
+const EXTENT: [&str; 4] = ["run.periods", "run.duration", "observe", "units"];
+
+/// A key with its resolved value.
+struct Entry {
+    table: String,
+    key: String,
+    value: Value,
+}
+
+impl Entry {
+    fn path(&self) -> String {
+        format!("{}.{}", self.table, self.key)
+    }
+
+    fn determines_the_trajectory(&self) -> bool {
+        !EXTENT.contains(&self.table.as_str()) && !EXTENT.contains(&self.path().as_str())
+    }
+}
 
 impl Configuration {
     /// Every resolved value as TOML that reads back as the same configuration, bit for bit.
@@ -18,23 +41,21 @@ impl Configuration {
         let mut text = String::from(
             "# The configuration of a run with every value resolved. It can be run again as it stands.\n",
         );
-        let mut table = "";
-        for entry in self.entries().0 {
+        let mut table = String::new();
+        for entry in self.entries() {
             if entry.table != table {
                 if table == "drive" {
                     self.write_schedules(&mut text);
                 }
+                append(&mut text, format_args!("\n[{}]\n", entry.table));
                 table = entry.table;
-                append(&mut text, format_args!("\n[{table}]\n"));
             }
-            append(
-                &mut text,
-                format_args!("{} = {}\n", entry.key, entry.value.toml()),
-            );
+            let value = written(&entry.value);
+            append(&mut text, format_args!("{} = {value}\n", entry.key));
         }
         text.push_str("\n# Derived from the keys above; read and ignored.\n[resolved]\n");
         for (key, value) in self.derived() {
-            append(&mut text, format_args!("{key} = {}\n", value.toml()));
+            append(&mut text, format_args!("{key} = {}\n", written(&value)));
         }
         text
     }
@@ -46,7 +67,7 @@ impl Configuration {
     /// the alternative given where it resolves to the same bits.
     #[must_use]
     pub fn physics_hash(&self) -> [u8; 32] {
-        self.hash("peristalsis physics 1\n", |role| role == Role::Physics)
+        self.hash("peristalsis physics 1\n", Entry::determines_the_trajectory)
     }
 
     /// SHA-256 of every resolved value: that of [`Configuration::physics_hash`] with the length of the run and what is
@@ -56,26 +77,108 @@ impl Configuration {
         self.hash("peristalsis run 1\n", |_| true)
     }
 
-    fn hash(&self, heading: &str, counts: impl Fn(Role) -> bool) -> [u8; 32] {
+    fn hash(&self, heading: &str, counts: impl Fn(&Entry) -> bool) -> [u8; 32] {
         let mut text = heading.to_owned();
-        for entry in self.entries().0.iter().filter(|entry| counts(entry.role)) {
-            let Entry {
-                table, key, value, ..
-            } = entry;
-            append(&mut text, format_args!("{table}.{key}={}\n", value.bits()));
+        for entry in self.entries().iter().filter(|entry| counts(entry)) {
+            let (path, value) = (entry.path(), bits(&entry.value));
+            append(&mut text, format_args!("{path}={value}\n"));
         }
         for schedule in &self.drive.schedules {
-            append(
-                &mut text,
-                format_args!("{}:", parameter_name(schedule.parameter)),
-            );
+            append(&mut text, format_args!("{}:", name(schedule.parameter)));
             for (time, value) in schedule.knots() {
-                let (time, value) = (Value::Number(time).bits(), Value::Number(value).bits());
+                let (time, value) = (bits(&time.into()), bits(&value.into()));
                 append(&mut text, format_args!("{time},{value};"));
             }
             text.push('\n');
         }
         Sha256::digest(text.as_bytes()).into()
+    }
+
+    /// Every key with its resolved value, in the order of the types that hold them.
+    ///
+    /// What is not there is not listed: neither friction, units or a body force that the run does without, nor an initial
+    /// velocity that the initial state has of itself, and of alternatives only the first.
+    fn entries(&self) -> Vec<Entry> {
+        let mut tables =
+            toml::Table::try_from(self).expect("a configuration consists of what TOML can hold");
+        if self.contact.friction.is_none() {
+            set(&mut tables, "contact", "static_friction", 0.0.into());
+        }
+        if self.drive.schedules.is_empty() {
+            set(&mut tables, "drive", "schedule", "sudden".into());
+        }
+        let mut entries = Vec::new();
+        for (table, keys) in &tables {
+            if let Value::Table(keys) = keys {
+                list(table, keys, &mut entries);
+            }
+        }
+        let paths: Vec<String> = entries.iter().map(Entry::path).collect();
+        let mut absent = Vec::new();
+        if self.drive.body_force == 0.0 {
+            absent.push("drive.body_force");
+        }
+        if self.initial.axial_velocity.to_bits() == self.natural_axial_velocity().to_bits() {
+            absent.push("initial.axial_velocity");
+        }
+        entries.retain(|entry| {
+            let path = entry.path();
+            let second = ALTERNATIVES.iter().any(|group| {
+                let first = group.iter().find(|key| paths.iter().any(|it| it == *key));
+                group.contains(&path.as_str()) && first.is_some_and(|first| *first != path)
+            });
+            !second && !absent.contains(&path.as_str())
+        });
+        entries
+    }
+
+    /// Values that follow from the keys.
+    fn derived(&self) -> Vec<(&'static str, Value)> {
+        let count = |number: u64| Value::Integer(number as i64);
+        let mut derived: Vec<(&'static str, Value)> = vec![
+            ("number", count(self.grains.number)),
+            ("volume_fraction", self.volume_fraction().into()),
+            ("number_density", self.number_density().into()),
+            ("length", self.tube.length().into()),
+            ("wall_spheres", count(self.tube.wall_spheres())),
+            ("strain_rate", self.drive.strain_rate.into()),
+            ("wave_speed", self.wave_speed().into()),
+        ];
+        if self.contact.friction.is_none() {
+            derived.push(("kinetic_friction", 0.0.into()));
+        }
+        if let (Control::Strain { width }, Some(amplitude)) = (self.drive.control, self.amplitude())
+        {
+            derived.push(("width", width.into()));
+            derived.push(("amplitude", amplitude.into()));
+        }
+        if let (Some(period), Some(periods)) = (self.drive.period(), self.run.periods) {
+            derived.push(("period", period.into()));
+            derived.push(("periods", periods.into()));
+        }
+        if self.drive.body_force != 0.0 {
+            derived.push(("pressure_rise", self.pressure_rise().into()));
+        }
+        if let Some(units) = &self.units {
+            let frequency = self.drive.strain_rate / units.time();
+            derived.extend([
+                ("unit_mass_kg", units.mass().into()),
+                ("unit_length_m", units.length().into()),
+                ("unit_time_s", units.time().into()),
+                ("wave_frequency_hz", frequency.into()),
+            ]);
+        }
+        let hash = self.physics_hash().map(|byte| format!("{byte:02x}"));
+        derived.extend([
+            ("duration", self.run.duration.into()),
+            ("time_step", self.run.time_step.into()),
+            ("steps", count(self.run.steps())),
+            ("steps_per_sample", count(self.run.steps_per_sample)),
+            ("samples", count(self.run.samples)),
+            ("axial_velocity", self.initial.axial_velocity.into()),
+            ("physics_hash", hash.concat().into()),
+        ]);
+        derived
     }
 
     fn write_schedules(&self, text: &mut String) {
@@ -86,22 +189,68 @@ impl Configuration {
     }
 }
 
-fn parameter_name(parameter: ScheduledParameter) -> &'static str {
-    match parameter {
-        ScheduledParameter::Width => "width",
-        ScheduledParameter::ForceAmplitude => "force_amplitude",
-        ScheduledParameter::StrainRate => "strain_rate",
+fn set(tables: &mut toml::Table, table: &str, key: &str, value: Value) {
+    if let Some(Value::Table(keys)) = tables.get_mut(table) {
+        keys.insert(key.to_owned(), value);
+    }
+}
+
+/// The keys of a table, then those of the tables in it.
+fn list(table: &str, keys: &toml::Table, entries: &mut Vec<Entry>) {
+    for (key, value) in keys.iter().filter(|(_, value)| !value.is_table()) {
+        entries.push(Entry {
+            table: table.to_owned(),
+            key: key.clone(),
+            value: value.clone(),
+        });
+    }
+    for (key, value) in keys {
+        if let Value::Table(inner) = value {
+            list(&format!("{table}.{key}"), inner, entries);
+        }
+    }
+}
+
+/// As TOML; numbers with the fewest digits that read back as the same bits.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Float(number) => format!("{number:?}"),
+        Value::String(name) => format!("\"{name}\""),
+        other => other.to_string(),
+    }
+}
+
+/// For a hash: numbers by their bits, with one zero.
+fn bits(value: &Value) -> String {
+    match value {
+        Value::Float(number) => format!("{:016x}", (number + 0.0).to_bits()),
+        other => written(other),
+    }
+}
+
+/// The name of a choice in TOML.
+pub(crate) fn name(choice: impl Serialize) -> String {
+    match Value::try_from(choice) {
+        Ok(Value::String(name)) => name,
+        other => unreachable!("a choice is a name, not {other:?}"),
     }
 }
 
 fn write_schedule(schedule: &Schedule, text: &mut String) {
-    let list = |numbers: &mut dyn Iterator<Item = f64>| {
-        numbers
-            .map(|number| Value::Number(number).toml())
-            .collect::<Vec<_>>()
-            .join(", ")
+    let list = |numbers: Vec<f64>| {
+        let numbers: Vec<String> = numbers.iter().map(|number| format!("{number:?}")).collect();
+        numbers.join(", ")
     };
-    let parameter = parameter_name(schedule.parameter);
+    let form = match &schedule.form {
+        ScheduleForm::Ramp { .. } => "ramp",
+        ScheduleForm::Steps { .. } => "steps",
+        ScheduleForm::Course { .. } => "course",
+    };
+    let parameter = name(schedule.parameter);
+    append(
+        text,
+        format_args!("form = \"{form}\"\nparameter = \"{parameter}\"\n"),
+    );
     match &schedule.form {
         ScheduleForm::Ramp {
             from,
@@ -109,24 +258,12 @@ fn write_schedule(schedule: &Schedule, text: &mut String) {
             start,
             end,
         } => {
-            append(
-                text,
-                format_args!("form = \"ramp\"\nparameter = \"{parameter}\"\n"),
-            );
             append(text, format_args!("from = {from:?}\nto = {to:?}\n"));
             append(text, format_args!("start = {start:?}\nend = {end:?}\n"));
         }
         ScheduleForm::Steps { steps: points } | ScheduleForm::Course { knots: points } => {
-            let form = match &schedule.form {
-                ScheduleForm::Course { .. } => "course",
-                _ => "steps",
-            };
-            append(
-                text,
-                format_args!("form = \"{form}\"\nparameter = \"{parameter}\"\n"),
-            );
-            let times = list(&mut points.iter().map(|(time, _)| *time));
-            let values = list(&mut points.iter().map(|(_, value)| *value));
+            let (times, values) = points.iter().copied().unzip();
+            let (times, values) = (list(times), list(values));
             append(text, format_args!("at = [{times}]\nvalues = [{values}]\n"));
         }
     }

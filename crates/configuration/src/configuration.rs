@@ -1,28 +1,34 @@
-//! The resolved configuration: plain values that have passed every check.
+//! The resolved configuration: values that have passed every check.
+//!
+//! A field is a key of the TOML form: its documentation, unit, range and default are stated here, or where its type is
+//! from `physics`, there. Schema, reader, errors, reference and canonical form follow.
 
 use std::f64::consts::PI;
 
-use crate::options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
-    WaveDirection, Waveform,
-};
+use peristalsis_physics::contact::ContactModel;
+use peristalsis_physics::method::{InitialState, Integrator, Kernel};
+use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, WaveDirection, Waveform};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::limits;
 use crate::schedule::{Schedule, ScheduledParameter};
 use crate::units::Units;
 
 /// Everything that determines one run; what is alternative in TOML is resolved to one value.
 ///
 /// Units: mass m, diameter d, time t as in CONVENTIONS. Two configurations with the same values here run the same.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Configuration {
     /// The grains.
     pub grains: Grains,
-    /// The contact of two spheres.
-    pub contact: Contact,
+    /// The contact of two spheres, grain or wall.
+    pub contact: ContactModel,
     /// The tube.
     pub tube: Tube,
     /// The travelling wave.
     pub drive: Drive,
-    /// The spheres of the wall.
+    /// The wall.
     pub wall: Wall,
     /// The grains at t = 0.
     pub initial: Initial,
@@ -31,18 +37,33 @@ pub struct Configuration {
     /// What is measured.
     pub observe: Observe,
     /// What the units m, d, t are in SI, where that was said.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub units: Option<Units>,
 }
 
-/// The grains.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The grains: how many and how large.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Grains {
-    /// N, in the whole tube.
+    /// Number of grains N in the whole tube.
+    #[schemars(extend("x-unit" = "1", "minimum" = 0, "maximum" = limits::MOST_GRAINS, "default" = null))]
     pub number: u64,
-    /// Smallest diameter \[d\].
+    /// Smallest grain diameter; diameters are uniformly distributed and the mass of a grain is its diameter cubed.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub diameter_min: f64,
-    /// Largest diameter \[d\], not below `diameter_min`.
+    /// Largest grain diameter, not below diameter_min.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub diameter_max: f64,
+}
+
+impl Default for Grains {
+    fn default() -> Self {
+        Self {
+            number: 0,
+            diameter_min: 1.0,
+            diameter_max: 1.0,
+        }
+    }
 }
 
 impl Grains {
@@ -55,65 +76,24 @@ impl Grains {
     }
 }
 
-/// The contact of two spheres: a normal law, and friction or none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// Normal law.
-    pub normal: NormalLaw,
-    /// Tangential law; without it grains do not rotate.
-    pub friction: Option<Friction>,
-}
-
-/// Normal contact law.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum NormalLaw {
-    /// f_n = k xi - eta v_n
-    Linear {
-        /// k \[m t^-2\], positive.
-        normal_stiffness: f64,
-        /// eta \[m t^-1\], 0 or more.
-        normal_damping: f64,
-    },
-    /// f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A sqrt(xi) v_n), A times 3/2 in the viscoelastic form
-    Hertz {
-        /// Y \[m d^-1 t^-2\], positive.
-        young_modulus: f64,
-        /// nu, above -1, at most 1/2.
-        poisson_ratio: f64,
-        /// A \[t\], 0 or more.
-        dissipation_time: f64,
-        /// Factor of A.
-        dissipation_form: DissipationForm,
-    },
-}
-
-/// Tangential contact law of Cundall and Strack.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
-    /// k_t \[m t^-2\], positive.
-    pub tangential_stiffness: f64,
-    /// eta_t \[m t^-1\], 0 or more.
-    pub tangential_damping: f64,
-    /// mu_s, positive.
-    pub static_friction: f64,
-    /// mu_k, 0 or more, not above mu_s.
-    pub kinetic_friction: f64,
-    /// What the tangential displacement does while the contact slides.
-    pub sliding: Sliding,
-}
-
-/// The tube and the lattice of its wall.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The tube: a lattice of wall spheres in staggered rings, periodic along its axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
-    /// a \[d\], to the centres of the wall spheres.
+    /// Mean radius a, to the centres of the wall spheres.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub radius: f64,
-    /// lambda \[d\].
+    /// Wavelength lambda.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub wavelength: f64,
-    /// Waves in the tube.
+    /// Number of waves in the tube; its length is L = waves * wavelength.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub waves: u32,
     /// Wall spheres in a ring.
+    #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
-    /// Rings in a wavelength; the number of rings in the tube is even.
+    /// Rings in a wavelength, alternate rings turned by half a spacing: even under strain control; under stress control
+    /// an odd number needs an even number of waves.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
 }
 
@@ -149,21 +129,32 @@ impl Tube {
     }
 }
 
-/// The travelling wave of contraction.
-#[derive(Clone, Debug, PartialEq)]
+/// The travelling wave that drives the grains.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Drive {
     /// What is prescribed, and by how much.
+    #[serde(flatten)]
     pub control: Control,
-    /// c/lambda \[t^-1\]; 0 is a static wave.
+    /// Strain rate c/lambda, one over the wave's period; 0 is a static wave and needs run.duration.
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "t^-1", "minimum" = 0, "maximum" = 1e6, "default" = null))]
     pub strain_rate: f64,
     /// Shape of the wave.
+    #[serde(default)]
     pub waveform: Waveform,
-    /// g, body force on the grains: force over mass along the wave, negative against it \[d t^-2\].
-    pub body_force: f64,
-    /// Which way it runs; forward is towards -z under strain control, towards +z under stress control.
+    /// Which way the wave runs: forward is towards -z under strain control and towards +z under stress control, as the
+    /// source writes them. Flow rates are positive along the wave in either case.
+    #[serde(default)]
     pub direction: WaveDirection,
+    /// Body force on the grains g, force over mass along the wave: negative is back pressure, against which the wave has to
+    /// pump. With grains of several sizes it acts as gravity along the tube. The pressure rise over a wavelength that it
+    /// stands for is N m (-g) lambda/(L pi a^2).
+    #[serde(default)]
+    #[schemars(extend("x-unit" = "d t^-2", "minimum" = -1e6, "maximum" = 1e6))]
+    pub body_force: f64,
     /// Parameters that follow time, each at most once; empty: all are constant from t = 0 on. In the order of
     /// [`ScheduledParameter`](crate::ScheduledParameter).
+    #[serde(skip)]
     pub schedules: Vec<Schedule>,
 }
 
@@ -199,96 +190,108 @@ impl Drive {
     }
 }
 
-/// What of the wall is prescribed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What of the wall is prescribed: its radius (strain) or the radial force on its spheres (stress).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "control", rename_all = "snake_case")]
 pub enum Control {
-    /// The radius of the wall and its velocity.
+    /// The radius of the wall, R(z, t).
     Strain {
-        /// w = 2 (a - b) \[d\], between 0 and 2 a.
+        /// Width of the bottleneck w = 2 (a - b) between the centres of wall spheres, at most 2 a; strain control.
+        #[serde(default)]
+        #[schemars(extend("x-unit" = "d", "minimum" = 0, "default" = null))]
         width: f64,
     },
     /// The radial force on each sphere of an elastic wall.
     Stress {
-        /// f^P \[m d t^-2\], 0 or more.
+        /// Amplitude f^P of the radial force on each wall sphere; stress control.
+        #[schemars(extend("x-unit" = "m d t^-2", "minimum" = 0, "maximum" = 1e6))]
         force_amplitude: f64,
-        /// Angle that fixes the direction of the force.
+        /// Angle that fixes the radial direction of the force on a wall sphere; stress control.
+        #[serde(default)]
         angle: DriveAngle,
-        /// The elastic wall.
-        wall: ElasticWall,
     },
 }
 
-/// What prescribed and elastic walls have in common.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The wall. Under strain control its spheres only have a diameter; under stress control they are mobile, joined by
+/// springs and kept by tethers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Wall {
-    /// Diameter of a wall sphere \[d\].
+    /// Diameter of a wall sphere.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub sphere_diameter: f64,
+    /// What a wall under stress control has besides; `None` under strain control.
+    #[serde(flatten)]
+    pub elastic: Option<ElasticNetwork>,
 }
 
-/// A wall of mobile spheres joined by springs.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElasticWall {
-    /// m_w \[m\].
-    pub sphere_mass: f64,
-    /// k_w \[m t^-2\].
-    pub spring_stiffness: f64,
-    /// l \[d\].
-    pub natural_length: f64,
-    /// Wall spheres whose reference places are farther apart repel on contact \[d\].
-    pub contact_range: f64,
-    /// Drag coefficient against the laboratory \[m t^-1\].
-    pub drag: f64,
-    /// Damping of each spring \[m t^-1\].
-    pub spring_damping: f64,
-    /// Forces that keep it in place.
-    pub keep: WallKeep,
-}
-
-/// Forces that keep an elastic wall in place.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallKeep {
-    /// Whether a constant force balances the springs in the straight tube.
-    pub balance: bool,
-    /// Radial tether \[m t^-2\].
-    pub radial: f64,
-    /// Azimuthal tether \[m t^-2\].
-    pub azimuthal: f64,
-    /// Axial tether \[m t^-2\].
-    pub axial: f64,
-    /// What is done with the mean force.
-    pub net_force: NetForce,
+impl Default for Wall {
+    fn default() -> Self {
+        Self {
+            sphere_diameter: 1.0,
+            elastic: None,
+        }
+    }
 }
 
 /// The grains at t = 0.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Initial {
-    /// How they stand.
+    /// How the grains stand at t = 0: spread over the tube at rest, or gathered in the bellies and moving with the
+    /// wave.
     pub state: InitialState,
-    /// Velocity along the wave \[d t^-1\].
+    /// Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's speed when jammed.
+    #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
     pub axial_velocity: f64,
 }
 
-/// Time: how long, in which steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The run. Exactly one of periods and duration is given.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Run {
-    /// Length in wave periods, a whole number of samples; `None` for a static wave.
+    /// Length of the run in wave periods, rounded up to whole samples.
+    #[schemars(extend("x-unit" = "periods", "exclusiveMinimum" = 0, "maximum" = 1e9))]
     pub periods: Option<f64>,
-    /// Length \[t\].
+    /// Length of the run in time, rounded up to whole samples; the only choice for a static wave.
+    #[schemars(extend("x-unit" = "t", "exclusiveMinimum" = 0, "maximum" = 1e12, "default" = null))]
     pub duration: f64,
-    /// The step taken \[t\]: the time between two samples over `steps_per_sample`.
+    /// Longest time step allowed; the step taken divides the time between two samples.
+    #[schemars(extend("x-unit" = "t", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub time_step: f64,
     /// Steps from one sample to the next.
+    #[serde(skip)]
     pub steps_per_sample: u64,
     /// Samples after the one at t = 0.
+    #[serde(skip)]
     pub samples: u64,
     /// How the equations of motion are stepped.
     pub integrator: Integrator,
     /// Which kernel computes the forces.
     pub kernel: Kernel,
-    /// Seed of the random numbers.
+    /// Seed of the random numbers that place the grains.
+    #[schemars(extend("x-unit" = "1", "maximum" = i64::MAX))]
     pub seed: u64,
-    /// How much farther the neighbour search looks than contacts reach \[d\].
+    /// Distance by which the neighbour search looks farther than contacts reach: it sets the speed, and the order of sums.
+    /// Missing: 0.3 of the largest grain diameter.
+    #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6, "default" = null))]
     pub neighbour_skin: f64,
+}
+
+impl Default for Run {
+    fn default() -> Self {
+        Self {
+            periods: None,
+            duration: 0.0,
+            time_step: 0.05,
+            steps_per_sample: 0,
+            samples: 0,
+            integrator: Integrator::Verlet,
+            kernel: Kernel::Fast,
+            seed: 1,
+            neighbour_skin: 0.3,
+        }
+    }
 }
 
 impl Run {
@@ -300,16 +303,32 @@ impl Run {
 }
 
 /// What is measured.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(default)]
 pub struct Observe {
-    /// Samples in one wave period.
+    /// Samples of the time series in one wave period; a static run has 200 samples in all.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
-    /// Bins of a profile over one wavelength.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000))]
     pub profile_bins: u32,
-    /// Part of the run, at its end, of the late means and profiles.
+    /// Part of the run, at its end, that late means and profiles are taken over.
+    #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 1))]
     pub late_fraction: f64,
-    /// J/Jmax crossed at a transition.
+    /// J/Jmax that the period average crosses at a transition, upward from rest and downward from jammed.
+    #[schemars(extend("x-unit" = "1", "minimum" = -2, "maximum" = 2))]
     pub transition_threshold: f64,
+}
+
+impl Default for Observe {
+    fn default() -> Self {
+        Self {
+            samples_per_period: 20,
+            profile_bins: 50,
+            late_fraction: 0.25,
+            transition_threshold: 0.5,
+        }
+    }
 }
 
 impl Configuration {
@@ -383,12 +402,6 @@ impl Configuration {
             Control::Strain { width } => Some(self.tube.radius - 0.5 * width),
             Control::Stress { .. } => None,
         }
-    }
-
-    /// Longest distance of centres over which two spheres act on each other \[d\].
-    #[must_use]
-    pub fn interaction_reach(&self) -> f64 {
-        self.grains.diameter_max.max(self.wall.sphere_diameter)
     }
 
     /// Velocity along the wave that the initial state has of itself \[d t^-1\].

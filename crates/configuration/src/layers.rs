@@ -1,7 +1,14 @@
 //! Layers over one another: alternatives that exclude each other, and keys that a choice above makes meaningless.
 
+use std::sync::OnceLock;
+
+use peristalsis_physics::contact::{Normal, NormalLaw};
+use peristalsis_physics::wall::ElasticNetwork;
+
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
+use crate::schema::{self, Choice};
+use crate::units;
 
 /// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
 pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
@@ -21,71 +28,109 @@ pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
 
 /// A key whose value decides which other keys have a meaning.
 pub(crate) struct Switch {
-    pub(crate) key: &'static str,
-    /// (value, keys that belong to it alone)
-    pub(crate) owners: &'static [(&'static str, &'static [&'static str])],
+    key: String,
+    /// Keys that belong to some of its values, with these values.
+    owned: Vec<(String, Vec<String>)>,
     /// Keys that are dropped whenever a higher layer changes the switch.
-    pub(crate) reset: &'static [&'static str],
+    reset: &'static [&'static str],
+}
+
+impl Switch {
+    fn new(key: impl Into<String>, reset: &'static [&'static str]) -> Self {
+        Self {
+            key: key.into(),
+            owned: Vec::new(),
+            reset,
+        }
+    }
+
+    /// Notes that a key belongs to a value.
+    fn owns(&mut self, value: &str, key: impl Into<String>) {
+        let key = key.into();
+        match self.owned.iter_mut().find(|(owned, _)| *owned == key) {
+            Some((_, values)) => values.push(value.to_owned()),
+            None => self.owned.push((key, vec![value.to_owned()])),
+        }
+    }
+
+    /// Keys, each with the values that it belongs to, that have no meaning under a choice.
+    fn meaningless<'a>(
+        &'a self,
+        chosen: Option<&'a str>,
+    ) -> impl Iterator<Item = (&'a str, &'a [String])> {
+        let owned = self
+            .owned
+            .iter()
+            .map(|(key, values)| (key.as_str(), values.as_slice()));
+        owned.filter(move |(_, values)| !values.iter().any(|value| Some(value.as_str()) == chosen))
+    }
 }
 
 /// Every switch of the vocabulary.
-pub(crate) const SWITCHES: [Switch; 4] = [
-    Switch {
-        key: "drive.control",
-        owners: &[
-            ("strain", &["drive.width", "drive.amplitude"]),
-            (
-                "stress",
-                &[
-                    "drive.force_amplitude",
-                    "drive.angle",
-                    "wall.sphere_mass",
-                    "wall.spring_stiffness",
-                    "wall.natural_length",
-                    "wall.contact_range",
-                    "wall.drag",
-                    "wall.spring_damping",
-                    "wall.keep",
-                ],
-            ),
-        ],
-        reset: &["drive.schedule", "drive.ramp_periods"],
-    },
-    Switch {
-        key: "contact.law",
-        owners: &[
-            (
-                "linear",
-                &[
-                    "contact.normal_stiffness",
-                    "contact.normal_damping",
-                    "units.stiffness",
-                ],
-            ),
-            (
-                "hertz",
-                &[
-                    "contact.young_modulus",
-                    "contact.poisson_ratio",
-                    "contact.dissipation_time",
-                    "contact.dissipation_form",
-                    "units.young_modulus",
-                ],
-            ),
-        ],
-        reset: &[],
-    },
-    Switch {
-        key: "initial.state",
-        owners: &[],
-        reset: &["initial.axial_velocity"],
-    },
-    Switch {
-        key: "drive.schedule",
-        owners: &[("ramp", &["drive.ramp_periods"])],
-        reset: &["drive.ramp_periods"],
-    },
-];
+pub(crate) fn switches() -> &'static [Switch] {
+    static SWITCHES: OnceLock<Vec<Switch>> = OnceLock::new();
+    SWITCHES.get_or_init(|| {
+        let mut switches: Vec<Switch> = schema::choices().iter().map(switch_of).collect();
+        switches.push(Switch::new("initial.state", &["initial.axial_velocity"]));
+        let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
+        schedule.owns("ramp", "drive.ramp_periods");
+        switches.push(schedule);
+        switches
+    })
+}
+
+/// The switch of a choice: the keys of its values, the alternatives to them, and what goes with them in other tables.
+fn switch_of(choice: &Choice) -> Switch {
+    let reset: &[&str] = match choice.table {
+        "drive" => &["drive.schedule", "drive.ramp_periods"],
+        _ => &[],
+    };
+    let mut switch = Switch::new(format!("{}.{}", choice.table, choice.key), reset);
+    for value in &choice.values {
+        for name in value.keys.keys() {
+            let key = format!("{}.{name}", choice.table);
+            let group = ALTERNATIVES
+                .iter()
+                .find(|group| group.contains(&key.as_str()));
+            match group {
+                Some(group) => group.iter().for_each(|key| switch.owns(&value.name, *key)),
+                None => switch.owns(&value.name, key),
+            }
+        }
+        match switch.key.as_str() {
+            "contact.law" => switch.owns(&value.name, unit_of_elasticity(&value.name)),
+            "drive.control" if value.name == "stress" => {
+                let network = schema::of::<ElasticNetwork>();
+                for name in network["properties"]
+                    .as_object()
+                    .into_iter()
+                    .flat_map(|it| it.keys())
+                {
+                    switch.owns(&value.name, format!("wall.{name}"));
+                }
+            }
+            _ => {}
+        }
+    }
+    switch
+}
+
+/// The key that gives the elasticity of a contact law in SI.
+fn unit_of_elasticity(law: &str) -> String {
+    let law = toml::Table::from_iter([("law".to_owned(), law.into())]);
+    let law: Normal = law
+        .try_into()
+        .expect("every parameter of a law has a default");
+    units::key(law.elasticity()).to_owned()
+}
+
+/// Whether a key has a meaning where the switches stand as they do in a table; a switch that is not set has no value.
+pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
+    !switches().iter().any(|switch| {
+        let chosen = document::text(table, &switch.key);
+        switch.meaningless(chosen).any(|(owned, _)| owned == key)
+    })
+}
 
 /// Lays `layer` over `base`.
 pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) {
@@ -104,7 +149,7 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
             }
         }
     }
-    for switch in &SWITCHES {
+    for switch in switches() {
         drop_meaningless(base, &layer, switch);
     }
     // A schedule is one thing: half of an old one under half of a new one has no meaning.
@@ -135,18 +180,14 @@ fn refuse_two(layer: &Table, given: &[&str], group: &[&str], problems: &mut Prob
 
 /// Takes out of `base` what a choice in `layer` leaves without meaning.
 fn drop_meaningless(base: &mut Table, layer: &Table, switch: &Switch) {
-    if document::entry(layer, switch.key).is_none() {
+    if document::entry(layer, &switch.key).is_none() {
         return;
     }
-    let chosen = document::text(layer, switch.key);
-    for (value, keys) in switch.owners {
-        if chosen != Some(value) {
-            for key in *keys {
-                document::remove(base, key);
-            }
-        }
+    let chosen = document::text(layer, &switch.key);
+    for (key, _) in switch.meaningless(chosen) {
+        document::remove(base, key);
     }
-    if chosen.is_none() || chosen != document::text(base, switch.key) {
+    if chosen.is_none() || chosen != document::text(base, &switch.key) {
         for key in switch.reset {
             document::remove(base, key);
         }
@@ -180,37 +221,26 @@ pub fn join(overrides: Vec<Table>) -> Table {
 
 /// Refuses keys that belong to another value of a switch than the one chosen.
 pub(crate) fn check_switches(table: &Table, problems: &mut Problems) {
-    for switch in &SWITCHES {
-        let Some(chosen_entry) = document::entry(table, switch.key) else {
+    for switch in switches() {
+        let Some(choice) = document::entry(table, &switch.key) else {
             continue;
         };
-        let chosen = document::text(table, switch.key);
-        for (value, keys) in switch.owners {
-            if chosen == Some(value) {
+        let (name, chosen) = (&switch.key, document::text(table, &switch.key));
+        let here = chosen.map_or("a table".to_owned(), |chosen| format!("\"{chosen}\""));
+        for (key, values) in switch.meaningless(chosen) {
+            let Some(entry) = document::entry(table, key) else {
                 continue;
-            }
-            for key in *keys {
-                let Some(entry) = document::entry(table, key) else {
-                    continue;
-                };
-                let message = format!(
-                    "{key} belongs to {} = \"{value}\", but here it is {}",
-                    switch.key,
-                    chosen.map_or("a table".to_owned(), |name| format!("\"{name}\"")),
-                );
-                let problem = Problem::new(ProblemKind::Conflict, message)
-                    .key(*key)
-                    .at(
-                        &entry.key,
-                        format!("has no meaning under this {}", switch.key),
-                    )
-                    .at(
-                        &chosen_entry.item.origin,
-                        format!("{} is chosen here", switch.key),
-                    )
-                    .help(format!("remove {key}, or set {} = \"{value}\"", switch.key));
-                problems.push(Some(&entry.key), problem);
-            }
+            };
+            let values: Vec<String> = values.iter().map(|value| format!("\"{value}\"")).collect();
+            let values: Vec<&str> = values.iter().map(String::as_str).collect();
+            let owner = format!("{name} = {}", list(&values, "or"));
+            let message = format!("{key} belongs to {owner}, but here it is {here}");
+            let problem = Problem::new(ProblemKind::Conflict, message)
+                .key(key)
+                .at(&entry.key, format!("has no meaning under this {name}"))
+                .at(&choice.item.origin, format!("{name} is chosen here"))
+                .help(format!("remove {key}, or set {owner}"));
+            problems.push(Some(&entry.key), problem);
         }
     }
 }

@@ -5,8 +5,9 @@
 //! alternatives (say width or amplitude) a layer gives one, which replaces the choice of the layers below; keys that a
 //! higher layer's choice has made meaningless (a width, once the tube is stress-controlled) are dropped.
 //!
-//! The keys are typed once, in `keys.rs`: their documentation, units, defaults and ranges become the JSON
-//! [`schema`], and the reader refuses what the schema refuses before it looks at what keys mean together.
+//! A key is stated once, as a field of [`Configuration`], of a parameter type of `physics`, or in `keys.rs` where it
+//! stands for another: its documentation, unit, default and range become the JSON [`schema`], and the reader refuses what
+//! the schema refuses before it looks at what keys mean together.
 //!
 //! ```
 //! use peristalsis_configuration::{Configuration, Sources};
@@ -26,13 +27,11 @@
 mod canonical;
 mod configuration;
 mod contract;
-pub mod defaults;
 pub mod document;
-mod entries;
 mod error;
 mod keys;
 mod layers;
-mod options;
+mod limits;
 mod presets;
 mod reference;
 mod resolve;
@@ -42,20 +41,20 @@ mod source;
 mod suggestion;
 mod units;
 
-pub use configuration::{
-    Configuration, Contact, Control, Drive, ElasticWall, Friction, Grains, Initial, NormalLaw,
-    Observe, Run, Tube, Wall, WallKeep,
-};
+pub use configuration::{Configuration, Control, Drive, Grains, Initial, Observe, Run, Tube, Wall};
 pub use contract::check_against;
 pub use error::{ConfigurationError, Label, Problem, ProblemKind, Problems};
 pub use layers::join;
-pub use options::{
-    DissipationForm, DriveAngle, InitialState, Integrator, Kernel, NetForce, Sliding,
-    WaveDirection, Waveform,
+pub use peristalsis_physics::contact::{
+    ContactModel, CundallStrack, DissipationForm, Elasticity, Normal, Sliding,
+};
+pub use peristalsis_physics::method::{InitialState, Integrator, Kernel};
+pub use peristalsis_physics::wall::{
+    DriveAngle, ElasticNetwork, NetForce, Tethers, WaveDirection, Waveform,
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;
 pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
 pub use schema::schema;
 pub use source::{Origin, SourceFile, Sources};
-pub use units::{Elasticity, Units};
+pub use units::Units;

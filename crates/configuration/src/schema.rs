@@ -2,9 +2,12 @@
 
 use std::sync::OnceLock;
 
+use peristalsis_physics::contact::Normal;
+use schemars::JsonSchema;
 use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
+use crate::configuration::Control;
 use crate::keys::Keys;
 use crate::layers::ALTERNATIVES;
 use crate::presets::PRESETS;
@@ -23,15 +26,106 @@ pub(crate) fn cached() -> &'static Value {
     SCHEMA.get_or_init(build)
 }
 
-fn build() -> Value {
+/// The schema of a type as schemars has it.
+pub(crate) fn of<T: JsonSchema>() -> Value {
     let settings = SchemaSettings::draft2020_12().with(|settings| {
         settings.inline_subschemas = true;
     });
-    let mut schema = settings
+    settings
         .into_generator()
-        .into_root_schema_for::<Keys>()
-        .to_value();
+        .into_root_schema_for::<T>()
+        .to_value()
+}
+
+/// A key whose value decides which other keys of its table have a meaning.
+pub(crate) struct Choice {
+    pub(crate) table: &'static str,
+    pub(crate) key: String,
+    pub(crate) values: Vec<ChosenValue>,
+    description: Value,
+}
+
+/// One value of a choice.
+pub(crate) struct ChosenValue {
+    pub(crate) name: String,
+    /// The keys that go with it, each with its schema.
+    pub(crate) keys: Map<String, Value>,
+    /// Those of them without a default.
+    pub(crate) required: Vec<String>,
+    description: Value,
+}
+
+/// The choices of the vocabulary: the law of contact, and what of the wall is prescribed.
+pub(crate) fn choices() -> &'static [Choice] {
+    static CHOICES: OnceLock<[Choice; 2]> = OnceLock::new();
+    CHOICES.get_or_init(|| {
+        [
+            choice("contact", &of::<Normal>()),
+            choice("drive", &of::<Control>()),
+        ]
+    })
+}
+
+/// A choice from the schema of an enum with a tag.
+fn choice(table: &'static str, schema: &Value) -> Choice {
+    let mut key = String::new();
+    let branches = schema["oneOf"].as_array().into_iter().flatten();
+    let values = branches.map(|branch| {
+        let mut value = ChosenValue {
+            name: String::new(),
+            keys: Map::new(),
+            required: Vec::new(),
+            description: branch["description"].clone(),
+        };
+        for (name, property) in branch["properties"].as_object().into_iter().flatten() {
+            match property["const"].as_str() {
+                Some(tag) => (key, value.name) = (name.clone(), tag.to_owned()),
+                None => drop(value.keys.insert(name.clone(), property.clone())),
+            }
+        }
+        value.required = names(&branch["required"])
+            .filter(|name| *name != key)
+            .map(str::to_owned)
+            .collect();
+        value
+    });
+    let values = values.collect();
+    Choice {
+        table,
+        key,
+        values,
+        description: schema["description"].clone(),
+    }
+}
+
+/// The names in a list.
+fn names(list: &Value) -> impl Iterator<Item = &str> {
+    list.as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_str)
+}
+
+/// Full names of the keys that stand in every configuration, whatever is chosen.
+pub(crate) fn required() -> Vec<String> {
+    let keys = of::<Keys>();
+    let mut required = Vec::new();
+    for table in names(&keys["required"]) {
+        let chosen = choices().iter().find(|choice| choice.table == table);
+        required.extend(chosen.map(|choice| format!("{table}.{}", choice.key)));
+        let plain = names(&keys["properties"][table]["required"]);
+        required.extend(plain.map(|key| format!("{table}.{key}")));
+    }
+    required
+}
+
+fn build() -> Value {
+    let mut schema = of::<Keys>();
+    for choice in choices() {
+        lay_out(&mut schema["properties"][choice.table], choice);
+    }
     tidy(&mut schema);
+    complete(&mut schema);
     schema["title"] = json!("peristalsis configuration");
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
     schema["properties"]["preset"] = json!({
@@ -47,6 +141,38 @@ fn build() -> Value {
         exclude_one_another(&mut schema, group);
     }
     schema
+}
+
+/// Puts the keys of all values of a choice side by side into their table, and the choice itself.
+fn lay_out(table: &mut Value, choice: &Choice) {
+    if let Some(table) = table.as_object_mut() {
+        table.remove("oneOf");
+    }
+    let one_of: Vec<Value> = choice
+        .values
+        .iter()
+        .map(|value| json!({"const": value.name, "description": value.description, "type": "string"}))
+        .collect();
+    let keys = &mut table["properties"];
+    keys[&choice.key] = json!({"description": choice.description, "oneOf": one_of});
+    for (name, key) in choice.values.iter().flat_map(|value| &value.keys) {
+        keys[name] = key.clone();
+    }
+}
+
+/// A layer may leave out any key of a table, for another layer gives it; but it may have no other.
+fn complete(table: &mut Value) {
+    let Some(object) = table.as_object_mut() else {
+        return;
+    };
+    object.remove("required");
+    object.insert("additionalProperties".into(), json!(false));
+    let inner = object.get_mut("properties").and_then(Value::as_object_mut);
+    for (_, key) in inner.into_iter().flatten() {
+        if key.get("properties").is_some() {
+            complete(key);
+        }
+    }
 }
 
 /// Makes what schemars writes fit TOML: no null, text without line breaks, units in the description.

@@ -2,37 +2,33 @@
 
 use std::f64::consts::PI;
 
+use peristalsis_physics::contact::Elasticity;
+use serde::Serialize;
+
 /// The unit of length d, the density of the grains and the elasticity of their contacts in SI.
 ///
-/// m = pi rho d^3/6;  t = sqrt(k m/k_SI) under the linear law, t = sqrt(Y m/(Y_SI d)) under the Hertz law, k and Y their
-/// values in our units
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// m = pi rho d^3/6;  t = sqrt(k m/k_SI) where a stiffness k scales the contact law, t = sqrt(Y m/(Y_SI d)) where Young's
+/// modulus Y does, k and Y their values in our units
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Units {
     /// d: diameter of a grain whose diameter is 1 \[m\].
     pub grain_diameter: f64,
     /// rho \[kg m^-3\].
     pub density: f64,
-    /// What the contact is made of.
+    /// k_SI \[N m^-1\] or Y_SI \[Pa\], as the contact law has it.
+    #[serde(flatten)]
     pub elasticity: Elasticity,
+    /// k \[m t^-2\] or Y \[m d^-1 t^-2\]: the same in our units.
+    #[serde(skip)]
+    pub contact_elasticity: f64,
 }
 
-/// Elasticity of a contact in SI beside its value in our units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Elasticity {
-    /// Linear law.
-    Stiffness {
-        /// k_SI \[N m^-1\].
-        stiffness: f64,
-        /// k \[m t^-2\].
-        normal_stiffness: f64,
-    },
-    /// Hertz law.
-    YoungModulus {
-        /// Y_SI \[Pa\].
-        young_modulus: f64,
-        /// Y \[m d^-1 t^-2\].
-        modulus: f64,
-    },
+/// The key that gives an elasticity in SI.
+pub(crate) fn key(elasticity: Elasticity) -> &'static str {
+    match elasticity {
+        Elasticity::Stiffness(_) => "units.stiffness",
+        Elasticity::YoungModulus(_) => "units.young_modulus",
+    }
 }
 
 impl Units {
@@ -52,15 +48,12 @@ impl Units {
     /// t \[s\].
     #[must_use]
     pub fn time(&self) -> f64 {
+        let contact = self.contact_elasticity;
         match self.elasticity {
-            Elasticity::Stiffness {
-                stiffness,
-                normal_stiffness,
-            } => (normal_stiffness * self.mass() / stiffness).sqrt(),
-            Elasticity::YoungModulus {
-                young_modulus,
-                modulus,
-            } => (modulus * self.mass() / (young_modulus * self.grain_diameter)).sqrt(),
+            Elasticity::Stiffness(stiffness) => (contact * self.mass() / stiffness).sqrt(),
+            Elasticity::YoungModulus(modulus) => {
+                (contact * self.mass() / (modulus * self.grain_diameter)).sqrt()
+            }
         }
     }
 
@@ -99,10 +92,8 @@ mod tests {
         let units = Units {
             grain_diameter: 1e-3,
             density: 2500.0,
-            elasticity: Elasticity::Stiffness {
-                stiffness: 1.0,
-                normal_stiffness: 1.0,
-            },
+            elasticity: Elasticity::Stiffness(1.0),
+            contact_elasticity: 1.0,
         };
         let near = |found: f64, expected: f64| {
             assert!((found / expected - 1.0).abs() < 1e-3, "{found} {expected}");
@@ -116,10 +107,8 @@ mod tests {
         near(units.power(), 1e-6 / 1.1441e-3);
         near(units.mass_flow(), 1.1441e-3);
         let hertz = Units {
-            elasticity: Elasticity::YoungModulus {
-                young_modulus: 1e6,
-                modulus: 2.0,
-            },
+            elasticity: Elasticity::YoungModulus(1e6),
+            contact_elasticity: 2.0,
             ..units
         };
         // Pressures are in units of Y_SI over Y.

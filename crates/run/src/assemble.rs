@@ -1,18 +1,13 @@
 //! From a configuration to the parts of a simulation.
 
-use peristalsis_configuration as configuration;
-use peristalsis_configuration::{Configuration, Control, NormalLaw, ScheduledParameter};
-use peristalsis_engine::initial::{InitialState, Packing, PackingReport, pack};
-use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
+use peristalsis_configuration::{
+    Configuration, Control, ScheduledParameter, WaveDirection, Waveform,
 };
-use peristalsis_engine::{Integrator, Kernel, Parameters, Simulation, Wall};
-use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
-    ViscoelasticHertz,
-};
+use peristalsis_engine::initial::{Packing, PackingReport, pack};
+use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall};
+use peristalsis_engine::{Parameters, Simulation, Wall};
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
-use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+use peristalsis_physics::wall::{Lattice, Schedule};
 
 use crate::RunError;
 
@@ -38,19 +33,15 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
     }
     check_memory(configuration)?;
     let wall = walls(configuration);
-    let contact = contact_model(configuration);
     let packing = Packing {
         number: configuration.grains.number as usize,
         diameter_min: configuration.grains.diameter_min,
         diameter_max: configuration.grains.diameter_max,
-        state: match configuration.initial.state {
-            configuration::InitialState::Rest => InitialState::Rest,
-            configuration::InitialState::Jammed => InitialState::Jammed,
-        },
+        state: configuration.initial.state,
         axial_velocity: wall.heading() * configuration.initial.axial_velocity,
         seed: configuration.run.seed,
     };
-    let (bodies, report) = pack(&packing, &wall, contact.normal)?;
+    let (bodies, report) = pack(&packing, &wall, configuration.contact.normal)?;
     Ok((
         Simulation::new(bodies, wall, parameters(configuration)),
         report,
@@ -74,17 +65,11 @@ fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
 /// How the engine computes a configuration.
 pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
     Parameters {
-        contact: contact_model(configuration),
-        integrator: match configuration.run.integrator {
-            configuration::Integrator::Verlet => Integrator::Verlet,
-            configuration::Integrator::AdamsBashforth => Integrator::AdamsBashforth,
-        },
+        contact: configuration.contact,
+        integrator: configuration.run.integrator,
         time_step: configuration.run.time_step,
         skin: configuration.run.neighbour_skin,
-        kernel: match configuration.run.kernel {
-            configuration::Kernel::Fast => Kernel::Fast,
-            configuration::Kernel::Reference => Kernel::Reference,
-        },
+        kernel: configuration.run.kernel,
         body_force: heading(configuration) * configuration.drive.body_force,
     }
 }
@@ -92,8 +77,8 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
 /// +1 for a wave towards +z, -1 towards -z: the source writes that of the strain-controlled tube as running towards -z.
 fn heading(configuration: &Configuration) -> f64 {
     let along = match configuration.drive.direction {
-        configuration::WaveDirection::Forward => 1.0,
-        configuration::WaveDirection::Backward => -1.0,
+        WaveDirection::Forward => 1.0,
+        WaveDirection::Backward => -1.0,
     };
     match configuration.drive.control {
         Control::Strain { .. } => -along,
@@ -101,65 +86,18 @@ fn heading(configuration: &Configuration) -> f64 {
     }
 }
 
-/// The contact model of a configuration.
-#[must_use]
-pub fn contact_model(configuration: &Configuration) -> ContactModel {
-    let normal = match configuration.contact.normal {
-        NormalLaw::Linear {
-            normal_stiffness,
-            normal_damping,
-        } => Normal::Linear(LinearSpringDashpot {
-            normal_stiffness,
-            normal_damping,
-        }),
-        NormalLaw::Hertz {
-            young_modulus,
-            poisson_ratio,
-            dissipation_time,
-            dissipation_form,
-        } => Normal::Hertz(ViscoelasticHertz {
-            young_modulus,
-            poisson_ratio,
-            dissipation_time,
-            dissipation_form: match dissipation_form {
-                configuration::DissipationForm::Printed => DissipationForm::Printed,
-                configuration::DissipationForm::Viscoelastic => DissipationForm::Viscoelastic,
-            },
-        }),
-    };
-    let friction = configuration
-        .contact
-        .friction
-        .map(|friction| CundallStrack {
-            tangential_stiffness: friction.tangential_stiffness,
-            tangential_damping: friction.tangential_damping,
-            static_friction: friction.static_friction,
-            kinetic_friction: friction.kinetic_friction,
-            sliding: match friction.sliding {
-                configuration::Sliding::Spring => Sliding::Spring,
-                configuration::Sliding::Balance => Sliding::Balance,
-                configuration::Sliding::Literal => Sliding::Literal,
-            },
-        });
-    ContactModel { normal, friction }
-}
-
 /// The wall of a configuration, at time 0.
 #[must_use]
 pub fn walls(configuration: &Configuration) -> Wall {
-    let tube = configuration.tube;
+    let Configuration {
+        tube, drive, wall, ..
+    } = configuration;
     let lattice = Lattice {
         spheres_per_ring: tube.spheres_per_ring,
         rings_per_wave: tube.rings_per_wave,
         waves: tube.waves,
         wavelength: tube.wavelength,
-        sphere_diameter: configuration.wall.sphere_diameter,
-    };
-    let drive = &configuration.drive;
-    let waveform = match drive.waveform {
-        configuration::Waveform::Sine => Waveform::Sine,
-        configuration::Waveform::Bolus => Waveform::Bolus,
-        configuration::Waveform::Roller => Waveform::Roller,
+        sphere_diameter: wall.sphere_diameter,
     };
     let heading = heading(configuration);
     let frequency = schedule(
@@ -174,7 +112,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
             Wall::Prescribed(PrescribedWall::new(
                 lattice,
                 tube.radius,
-                waveform,
+                drive.waveform,
                 heading,
                 amplitude,
                 frequency,
@@ -183,40 +121,29 @@ pub fn walls(configuration: &Configuration) -> Wall {
         Control::Stress {
             force_amplitude,
             angle,
-            wall,
-        } => Wall::Elastic(ElasticWall::new(ElasticParameters {
-            lattice,
-            mean_radius: tube.radius,
-            sphere_mass: wall.sphere_mass,
-            spring_stiffness: wall.spring_stiffness,
-            natural_length: wall.natural_length,
-            spring_damping: wall.spring_damping,
-            drag: wall.drag,
-            contact_range: wall.contact_range,
-            tethers: Tethers {
-                balance: wall.keep.balance,
-                radial: wall.keep.radial,
-                azimuthal: wall.keep.azimuthal,
-                axial: wall.keep.axial,
-                net_force: match wall.keep.net_force {
-                    configuration::NetForce::Free => NetForce::Free,
-                    configuration::NetForce::Removed => NetForce::Removed,
-                    configuration::NetForce::RemovedPerRing => NetForce::RemovedPerRing,
-                },
-            },
-            force_amplitude: schedule(
-                configuration,
-                ScheduledParameter::ForceAmplitude,
-                force_amplitude,
-            ),
-            frequency,
-            heading,
-            waveform,
-            angle: match angle {
-                configuration::DriveAngle::Reference => DriveAngle::Reference,
-                configuration::DriveAngle::Current => DriveAngle::Current,
-            },
-        })),
+        } => {
+            let network = wall.elastic.unwrap_or_default();
+            Wall::Elastic(ElasticWall::new(ElasticParameters {
+                lattice,
+                mean_radius: tube.radius,
+                sphere_mass: network.sphere_mass,
+                spring_stiffness: network.spring_stiffness,
+                natural_length: network.natural_length,
+                spring_damping: network.spring_damping,
+                drag: network.drag,
+                contact_range: network.contact_range,
+                tethers: network.tethers,
+                force_amplitude: schedule(
+                    configuration,
+                    ScheduledParameter::ForceAmplitude,
+                    force_amplitude,
+                ),
+                frequency,
+                heading,
+                waveform: drive.waveform,
+                angle,
+            }))
+        }
     }
 }
 
@@ -249,7 +176,7 @@ pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option
         .drive
         .schedule(ScheduledParameter::Width)
         .is_some();
-    let sine = configuration.drive.waveform == configuration::Waveform::Sine;
+    let sine = configuration.drive.waveform == Waveform::Sine;
     if changes || !sine || configuration.drive.period().is_none() {
         return None;
     }

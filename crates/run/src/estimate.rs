@@ -6,7 +6,7 @@ use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_physics::contact::NormalLaw;
 
 use crate::RunError;
-use crate::assemble::{contact_model, walls};
+use crate::assemble::walls;
 use crate::holding;
 use crate::leaking;
 use crate::run::Run;
@@ -210,10 +210,10 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
 
 /// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
 fn contact_time(configuration: &Configuration) -> f64 {
-    let model = contact_model(configuration);
+    let model = configuration.contact;
     let diameter = configuration.grains.diameter_min;
     let mut lightest = diameter * diameter * diameter;
-    if let Control::Stress { wall, .. } = configuration.drive.control {
+    if let Some(wall) = configuration.wall.elastic {
         lightest = lightest.min(wall.sphere_mass);
     }
     let reduced_mass = match configuration.drive.control {

@@ -1,12 +1,12 @@
 //! Whether an elastic wall can hold together.
 
-use peristalsis_configuration::{Configuration, Control};
+use peristalsis_configuration::Configuration;
 
 use crate::estimate::Warning;
 
 /// What looks doubtful in an elastic wall: walls of its kind were seen to fail in the tube of the preset `frictional`.
 pub(crate) fn warnings(configuration: &Configuration) -> Vec<Warning> {
-    let Control::Stress { wall, .. } = configuration.drive.control else {
+    let Some(wall) = configuration.wall.elastic else {
         return Vec::new();
     };
     let mut warnings = Vec::new();
@@ -29,14 +29,14 @@ pub(crate) fn warnings(configuration: &Configuration) -> Vec<Warning> {
                 0.7 * nearest
             ),
         );
-    } else if !wall.keep.balance && wall.keep.radial == 0.0 {
+    } else if !wall.tethers.balance && wall.tethers.radial == 0.0 {
         warn(
             "wall.keep.balance",
             "nothing balances the tension of the springs, and the tube closes: set it to true, or give wall.keep.radial"
                 .to_owned(),
         );
     }
-    if wall.keep.azimuthal == 0.0 {
+    if wall.tethers.azimuthal == 0.0 {
         warn(
             "wall.keep.azimuthal",
             "without an azimuthal tether nothing keeps the wall's spheres from going round the tube, and the network buckles: \

@@ -4,7 +4,6 @@ use peristalsis_configuration::Configuration;
 use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
-use crate::assemble::contact_model;
 use crate::estimate::Warning;
 
 /// Radius of a sphere that passes the wall without overlap above which grains will leak \[d\].
@@ -36,7 +35,7 @@ pub(crate) fn warning(
         });
     }
     let speed = configuration.wave_speed();
-    let normal = contact_model(configuration).normal;
+    let normal = configuration.contact.normal;
     let grains = [
         configuration.grains.diameter_min,
         configuration.grains.diameter_max,

@@ -28,7 +28,7 @@ mod summary;
 mod tables;
 mod trajectory;
 
-pub use assemble::{assemble, contact_model, newtonian_reference, walls};
+pub use assemble::{assemble, newtonian_reference, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, Warning, estimate, warnings};
 pub use folder::{RunFolder, Written};

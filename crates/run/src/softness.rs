@@ -1,8 +1,7 @@
 //! Whether grains as soft, or as hard, as the units in SI make them can be what was meant.
 
-use peristalsis_configuration::{
-    Configuration, Control, Elasticity, NormalLaw, ScheduledParameter, Units,
-};
+use peristalsis_configuration::{Configuration, Control, Elasticity, ScheduledParameter, Units};
+use peristalsis_physics::contact::NormalLaw;
 
 use crate::estimate::Warning;
 use crate::run::Run;
@@ -16,26 +15,13 @@ const MOST_STEPS_PER_PERIOD: f64 = 1e6;
 
 /// Overlap over diameter of two of the largest grains that meet at the speed c of the wave, without damping.
 ///
-/// The kinetic energy of the relative motion, (m/2) c^2/2, is stored at the turning point: xi = c (m/(2 k))^(1/2) under
-/// the linear law; xi = (5 m c^2/(8 K))^(2/5), K = 2 Y R^(1/2)/(3 (1 - nu^2)), R = d/4, under the Hertz law.
+/// The kinetic energy of the relative motion, (m/2) c^2/2, is stored at the turning point.
 pub(crate) fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
     let diameter = configuration.grains.diameter_max;
     let mass = diameter * diameter * diameter;
     let speed = configuration.wave_speed();
-    let overlap = match configuration.contact.normal {
-        NormalLaw::Linear {
-            normal_stiffness, ..
-        } => speed * (0.5 * mass / normal_stiffness).sqrt(),
-        NormalLaw::Hertz {
-            young_modulus,
-            poisson_ratio,
-            ..
-        } => {
-            let stiffness = 2.0 * young_modulus * (0.25 * diameter).sqrt()
-                / (3.0 * (1.0 - poisson_ratio * poisson_ratio));
-            libm::pow(0.625 * mass * speed * speed / stiffness, 0.4)
-        }
-    };
+    let law = configuration.contact.normal;
+    let overlap = law.impact_overlap(0.5 * mass, speed, 0.25 * diameter);
     overlap / diameter
 }
 
@@ -153,16 +139,16 @@ struct Material {
 impl Material {
     fn of(units: &Units) -> Self {
         match units.elasticity {
-            Elasticity::Stiffness { stiffness, .. } => Self {
+            Elasticity::Stiffness(value) => Self {
                 key: "units.stiffness",
-                value: stiffness,
+                value,
                 name: "stiffness",
                 unit: "N/m",
                 per_speed: 1.0,
             },
-            Elasticity::YoungModulus { young_modulus, .. } => Self {
+            Elasticity::YoungModulus(value) => Self {
                 key: "units.young_modulus",
-                value: young_modulus,
+                value,
                 name: "modulus",
                 unit: "Pa",
                 per_speed: 0.8,

@@ -1,99 +1,29 @@
 //! `peristalsis presets`, `schema`, `completions`, `--help` and `--version`.
 
-use serde_json::Value;
-
 use crate::Place;
 
 const PRESETS: [&str; 3] = ["frictionless", "frictionless-fine", "frictional"];
 
-fn schema() -> jsonschema::Validator {
-    let outcome = Place::new().call(["schema"]).expect_code(0);
-    assert_eq!(outcome.stderr, "");
-    let schema = outcome.json();
-    jsonschema::meta::validate(&schema).expect("the schema follows the schema of schemas");
-    jsonschema::validator_for(&schema).unwrap()
-}
-
-fn as_json(text: &str) -> Value {
-    serde_json::to_value(toml::from_str::<toml::Table>(text).unwrap()).unwrap()
-}
-
-#[track_caller]
-fn valid(schema: &jsonschema::Validator, text: &str) {
-    if let Err(error) = schema.validate(&as_json(text)) {
-        panic!("{error} at {}\n{text}", error.instance_path());
-    }
-}
-
 #[test]
-fn presets_and_examples_follow_the_schema() {
-    let schema = schema();
-    for preset in PRESETS {
-        valid(
-            &schema,
-            &Place::new().call(["presets", preset]).expect_code(0).stdout,
-        );
-    }
-    let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
-    let mut number = 0;
-    for entry in std::fs::read_dir(examples).unwrap() {
-        let path = entry.unwrap().path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "toml")
-        {
-            valid(&schema, &std::fs::read_to_string(&path).unwrap());
-            number += 1;
-        }
-    }
-    assert!(number >= 4, "{number} examples");
-}
-
-#[test]
-fn the_record_of_a_run_follows_the_schema() {
-    let schema = schema();
+fn the_schema_is_one_and_refuses_what_the_program_refuses() {
     let place = Place::new();
-    place.run_small(&["--out", "strain"]).expect_code(0);
-    let stress = [
-        "grains.number=20",
-        "run.periods=0.05",
-        "drive.schedule={form='ramp', end=1}",
-    ];
-    let settings = stress.iter().flat_map(|setting| ["--set", setting]);
-    place
-        .call(
-            ["run", "--preset", "frictional", "--out", "stress"]
-                .into_iter()
-                .chain(settings),
-        )
-        .expect_code(0);
-    for folder in ["strain", "stress"] {
-        let text = std::fs::read_to_string(place.path(folder).join("config.toml")).unwrap();
-        valid(&schema, &text);
-    }
-}
-
-#[test]
-fn the_schema_refuses_what_the_program_refuses() {
-    let schema = schema();
-    for text in [
-        "widht = 2.7",
-        "[drive]\nwidht = 2.7",
-        "[drive]\nwidth = -2.7",
-        "[drive]\nwidth = 2.7\namplitude = 0.1",
-        "[drive]\nwidth = \"wide\"",
-        "[contact]\nlaw = \"linera\"",
-        "[wall.keep]\nnet_force = \"none\"",
-        "[run]\nseed = -1",
-        "preset = \"nothing\"",
+    let outcome = place.call(["schema"]).expect_code(0);
+    assert_eq!(outcome.stderr, "");
+    jsonschema::meta::validate(&outcome.json()).expect("it follows the schema of schemas");
+    let schema = jsonschema::validator_for(&outcome.json()).unwrap();
+    for (text, is_right) in [
+        ("[drive]\nwidth = 2.7", true),
+        ("[drive]\nwidht = 2.7", false),
     ] {
-        assert!(!schema.is_valid(&as_json(text)), "{text}");
-        let place = Place::new();
-        let file = place.write("tube.toml", text);
-        let file = file.to_str().unwrap();
+        let instance = toml::from_str::<toml::Table>(text).unwrap();
+        assert_eq!(
+            schema.is_valid(&serde_json::to_value(instance).unwrap()),
+            is_right
+        );
+        place.write("tube.toml", format!("preset = \"frictionless\"\n{text}"));
         place
-            .call(["check", "--preset", "frictionless", file])
-            .expect_code(2);
+            .call(["check", "tube.toml"])
+            .expect_code(if is_right { 0 } else { 2 });
     }
 }
 
@@ -114,16 +44,13 @@ fn presets_are_listed_and_printed() {
     for name in PRESETS {
         let text = place.call(["presets", name]).expect_code(0).stdout;
         place.write("copy.toml", &text);
-        let of_the_copy = place
-            .call(["check", "--json", "copy.toml"])
-            .expect_code(0)
-            .json();
-        let of_the_preset = place
-            .call(["check", "--json", "--preset", name])
-            .expect_code(0)
-            .json();
-        for key in ["grains", "wall_spheres", "steps", "time_step", "duration"] {
-            assert_eq!(of_the_copy[key], of_the_preset[key], "{name}: {key}");
+        let of = |source: &[&str]| {
+            let check = place.call(["check", "--json"].iter().chain(source));
+            check.expect_code(0).json()
+        };
+        let (copy, preset) = (of(&["copy.toml"]), of(&["--preset", name]));
+        for key in ["grains", "wall_spheres", "steps", "duration"] {
+            assert_eq!(copy[key], preset[key], "{name}: {key}");
         }
     }
 }

@@ -44,13 +44,8 @@ fn nested_relative_folders_are_made_and_filled() {
 fn an_elastic_wall_has_a_figure_of_its_own() {
     let place = Place::new();
     let settings = ["grains.number=20", "run.periods=0.05", "run.seed=3"];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
     place
-        .call(
-            ["run", "--preset", "frictional", "--out", "results"]
-                .into_iter()
-                .chain(settings),
-        )
+        .run_preset("frictional", "results", &settings)
         .expect_code(0);
     for name in ["wall.svg", "wall.png"] {
         assert!(place.path("results").join(name).is_file(), "{name}");

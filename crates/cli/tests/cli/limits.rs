@@ -8,17 +8,8 @@ use crate::{Outcome, Place, SMALL, read_json};
 fn a_static_wave_has_no_ratio_and_no_figure_of_it() {
     let place = Place::new();
     let settings = ["drive.strain_rate=0", "run.duration=50", "grains.number=20"];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments = [
-        "run",
-        "--preset",
-        "frictionless",
-        "--out",
-        "results",
-        "--json",
-    ];
     let outcome = place
-        .call(arguments.into_iter().chain(settings))
+        .run_preset("frictionless", "results", &settings)
         .expect_code(0)
         .says(&["100 % t 50.0"]);
     let summary = outcome.json();
@@ -40,61 +31,40 @@ fn a_static_wave_has_no_ratio_and_no_figure_of_it() {
 }
 
 #[test]
-fn no_grains_at_all() {
+fn no_grains_one_grain_one_wave_and_less_than_a_period() {
     let place = Place::new();
-    let summary = place
-        .run_small(&["--out", "results", "--json", "--set", "grains.number=0"])
-        .expect_code(0)
-        .json();
-    assert_eq!(summary["grains"], 0);
-    assert_eq!(summary["flow_rate_ratio"], Value::Null);
-    assert_eq!(summary["flow_rate"], 0.0);
-    assert!(place.path("results/timeseries.parquet").is_file());
-}
-
-#[test]
-fn one_grain_and_one_wave() {
-    let place = Place::new();
-    for (settings, name) in [
-        (["grains.number=1", "tube.waves=2"], "grain"),
-        (["grains.number=20", "tube.waves=1"], "wave"),
+    for (settings, folder, has_ratio) in [
+        (["grains.number=0", "tube.waves=2"], "none", false),
+        (["grains.number=1", "tube.waves=2"], "grain", true),
+        (["grains.number=20", "tube.waves=1"], "wave", true),
+        (["grains.number=20", "run.periods=0.05"], "short", true),
     ] {
-        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-        let summary = place
-            .call(
-                ["run"]
-                    .into_iter()
-                    .chain(SMALL.iter().copied())
-                    .chain(settings)
-                    .chain(["--out", name, "--json"]),
-            )
-            .expect_code(0)
-            .json();
-        assert!(summary["flow_rate_ratio"].is_number(), "{name}");
-        assert!(place.path(name).join("flow.svg").is_file(), "{name}");
+        let arguments = [&["run"], SMALL, &["--out", folder, "--json"]].concat();
+        let summary = place.call_with(&arguments, &settings).expect_code(0).json();
+        assert_eq!(
+            summary["flow_rate_ratio"].is_number(),
+            has_ratio,
+            "{folder}"
+        );
+        assert_eq!(summary["transition_time"], Value::Null, "{folder}");
+        assert_eq!(
+            place.path(folder).join("flow.svg").is_file(),
+            has_ratio,
+            "{folder}"
+        );
+        assert!(
+            place.path(folder).join("timeseries.parquet").is_file(),
+            "{folder}"
+        );
     }
-}
-
-#[test]
-fn less_than_a_period() {
-    let place = Place::new();
-    let summary = place
-        .run_small(&["--out", "results", "--json", "--set", "run.periods=0.05"])
-        .expect_code(0)
-        .json();
-    assert!(summary["flow_rate_ratio"].is_number());
-    assert_eq!(summary["transition_time"], Value::Null);
 }
 
 #[test]
 fn a_diverging_run_names_step_and_grain_and_saves_its_state() {
     let place = Place::new();
     let settings = ["run.time_step=1", "run.periods=5"];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
     let arguments = ["run", "--preset", "frictionless", "--out", "results"];
-    let outcome: Outcome = place
-        .call(arguments.into_iter().chain(settings))
-        .expect_code(1);
+    let outcome: Outcome = place.call_with(&arguments, &settings).expect_code(1);
     let message = outcome.message();
     for part in [
         "diverged at step ",
@@ -136,11 +106,8 @@ fn a_wall_that_buckles_is_a_diagnosis_not_a_crash() {
         "wall.keep.axial=0",
         "run.periods=0.2",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
     let arguments = ["run", "--preset", "frictional", "--out", "results"];
-    let outcome = place
-        .call(arguments.into_iter().chain(settings))
-        .expect_code(0);
+    let outcome = place.call_with(&arguments, &settings).expect_code(0);
     let summary = read_json(&place.path("results/summary.json"));
     let diagnoses = summary["wall_diagnosis"].as_array().unwrap();
     assert!(!diagnoses.is_empty());
@@ -161,21 +128,10 @@ fn a_wall_that_buckles_is_a_diagnosis_not_a_crash() {
 
 #[test]
 fn a_sound_wall_has_no_diagnosis() {
-    let place = Place::new();
-    let settings = ["grains.number=20", "run.periods=0.2"];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments = [
-        "run",
-        "--preset",
-        "frictional",
-        "--out",
-        "results",
-        "--json",
-    ];
-    let outcome = place
-        .call(arguments.into_iter().chain(settings))
-        .expect_code(0);
-    assert_eq!(outcome.json()["wall_diagnosis"], Value::Array(Vec::new()));
+    let settings = ["grains.number=20", "run.periods=0.05"];
+    let outcome = Place::new().run_preset("frictional", "results", &settings);
+    let summary = outcome.expect_code(0).json();
+    assert_eq!(summary["wall_diagnosis"], Value::Array(Vec::new()));
 }
 
 #[cfg(target_os = "linux")]
@@ -216,8 +172,9 @@ fn a_tube_for_which_there_is_no_memory_is_refused_in_words() {
     ];
     let small = small.iter().flat_map(|setting| ["--set", setting]);
     let small: Vec<&str> = ["check"]
-        .into_iter()
-        .chain(SMALL.iter().copied())
+        .iter()
+        .chain(SMALL)
+        .copied()
         .chain(small)
         .collect();
     limited(&small).expect_code(0);
@@ -302,10 +259,9 @@ fn a_disk_that_fills_with_a_trajectory_loses_nothing_else() {
             "gsd" => "trajectory.gsd",
             _ => "trajectory.lammpstrj",
         };
-        for name in [file, "timeseries.parquet", "profile.parquet"] {
-            let [one, other] = ["stopped", "through"]
-                .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
-            assert!(one == other, "{name} differs");
-        }
+        place.assert_same(
+            ["stopped", "through"],
+            &[file, "timeseries.parquet", "profile.parquet"],
+        );
     }
 }

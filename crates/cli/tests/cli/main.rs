@@ -156,6 +156,30 @@ impl Place {
         Outcome::of(self.command(arguments).output().unwrap())
     }
 
+    /// The program with arguments and with settings, each behind a `--set`.
+    fn call_with(&self, arguments: &[&str], settings: &[&str]) -> Outcome {
+        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+        self.call(arguments.iter().copied().chain(settings))
+    }
+
+    /// `peristalsis run` of a preset into a folder, its summary as JSON on standard output.
+    fn run_preset(&self, preset: &str, folder: &str, settings: &[&str]) -> Outcome {
+        self.call_with(
+            &["run", "--preset", preset, "--out", folder, "--json"],
+            settings,
+        )
+    }
+
+    /// Whether files of a name are the same in two folders, to the byte.
+    #[track_caller]
+    fn assert_same(&self, folders: [&str; 2], names: &[&str]) {
+        for name in names {
+            let [one, other] =
+                folders.map(|folder| std::fs::read(self.path(folder).join(name)).unwrap());
+            assert!(one == other, "{name} differs");
+        }
+    }
+
     /// `peristalsis run` of the small tube with more arguments.
     fn run_small(&self, arguments: &[&str]) -> Outcome {
         self.call(["run"].iter().chain(SMALL).chain(arguments))

@@ -4,13 +4,7 @@ use serde_json::Value;
 
 use crate::{Place, SMALL, read_json};
 
-fn same_tables(place: &Place, one: &str, other: &str) {
-    for name in ["timeseries.parquet", "profile.parquet", "waves.parquet"] {
-        let [one, other] =
-            [one, other].map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
-        assert!(one == other, "{name} differs");
-    }
-}
+const TABLES: &[&str] = &["timeseries.parquet", "profile.parquet", "waves.parquet"];
 
 #[test]
 fn the_summary_alone_is_on_standard_output() {
@@ -49,20 +43,9 @@ fn a_transition_is_a_number() {
         "tube.waves=2",
         "run.periods=30",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments = [
-        "run",
-        "--preset",
-        "frictionless-fine",
-        "--out",
-        "results",
-        "--json",
-        "-q",
-    ];
     let outcome = place
-        .call(arguments.into_iter().chain(settings))
+        .run_preset("frictionless-fine", "results", &settings)
         .expect_code(0);
-    assert_eq!(outcome.stderr, "");
     let summary = outcome.json();
     let time = summary["transition_time"].as_f64().unwrap();
     assert!(time > 20.0 && time < 200.0, "{time}");
@@ -110,44 +93,34 @@ fn a_setting_replaces_the_alternative_of_preset_and_file() {
 #[test]
 fn the_record_of_a_run_runs_again_to_the_same_bits() {
     let place = Place::new();
-    let jammed = [
-        "initial.state=jammed",
-        "drive.wave_speed=0.7",
-        "grains.diameter_min=0.9",
-    ];
-    let jammed = jammed.iter().flat_map(|setting| ["--set", setting]);
-    place
-        .call(
-            ["run"]
-                .into_iter()
-                .chain(SMALL.iter().copied())
-                .chain(jammed)
-                .chain(["--out", "first"]),
-        )
-        .expect_code(0);
-    place
-        .call(["run", "first/config.toml", "--out", "second"])
-        .expect_code(0);
-    same_tables(&place, "first", "second");
-
-    let elastic = [
-        "grains.number=50",
-        "run.periods=0.2",
-        "run.integrator=adams_bashforth",
-        "run.seed=4",
-    ];
-    let elastic = elastic.iter().flat_map(|setting| ["--set", setting]);
-    place
-        .call(
-            ["run", "--preset", "frictional", "--out", "third"]
-                .into_iter()
-                .chain(elastic),
-        )
-        .expect_code(0);
-    place
-        .call(["run", "third/config.toml", "--out", "fourth"])
-        .expect_code(0);
-    same_tables(&place, "third", "fourth");
+    for (preset, settings) in [
+        (
+            "frictionless",
+            &[
+                "grains.number=20",
+                "tube.waves=2",
+                "run.periods=4",
+                "initial.state=jammed",
+                "drive.wave_speed=0.7",
+                "grains.diameter_min=0.9",
+            ][..],
+        ),
+        (
+            "frictional",
+            &[
+                "grains.number=50",
+                "run.periods=0.1",
+                "run.integrator=adams_bashforth",
+                "run.seed=4",
+            ],
+        ),
+    ] {
+        let again = format!("{preset}-again");
+        let record = format!("{preset}/config.toml");
+        place.run_preset(preset, preset, settings).expect_code(0);
+        place.call(["run", &record, "--out", &again]).expect_code(0);
+        place.assert_same([preset, &again], TABLES);
+    }
 }
 
 #[test]
@@ -166,34 +139,18 @@ fn another_seed_is_another_run() {
 #[test]
 fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
     let place = Place::new();
-    for control in ["strain", "stress"] {
+    for (preset, periods) in [("frictionless", "4"), ("frictional", "0.1")] {
         for direction in ["forward", "backward"] {
-            let preset = if control == "strain" {
-                "frictionless"
-            } else {
-                "frictional"
-            };
-            let folder = format!("{control}-{direction}");
-            let direction = format!("drive.direction={direction}");
-            let periods = if control == "strain" {
-                "run.periods=4"
-            } else {
-                "run.periods=0.2"
-            };
             let settings = [
                 "initial.state=jammed",
                 "grains.number=40",
                 "tube.waves=2",
-                periods,
-                &direction,
+                &format!("run.periods={periods}"),
+                &format!("drive.direction={direction}"),
             ];
-            let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-            let arguments = ["run", "--preset", preset, "--json", "--out", &folder];
-            let summary = place
-                .call(arguments.into_iter().chain(settings))
-                .expect_code(0)
-                .json();
-            let ratio = summary["flow_rate_ratio"].as_f64().unwrap();
+            let folder = format!("{preset}-{direction}");
+            let outcome = place.run_preset(preset, &folder, &settings).expect_code(0);
+            let ratio = outcome.json()["flow_rate_ratio"].as_f64().unwrap();
             assert!(ratio > 0.5, "{folder}: {ratio}");
         }
     }
@@ -210,12 +167,8 @@ fn pumping_and_si_are_in_the_summary() {
         "units.density=2500",
         "units.stiffness=1",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments: Vec<&str> = ["--out", "results", "--json"]
-        .into_iter()
-        .chain(settings)
-        .collect();
-    let summary = place.run_small(&arguments).expect_code(0).json();
+    let run = [&["run"], SMALL, &["--out", "results", "--json"]].concat();
+    let summary = place.call_with(&run, &settings).expect_code(0).json();
     let number = |pointer: &str| {
         summary
             .pointer(pointer)
@@ -261,10 +214,9 @@ fn softness_that_the_run_shows_and_how_pressures_are_averaged_are_said() {
         "units.density=2500",
         "units.stiffness=1",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-    let arguments: Vec<&str> = ["--out", "results"].into_iter().chain(settings).collect();
+    let run = [&["run"], SMALL, &["--out", "results"]].concat();
     place
-        .run_small(&arguments)
+        .call_with(&run, &settings)
         .expect_code(0)
         .says(&["warning: units.stiffness: grains overlapped by up to"])
         .shows(&[
@@ -289,10 +241,9 @@ fn an_efficiency_is_null_where_nothing_is_pumped() {
         "grains.number=20",
         "tube.waves=2",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
     let arguments = ["run", "--preset", "frictionless", "--out", "still"];
     place
-        .call(arguments.into_iter().chain(settings))
+        .call_with(&arguments, &settings)
         .expect_code(0)
         .shows(&["efficiency – ("]);
     place
@@ -310,10 +261,9 @@ fn an_efficiency_is_null_where_nothing_is_pumped() {
 fn a_wall_that_diverges_is_named_as_the_wall() {
     let place = Place::new();
     let settings = ["wall.drag=1e3", "tube.waves=2", "grains.number=100"];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
     let arguments = ["run", "--preset", "frictional", "--out", "results"];
     place
-        .call(arguments.into_iter().chain(settings))
+        .call_with(&arguments, &settings)
         .expect_code(1)
         .says(&["wall sphere ", "wall.drag", "wall.sphere_mass"]);
 }

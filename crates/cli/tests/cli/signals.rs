@@ -85,21 +85,20 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
         )
         .expect_code(0);
     assert_eq!(rows("stopped"), 150 * 20);
-    for name in [
-        "timeseries.parquet",
-        "timeseries.csv",
-        "profile.parquet",
-        "waves.parquet",
-        "config.toml",
-        "flow.svg",
-        "trajectory.gsd",
-        "trajectory.pvd",
-        "contacts.pvd",
-    ] {
-        let [one, other] = ["stopped", "through"]
-            .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
-        assert!(one == other, "{name} differs");
-    }
+    place.assert_same(
+        ["stopped", "through"],
+        &[
+            "timeseries.parquet",
+            "timeseries.csv",
+            "profile.parquet",
+            "waves.parquet",
+            "config.toml",
+            "flow.svg",
+            "trajectory.gsd",
+            "trajectory.pvd",
+            "contacts.pvd",
+        ],
+    );
     let [one, other] =
         ["stopped", "through"].map(|folder| read_json(&place.path(folder).join("summary.json")));
     for (key, value) in one.as_object().unwrap() {
@@ -132,13 +131,10 @@ fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
         "run.periods=1",
         "run.time_step=1e-9",
     ];
-    let settings = settings.iter().flat_map(|setting| ["--set", setting]);
+    let more = settings.iter().flat_map(|setting| ["--set", setting]);
+    let run = ["run", "--preset", "frictionless", "--out", "stopped"];
     let mut child = place
-        .command(
-            ["run", "--preset", "frictionless", "--out", "stopped"]
-                .into_iter()
-                .chain(settings.clone()),
-        )
+        .command(run.into_iter().chain(more))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -159,8 +155,7 @@ fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
     assert_eq!(summary["status"], "interrupted");
     assert!(place.path("stopped/state.checkpoint").is_file());
     // And a trial of it does not wait for its first sample.
-    let preset = ["check", "--preset", "frictionless"];
     place
-        .call(preset.into_iter().chain(settings))
+        .call_with(&["check", "--preset", "frictionless"], &settings)
         .expect_code(0);
 }

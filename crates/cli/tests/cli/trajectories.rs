@@ -47,11 +47,10 @@ fn a_run_says_what_it_wrote() {
         .run_small(&["--out", "plain", "--json"])
         .expect_code(0);
     assert!(plain.json().get("trajectory").is_none());
-    for name in ["config.toml", "timeseries.parquet", "profile.parquet"] {
-        let [one, other] = ["results", "plain"]
-            .map(|folder| std::fs::read(place.path(folder).join(name)).unwrap());
-        assert!(one == other, "{name}");
-    }
+    place.assert_same(
+        ["results", "plain"],
+        &["config.toml", "timeseries.parquet", "profile.parquet"],
+    );
 }
 
 #[test]

@@ -1,56 +1,43 @@
-//! The drive: alternatives resolved to width and strain rate, and the elastic wall of a stress-controlled tube.
+//! The drive: alternatives resolved to width and strain rate.
 
-use super::{Context, schedules, units};
-use crate::configuration::{Control, Drive, ElasticWall, Tube, WallKeep};
-use crate::defaults;
+use super::{Context, schedules};
+use crate::configuration::{Control, Drive, Tube};
 use crate::error::ProblemKind;
-use crate::keys::{DriveKeys, Keys, WallKeys};
-use crate::options::{ControlName, DriveAngle, NetForce, WaveDirection, Waveform};
+use crate::keys::Keys;
 use crate::units::Units;
 
-/// The drive of a given tube.
+/// The drive of a tube.
 pub(super) fn drive(
     keys: &Keys,
-    tube: &Tube,
     units: Option<&Units>,
     context: &mut Context<'_>,
 ) -> Option<Drive> {
-    let control = match keys.drive.control? {
-        ControlName::Strain => Control::Strain {
-            width: width(&keys.drive, tube, context)?,
-        },
-        ControlName::Stress => Control::Stress {
-            force_amplitude: keys.drive.force_amplitude?,
-            angle: keys.drive.angle.unwrap_or(DriveAngle::Reference),
-            wall: elastic_wall(&keys.wall, tube),
-        },
-    };
-    let rates = (keys.drive.strain_rate, keys.drive.wave_speed);
-    let strain_rate = match (rates, keys.units.wave_frequency, units) {
-        ((Some(strain_rate), _), ..) => strain_rate,
-        ((_, Some(wave_speed)), ..) => wave_speed / tube.wavelength,
-        (_, Some(frequency), Some(units)) => units::strain_rate(frequency, units),
-        _ => return None,
+    let (written, tube) = (&keys.drive, &keys.tube);
+    let mut drive = written.drive.clone();
+    if let Control::Strain { width: resolved } = &mut drive.control {
+        *resolved = width(*resolved, written.amplitude, tube, context)?;
+    }
+    let strain_rate = match (written.wave_speed, keys.units.wave_frequency) {
+        (None, None) => drive.strain_rate,
+        (Some(wave_speed), _) => wave_speed / tube.wavelength,
+        (None, Some(frequency)) => frequency * units?.time(),
     };
     // A TOML -0.0 is a static wave like 0.0, and must be the same bits.
-    let strain_rate = strain_rate + 0.0;
-    let mut drive = Drive {
-        control,
-        strain_rate,
-        waveform: keys.drive.waveform.unwrap_or(Waveform::Sine),
-        // One zero, not two.
-        body_force: keys.drive.body_force.unwrap_or(0.0) + 0.0,
-        direction: keys.drive.direction.unwrap_or(WaveDirection::Forward),
-        schedules: Vec::new(),
-    };
-    drive.schedules = schedules::schedules(&keys.drive, &drive, tube, context)?;
+    drive.strain_rate = strain_rate + 0.0;
+    drive.body_force += 0.0;
+    drive.schedules = schedules::schedules(written, &drive, tube, context)?;
     Some(drive)
 }
 
 /// w = 2 (a - b), between 0 and 2 a.
-fn width(keys: &DriveKeys, tube: &Tube, context: &mut Context<'_>) -> Option<f64> {
+fn width(
+    width: f64,
+    amplitude: Option<f64>,
+    tube: &Tube,
+    context: &mut Context<'_>,
+) -> Option<f64> {
     let diameter = 2.0 * tube.radius;
-    if let Some(width) = keys.width {
+    let Some(amplitude) = amplitude else {
         if width > diameter {
             context.refuse(
                 ProblemKind::Inconsistent,
@@ -63,8 +50,7 @@ fn width(keys: &DriveKeys, tube: &Tube, context: &mut Context<'_>) -> Option<f64
             return None;
         }
         return Some(width + 0.0);
-    }
-    let amplitude = keys.amplitude?;
+    };
     if amplitude > tube.radius {
         context.refuse(
             ProblemKind::Inconsistent,
@@ -81,25 +67,4 @@ fn width(keys: &DriveKeys, tube: &Tube, context: &mut Context<'_>) -> Option<f64
         return None;
     }
     Some(2.0 * (tube.radius - amplitude))
-}
-
-fn elastic_wall(keys: &WallKeys, tube: &Tube) -> ElasticWall {
-    let natural_length = || defaults::WALL_NATURAL_LENGTH_RATIO * tube.mean_neighbour_distance();
-    ElasticWall {
-        sphere_mass: keys.sphere_mass.unwrap_or(defaults::WALL_SPHERE_MASS),
-        spring_stiffness: keys
-            .spring_stiffness
-            .unwrap_or(defaults::WALL_SPRING_STIFFNESS),
-        natural_length: keys.natural_length.unwrap_or_else(natural_length),
-        contact_range: keys.contact_range.unwrap_or(defaults::WALL_CONTACT_RANGE),
-        drag: keys.drag.unwrap_or(0.0),
-        spring_damping: keys.spring_damping.unwrap_or(0.0),
-        keep: WallKeep {
-            balance: keys.keep.balance.unwrap_or(true),
-            radial: keys.keep.radial.unwrap_or(0.0),
-            azimuthal: keys.keep.azimuthal.unwrap_or(defaults::KEEP_AZIMUTHAL),
-            axial: keys.keep.axial.unwrap_or(defaults::KEEP_AXIAL),
-            net_force: keys.keep.net_force.unwrap_or(NetForce::Removed),
-        },
-    }
 }

@@ -4,21 +4,17 @@ use std::f64::consts::PI;
 
 use super::Context;
 use crate::configuration::{Grains, Tube};
-use crate::defaults;
 use crate::error::ProblemKind;
 use crate::keys::GrainsKeys;
+use crate::layers::ALTERNATIVES;
+use crate::limits;
 
 /// The grains in a given tube.
 ///
 /// N = round(6 rho a^2 L/d^3), d^3 averaged over the diameters, or N = round(n pi a^2 L/d*^3), d* the largest one
 pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) -> Option<Grains> {
-    let diameter_min = keys.diameter_min.unwrap_or(defaults::DIAMETER);
-    let diameter_max = keys.diameter_max.unwrap_or(defaults::DIAMETER);
-    let mut grains = Grains {
-        number: 0,
-        diameter_min,
-        diameter_max,
-    };
+    let mut grains = keys.grains;
+    let (diameter_min, diameter_max) = (grains.diameter_min, grains.diameter_max);
     if diameter_min > diameter_max {
         context.refuse(
             ProblemKind::Inconsistent,
@@ -33,30 +29,25 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     }
     let square = tube.radius * tube.radius;
     let length = tube.length();
-    let number = match (keys.number, keys.volume_fraction, keys.number_density) {
-        (Some(number), _, _) => number as f64,
-        (_, Some(fraction), _) => {
+    let number = match (keys.volume_fraction, keys.number_density) {
+        (None, None) => grains.number as f64,
+        (Some(fraction), _) => {
             (6.0 * fraction * square * length / grains.mean_cubed_diameter()).round()
         }
-        (_, _, Some(density)) => {
+        (None, Some(density)) => {
             let cube = diameter_max * diameter_max * diameter_max;
             (density * PI * square * length / cube).round()
         }
-        (None, None, None) => return None,
     };
     // Also refuses what is infinite or not a number because a diameter cubed is 0.
-    let within = number <= defaults::MOST_GRAINS as f64;
+    let within = number <= limits::MOST_GRAINS as f64;
     if !within {
-        let key = context.written(&[
-            "grains.number",
-            "grains.volume_fraction",
-            "grains.number_density",
-        ]);
+        let key = context.written(ALTERNATIVES[0]);
         context.refuse(
             ProblemKind::OutOfRange,
             &[key],
             format!("{key} makes {number} grains in this tube, which is beyond reach"),
-            format!("at most {} grains", defaults::MOST_GRAINS),
+            format!("at most {} grains", limits::MOST_GRAINS),
         );
         return None;
     }

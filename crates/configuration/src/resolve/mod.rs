@@ -7,18 +7,17 @@ mod schedules;
 mod tube;
 mod units;
 
-use serde::de::DeserializeOwned;
+use peristalsis_physics::contact::ContactModel;
 
-use crate::configuration::{Configuration, Contact, Friction, Initial, NormalLaw, Observe, Wall};
+use crate::configuration::{Configuration, Control, Wall};
 use crate::contract;
-use crate::defaults;
 use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
-use crate::keys::{ContactKeys, Keys, ObserveKeys};
+use crate::keys::{ContactKeys, Keys};
 use crate::layers::{self, ALTERNATIVES, list};
-use crate::options::{ControlName, DissipationForm, InitialState, NormalLawName, Sliding};
 use crate::presets::{PRESETS, preset};
-use crate::source::{Origin, Source, SourceKind, Sources};
+use crate::schema;
+use crate::source::{Origin, Source, SourceFile, SourceKind, Sources};
 use crate::suggestion;
 
 impl Configuration {
@@ -48,17 +47,16 @@ impl Configuration {
         let table = layered(sources, above, &mut problems);
         problems.check()?;
         layers::check_switches(&table, &mut problems);
-        let keys: Option<Keys> = deserialised(&table, &mut problems);
-        if let Some(keys) = &keys {
-            check_given(keys, &table, sources, &mut problems);
-        }
+        check_given(&table, sources, &mut problems);
+        problems.check()?;
+        let keys = deserialised(&table, &mut problems);
         problems.check()?;
         let keys = keys.expect("without problems the keys have been read");
         let mut context = Context {
             table: &table,
             problems: &mut problems,
         };
-        let configuration = configuration(&keys, &mut context);
+        let configuration = configuration(keys, &mut context);
         problems.check()?;
         Ok(configuration.expect("without problems everything has been resolved"))
     }
@@ -69,7 +67,7 @@ impl Configuration {
     ///
     /// As [`Configuration::from_sources`].
     pub fn from_toml(name: &str, text: &str) -> Result<Self, ConfigurationError> {
-        let file = Some(crate::source::SourceFile { name, text });
+        let file = Some(SourceFile { name, text });
         Self::from_sources(&Sources {
             file,
             preset: None,
@@ -179,7 +177,7 @@ fn preset_name(
 }
 
 fn unknown_preset(name: &str) -> Problem {
-    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    let names = preset_names();
     let near = suggestion::nearest(name, names.iter().copied());
     let guess = near
         .map(|near| format!("did you mean {near}? "))
@@ -191,7 +189,7 @@ fn unknown_preset(name: &str) -> Problem {
 
 /// The keys by serde. The contract has refused what it cannot read, so a problem here is a gap in the contract; it is
 /// reported with its place all the same.
-fn deserialised<T: DeserializeOwned>(table: &Table, problems: &mut Problems) -> Option<T> {
+fn deserialised(table: &Table, problems: &mut Problems) -> Option<Keys> {
     match serde_path_to_error::deserialize(document::to_toml(table)) {
         Ok(keys) => Some(keys),
         Err(error) => {
@@ -209,33 +207,8 @@ fn deserialised<T: DeserializeOwned>(table: &Table, problems: &mut Problems) -> 
 }
 
 /// Names every key that is needed and not given, in one problem.
-fn check_given(keys: &Keys, table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
-    let given = |key: &str| document::entry(table, key).is_some();
-    let mut missing: Vec<String> = Vec::new();
-    let plain = [
-        "contact.law",
-        "tube.radius",
-        "tube.wavelength",
-        "tube.waves",
-        "tube.spheres_per_ring",
-        "tube.rings_per_wave",
-        "drive.control",
-    ];
-    missing.extend(
-        plain
-            .iter()
-            .filter(|key| !given(key))
-            .map(ToString::to_string),
-    );
-    for group in ALTERNATIVES {
-        let belongs = group[0] != "drive.width" || keys.drive.control == Some(ControlName::Strain);
-        if belongs && !group.iter().any(|key| given(key)) {
-            missing.push(list(group, "or"));
-        }
-    }
-    if keys.drive.control == Some(ControlName::Stress) && !given("drive.force_amplitude") {
-        missing.push("drive.force_amplitude".into());
-    }
+fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
+    let missing = missing(table);
     let Some(first) = missing.first() else { return };
     let name = sources
         .file
@@ -245,41 +218,63 @@ fn check_given(keys: &Keys, table: &Table, sources: &Sources<'_>, problems: &mut
         [one] => format!("{name}{one} is missing"),
         several => format!("{name}these keys are missing: {}", several.join("; ")),
     };
-    let key = first
-        .split([',', ' '])
-        .next()
-        .unwrap_or_default()
-        .to_owned();
-    let mut problem = Problem::new(ProblemKind::Missing, message).key(&key);
+    let key = first.split([',', ' ']).next().unwrap_or_default();
     // A preset gives the tube: without one there is no preset.
     let with_preset = !missing.iter().any(|key| key.starts_with("tube."));
-    problem = if missing.len() == 1 {
-        problem.help(format!("{key}: {}", contract::allowed(schema_of(&key))))
+    let help = if missing.len() == 1 {
+        format!("{key}: {}", contract::allowed(schema_of(key)))
     } else if with_preset {
-        problem.help("give them in the file or with --set")
+        "give them in the file or with --set".to_owned()
     } else {
-        let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-        problem.help(format!(
+        let names = preset_names();
+        format!(
             "give them, or build on a preset: `preset = \"{}\"` at the top of the file, or --preset (one of {})",
             names[0],
             names.join(", ")
-        ))
+        )
     };
+    let mut problem = Problem::new(ProblemKind::Missing, message)
+        .key(key)
+        .help(help);
     let place = key
         .split_once('.')
         .and_then(|(table_name, _)| table.get(table_name))
-        .map(|entry| entry.key.clone());
-    if let Some(place) = &place {
+        .map(|entry| &entry.key);
+    if let Some(place) = place {
         problem = problem.at(place, "would stand in this table");
     }
-    problems.push(place.as_ref(), problem);
+    problems.push(place, problem);
+}
+
+/// The keys that are needed and not given, alternatives as one.
+fn missing(table: &Table) -> Vec<String> {
+    let given = |key: &str| document::entry(table, key).is_some();
+    let mut missing = schema::required();
+    missing.retain(|key| !given(key));
+    let groups = ALTERNATIVES.iter().filter(|group| {
+        layers::has_meaning(table, group[0]) && !group.iter().any(|key| given(key))
+    });
+    missing.extend(groups.map(|group| list(group, "or")));
+    for choice in schema::choices() {
+        let chosen = document::text(table, &format!("{}.{}", choice.table, choice.key));
+        let values = choice.values.iter();
+        let needed = values
+            .filter(|value| Some(value.name.as_str()) == chosen)
+            .flat_map(|value| &value.required)
+            .map(|key| format!("{}.{key}", choice.table));
+        missing.extend(needed.filter(|key| !given(key)));
+    }
+    missing
+}
+
+fn preset_names() -> Vec<&'static str> {
+    PRESETS.iter().map(|preset| preset.name).collect()
 }
 
 /// Schema of a key by its full name.
 fn schema_of(key: &str) -> &'static serde_json::Value {
-    let root = crate::schema::cached();
     key.split('.')
-        .fold(root, |schema, name| &schema["properties"][name])
+        .fold(schema::cached(), |schema, name| &schema["properties"][name])
 }
 
 /// What the parts of the resolution share: where the keys stand, and the problems found.
@@ -294,11 +289,14 @@ impl Context<'_> {
         document::entry(self.table, key).map(|entry| entry.item.origin.clone())
     }
 
+    /// Whether a key was written.
+    fn given(&self, key: &str) -> bool {
+        document::entry(self.table, key).is_some()
+    }
+
     /// The key of the given ones that was written.
     fn written<'k>(&self, keys: &[&'k str]) -> &'k str {
-        let found = keys
-            .iter()
-            .find(|key| document::entry(self.table, key).is_some());
+        let found = keys.iter().find(|key| self.given(key));
         found.copied().unwrap_or(keys[0])
     }
 
@@ -328,63 +326,53 @@ fn shown(origin: &Origin) -> String {
     }
 }
 
-fn configuration(keys: &Keys, context: &mut Context<'_>) -> Option<Configuration> {
-    let contact = contact(&keys.contact, context);
-    let tube = tube::tube(keys, context);
-    let sphere_diameter = keys.wall.sphere_diameter.unwrap_or(defaults::DIAMETER);
-    let grains = tube.and_then(|tube| grains::grains(&keys.grains, &tube, context));
-    if let (Some(tube), Some(grains)) = (&tube, &grains) {
-        tube::check_length(tube, grains.diameter_max.max(sphere_diameter), context);
+fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration> {
+    let contact = contact(keys.contact, context);
+    let tube = keys.tube;
+    tube::check_lattice(&tube, &keys.drive.drive.control, context);
+    let grains = grains::grains(&keys.grains, &tube, context);
+    if let Some(grains) = &grains {
+        let reach = grains.diameter_max.max(keys.wall.sphere_diameter);
+        tube::check_length(&tube, reach, context);
     }
     let units = contact.and_then(|contact| units::units(&keys.units, &contact, context));
-    let drive = tube.and_then(|tube| drive::drive(keys, &tube, units.flatten().as_ref(), context));
-    let observe = observe(&keys.observe);
+    let drive = drive::drive(&keys, units.flatten().as_ref(), context);
     let run = match (&drive, &grains) {
-        (Some(drive), Some(grains)) => run::run(&keys.run, drive, grains, &observe, context),
+        (Some(drive), Some(grains)) => run::run(keys.run, drive, grains, &keys.observe, context),
         _ => None,
     };
     let mut configuration = Configuration {
         grains: grains?,
         contact: contact?,
-        tube: tube?,
+        tube,
         drive: drive?,
-        wall: Wall { sphere_diameter },
-        initial: Initial {
-            state: keys.initial.state.unwrap_or(InitialState::Rest),
-            axial_velocity: 0.0,
-        },
+        wall: wall(&keys, context),
+        initial: keys.initial,
         run: run?,
-        observe,
+        observe: keys.observe,
         units: units?,
     };
-    configuration.initial.axial_velocity = match keys.initial.axial_velocity {
+    configuration.initial.axial_velocity = if context.given("initial.axial_velocity") {
         // One zero, not two.
-        Some(velocity) => velocity + 0.0,
-        None => configuration.natural_axial_velocity(),
+        keys.initial.axial_velocity + 0.0
+    } else {
+        configuration.natural_axial_velocity()
     };
     Some(configuration)
 }
 
-fn contact(keys: &ContactKeys, context: &mut Context<'_>) -> Option<Contact> {
-    let normal = match keys.law? {
-        NormalLawName::Linear => NormalLaw::Linear {
-            normal_stiffness: keys.normal_stiffness.unwrap_or(defaults::NORMAL_STIFFNESS),
-            normal_damping: keys.normal_damping.unwrap_or(defaults::NORMAL_DAMPING),
-        },
-        NormalLawName::Hertz => NormalLaw::Hertz {
-            young_modulus: keys.young_modulus.unwrap_or(defaults::YOUNG_MODULUS),
-            poisson_ratio: keys.poisson_ratio.unwrap_or(defaults::POISSON_RATIO),
-            dissipation_time: keys.dissipation_time.unwrap_or(defaults::DISSIPATION_TIME),
-            dissipation_form: keys
-                .dissipation_form
-                .unwrap_or(DissipationForm::Viscoelastic),
-        },
-    };
-    let static_friction = keys
-        .static_friction
-        .or(keys.kinetic_friction)
-        .unwrap_or(0.0);
-    let kinetic_friction = keys.kinetic_friction.unwrap_or(static_friction);
+fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel> {
+    let ContactKeys {
+        normal,
+        mut friction,
+    } = keys;
+    // Of the two coefficients one stands for both.
+    if !context.given("contact.static_friction") {
+        friction.static_friction = friction.kinetic_friction;
+    } else if !context.given("contact.kinetic_friction") {
+        friction.kinetic_friction = friction.static_friction;
+    }
+    let (kinetic_friction, static_friction) = (friction.kinetic_friction, friction.static_friction);
     if kinetic_friction > static_friction {
         context.refuse(
             ProblemKind::Inconsistent,
@@ -398,29 +386,23 @@ fn contact(keys: &ContactKeys, context: &mut Context<'_>) -> Option<Contact> {
         );
         return None;
     }
-    let friction = (static_friction > 0.0).then(|| Friction {
-        tangential_stiffness: keys
-            .tangential_stiffness
-            .unwrap_or(defaults::TANGENTIAL_STIFFNESS),
-        tangential_damping: keys
-            .tangential_damping
-            .unwrap_or(defaults::TANGENTIAL_DAMPING),
-        static_friction,
-        kinetic_friction,
-        sliding: keys.sliding.unwrap_or(Sliding::Spring),
-    });
-    Some(Contact { normal, friction })
+    let friction = (static_friction > 0.0).then_some(friction);
+    Some(ContactModel { normal, friction })
 }
 
-fn observe(keys: &ObserveKeys) -> Observe {
-    Observe {
-        samples_per_period: keys
-            .samples_per_period
-            .unwrap_or(defaults::SAMPLES_PER_PERIOD),
-        profile_bins: keys.profile_bins.unwrap_or(defaults::PROFILE_BINS),
-        late_fraction: keys.late_fraction.unwrap_or(defaults::LATE_FRACTION),
-        transition_threshold: keys
-            .transition_threshold
-            .unwrap_or(defaults::TRANSITION_THRESHOLD),
+/// Natural length of a wall spring over the mean distance of lattice neighbours.
+const NATURAL_LENGTH_RATIO: f64 = 0.7;
+
+fn wall(keys: &Keys, context: &Context<'_>) -> Wall {
+    let mut wall = keys.wall;
+    match (&keys.drive.drive.control, &mut wall.elastic) {
+        (Control::Strain { .. }, elastic) => *elastic = None,
+        (Control::Stress { .. }, elastic) => {
+            let elastic = elastic.get_or_insert_default();
+            if !context.given("wall.natural_length") {
+                elastic.natural_length = NATURAL_LENGTH_RATIO * keys.tube.mean_neighbour_distance();
+            }
+        }
     }
+    wall
 }

@@ -2,10 +2,13 @@
 
 use super::Context;
 use crate::configuration::{Drive, Grains, Observe, Run};
-use crate::defaults;
 use crate::error::ProblemKind;
-use crate::keys::RunKeys;
-use crate::options::{Integrator, Kernel};
+use crate::limits;
+
+/// Samples in a run without a period (a static wave).
+const SAMPLES_OF_A_STATIC_RUN: u64 = 200;
+/// Skin of the neighbour search over the largest grain diameter.
+const NEIGHBOUR_SKIN_RATIO: f64 = 0.3;
 
 /// Quotients this near to a whole number are taken for it, so that 0.3/0.1 is 3.
 const ROUNDING: f64 = 1e-9;
@@ -22,22 +25,21 @@ fn rounded_up(quotient: f64) -> f64 {
 
 /// The run of a given drive.
 pub(super) fn run(
-    keys: &RunKeys,
+    keys: Run,
     drive: &Drive,
     grains: &Grains,
     observe: &Observe,
     context: &mut Context<'_>,
 ) -> Option<Run> {
-    let longest_step = keys.time_step.unwrap_or(defaults::TIME_STEP);
     let Timing {
         samples,
         interval,
         duration,
         periods,
-    } = timing(keys, drive, observe, context)?;
-    let steps_per_sample = rounded_up(interval / longest_step).max(1.0);
+    } = timing(&keys, drive, observe, context)?;
+    let steps_per_sample = rounded_up(interval / keys.time_step).max(1.0);
     // Also false where a quotient of extreme values is not a number.
-    let within = samples * steps_per_sample <= defaults::MOST_STEPS as f64;
+    let within = samples * steps_per_sample <= limits::MOST_STEPS as f64;
     if !within {
         let length = context.written(&["run.periods", "run.duration"]);
         context.refuse(
@@ -49,23 +51,24 @@ pub(super) fn run(
             ),
             format!(
                 "at most {:e} steps: a shorter run, or a longer run.time_step",
-                defaults::MOST_STEPS as f64
+                limits::MOST_STEPS as f64
             ),
         );
         return None;
     }
+    let neighbour_skin = if context.given("run.neighbour_skin") {
+        keys.neighbour_skin
+    } else {
+        NEIGHBOUR_SKIN_RATIO * grains.diameter_max
+    };
     Some(Run {
         periods,
         duration,
         time_step: interval / steps_per_sample,
         steps_per_sample: steps_per_sample as u64,
         samples: samples as u64,
-        integrator: keys.integrator.unwrap_or(Integrator::Verlet),
-        kernel: keys.kernel.unwrap_or(Kernel::Fast),
-        seed: keys.seed.unwrap_or(defaults::SEED),
-        neighbour_skin: keys
-            .neighbour_skin
-            .unwrap_or(defaults::NEIGHBOUR_SKIN_RATIO * grains.diameter_max),
+        neighbour_skin,
+        ..keys
     })
 }
 
@@ -78,13 +81,13 @@ struct Timing {
 }
 
 fn timing(
-    keys: &RunKeys,
+    keys: &Run,
     drive: &Drive,
     observe: &Observe,
     context: &mut Context<'_>,
 ) -> Option<Timing> {
     let Some(period) = drive.period() else {
-        let Some(duration) = keys.duration else {
+        if !context.given("run.duration") {
             let rate = context.written(&[
                 "drive.strain_rate",
                 "drive.wave_speed",
@@ -98,8 +101,8 @@ fn timing(
                     .into(),
             );
             return None;
-        };
-        let samples = defaults::SAMPLES_OF_A_STATIC_RUN as f64;
+        }
+        let (duration, samples) = (keys.duration, SAMPLES_OF_A_STATIC_RUN as f64);
         return Some(Timing {
             samples,
             interval: duration / samples,
@@ -107,14 +110,10 @@ fn timing(
             periods: None,
         });
     };
-    let given = match (keys.periods, keys.duration) {
-        (Some(periods), _) => periods,
-        (_, Some(duration)) => duration / period,
-        (None, None) => return None,
-    };
+    let given = keys.periods.unwrap_or(keys.duration / period);
     let per_period = f64::from(observe.samples_per_period);
     let samples = rounded_up(given * per_period).max(1.0);
-    if !(samples <= defaults::MOST_SAMPLES as f64 && period.is_finite()) {
+    if !(samples <= limits::MOST_SAMPLES as f64 && period.is_finite()) {
         let length = context.written(&["run.periods", "run.duration"]);
         context.refuse(
             ProblemKind::OutOfRange,
@@ -122,7 +121,7 @@ fn timing(
             format!("a run of {samples:e} samples is beyond reach"),
             format!(
                 "at most {:e} samples: a shorter run, or fewer samples a period",
-                defaults::MOST_SAMPLES as f64
+                limits::MOST_SAMPLES as f64
             ),
         );
         return None;

@@ -1,11 +1,14 @@
 //! Schedules of the drive: by name or as tables, each checked at all times.
 
 use super::Context;
+use crate::canonical::name;
 use crate::configuration::{Control, Drive, Tube};
 use crate::document::{self, Item, Node};
 use crate::error::{Problem, ProblemKind};
-use crate::keys::{DriveKeys, ScheduleKeys, ScheduleTableKeys};
-use crate::options::{ScheduleFormName, ScheduleName, ScheduledParameterName};
+use crate::keys::{
+    DriveKeys, ScheduleFormName, ScheduleKeys, ScheduleName, ScheduleTableKeys,
+    ScheduledParameterName,
+};
 use crate::schedule::{Schedule, ScheduleForm, ScheduledParameter};
 use crate::source::Origin;
 
@@ -13,17 +16,6 @@ const KEY: &str = "drive.schedule";
 
 /// Largest force amplitude, strain rate and wave speed, as for the keys of the drive.
 const LARGEST: f64 = 1e6;
-
-/// The name of a parameter in TOML.
-fn word(parameter: ScheduledParameterName) -> &'static str {
-    match parameter {
-        ScheduledParameterName::Width => "width",
-        ScheduledParameterName::Amplitude => "amplitude",
-        ScheduledParameterName::ForceAmplitude => "force_amplitude",
-        ScheduledParameterName::StrainRate => "strain_rate",
-        ScheduledParameterName::WaveSpeed => "wave_speed",
-    }
-}
 
 /// The schedules, in the order of their parameters; `None` after a problem.
 pub(super) fn schedules(
@@ -308,7 +300,7 @@ impl Scope<'_> {
         context: &mut Context<'_>,
     ) -> Option<f64> {
         if value > target.most {
-            let (name, most) = (word(target.written), target.most);
+            let (name, most) = (name(target.written), target.most);
             return self.refuse(context, part, format!("{name} = {value} is above {most}"));
         }
         Some(match target.written {

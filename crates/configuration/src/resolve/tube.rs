@@ -1,40 +1,30 @@
 //! The tube and its lattice.
 
 use super::Context;
-use crate::configuration::Tube;
-use crate::defaults;
+use crate::configuration::{Control, Tube};
 use crate::error::ProblemKind;
-use crate::keys::Keys;
-use crate::options::ControlName;
+use crate::limits;
 
-/// The tube, if its lattice closes and its size is sane.
-pub(super) fn tube(keys: &Keys, context: &mut Context<'_>) -> Option<Tube> {
-    let tube = Tube {
-        radius: keys.tube.radius?,
-        wavelength: keys.tube.wavelength?,
-        waves: keys.tube.waves?,
-        spheres_per_ring: keys.tube.spheres_per_ring?,
-        rings_per_wave: keys.tube.rings_per_wave?,
-    };
-    check_rings(&tube, keys.drive.control?, context);
+/// Whether the lattice closes and its size is sane.
+pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Context<'_>) {
+    check_rings(tube, control, context);
     // Three factors below 2^20 each: no overflow in 64 bits.
     let spheres = tube.wall_spheres();
-    if spheres > defaults::MOST_WALL_SPHERES {
+    if spheres > limits::MOST_WALL_SPHERES {
         context.refuse(
             ProblemKind::OutOfRange,
             &["tube.waves", "tube.rings_per_wave", "tube.spheres_per_ring"],
             format!("a tube of {spheres} wall spheres is beyond reach"),
             format!(
                 "spheres_per_ring * rings_per_wave * waves is at most {}",
-                defaults::MOST_WALL_SPHERES
+                limits::MOST_WALL_SPHERES
             ),
         );
     }
-    Some(tube)
 }
 
 /// Alternate rings are turned: the pattern closes at the seam of an even number of rings.
-fn check_rings(tube: &Tube, control: ControlName, context: &mut Context<'_>) {
+fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
     let rings = tube.rings_per_wave;
     if rings.is_multiple_of(2) {
         return;
@@ -44,7 +34,7 @@ fn check_rings(tube: &Tube, control: ControlName, context: &mut Context<'_>) {
         number => format!("{} or {}", number - 1, number + 1),
     };
     match control {
-        ControlName::Strain => context.refuse(
+        Control::Strain { .. } => context.refuse(
             ProblemKind::Inconsistent,
             &["tube.rings_per_wave"],
             format!(
@@ -52,7 +42,7 @@ fn check_rings(tube: &Tube, control: ControlName, context: &mut Context<'_>) {
             ),
             format!("take {}", neighbours(rings)),
         ),
-        ControlName::Stress if !tube.waves.is_multiple_of(2) => context.refuse(
+        Control::Stress { .. } if !tube.waves.is_multiple_of(2) => context.refuse(
             ProblemKind::Inconsistent,
             &["tube.rings_per_wave", "tube.waves"],
             format!(
@@ -65,7 +55,7 @@ fn check_rings(tube: &Tube, control: ControlName, context: &mut Context<'_>) {
                 neighbours(rings)
             ),
         ),
-        ControlName::Stress => {}
+        Control::Stress { .. } => {}
     }
 }
 

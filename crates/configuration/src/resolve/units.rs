@@ -1,66 +1,52 @@
-//! The units in SI, and the strain rate that a frequency in Hz is.
+//! The units in SI.
+
+use peristalsis_physics::contact::{ContactModel, Elasticity, NormalLaw};
 
 use super::Context;
-use crate::configuration::{Contact, NormalLaw};
+use crate::document;
 use crate::error::ProblemKind;
 use crate::keys::UnitsKeys;
-use crate::units::{Elasticity, Units};
+use crate::units::{self, Units};
 
-/// Keys that make units, the contact's elasticity by its law.
+/// Keys that make units, with the contact's elasticity.
 const NEEDED: [&str; 2] = ["units.grain_diameter", "units.density"];
 
 /// The units in SI, if any are given; `None` where some of what they need is missing, which is then reported.
 pub(super) fn units(
     keys: &UnitsKeys,
-    contact: &Contact,
+    contact: &ContactModel,
     context: &mut Context<'_>,
 ) -> Option<Option<Units>> {
-    let (elastic_key, elasticity) = match contact.normal {
-        NormalLaw::Linear {
-            normal_stiffness, ..
-        } => (
-            "units.stiffness",
-            keys.stiffness.map(|stiffness| Elasticity::Stiffness {
-                stiffness,
-                normal_stiffness,
-            }),
-        ),
-        NormalLaw::Hertz { young_modulus, .. } => (
-            "units.young_modulus",
-            keys.young_modulus.map(|value| Elasticity::YoungModulus {
-                young_modulus: value,
-                modulus: young_modulus,
-            }),
-        ),
+    let of_contact = contact.normal.elasticity();
+    let stiffness = keys.stiffness.map(Elasticity::Stiffness);
+    let young_modulus = keys.young_modulus.map(Elasticity::YoungModulus);
+    let (elasticity, other) = match of_contact {
+        Elasticity::Stiffness(_) => (stiffness, "units.young_modulus"),
+        Elasticity::YoungModulus(_) => (young_modulus, "units.stiffness"),
     };
     if let (Some(grain_diameter), Some(density), Some(elasticity)) =
         (keys.grain_diameter, keys.density, elasticity)
     {
-        let units = Units {
+        return Some(Some(Units {
             grain_diameter,
             density,
             elasticity,
-        };
-        return Some(Some(units));
+            contact_elasticity: of_contact.value(),
+        }));
     }
     if *keys == UnitsKeys::default() {
         return Some(None);
     }
+    let elastic_key = units::key(of_contact);
     let needed = [NEEDED[0], NEEDED[1], elastic_key];
-    let given = |key: &&str| context.origin(key).is_some();
+    let given = |key: &&str| context.given(key);
     let missing: Vec<&str> = needed.into_iter().filter(|key| !given(key)).collect();
     // The other law's key may have been given below the choice of this law, and was dropped.
     let instead = if missing == [elastic_key] {
-        match contact.normal {
-            NormalLaw::Linear { .. } => {
-                ": contact.law = \"linear\" takes it in place of units.young_modulus, which is not used there"
-            }
-            NormalLaw::Hertz { .. } => {
-                ": contact.law = \"hertz\" takes it in place of units.stiffness, which is not used there"
-            }
-        }
+        let law = document::text(context.table, "contact.law").unwrap_or_default();
+        format!(": contact.law = \"{law}\" takes it in place of {other}, which is not used there")
     } else {
-        ""
+        String::new()
     };
     let mut keys = needed.into_iter().chain(["units.wave_frequency"]);
     let blamed = keys.find(given).unwrap_or(NEEDED[0]);
@@ -73,9 +59,4 @@ pub(super) fn units(
             .into(),
     );
     None
-}
-
-/// c/lambda \[t^-1\] of a wave of `frequency` \[Hz\].
-pub(super) fn strain_rate(frequency: f64, units: &Units) -> f64 {
-    frequency * units.time()
 }

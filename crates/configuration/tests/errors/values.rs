@@ -127,6 +127,63 @@ fn friction_and_diameters_in_the_wrong_order() {
     );
 }
 
+/// The keys of the frictional preset, each at a value that it refuses.
+#[test]
+fn every_kind_of_key_refuses_what_is_out_of_its_range() {
+    for (setting, allowed) in [
+        ("contact.young_modulus=0.0", "a number above 0"),
+        ("contact.poisson_ratio=-1.0", "above -1"),
+        ("contact.dissipation_time=nan", "0 or more"),
+        (
+            "contact.dissipation_form=literal",
+            "\"printed\", \"viscoelastic\"",
+        ),
+        ("contact.tangential_stiffness=0.0", "above 0"),
+        ("contact.tangential_damping=-0.1", "0 or more"),
+        ("contact.static_friction=-0.5", "0 or more"),
+        (
+            "contact.sliding=rolling",
+            "\"spring\", \"balance\", \"literal\"",
+        ),
+        ("contact.normal_stiffness=1.0", "contact.law = \"linear\""),
+        ("grains.diameter_min=-0.8", "above 0"),
+        ("grains.number_density=-0.71", "0 or more"),
+        ("wall.sphere_mass=0.0", "above 0"),
+        ("wall.sphere_diameter=-1.0", "above 0"),
+        ("wall.spring_stiffness=-0.018", "0 or more"),
+        ("wall.natural_length=-0.7", "0 or more"),
+        ("wall.contact_range=nan", "0 or more"),
+        ("wall.drag=-0.01", "0 or more"),
+        ("wall.spring_damping=-0.01", "0 or more"),
+        ("wall.keep.balance=1", "true or false"),
+        ("wall.keep.radial=-0.1", "0 or more"),
+        ("wall.keep.axial=inf", "0 or more"),
+        (
+            "wall.keep.net_force=none",
+            "\"free\", \"removed\", \"removed_per_ring\"",
+        ),
+        ("drive.force_amplitude=-0.004", "0 or more"),
+        ("drive.width=2.0", "drive.control = \"strain\""),
+        ("drive.angle=sideways", "\"reference\", \"current\""),
+        ("drive.direction=up", "\"forward\", \"backward\""),
+        ("initial.state=asleep", "\"rest\", \"jammed\""),
+        ("run.integrator=euler", "\"verlet\", \"adams_bashforth\""),
+        ("run.neighbour_skin=-1", "above 0"),
+        ("observe.late_fraction=1.5", "at most 1"),
+        ("observe.samples_per_period=0", "1 or more"),
+    ] {
+        let overrides = [setting.to_owned()];
+        let problem = only_problem(Configuration::from_sources(&Sources {
+            file: None,
+            preset: Some("frictional"),
+            overrides: &overrides,
+        }));
+        assert_eq!(problem.key.as_deref(), setting.split('=').next());
+        let help = problem.help.unwrap_or_default();
+        assert!(help.contains(allowed), "{setting}: {help}");
+    }
+}
+
 #[test]
 fn a_tube_that_closes_on_itself() {
     let text = FILE

@@ -143,6 +143,16 @@ pub enum Elasticity {
     YoungModulus(f64),
 }
 
+impl Elasticity {
+    /// Its value, whichever it is.
+    #[must_use]
+    pub fn value(self) -> f64 {
+        match self {
+            Self::Stiffness(value) | Self::YoungModulus(value) => value,
+        }
+    }
+}
+
 /// A force in the plane of contact.
 pub trait TangentialLaw: Copy {
     /// What a contact remembers from one step to the next.

@@ -83,7 +83,8 @@ pub struct ElasticNetwork {
     #[schemars(extend("x-unit" = "m t^-1", "minimum" = 0, "maximum" = 1e12))]
     pub spring_damping: f64,
     /// Forces that keep the elastic wall in place; stress control.
-    pub keep: Tethers,
+    #[serde(rename = "keep")]
+    pub tethers: Tethers,
 }
 
 impl Default for ElasticNetwork {
@@ -95,7 +96,7 @@ impl Default for ElasticNetwork {
             contact_range: 3.0,
             drag: 0.0,
             spring_damping: 0.0,
-            keep: Tethers::default(),
+            tethers: Tethers::default(),
         }
     }
 }

@@ -4,10 +4,11 @@ mod caption;
 mod field;
 mod spheres;
 
-use peristalsis_configuration::{Configuration, NormalLaw};
+use peristalsis_configuration::{Configuration, Elasticity};
 use peristalsis_engine::Wall;
 use peristalsis_figures::{ColourScale, Drawing, Paper, PictureFigure, Units, Width};
 use peristalsis_formats::Frame;
+use peristalsis_physics::contact::NormalLaw;
 use peristalsis_render::{Colour, Picture, Scene, View, render};
 
 use crate::error::RunError;
@@ -151,9 +152,9 @@ pub(crate) fn refused(reason: &str, help: &str) -> RunError {
 
 /// The units that follow from the law of contact.
 pub(crate) fn units(configuration: &Configuration) -> Units {
-    match configuration.contact.normal {
-        NormalLaw::Linear { .. } => Units::Linear,
-        NormalLaw::Hertz { .. } => Units::Hertz,
+    match configuration.contact.normal.elasticity() {
+        Elasticity::Stiffness(_) => Units::Linear,
+        Elasticity::YoungModulus(_) => Units::Hertz,
     }
 }
 
