@@ -139,7 +139,7 @@ const FAR: f64 = 64.0;
 #[inline(always)]
 pub(crate) fn fold(mut z: f64, length: f64) -> (f64, i32) {
     let mut turns = 0;
-    // Only in a state from elsewhere; what follows would take long.
+    // Only in a state from elsewhere; the loops below would take long.
     if z.abs() > FAR * length {
         let folded = z.rem_euclid(length);
         turns = ((z - folded) / length).round() as i32;

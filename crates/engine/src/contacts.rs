@@ -1,4 +1,4 @@
-//! The contacts of a simulation: listed pairs, and the memory that their law wants.
+//! The contacts of a simulation: listed pairs, and the histories that their law needs.
 
 use peristalsis_physics::contact::{CundallStrack, TangentialHistory};
 

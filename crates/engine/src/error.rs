@@ -1,4 +1,4 @@
-//! What can go wrong in a simulation.
+//! Errors of a simulation.
 
 /// Errors of the engine.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,13 +42,13 @@ pub enum EngineError {
     /// A wall that cannot take the place of another.
     #[error("the drive cannot go on with this wall: {reason}")]
     OtherWall {
-        /// What differs.
+        /// The difference.
         reason: &'static str,
     },
     /// A snapshot does not belong to this simulation.
     #[error("the snapshot does not fit this simulation: {reason}")]
     SnapshotMismatch {
-        /// What differs.
+        /// The difference.
         reason: String,
     },
     /// A parameter outside its range.
@@ -58,7 +58,7 @@ pub enum EngineError {
         parameter: &'static str,
         /// The value given.
         value: f64,
-        /// What is allowed.
+        /// The allowed values.
         allowed: &'static str,
     },
     /// The system gives no more threads.
@@ -66,12 +66,12 @@ pub enum EngineError {
     Threads {
         /// How many were asked for.
         threads: usize,
-        /// What the system says.
+        /// The message of the system.
         reason: String,
     },
 }
 
-/// A moving sphere in words: grains come first, then those of an elastic wall, which count from 0 again.
+/// A moving sphere in words: grains come first, then spheres of an elastic wall, which count from 0 again.
 fn sphere(number: usize, grains: usize) -> String {
     match number.checked_sub(grains) {
         None => format!("grain {number}"),

@@ -2,7 +2,7 @@
 
 use peristalsis_physics::contact::ContactForce;
 
-/// What one evaluation of the forces adds up, at one instant.
+/// Sums of one evaluation of the forces, at one instant.
 ///
 /// Energies in m d^2/t^2, powers in m d^2/t^3; "lost" terms are amounts of the step that led here.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,7 +17,7 @@ pub struct Tally {
     pub wall_power: f64,
     /// Power of the travelling force on an elastic wall.
     pub drive_power: f64,
-    /// Power of what removes the mean force of an elastic wall.
+    /// Power of the force that removes the mean force of an elastic wall.
     pub keep_power: f64,
     /// Power lost along the normals of contacts, never negative.
     pub normal_dissipation: f64,
@@ -46,7 +46,7 @@ pub struct Tally {
 }
 
 impl Tally {
-    /// Adds what a contact of a grain answered.
+    /// Adds the answer of the law for a contact of a grain.
     #[inline(always)]
     pub(crate) fn add_contact(&mut self, answer: &ContactForce, overlap: f64) {
         self.contact_energy += answer.energy;
@@ -95,7 +95,7 @@ pub struct Ledger {
     pub wall_work: f64,
     /// Work of the travelling force on an elastic wall.
     pub drive_work: f64,
-    /// Work of what removes the mean force of an elastic wall.
+    /// Work of the force that removes the mean force of an elastic wall.
     pub keep_work: f64,
     /// Work of the body force on the grains, up to the end of the last advance.
     pub body_work: f64,
@@ -119,7 +119,7 @@ pub struct Ledger {
     pub largest_overlap: f64,
 }
 
-/// Work, in units of the initial energy, below which it is no scale for what is missing.
+/// Work, in units of the initial energy, below which the residual is compared with the initial energy.
 const LEAST_WORK: f64 = 1e-6;
 
 impl Ledger {

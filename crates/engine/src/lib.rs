@@ -3,29 +3,29 @@
 //! [`Simulation`] is the whole of it: made from [`Bodies`], a [`Wall`] and [`Parameters`], advanced by
 //! [`Simulation::advance`], saved by [`Simulation::snapshot`]. [`initial`] makes the states that runs start from.
 
-pub mod bodies;
+mod bodies;
 mod contacts;
-pub mod error;
+mod error;
 mod fast;
 mod forces;
 pub mod initial;
-pub mod integrate;
-pub mod ledger;
-pub mod neighbours;
+mod integrate;
+mod ledger;
+mod neighbours;
 mod parameters;
 mod simulation;
-pub mod snapshot;
+mod snapshot;
 mod steps;
-pub mod touching;
+mod touching;
 pub mod wall;
 
-pub use bodies::Bodies;
+pub use bodies::{Bodies, Sphere};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
 pub use integrate::Past;
 pub use ledger::{Ledger, Tally};
 pub use parameters::{Integrator, Kernel, Parameters};
 pub use simulation::Simulation;
-pub use snapshot::{Snapshot, SnapshotView};
+pub use snapshot::{Snapshot, SnapshotView, Sorting};
 pub use touching::Touching;
 pub use wall::Wall;

@@ -13,7 +13,7 @@ use crate::fast::machine::Instructions;
 
 /// Rows of partners with a value of type `H` beside each pair.
 #[derive(Clone, Debug)]
-pub struct Neighbours<H> {
+pub(crate) struct Neighbours<H> {
     /// Row i is `partner[start[i]..start[i + 1]]`.
     start: Vec<u32>,
     partner: Vec<u32>,
@@ -35,26 +35,25 @@ struct Scratch<H> {
     remembered: Vec<(u32, u32)>,
 }
 
-/// What decides which pairs are listed.
-pub struct PairRule<'a, F: Fn(usize, usize) -> bool> {
+/// The rule by which pairs are listed.
+pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
     /// Diameters of the spheres \[d\].
-    pub diameter: &'a [f64],
+    pub(crate) diameter: &'a [f64],
     /// Period of the tube \[d\].
-    pub length: f64,
+    pub(crate) length: f64,
     /// Added to the reach of every pair \[d\].
-    pub skin: f64,
+    pub(crate) skin: f64,
     /// Half width of the region where spheres usually are \[d\].
-    pub half_width: f64,
+    pub(crate) half_width: f64,
     /// All pairs i < j whose i is less than this can have a contact.
-    pub admits_all_below: usize,
+    pub(crate) admits_all_below: usize,
     /// Which of the other pairs i < j can have a contact at all.
-    pub admits: F,
+    pub(crate) admits: F,
 }
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// A list without pairs, which the first [`Neighbours::rebuild`] fills.
-    #[must_use]
-    pub fn empty() -> Self {
+    pub(crate) fn empty() -> Self {
         Self {
             start: vec![0],
             partner: Vec::new(),
@@ -66,14 +65,14 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// Number of listed pairs.
-    #[must_use]
-    pub fn pairs(&self) -> usize {
+    #[cfg(test)]
+    fn pairs(&self) -> usize {
         self.partner.len()
     }
 
-    /// The partners of sphere i with larger numbers, and what their contacts remember.
+    /// The partners of sphere i with larger numbers, and the histories of their contacts.
     #[inline(always)]
-    pub fn row(&mut self, i: usize) -> (&[u32], &mut [H]) {
+    pub(crate) fn row(&mut self, i: usize) -> (&[u32], &mut [H]) {
         let range = self.start[i] as usize..self.start[i + 1] as usize;
         (&self.partner[range.clone()], &mut self.history[range])
     }
@@ -104,7 +103,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// All pairs with their histories, in order.
-    pub fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
         (0..self.start.len() - 1).flat_map(move |i| {
             let range = self.start[i] as usize..self.start[i + 1] as usize;
             self.partner[range.clone()]
@@ -115,7 +114,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     }
 
     /// Sets the history of a listed pair; `false` where the pair is not listed.
-    pub fn set_history(&mut self, i: u32, j: u32, history: H) -> bool {
+    pub(crate) fn set_history(&mut self, i: u32, j: u32, history: H) -> bool {
         let range = self.start[i as usize] as usize..self.start[i as usize + 1] as usize;
         match self.partner[range.clone()].binary_search(&j) {
             Ok(at) => {
@@ -129,14 +128,18 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// Whether two spheres may have come closer by more than `skin` since the list was made.
     ///
     /// The bound is on differences of displacement: spheres that drift along the tube together never outdate the list.
-    #[must_use]
-    pub fn outdated(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
+    pub(crate) fn outdated(
+        &self,
+        position: &[DVec3],
+        turns: &[i32],
+        length: f64,
+        skin: f64,
+    ) -> bool {
         self.approach(position, turns, length) > skin
     }
 
     /// Whether the list holds all admitted pairs that are now closer than (d_i + d_j)/2 + `skin`.
-    #[must_use]
-    pub fn covers(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
+    pub(crate) fn covers(&self, position: &[DVec3], turns: &[i32], length: f64, skin: f64) -> bool {
         self.approach(position, turns, length) + skin <= self.skin
     }
 
@@ -163,7 +166,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
     /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and those that still remember a
     /// contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
-    pub fn rebuild<F: Fn(usize, usize) -> bool>(
+    pub(crate) fn rebuild<F: Fn(usize, usize) -> bool>(
         &mut self,
         position: &[DVec3],
         turns: &[i32],
@@ -195,14 +198,14 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             partner,
             remembered,
         });
-        // Only what is remembered need be moved.
+        // Only histories of contacts need be moved.
         history.clear();
         history.resize(partner.len(), H::default());
         for &(row, at) in &*remembered {
             let (row, at) = (row as usize, at as usize);
             let new = start[row] as usize..start[row + 1] as usize;
             let to = partner[new.clone()].binary_search(&self.partner[at]);
-            history[new.start + to.expect("what is remembered is listed")] = self.history[at];
+            history[new.start + to.expect("a pair with a history is listed")] = self.history[at];
         }
         core::mem::swap(&mut self.start, start);
         core::mem::swap(&mut self.partner, partner);
@@ -230,3 +233,6 @@ pub(crate) fn periodic(mut separation: DVec3, length: f64) -> DVec3 {
     }
     separation
 }
+
+#[cfg(test)]
+mod tests;

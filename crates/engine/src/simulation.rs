@@ -89,7 +89,7 @@ impl Simulation {
             ..
         } = &self.system;
         if parameters.kernel == Kernel::Fast && Sorted::serves(bodies, &course.wall, parameters) {
-            // No list is needed any more; what it took serves the kernel.
+            // No list is needed any more; its memory serves the kernel.
             self.memory = Memory::of(None);
             let sorted = Sorted::new(bodies, &course.wall, parameters.skin, sorting);
             self.sorted = sorted.map(Box::new);
@@ -100,7 +100,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`EngineError::Diverged`] where a sphere moves by more than half the smallest diameter in one step, or its
-    /// position is no longer finite; the state is then that of the step that failed.
+    /// position is no longer finite; the state is then the one in which the step failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
         let Self {
             system,
@@ -249,7 +249,7 @@ impl Simulation {
 
     /// Calls `visit` for each contact of a grain with the wall as all stands now, in a fixed order.
     ///
-    /// The forces are those of the last step but for the velocities, which the integrator has corrected since.
+    /// The forces differ from the forces of the last step only by the velocities, which the integrator has corrected since.
     pub fn for_each_wall_contact(&self, visit: impl FnMut(WallContact)) {
         let normal = self.parameters().contact.normal;
         with_contact_law!(normal, &self.memory, |law, contacts| {
@@ -257,9 +257,9 @@ impl Simulation {
         });
     }
 
-    /// Adds up what contacts of grains with the wall are, as [`Simulation::for_each_wall_contact`] visits them, piece by
-    /// piece of the grains: `begin` gives what the sums of a piece begin with, pieces counted from 0, and `add` adds a
-    /// contact to them. There is one piece at least; pieces, and so all sums, are the same for any number of threads.
+    /// Sums over the contacts of grains with the wall, in the order of [`Simulation::for_each_wall_contact`], piece by piece
+    /// of the grains: `begin` makes the sums of a piece, pieces counted from 0, and `add` adds a contact to them. There is
+    /// one piece at least; pieces, and so all sums, are the same for any number of threads.
     pub fn add_up_wall_contacts<S: Send>(
         &self,
         begin: impl Fn(usize) -> S + Sync,

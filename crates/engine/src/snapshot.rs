@@ -11,7 +11,7 @@ use crate::ledger::{Ledger, Tally};
 use crate::parameters::Parameters;
 use crate::wall::Wall;
 
-/// What a restart needs: spheres, the integrator's past, what contacts remember, the ledger.
+/// The state for a restart: spheres, the integrator's past, histories of contacts, the ledger.
 ///
 /// Wall and parameters belong to the configuration and are given again on restart. The neighbour list is not part of the
 /// state, for no result depends on it.
@@ -21,7 +21,7 @@ pub struct Snapshot {
     pub step: u64,
     /// The spheres.
     pub bodies: Bodies,
-    /// What the integrator remembers.
+    /// Velocities and accelerations of the step before.
     pub past: Past,
     /// Sums over the contacts at the last step.
     pub tally: Tally,

@@ -331,7 +331,7 @@ fn an_order_that_cannot_be_is_refused() {
     simulation.advance(10).unwrap();
     let snapshot = simulation.snapshot();
     assert!(snapshot.sorting.as_ref().unwrap().strips.len() > 1);
-    let restore = |change: &dyn Fn(&mut peristalsis_engine::snapshot::Sorting)| {
+    let restore = |change: &dyn Fn(&mut peristalsis_engine::Sorting)| {
         let mut changed = snapshot.clone();
         change(changed.sorting.as_mut().unwrap());
         Simulation::restore(changed, wall.clone(), *simulation.parameters())

@@ -63,10 +63,8 @@ fn packed_grains_stand_inside_at_rest() {
                 assert!((0.8..1.0).contains(&diameter));
                 assert!((bodies.mass[grain] - diameter.powi(3)).abs() < 1e-15);
                 assert!((bodies.inertia[grain] - 0.1 * diameter.powi(5)).abs() < 1e-15);
-                let radius = match wall {
-                    Wall::Prescribed(wall) => wall.wave().radius(place.z, wall.cycles()),
-                    Wall::Elastic(wall) => wall.parameters().mean_radius,
-                };
+                let wave = wall.wave().map(|wave| wave.radius(place.z, wall.cycles()));
+                let radius = wave.unwrap_or(wall.mean_radius());
                 let from_axis = (place.x * place.x + place.y * place.y).sqrt();
                 assert!(
                     from_axis < radius - 0.5 * (diameter + 1.0) + inside + 0.05,
@@ -104,13 +102,11 @@ fn a_jammed_start_fills_the_bellies_and_moves_with_the_wave() {
         ..packing(number(0.15, 20.0), InitialState::Jammed, 1)
     };
     let (bodies, _) = pack(&jammed, &wall, LINEAR).unwrap();
-    let Wall::Prescribed(prescribed) = &wall else {
-        unreachable!("the wall is prescribed")
-    };
+    let wave = wall.wave().expect("a prescribed wall");
     let wide = bodies
         .position
         .iter()
-        .filter(|place| prescribed.wave().radius(place.z, 0.0) > 1.4)
+        .filter(|place| wave.radius(place.z, 0.0) > 1.4)
         .count();
     assert!(
         wide as f64 > 0.95 * bodies.grains as f64,

@@ -7,7 +7,7 @@ use common::{
     strained,
 };
 use glam::DVec3;
-use peristalsis_engine::{Kernel, Parameters, Simulation, Wall};
+use peristalsis_engine::{Kernel, Parameters, Simulation};
 
 #[test]
 fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
@@ -71,11 +71,13 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         if touch.second < bodies.grains {
             forces[touch.second] -= touch.force;
         }
-        let position = match simulation.wall() {
-            Wall::Prescribed(wall) if touch.second >= bodies.grains => {
-                wall.sphere_position(touch.second - bodies.grains)
+        let mut prescribed = simulation.wall().prescribed_spheres();
+        let position = match bodies.position.get(touch.second) {
+            Some(position) => *position,
+            None => {
+                let sphere = prescribed.nth(touch.second - bodies.grains);
+                sphere.expect("a sphere of the wall").position
             }
-            _ => bodies.position[touch.second],
         };
         let length = simulation.wall().lattice().length();
         let mut away = bodies.position[touch.first] - position - touch.separation;
@@ -95,29 +97,6 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         assert!(
             (*force - expected).length() < 2e-3 * scale,
             "{case}: grain {grain}: {force} instead of {expected}"
-        );
-    }
-}
-
-#[test]
-fn a_wall_sphere_moves_as_its_velocity_says() {
-    let mut wall = match strained(coarse(2), 1.0, 2.2, 0.1) {
-        Wall::Prescribed(wall) => wall,
-        Wall::Elastic(_) => unreachable!("a strained wall is prescribed"),
-    };
-    let places = |time: f64, wall: &mut peristalsis_engine::wall::PrescribedWall| {
-        wall.move_to(time);
-        (0..wall.lattice().spheres())
-            .map(|sphere| wall.sphere_position(sphere))
-            .collect::<Vec<_>>()
-    };
-    let (before, after) = (places(3.0 - 1e-4, &mut wall), places(3.0 + 1e-4, &mut wall));
-    wall.move_to(3.0);
-    for sphere in 0..wall.lattice().spheres() {
-        let slope = (after[sphere] - before[sphere]) / 2e-4;
-        assert!(
-            (wall.sphere_velocity(sphere) - slope).length() < 1e-7,
-            "{sphere}"
         );
     }
 }

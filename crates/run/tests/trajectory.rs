@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use peristalsis_engine::Wall;
 use peristalsis_run::{
     Configuration, Run, RunError, RunFolder, Span, Trajectory, TrajectoryFormat, TrajectoryPlan,
     TrajectoryRequest, Window, estimate, timeseries_table,
@@ -111,23 +110,14 @@ fn frames_show_the_simulation_as_it_is_and_change_nothing_of_it() {
             simulation.advance(step - simulation.step()).unwrap();
             let bodies = simulation.bodies();
             assert_eq!(time, simulation.time());
-            for (index, numbers) in spheres.iter().enumerate() {
-                let (position, velocity, diameter) = match simulation.wall() {
-                    Wall::Prescribed(wall) if index >= bodies.grains => (
-                        wall.sphere_position(index - bodies.grains),
-                        wall.sphere_velocity(index - bodies.grains),
-                        1.0,
-                    ),
-                    _ => (
-                        bodies.position[index],
-                        bodies.velocity[index],
-                        bodies.diameter[index],
-                    ),
-                };
+            let moving = (0..bodies.number()).map(|body| bodies.sphere(body));
+            let expected = moving.chain(simulation.wall().prescribed_spheres());
+            for (index, (numbers, sphere)) in spheres.iter().zip(expected).enumerate() {
                 let kind = 1.0 + f64::from(u8::from(index >= bodies.grains));
-                assert_eq!(numbers[..3], [index as f64 + 1.0, kind, diameter]);
-                assert_eq!(numbers[3..6], position.to_array(), "{preset} step {step}");
-                assert_eq!(numbers[6..9], velocity.to_array());
+                assert_eq!(numbers[..3], [index as f64 + 1.0, kind, sphere.diameter]);
+                let position = sphere.position.to_array();
+                assert_eq!(numbers[3..6], position, "{preset} step {step}");
+                assert_eq!(numbers[6..9], sphere.velocity.to_array());
                 if preset == "frictional" {
                     assert_eq!(numbers[9..], bodies.angular_velocity[index].to_array());
                 }

@@ -168,13 +168,13 @@ impl<M: Machine> Mask<M> {
         M::to_bits(self.0)
     }
 
-    /// Writes down `first` + l for each lane l where it holds, in order; what stands behind them is anything.
+    /// Writes down `first` + l for each lane l where it holds, in order; the numbers behind them are arbitrary.
     #[inline(always)]
     pub(crate) fn write_down(self, first: u32, to: &mut [u32; LANES]) {
         M::write_set_bits(self.to_bits(), first, to);
     }
 
-    /// Writes down the numbers of the lanes where it holds, in order; what stands behind them is anything.
+    /// Writes down the numbers of the lanes where it holds, in order; the numbers behind them are arbitrary.
     #[inline(always)]
     pub(crate) fn choose(self, of: &[u32; LANES], to: &mut [u32; LANES]) {
         M::write_chosen(self.to_bits(), of, to);

@@ -18,7 +18,7 @@ use crate::wall::Wall;
 /// Largest mean overlap of touching grains, in units of the largest diameter, that still counts as fitting.
 pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
 
-/// What is to be packed.
+/// The grains to be packed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Packing {
     /// Number of grains.

@@ -52,7 +52,7 @@ pub(super) fn grow<N: NormalLaw>(
             *diameter = scale * full;
         }
         descent.restart();
-        // What served the last stage makes room first.
+        // The kernel of the last stage makes room first.
         descent.forces = Forces::Listed(Box::new(Contacts::none()));
         descent.forces = Forces::between(&bodies_now, wall);
         descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS);
@@ -90,7 +90,7 @@ fn too_many(outside: usize, grains: usize) -> bool {
     outside as f64 > LARGEST_PART_OUTSIDE * grains as f64
 }
 
-/// What finds the forces: the kernel for equal grains in a narrow tube where it serves, else the reference.
+/// The kernel that finds the forces: the one for equal grains in a prescribed tube where it serves, else the reference.
 enum Forces {
     Listed(Box<Contacts<()>>),
     Sorted(Box<Sorted>),

@@ -1,4 +1,4 @@
-//! The contacts of grains with the wall, one by one: what momentum passes between them, and where.
+//! The contacts of grains with the wall, one by one: their forces and places.
 
 use core::ops::Range;
 
@@ -94,8 +94,8 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     }
 }
 
-/// Calls `visit` for each contact of some grains with a prescribed wall; `history` knows what a contact of a grain with a
-/// wall sphere remembers.
+/// Calls `visit` for each contact of some grains with a prescribed wall; `history` answers the history of a contact of
+/// a grain with a wall sphere.
 fn touch_prescribed<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,

@@ -108,8 +108,7 @@ impl ElasticWall {
     }
 
     /// Radial force of the springs on a sphere of the reference tube \[m d/t^2\]; negative inwards.
-    #[must_use]
-    pub fn reference_spring_force(&self) -> f64 {
+    fn reference_spring_force(&self) -> f64 {
         let lattice = &self.parameters.lattice;
         let here = self.reference(0);
         let sum: DVec3 = lattice
@@ -129,7 +128,7 @@ impl ElasticWall {
     }
 
     /// Moves the drive to `time`.
-    pub fn move_to(&mut self, time: f64) {
+    pub(crate) fn move_to(&mut self, time: f64) {
         self.cycles = self.parameters.frequency.integral(time);
         self.amplitude = self.parameters.force_amplitude.value(time);
     }
@@ -162,8 +161,7 @@ impl ElasticWall {
     }
 
     /// Wavelengths that the wave has run since the start.
-    #[must_use]
-    pub fn cycles(&self) -> f64 {
+    pub(crate) fn cycles(&self) -> f64 {
         self.cycles
     }
 
@@ -182,8 +180,7 @@ impl ElasticWall {
 
     /// Displacement of a wall sphere from its reference place: (radial, azimuthal, axial) along the reference directions
     /// \[d\].
-    #[must_use]
-    pub fn displacement(&self, bodies: &Bodies, sphere: usize) -> DVec3 {
+    pub(crate) fn displacement(&self, bodies: &Bodies, sphere: usize) -> DVec3 {
         let body = bodies.grains + sphere;
         let reference = self.reference(sphere);
         let (cos, sin) = self.directions[sphere];
@@ -197,8 +194,7 @@ impl ElasticWall {
     }
 
     /// Whether two wall spheres may touch: those that are far apart in the reference tube.
-    #[must_use]
-    pub fn may_touch(&self, one: usize, other: usize) -> bool {
+    pub(crate) fn may_touch(&self, one: usize, other: usize) -> bool {
         let lattice = &self.parameters.lattice;
         let (one, other) = (self.places[one], self.places[other]);
         let turn = 2 * lattice.spheres_per_ring;

@@ -1,11 +1,11 @@
-//! What grains remember of their contacts with a prescribed wall.
+//! Histories of the contacts of grains with a prescribed wall.
 
 /// Histories of contacts with wall spheres, grain by grain.
 ///
 /// The spheres of a prescribed wall are in no list, so each force evaluation writes down which of them a grain touches,
-/// and looks the histories up in what the last one wrote.
+/// and looks the histories up among those of the last one.
 #[derive(Clone, Debug, Default)]
-pub struct WallMemory<H> {
+pub(crate) struct WallMemory<H> {
     start: Vec<u32>,
     entries: Vec<(u32, H)>,
     next_start: Vec<u32>,
@@ -29,7 +29,7 @@ impl<H: Copy + Default> WallMemory<H> {
             .map_or_else(H::default, |entry| core::mem::take(&mut entry.1))
     }
 
-    /// The history of a contact as it is, and left in; a fresh one where there is none.
+    /// The history of a contact, which stays in; a fresh one where there is none.
     pub(crate) fn history(&self, grain: usize, sphere: u32) -> H {
         self.entries[self.range(grain)]
             .iter()
@@ -42,7 +42,7 @@ impl<H: Copy + Default> WallMemory<H> {
         self.next_entries.push((sphere, history));
     }
 
-    /// Ends the grain at hand; what was not taken out belongs to contacts that have ended.
+    /// Ends the grain at hand; histories that were not taken out belong to contacts that have ended.
     pub(crate) fn end_grain(&mut self, grain: usize) -> impl Iterator<Item = &H> {
         self.next_start.push(self.next_entries.len() as u32);
         let range = self.range(grain);
@@ -64,7 +64,7 @@ impl<H: Copy + Default> WallMemory<H> {
     }
 
     /// All histories: (grain, wall sphere, history).
-    pub fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
         (0..self.start.len().saturating_sub(1)).flat_map(move |grain| {
             self.entries[self.range(grain)]
                 .iter()

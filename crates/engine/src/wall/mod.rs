@@ -1,9 +1,9 @@
 //! The wall in motion: prescribed, or elastic.
 
-pub mod contacts;
-pub mod elastic;
-pub mod memory;
-pub mod prescribed;
+pub(crate) mod contacts;
+mod elastic;
+pub(crate) mod memory;
+mod prescribed;
 
 pub use contacts::WallContact;
 pub use elastic::{ElasticParameters, ElasticWall};
@@ -140,14 +140,14 @@ impl Wall {
         self.prescribed().map(PrescribedWall::wave)
     }
 
-    /// Radius at z as far as it is known without the spheres: that of the wave, or of the reference tube \[d\].
+    /// Radius at z as far as it is known without the spheres: of the wave, or of the reference tube \[d\].
     pub(crate) fn radius(&self, z: f64) -> f64 {
         self.wave()
             .map_or_else(|| self.mean_radius(), |wave| wave.radius(z, self.cycles()))
     }
 
-    /// Where the throat is in the frame of the wave \[lambda\]: under strain control the place of the least radius,
-    /// under stress control that of the largest inward force.
+    /// Place of the throat in the frame of the wave \[lambda\]: under strain control the radius is least there, under
+    /// stress control the inward force is largest.
     #[must_use]
     pub fn throat(&self) -> f64 {
         match self {
@@ -229,8 +229,8 @@ impl Wall {
         }
     }
 
-    /// Adds the forces of a prescribed wall on the grains, or all forces on the spheres of an elastic wall but those of
-    /// contacts, which must be there already.
+    /// Adds the forces of a prescribed wall on the grains, or all forces on the spheres of an elastic wall except
+    /// contact forces, which must be there already.
     pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
         &self,
         law: &ContactLaw<N, T>,

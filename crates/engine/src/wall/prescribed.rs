@@ -91,7 +91,7 @@ impl PrescribedWall {
     }
 
     /// Moves the wall to where it is at `time`.
-    pub fn move_to(&mut self, time: f64) {
+    pub(crate) fn move_to(&mut self, time: f64) {
         self.move_with_amplitude(time, self.amplitude.value(time));
     }
 
@@ -149,8 +149,7 @@ impl PrescribedWall {
     }
 
     /// Wavelengths that the wave has run since the start, c t/lambda.
-    #[must_use]
-    pub fn cycles(&self) -> f64 {
+    pub(crate) fn cycles(&self) -> f64 {
         self.cycles
     }
 
@@ -161,8 +160,7 @@ impl PrescribedWall {
     }
 
     /// Centre of a wall sphere now \[d\].
-    #[must_use]
-    pub fn sphere_position(&self, index: usize) -> DVec3 {
+    pub(crate) fn sphere_position(&self, index: usize) -> DVec3 {
         let sphere = self.lattice.sphere(index);
         let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
         let Ring { radius, .. } = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
@@ -174,8 +172,7 @@ impl PrescribedWall {
     }
 
     /// Velocity of a wall sphere now, radial \[d/t\].
-    #[must_use]
-    pub fn sphere_velocity(&self, index: usize) -> DVec3 {
+    pub(crate) fn sphere_velocity(&self, index: usize) -> DVec3 {
         let sphere = self.lattice.sphere(index);
         let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
         let Ring { velocity, .. } =

@@ -154,15 +154,7 @@ pub(crate) fn grains(states: &[(DVec3, DVec3)]) -> Bodies {
 
 /// Appends the spheres of an elastic wall at their reference places.
 pub(crate) fn with_wall_spheres(mut bodies: Bodies, wall: &Wall) -> Bodies {
-    if let Wall::Elastic(elastic) = wall {
-        for sphere in 0..elastic.lattice().spheres() {
-            bodies.push_wall_sphere(
-                elastic.reference(sphere),
-                elastic.lattice().sphere_diameter,
-                elastic.parameters().sphere_mass,
-            );
-        }
-    }
+    wall.append_spheres(&mut bodies);
     bodies
 }
 

@@ -48,7 +48,7 @@ impl Default for Scratch {
 
 /// The list is made for so many skins.
 const LISTED: f64 = 2.5;
-/// What comes within so many is chosen from it, again and again, and looked at in each step.
+/// Pairs within so many skins are chosen from it, again and again, and looked at in each step.
 const CHOSEN: f64 = 0.5;
 
 /// Advances by `steps` steps in place of the reference kernel.

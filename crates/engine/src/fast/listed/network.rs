@@ -1,7 +1,7 @@
 //! Springs, tethers and drive of an elastic wall, eight spheres of a ring at a time.
 //!
 //! The spheres of a ring are neighbours in memory and their bonds follow from their places: next on the ring, two on the
-//! ring above. Rings are turned into lanes one by one; what a ring's bonds do to the ring above is carried on to it.
+//! ring above. Rings are turned into lanes one by one; the forces of a ring's bonds on the ring above are carried on to it.
 
 use peristalsis_physics::real::{Real, Vector};
 
@@ -10,8 +10,7 @@ use super::spheres::Spheres;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
 use crate::ledger::Tally;
-use crate::wall::elastic::ElasticWall;
-use crate::wall::{DriveAngle, NetForce};
+use crate::wall::{DriveAngle, ElasticWall, NetForce};
 
 /// Three components of the spheres of a ring, sphere p at p + 1; before and after them stand copies of the last and
 /// first, which are their neighbours.
@@ -126,8 +125,8 @@ impl Rows {
     }
 }
 
-/// Adds all forces on the spheres of the wall but those of contacts, which must be there already, and answers the mean
-/// force that is still to be taken off each of them.
+/// Adds all forces on the spheres of the wall except contact forces, which must be there already; answers the mean force
+/// that is still to be taken off each sphere.
 pub(super) struct WallForces<'a> {
     pub(super) wall: &'a ElasticWall,
     pub(super) rows: &'a mut Rows,
@@ -181,7 +180,7 @@ impl Work for WallForces<'_> {
         let (mut total_force, mut total_velocity) = (nothing, nothing);
         let range = |ring: usize| first + ring * per_ring..first + (ring + 1) * per_ring;
 
-        // What the bonds of the last ring do to the first.
+        // Forces of the bonds of the last ring on the first.
         let last = range(rings - 1);
         rows.place.fill::<M>(&spheres.position[last.clone()]);
         rows.velocity.fill::<M>(&spheres.velocity[last]);
@@ -324,7 +323,7 @@ fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &
     rows.along.close(per_ring);
 }
 
-/// Sums all forces on the spheres of a ring but those of contacts.
+/// Sums all forces on the spheres of a ring except contact forces.
 #[inline(always)]
 fn tethers_and_drive<M: Machine>(
     wall: &ElasticWall,

@@ -1,7 +1,7 @@
 //! Contacts between moving spheres, eight at a time.
 //!
 //! One pass over the listed pairs writes down which of them touch; the law is then evaluated for those only, in lanes,
-//! in the order of the list. What touches does not depend on what else is listed, so neither do the results.
+//! in the order of the list. Which pairs touch does not depend on the other pairs of the list, so neither do the results.
 
 use core::ops::Range;
 
@@ -118,12 +118,12 @@ pub(super) struct Pairs {
     grains: Pruned,
     /// Pairs of two wall spheres.
     wall: Pruned,
-    /// What the contacts of `grains` remember.
+    /// Histories of the contacts of `grains`.
     histories: Vec<Packed>,
     /// For each of them the evaluation, counted round, at which it last touched.
     stamp: Vec<u8>,
     now: u8,
-    /// The pairs of `grains` that touched at the last evaluation: those that remember anything.
+    /// The pairs of `grains` that touched at the last evaluation: only they have a history.
     touched: Vec<u32>,
     /// Those that did so when they were taken from the rows.
     loaded: Vec<u32>,

@@ -84,7 +84,7 @@ impl Spheres {
             .extend(bodies.inertia.iter().map(|inertia| 1.0 / inertia));
     }
 
-    /// Writes the places down.
+    /// Writes the places back.
     pub(super) fn store_places(&self, bodies: &mut Bodies) {
         for ((place, turns), record) in bodies
             .position
@@ -97,7 +97,7 @@ impl Spheres {
         }
     }
 
-    /// Writes everything down; accelerations are what `force` and `torque` hold.
+    /// Writes everything back; `force` and `torque` must hold accelerations.
     pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
         self.store_places(bodies);
         empty(&mut bodies.velocity, &self.velocity);

@@ -66,8 +66,8 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     fn from_bits(bits: u8) -> Self::Truths;
     fn to_bits(a: Self::Truths) -> u8;
 
-    /// Writes down the numbers whose bits are set, in order; what stands behind them is 0 or one
-    /// of the numbers.
+    /// Writes down the numbers whose bits are set, in order; the numbers behind them are 0 or
+    /// some of the numbers.
     fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]);
     /// The opposite: the numbers in order, one in each lane whose bit is set, and 0 in the others.
     fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers;
@@ -86,9 +86,9 @@ pub(crate) trait Machine: Copy + Debug + Send + Sync + 'static {
     fn lanes_of(quads: [Self::Quad; LANES]) -> [Self::Numbers; 4];
     /// Lanes turned into eight quads.
     fn quads_of(lanes: [Self::Numbers; 4]) -> [Self::Quad; LANES];
-    /// Writes down `first` + l for each set bit l, in order; what stands behind them is anything.
+    /// Writes down `first` + l for each set bit l, in order; the numbers behind them are arbitrary.
     fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]);
-    /// Writes down the numbers whose bits are set, in order; what stands behind them is anything.
+    /// Writes down the numbers whose bits are set, in order; the numbers behind them are arbitrary.
     fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]);
 }
 
@@ -106,7 +106,7 @@ pub enum Instructions {
     Avx512,
     /// 256-bit registers.
     Avx2,
-    /// What every machine of its kind has.
+    /// The instructions that every machine of its kind has.
     Plain,
 }
 

@@ -1,4 +1,4 @@
-//! Eight numbers in an array: the meaning of every operation, and what runs where there are no wide registers.
+//! Eight numbers in an array: the meaning of every operation, and the code for machines without wide registers.
 
 use super::{LANES, Machine};
 

@@ -5,9 +5,9 @@ use std::cell::RefCell;
 use peristalsis_physics::contact::NormalLaw;
 use rayon::prelude::*;
 
+use super::candidates::Candidates;
 use super::columns::{Columns, ColumnsMut};
 use super::listing::{Partners, Tile};
-use super::meetings::Meetings;
 use super::pairs::{Block, PairConstants};
 use super::sums::Sums;
 use super::wall::WallTable;
@@ -42,7 +42,7 @@ impl Sorted {
             ..
         } = self;
         let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
-            MEETINGS.with_borrow_mut(|meetings| {
+            CANDIDATES.with_borrow_mut(|candidates| {
                 instructions.run(ForcesOfTile::<N, FULL> {
                     law,
                     pairs,
@@ -51,7 +51,7 @@ impl Sorted {
                     velocity,
                     tile,
                     of_tile,
-                    meetings,
+                    candidates,
                 });
             });
         };
@@ -124,7 +124,7 @@ impl Sorted {
 
 thread_local! {
     /// Room that each thread uses again for every tile.
-    static MEETINGS: RefCell<Meetings> = RefCell::default();
+    static CANDIDATES: RefCell<Candidates> = RefCell::default();
 }
 
 struct ForcesOfTile<'a, N, const FULL: bool> {
@@ -135,7 +135,7 @@ struct ForcesOfTile<'a, N, const FULL: bool> {
     velocity: &'a Columns,
     tile: &'a Tile,
     of_tile: &'a mut OfTile,
-    meetings: &'a mut Meetings,
+    candidates: &'a mut Candidates,
 }
 
 impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
@@ -156,7 +156,7 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
                     tally,
                     touching,
                 },
-            meetings,
+            candidates,
         } = self;
         for column in force.each() {
             column.clear();
@@ -174,21 +174,21 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
         }
         let mut place = tile.first;
         while place < tile.end {
-            meetings.clear();
-            while place < tile.end && meetings.have_room(wall.most_rings()) {
+            candidates.clear();
+            while place < tile.end && candidates.have_room(wall.most_rings()) {
                 let block = Block::<M>::load(position, velocity, place, tile.end);
-                wall.meet(&block, place - tile.first, meetings);
+                wall.find_candidates(&block, place - tile.first, candidates);
                 place += LANES;
             }
-            wall.turn::<M>(meetings);
-            wall.push::<M, N, FULL>(law, meetings, &mut sums);
-            meetings.add_forces::<M>(force);
+            wall.turn_to_nearest::<M>(candidates);
+            wall.add_up_forces::<M, N, FULL>(law, candidates, &mut sums);
+            candidates.add_forces::<M>(force);
         }
         *tally = sums.tally();
     }
 }
 
-/// Adds what windows of tiles hold to the forces of a stretch of places.
+/// Adds the forces in windows of tiles to the forces of a stretch of places.
 struct AddUp<'a> {
     first: usize,
     /// Tile and window, in the order of the tiles.

@@ -1,4 +1,4 @@
-//! By what the grains are sorted: noted down, and put in order.
+//! The keys that the grains are sorted by.
 
 use rayon::prelude::*;
 
@@ -194,7 +194,7 @@ pub(super) fn put_strips_in_order(
     }
 }
 
-/// Sorts what is nearly sorted. There is one such order, equal ones staying as they are, whoever makes it.
+/// Sorts keys that are nearly in order. The order is stable, and so the same whoever makes it.
 fn put_in_order(keys: &mut [Key], parallel: bool) {
     if parallel && keys.len() > PIECE {
         let middle = keys.len() / 2;

@@ -30,7 +30,7 @@ pub(super) struct Tile {
     used: usize,
 }
 
-/// A stretch of places, and where its forces stand among those of the tile.
+/// A stretch of places, and the place of its forces among the forces of the tile.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Window {
     pub(super) first: usize,
@@ -43,7 +43,7 @@ pub(super) struct Window {
 pub(super) struct Partners {
     /// Their first place.
     pub(super) start: u32,
-    /// Where its force stands among those of the tile.
+    /// Place of their force among the forces of the tile.
     pub(super) force: u32,
 }
 
@@ -242,8 +242,7 @@ impl Work for List<'_> {
     }
 }
 
-/// Partners that are being listed, and room for more; for the time being the number of their window stands in the place
-/// of their force.
+/// Partners that are being listed, and room for more. Until the list is complete `force` holds the number of the window.
 struct Listed<'a> {
     partners: &'a mut Vec<Partners>,
     end: usize,

@@ -8,11 +8,11 @@
 //! Forces are added up tile by tile, and the tiles in their order, so that neither the number of threads nor the set of
 //! instructions changes a bit.
 
+mod candidates;
 mod columns;
 mod forces;
 mod keys;
 mod listing;
-mod meetings;
 mod motion;
 mod order;
 mod pairs;
@@ -109,8 +109,8 @@ impl Sorted {
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
-            // A block's meetings with a very fine wall are worked out at once.
-            && wall::rings_in_reach(lattice, diameter) <= meetings::MOST_RINGS
+            // The candidates of a block are worked out at once, also with a very fine wall.
+            && wall::rings_in_reach(lattice, diameter) <= candidates::MOST_RINGS
     }
 
     /// How many strips the grains stand in.

@@ -22,7 +22,7 @@ pub(super) enum Phase {
     KickAndDrift,
 }
 
-/// How far and by what the grains are moved.
+/// Parameters of the motion.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Motion {
     pub(super) time_step: f64,
@@ -32,7 +32,7 @@ pub(super) struct Motion {
     pub(super) limit: f64,
 }
 
-/// What a drift has moved.
+/// Displacements of a drift.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Moved {
     /// Least and largest displacement along z since the last sorting \[d\].
@@ -187,7 +187,7 @@ impl Move<'_> {
             if KICK {
                 let mut now = self.force.load(at) * per_mass;
                 if body_force != 0.0 {
-                    // What stands nowhere stays there.
+                    // Places without a grain stay where they are.
                     let holds = Lanes::load(self.origin, at).less(somewhere);
                     now.z += Lanes::select(holds, Lanes::splat(body_force), Lanes::splat(0.0));
                 }

@@ -8,7 +8,7 @@ use super::{Sorted, TILE};
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
 
-/// What a restart needs to go on in the same order, and so with the same bits.
+/// The order for a restart, which then goes on with the same bits.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Sorting {
     /// The grains in their order.
@@ -146,7 +146,7 @@ impl Sorted {
             self.sort();
             return;
         };
-        // What depends on where the grains were sorted is made from there.
+        // The rest depends on the places at the last sorting, and is made from them.
         let keys = sorting.origin.iter().copied().zip(place as u32..);
         self.scratch.keys.extend(keys);
         self.arrange(sorting.strips.iter().map(|&number| number as usize));
@@ -216,7 +216,7 @@ impl Sorted {
         }
     }
 
-    /// What a restart needs.
+    /// The order for a restart.
     pub(crate) fn sorting(&self) -> Sorting {
         let places = || self.rows.iter().flat_map(Row::own);
         Sorting {
@@ -325,7 +325,7 @@ impl Sorted {
         }
     }
 
-    /// Adds what was exerted on copies to the forces on the grains, and moves the copies along with them.
+    /// Adds the forces on copies to the forces on the grains, and moves the copies along with them.
     pub(super) fn gather_from_copies(&mut self) {
         for row in &self.rows {
             for (from, to, _) in row.copies(self.length) {

@@ -12,7 +12,7 @@ use crate::fast::machine::Machine;
 /// Squared distance \[d^2\] below which two centres count as one, and have no normal.
 pub(super) const COINCIDENT: f64 = 1e-30;
 
-/// What all pairs of grains share.
+/// Constants of all pairs of grains.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PairConstants {
     /// d, the distance at which grains touch.
@@ -48,14 +48,15 @@ impl<M: Machine> Block<M> {
             holds,
         };
         if place + LANES > grains {
-            // What stands in the other lanes may be anywhere.
+            // The numbers of the other lanes are arbitrary.
             block.position = LaneVector::select(holds, block.position, LaneVector::default());
             block.velocity = LaneVector::select(holds, block.velocity, LaneVector::default());
         }
         block
     }
 
-    /// Adds the forces between these grains and their partners in the tile to `force`, which counts places as it does.
+    /// Adds the forces between these grains and their partners in the tile to `force`, which counts places as
+    /// the tile does.
     #[inline(always)]
     #[allow(clippy::too_many_arguments)]
     pub(super) fn add_pairs<N: NormalLaw, const FULL: bool>(
@@ -76,7 +77,7 @@ impl<M: Machine> Block<M> {
         let zero = Lanes::splat(0.0);
         let mut on_block = LaneVector::default();
         let listed = tile.partners(self.place);
-        // First who touches, so that the branches of what follows can be foreseen.
+        // First the partners that touch, so that the branches below can be predicted.
         let mut number = 0;
         for partners in listed {
             let separation = block.position - position.load(partners.start as usize);

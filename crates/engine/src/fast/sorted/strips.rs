@@ -1,7 +1,7 @@
 //! The cross-section of the tube, divided into strips along it.
 //!
 //! In a narrow tube there is one. In a wide one the grains of a strip have few others ahead of them, and their partners
-//! stand in the same strip or in one of the eight beside it, of which four look for them.
+//! stand in the same strip or in one of the eight beside it; four of these look for them.
 
 /// Mean number of grains ahead within reach above which strips serve better than one row.
 const MOST_AHEAD: f64 = 20.0;

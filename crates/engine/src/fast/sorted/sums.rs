@@ -6,7 +6,7 @@ use crate::fast::lanes::Lanes;
 use crate::fast::machine::Machine;
 use crate::ledger::Tally;
 
-/// What the contacts of a tile add up to; the fields of [`Tally`] that smooth grains in a prescribed wall fill.
+/// Sums over the contacts of a tile; the fields of [`Tally`] that smooth grains in a prescribed wall fill.
 #[derive(Clone, Copy)]
 pub(super) struct Sums<M: Machine> {
     pub(super) wall_power: Lanes<M>,
@@ -35,7 +35,7 @@ impl<M: Machine> Sums<M> {
         }
     }
 
-    /// Adds contacts; lanes without one hold zeros. What only observers ask for, not the ledger, is left out unless
+    /// Adds contacts; lanes without one hold zeros. Sums that only observers read, not the ledger, are left out unless
     /// `FULL`.
     #[inline(always)]
     pub(super) fn add_contact<const FULL: bool>(

@@ -1,17 +1,18 @@
 //! Contacts with the spheres of a prescribed wall, eight grains at a time.
 //!
-//! First all grains look at the rings within reach along the tube, and those whose circle is within reach of the grain
-//! are packed as its meetings, so that from then on no lane is idle. Then each meeting turns to the sphere of its ring
-//! that is nearest to the grain, mirrored so that the next sphere lies on the side of positive angles. From there all
-//! lanes walk together outward from sphere to sphere, at angles that are the same for all, until no lane touches: the
-//! distance to the spheres of a ring grows in that order. In the end the forces go back to the grains, ring by ring.
+//! First all grains look at the rings within reach along the tube; pairs of a grain and a ring whose circle is within its
+//! reach are packed as candidates, so that from then on no lane is idle. Then each candidate is turned to the sphere of
+//! its ring that is nearest to the grain, and mirrored so that the next sphere lies on the side of positive angles. From
+//! there all lanes walk together outward from sphere to sphere, at angles that are the same for all, until no lane
+//! touches: the distance to the spheres of a ring grows in that order. In the end the forces go back to the grains, ring
+//! by ring.
 
 use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 use peristalsis_physics::real::Real;
 use peristalsis_physics::wall::Lattice;
 use peristalsis_physics::wall::lattice::approximate_angle;
 
-use super::meetings::Meetings;
+use super::candidates::Candidates;
 use super::pairs::{Block, COINCIDENT};
 use super::sums::Sums;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
@@ -130,13 +131,13 @@ impl WallTable {
         self.most_rings
     }
 
-    /// Notes which rings the grains of a block may touch.
+    /// Finds the rings that the grains of a block may touch.
     #[inline(always)]
-    pub(super) fn meet<M: Machine>(
+    pub(super) fn find_candidates<M: Machine>(
         &self,
         block: &Block<M>,
         first_place: usize,
-        meetings: &mut Meetings,
+        candidates: &mut Candidates,
     ) {
         let LaneVector { x, y, z } = block.position;
         let from_axis_squared = x * x + y * y;
@@ -160,24 +161,24 @@ impl WallTable {
                 let gap = radius - from_axis;
                 let meet = (gap * gap + dz * dz).less(reach_squared) & block.holds;
                 if meet.any() {
-                    meetings.add(first_place, meet, block.position, block.velocity, ring);
+                    candidates.add(first_place, meet, block.position, block.velocity, ring);
                 }
                 ring += Lanes::splat(1.0);
             }
         }
     }
 
-    /// Turns all to the nearest sphere of the ring that they meet, and mirrors them.
+    /// Turns all candidates to the nearest sphere of their ring, and mirrors them.
     #[inline(always)]
-    pub(super) fn turn<M: Machine>(&self, meetings: &mut Meetings) {
-        for (at, holds) in meetings.eights::<M>() {
-            let x = Lanes::<M>::load(&meetings.x, at);
-            let y = Lanes::load(&meetings.y, at);
-            let z = Lanes::load(&meetings.z, at);
-            let velocity_x = Lanes::<M>::load(&meetings.velocity_x, at);
-            let velocity_y = Lanes::load(&meetings.velocity_y, at);
-            // What stands in the other lanes may be anything.
-            let ring = Lanes::load(&meetings.ring, at);
+    pub(super) fn turn_to_nearest<M: Machine>(&self, candidates: &mut Candidates) {
+        for (at, holds) in candidates.eights::<M>() {
+            let x = Lanes::<M>::load(&candidates.x, at);
+            let y = Lanes::load(&candidates.y, at);
+            let z = Lanes::load(&candidates.z, at);
+            let velocity_x = Lanes::<M>::load(&candidates.velocity_x, at);
+            let velocity_y = Lanes::load(&candidates.velocity_y, at);
+            // The numbers of the other lanes are arbitrary.
+            let ring = Lanes::load(&candidates.ring, at);
             let ring = Lanes::select(holds, ring, Lanes::splat(0.0));
             let [radius, ring_velocity, ..] =
                 Lanes::<M>::windows(&self.rings, self.in_wave(ring).map(|ring| 2 * ring));
@@ -197,54 +198,54 @@ impl WallTable {
                 Lanes::splat(1.0),
             );
             let turned_y = (velocity_y * cos - velocity_x * sin) * side;
-            (x * cos + y * sin).store(&mut meetings.x, at);
-            (across * side).store(&mut meetings.y, at);
-            (z - ring * Lanes::splat(self.spacing)).store(&mut meetings.z, at);
-            (velocity_x * cos + velocity_y * sin).store(&mut meetings.velocity_x, at);
-            turned_y.store(&mut meetings.velocity_y, at);
-            radius.store(&mut meetings.ring, at);
-            ring_velocity.store(&mut meetings.ring_velocity, at);
-            cos.store(&mut meetings.cos, at);
-            sin.store(&mut meetings.sin, at);
-            side.store(&mut meetings.side, at);
+            (x * cos + y * sin).store(&mut candidates.x, at);
+            (across * side).store(&mut candidates.y, at);
+            (z - ring * Lanes::splat(self.spacing)).store(&mut candidates.z, at);
+            (velocity_x * cos + velocity_y * sin).store(&mut candidates.velocity_x, at);
+            turned_y.store(&mut candidates.velocity_y, at);
+            radius.store(&mut candidates.ring, at);
+            ring_velocity.store(&mut candidates.ring_velocity, at);
+            cos.store(&mut candidates.cos, at);
+            sin.store(&mut candidates.sin, at);
+            side.store(&mut candidates.side, at);
         }
     }
 
     /// Works out the forces, from sphere to sphere outward along the rings.
     #[inline(always)]
-    pub(super) fn push<M: Machine, N: NormalLaw, const FULL: bool>(
+    pub(super) fn add_up_forces<M: Machine, N: NormalLaw, const FULL: bool>(
         &self,
         law: &N,
-        meetings: &mut Meetings,
+        candidates: &mut Candidates,
         sums: &mut Sums<M>,
     ) {
         let zero = Lanes::<M>::splat(0.0);
         let reach = Lanes::splat(self.reach);
         let reach_squared = reach * reach;
-        for (at, holds) in meetings.eights::<M>() {
-            let u = Lanes::<M>::load(&meetings.x, at);
-            let v = Lanes::load(&meetings.y, at);
-            let dz = Lanes::load(&meetings.z, at);
-            let velocity_u = Lanes::load(&meetings.velocity_x, at);
-            let velocity_v = Lanes::load(&meetings.velocity_y, at);
-            let velocity_z = Lanes::load(&meetings.velocity_z, at);
-            let radius = Lanes::load(&meetings.ring, at);
-            let ring_velocity = Lanes::load(&meetings.ring_velocity, at);
+        for (at, holds) in candidates.eights::<M>() {
+            let u = Lanes::<M>::load(&candidates.x, at);
+            let v = Lanes::load(&candidates.y, at);
+            let dz = Lanes::load(&candidates.z, at);
+            let velocity_u = Lanes::load(&candidates.velocity_x, at);
+            let velocity_v = Lanes::load(&candidates.velocity_y, at);
+            let velocity_z = Lanes::load(&candidates.velocity_z, at);
+            let radius = Lanes::load(&candidates.ring, at);
+            let ring_velocity = Lanes::load(&candidates.ring_velocity, at);
             // The angle is approximate: a lane that turned to the second nearest sphere touches in a slightly different
-            // order, so that one sphere out of touch does not yet mean that there is none behind it.
+            // order, so that it may touch another sphere behind one that it does not touch.
             let patience = usize::from((u * Lanes::splat(self.half_step)).less(v).any());
 
             // With p = u cos + v sin of a sphere, R of its ring, dz to it and V = dR/dt, the separation s from the grain
             // has s^2 = rho^2 + R^2 + dz^2 - 2 R p, and (v - V) . s is as linear in cos and sin.
             let squares = u * u + v * v + radius * radius + dz * dz;
-            // Lanes that hold no meeting are out of reach wherever they stand.
+            // Lanes without a candidate are out of reach wherever they stand.
             let squares = Lanes::select(holds, squares, Lanes::splat(f64::INFINITY));
             let double = radius + radius;
             let (double_u, double_v) = (double * u, double * v);
             let along = u * velocity_u + v * velocity_v + dz * velocity_z + ring_velocity * radius;
             let along_u = radius * velocity_u + ring_velocity * u;
             let along_v = radius * velocity_v + ring_velocity * v;
-            // First how far lanes touch, so that the branches of what follows can be foreseen.
+            // First the number of spheres that lanes touch, so that the branches below can be predicted.
             let mut visits = 0;
             for (visited, &(cos, sin)) in self.outward.iter().enumerate() {
                 let distance_squared =
@@ -286,12 +287,12 @@ impl WallTable {
             if FULL {
                 sums.wall_axial_force += on_z;
             }
-            let cos = Lanes::load(&meetings.cos, at);
-            let sin = Lanes::load(&meetings.sin, at);
-            let on_v = on_v * Lanes::load(&meetings.side, at);
-            (on_u * cos - on_v * sin).store(&mut meetings.x, at);
-            (on_u * sin + on_v * cos).store(&mut meetings.y, at);
-            on_z.store(&mut meetings.z, at);
+            let cos = Lanes::load(&candidates.cos, at);
+            let sin = Lanes::load(&candidates.sin, at);
+            let on_v = on_v * Lanes::load(&candidates.side, at);
+            (on_u * cos - on_v * sin).store(&mut candidates.x, at);
+            (on_u * sin + on_v * cos).store(&mut candidates.y, at);
+            on_z.store(&mut candidates.z, at);
         }
     }
 

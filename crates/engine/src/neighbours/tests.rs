@@ -3,8 +3,9 @@
 use std::collections::BTreeSet;
 
 use glam::DVec3;
-use peristalsis_engine::neighbours::{Neighbours, PairRule};
 use proptest::prelude::*;
+
+use super::{Neighbours, PairRule};
 
 #[derive(Clone, Debug)]
 struct Spheres {

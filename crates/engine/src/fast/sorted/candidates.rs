@@ -1,28 +1,29 @@
-//! Grains that meet rings of the wall, packed: only some grains are near the wall, and each with rings of its own.
+//! Pairs of a grain and a ring of the wall that may touch, packed: only some grains are near the wall, each with rings of
+//! its own.
 
 use super::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 
-/// How many meetings are worked out at a time.
+/// How many candidates are worked out at a time.
 const MOST: usize = 512;
 
-/// Rings that a grain can meet, at most.
+/// Rings that a grain may touch, at most.
 pub(super) const MOST_RINGS: usize = MOST / LANES;
 
-/// A number for each meeting; what stands behind them is anything.
+/// A number for each candidate; the numbers behind them are arbitrary.
 type Column = [f64; MOST + LANES];
 
-/// Meetings of grains with rings that they may touch.
+/// Pairs of a grain and a ring that may touch.
 ///
-/// Meetings stand in the order of their blocks, and those of a block in that of the rings: first the first ring of each
-/// of its grains, then the second of each that has two.
+/// They stand in the order of the blocks of grains; within a block first the first ring of each of its grains, then the
+/// second of each that has two.
 #[derive(Debug)]
-pub(super) struct Meetings {
+pub(super) struct Candidates {
     number: usize,
     rounds: [Round; MOST],
     rounds_used: usize,
-    /// Where the grain is; then by the sphere of the ring that is nearest to it: along the radius to this sphere, along
+    /// Place of the grain; then its place relative to the nearest sphere of the ring: along the radius to this sphere, along
     /// the ring, and along the tube from there. In the end the force on the grain.
     pub(super) x: Column,
     pub(super) y: Column,
@@ -41,16 +42,16 @@ pub(super) struct Meetings {
     pub(super) side: Column,
 }
 
-/// Meetings of one ring each of the grains of a block.
+/// Candidates of a block with one ring for each grain.
 #[derive(Clone, Copy, Debug, Default)]
 struct Round {
-    /// Where the block begins.
+    /// First place of the block.
     block: u32,
     /// Which of its lanes have such a ring.
     bits: u8,
 }
 
-impl Default for Meetings {
+impl Default for Candidates {
     fn default() -> Self {
         let none = [0.0; MOST + LANES];
         Self {
@@ -72,18 +73,18 @@ impl Default for Meetings {
     }
 }
 
-impl Meetings {
+impl Candidates {
     /// Begins anew.
     pub(super) fn clear(&mut self) {
         (self.number, self.rounds_used) = (0, 0);
     }
 
-    /// Whether there is room for a block whose grains meet so many rings each.
+    /// Whether there is room for a block whose grains may touch so many rings each.
     pub(super) fn have_room(&self, rings: usize) -> bool {
         self.number + rings * LANES <= MOST
     }
 
-    /// Adds meetings of some grains of the block that begins at `block` with a ring each.
+    /// Adds a ring each for some grains of the block that begins at `block`.
     #[inline(always)]
     pub(super) fn add<M: Machine>(
         &mut self,
@@ -94,7 +95,7 @@ impl Meetings {
         ring: Lanes<M>,
     ) {
         let at = self.number;
-        // Said once for all columns.
+        // One check of the bounds for all columns.
         assert!(at <= MOST);
         position.x.pack(meet, &mut self.x, at);
         position.y.pack(meet, &mut self.y, at);
@@ -111,7 +112,7 @@ impl Meetings {
         self.number = at + meet.count() as usize;
     }
 
-    /// Where each eight meetings begin, and which lanes hold one.
+    /// First of each eight candidates, and the lanes that hold one.
     #[inline(always)]
     pub(super) fn eights<M: Machine>(&self) -> impl Iterator<Item = (usize, Mask<M>)> + use<M> {
         let number = self.number;
@@ -120,7 +121,7 @@ impl Meetings {
         starts.map(move |start| (start, Mask::first(number - start)))
     }
 
-    /// Adds the forces to those of the grains.
+    /// Adds the forces to the forces on the grains.
     #[inline(always)]
     pub(super) fn add_forces<M: Machine>(&self, to: &mut Columns) {
         let mut at = 0;
