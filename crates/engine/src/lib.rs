@@ -18,6 +18,7 @@ mod snapshot;
 mod steps;
 mod touching;
 pub mod wall;
+mod wall_contacts;
 
 pub use bodies::{Bodies, Sphere};
 pub use error::EngineError;
@@ -29,3 +30,4 @@ pub use simulation::Simulation;
 pub use snapshot::{Snapshot, SnapshotView, Sorting};
 pub use touching::Touching;
 pub use wall::Wall;
+pub use wall_contacts::WallContact;

@@ -19,8 +19,8 @@ use crate::snapshot::{Snapshot, SnapshotView};
 use crate::steps::Course;
 use crate::touching::{Touching, touching};
 use crate::wall::Wall;
-use crate::wall::contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 use crate::wall::memory::WallMemory;
+use crate::wall_contacts::{WallContact, add_up_smooth_contacts, for_each_contact};
 
 /// Grains in a peristaltic tube, advanced in time.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 mod common;
 
-use common::{HERTZ, LINEAR, grains, packed, parameters};
+use common::{HERTZ, LINEAR, grains, packed, parameters, prescribed};
 
 /// Largest difference of forces relative to the largest force.
 const FORCES: f64 = 1e-11;
@@ -200,14 +200,7 @@ fn mixed() -> Vec<(Bodies, Wall)> {
     [(common::coarse(3), 1.5, 2.5, 130), (WIDE, 4.0, 7.0, 420)]
         .into_iter()
         .map(|(lattice, radius, width, number)| {
-            let wall = Wall::Prescribed(PrescribedWall::new(
-                lattice,
-                radius,
-                Waveform::Sine,
-                1.0,
-                Schedule::constant(radius - 0.5 * width),
-                Schedule::constant(0.1),
-            ));
+            let wall = prescribed(lattice, radius, 1.0, radius - 0.5 * width, 0.1);
             let mut bodies = packed(number, 1.0, &wall, LINEAR, 9);
             for (grain, velocity) in bodies.velocity.iter_mut().enumerate() {
                 let turn = 2.4 * grain as f64;
@@ -278,14 +271,7 @@ fn threads_instructions_and_restarts_do_not_change_a_bit() {
 /// So many grains that threads note and sort pieces of the one row, and so fast that many go through the seam.
 #[test]
 fn threads_that_share_the_sorting_of_a_long_tube_do_not_change_a_bit() {
-    let wall = Wall::Prescribed(PrescribedWall::new(
-        common::coarse(400),
-        1.5,
-        Waveform::Sine,
-        1.0,
-        Schedule::constant(0.2),
-        Schedule::constant(0.05),
-    ));
+    let wall = prescribed(common::coarse(400), 1.5, 1.0, 0.2, 0.05);
     let number = 10_000_u32;
     let along = wall.lattice().length() / f64::from(number);
     let places = (0..number).map(|grain| {

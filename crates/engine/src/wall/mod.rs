@@ -1,11 +1,9 @@
 //! The wall in motion: prescribed, or elastic.
 
-pub(crate) mod contacts;
 mod elastic;
 pub(crate) mod memory;
 mod prescribed;
 
-pub use contacts::WallContact;
 pub use elastic::{ElasticParameters, ElasticWall};
 pub use peristalsis_physics::wall::{DriveAngle, NetForce, Tethers};
 pub use prescribed::PrescribedWall;

@@ -7,10 +7,10 @@ use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw,
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use super::{PrescribedWall, Wall};
 use crate::bodies::{Bodies, Sphere};
 use crate::contacts::Contacts;
 use crate::neighbours::periodic;
+use crate::wall::{PrescribedWall, Wall};
 
 /// A contact of a grain with a sphere of the wall; forces are those on the grain \[m d/t^2\].
 #[derive(Clone, Copy, Debug, PartialEq)]
