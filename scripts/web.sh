@@ -9,10 +9,10 @@ if ! [ -d "$(rustc --print sysroot)/lib/rustlib/$target" ]; then
 fi
 # Every browser has had these instructions for years; none of them rounds otherwise.
 export CARGO_TARGET_WASM32_UNKNOWN_UNKNOWN_RUSTFLAGS="-C target-feature=+simd128"
-cargo build --locked --profile browser --target "$target" -p peristalsis-browser
+cargo build --locked --profile browser --target "$target" -p peristalsis-viewer --no-default-features --example browser
 rm -rf target/web
 mkdir -p target/web
-install -m 644 "${CARGO_TARGET_DIR:-target}/$target/browser/peristalsis_browser.wasm" target/web/engine.wasm
+install -m 644 "${CARGO_TARGET_DIR:-target}/$target/browser/examples/browser.wasm" target/web/engine.wasm
 cd viewer
 [ -d node_modules ] || npm ci --ignore-scripts --no-audit --no-fund
 npm run check

@@ -1,7 +1,7 @@
-/** The worker that computes the tube: crates/browser as WebAssembly, and messages as over the server's WebSocket. */
+/** The worker that computes the tube: crates/viewer/browser as WebAssembly, and messages as over the server's WebSocket. */
 import type { Asked } from "./connection";
 
-/** What crates/browser/src/exports.rs exports. */
+/** The functions that crates/viewer/browser/exports.rs exports. */
 interface Exports {
   memory: WebAssembly.Memory;
   input(length: number): number;
@@ -9,11 +9,11 @@ interface Exports {
   command(): void;
   advance(): number;
   frame(): number;
-  told(): number;
+  notice(): number;
   output(): number;
 }
 
-class Cabin {
+class TubeWorker {
   /** Whether the page waits for a frame. */
   private awaited = true;
   /** Whether there is a frame that the page has not got. */
@@ -52,9 +52,9 @@ class Cabin {
     act();
   }
 
-  /** What is told, and the newest frame if the page waits for one. */
+  /** Hands over the notices, and the newest frame if the page waits for one. */
   private answer(): void {
-    for (let length = this.engine.told(); length > 0; length = this.engine.told())
+    for (let length = this.engine.notice(); length > 0; length = this.engine.notice())
       postMessage(new TextDecoder().decode(this.copy(length)));
     if (!this.awaited || !this.fresh) return;
     const length = this.engine.frame();
@@ -76,11 +76,11 @@ const loaded = fetch(new URL("engine.wasm", import.meta.url))
     if (!answer.ok) throw new Error(`engine.wasm: ${answer.status}`);
     return WebAssembly.instantiate(await answer.arrayBuffer(), { page });
   })
-  .then(({ instance }) => new Cabin(instance.exports as unknown as Exports));
+  .then(({ instance }) => new TubeWorker(instance.exports as unknown as Exports));
 
 addEventListener("message", ({ data }: MessageEvent<Asked>) => {
   loaded.then(
-    (cabin) => cabin.take(data),
+    (worker) => worker.take(data),
     (error: unknown) => postMessage(JSON.stringify({ type: "problem", message: `the engine cannot be loaded: ${error}` })),
   );
 });

@@ -5,11 +5,11 @@
 //! fast as it takes them; or it owns the recording, and each client gets the frames that it asks for by their number.
 //! [`Viewer::exhibit`] takes studies and figures; what a client can name of them is a number, and a run that it opens gets
 //! a thread as above.
-//! Clients send commands ([`message`]). The pages are part of the program, and no file is read for a client but recordings,
+//! Clients send commands (`message.rs`). The pages are part of the program, and no file is read for a client but recordings,
 //! rows and figures of what was opened.
 //!
-//! Without the feature `server` there is only [`Tube`], the run that is watched and driven, with neither threads nor files
-//! nor a clock of its own: what the page computes itself where it runs the engine as WebAssembly.
+//! Without the feature `server` there is only [`PageViewer`]: a tube without threads, files or a clock of its own, which the
+//! page computes itself. `browser/exports.rs` exports it to JavaScript as WebAssembly (`scripts/web.sh`).
 
 #![forbid(unsafe_code)]
 
@@ -25,7 +25,8 @@ mod gallery;
 mod guard;
 #[cfg(feature = "server")]
 mod keeper;
-pub mod message;
+mod message;
+mod page_viewer;
 #[cfg(feature = "server")]
 mod player;
 #[cfg(feature = "server")]
@@ -44,13 +45,13 @@ mod within;
 
 #[cfg(feature = "server")]
 pub use figure::Figure;
+pub use page_viewer::PageViewer;
 #[cfg(feature = "server")]
 pub use recording::Recording;
 #[cfg(feature = "server")]
 pub use server::{Options, Viewer};
 #[cfg(feature = "server")]
 pub use study::Study;
-pub use tube::Tube;
 
 #[cfg(feature = "server")]
 /// Why the viewer cannot serve.

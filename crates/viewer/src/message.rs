@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What a client may ask.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
-pub enum Command {
+pub(crate) enum Command {
     /// Goes on, or stops.
     Play {
         /// Whether to go on.
@@ -42,7 +42,7 @@ pub enum Command {
 /// What can be changed while a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Steered {
+pub(crate) enum Steered {
     /// w, strain control.
     Width,
     /// f^P, stress control.
@@ -92,8 +92,7 @@ impl Notice {
 }
 
 /// What clients are told of something that cannot be done, in JSON.
-#[must_use]
-pub fn problem(message: &str) -> String {
+pub(crate) fn problem(message: &str) -> String {
     let message = message.to_owned();
     Notice::Problem { message }.to_json()
 }
@@ -103,7 +102,7 @@ impl Command {
     ///
     /// # Errors
     /// In words what is wrong with it.
-    pub fn read(text: &str) -> Result<Self, String> {
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
         let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let number = match command {
             Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),

@@ -53,7 +53,7 @@ pub(crate) enum Saves {
 
 /// A run in the hands of its viewers.
 #[derive(Debug)]
-pub struct Tube {
+pub(crate) struct Tube {
     run: Run,
     labels: Labels,
     /// Seconds since any instant.
@@ -81,8 +81,7 @@ pub struct Tube {
 
 impl Tube {
     /// A run at rest whose saved states are given to the page; `clock` answers seconds since any instant.
-    #[must_use]
-    pub fn for_page(run: Run, title: String, clock: fn() -> f64) -> Self {
+    pub(crate) fn for_page(run: Run, title: String, clock: fn() -> f64) -> Self {
         let labels = Labels {
             title,
             saves: Saves::Page,
@@ -113,14 +112,12 @@ impl Tube {
     }
 
     /// Whether there is anything to compute.
-    #[must_use]
-    pub fn is_going(&self) -> bool {
+    pub(crate) fn is_going(&self) -> bool {
         !self.ended && (self.playing || self.seeking.is_some())
     }
 
     /// What a page must know first, in JSON.
-    #[must_use]
-    pub fn welcome(&self) -> String {
+    pub(crate) fn welcome(&self) -> String {
         let course = self.course();
         let (configuration, simulation) = (self.run.configuration(), self.run.simulation());
         let grains = simulation.bodies().grains;
@@ -135,14 +132,14 @@ impl Tube {
     }
 
     /// Does what a page asks; what cannot be done is told.
-    pub fn take(&mut self, command: Command) {
+    pub(crate) fn take(&mut self, command: Command) {
         if let Err(error) = self.obey(command) {
             self.tell(&error.to_string());
         }
     }
 
     /// What is to be told to every page since this was asked last, in JSON.
-    pub fn notices(&mut self) -> Vec<String> {
+    pub(crate) fn notices(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notices)
     }
 
@@ -211,7 +208,7 @@ impl Tube {
     }
 
     /// Advances for the time from one frame to the next, or to where a frame at the speed that was asked for lies.
-    pub fn advance_by_a_frame(&mut self) {
+    pub(crate) fn advance_by_a_frame(&mut self) {
         let begin = (self.clock)();
         let most = self.steps_of_a_frame();
         let mut done = 0;
@@ -381,8 +378,7 @@ impl Tube {
     }
 
     /// What it looks like, as the bytes of a message with a frame; `frame.rs` describes them.
-    #[must_use]
-    pub fn frame(&self) -> Vec<u8> {
+    pub(crate) fn frame(&self) -> Vec<u8> {
         let simulation = self.run.simulation();
         let (bodies, wall) = (simulation.bodies(), simulation.wall());
         let samples = self.run.recorder().samples();

@@ -1,7 +1,7 @@
-//! What JavaScript calls: numbers and bytes only.
+//! The viewer's run as WebAssembly: the functions that JavaScript calls, which pass numbers of bytes only.
 //!
-//! The page's worker writes a text of `length` bytes at `input(length)` before it calls `open` or `command`. What `frame` and
-//! `told` answer is a number of bytes, 0 where there is nothing, that lie at `output()` until the next call.
+//! The page's worker writes a text of `length` bytes at `input(length)` before it calls `open` or `command`. `frame` and
+//! `notice` answer with a number of bytes, 0 where there is nothing; the bytes lie at `output()` until the next call.
 
 #![allow(
     unsafe_code,
@@ -10,10 +10,10 @@
 
 use std::cell::RefCell;
 
-use crate::Cabin;
+use peristalsis_viewer::PageViewer;
 
 thread_local! {
-    static CABIN: RefCell<Cabin> = RefCell::default();
+    static VIEWER: RefCell<PageViewer> = RefCell::default();
     static INPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
     static OUTPUT: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
@@ -49,47 +49,51 @@ extern "C" fn input(length: usize) -> *mut u8 {
 /// Begins the tube that the text asks for.
 #[unsafe(no_mangle)]
 extern "C" fn open() {
-    with_text(|cabin, text| cabin.open(text, clock));
+    with_text(|viewer, text| viewer.open(text, clock));
 }
 
 /// Does what the text says.
 #[unsafe(no_mangle)]
 extern "C" fn command() {
-    with_text(Cabin::command);
+    with_text(PageViewer::command);
 }
 
 /// Advances by a frame; 0 where there is nothing to compute.
 #[unsafe(no_mangle)]
 extern "C" fn advance() -> u32 {
-    CABIN.with_borrow_mut(|cabin| cabin.advance().into())
+    VIEWER.with_borrow_mut(|viewer| viewer.advance().into())
 }
 
 /// Bytes of the frame.
 #[unsafe(no_mangle)]
 extern "C" fn frame() -> usize {
-    give(CABIN.with_borrow(Cabin::frame))
+    answer(VIEWER.with_borrow(PageViewer::frame))
 }
 
-/// Bytes of the next thing that is told.
+/// Bytes of the next notice.
 #[unsafe(no_mangle)]
-extern "C" fn told() -> usize {
-    give(CABIN.with_borrow_mut(Cabin::told).map(String::into_bytes))
+extern "C" fn notice() -> usize {
+    answer(
+        VIEWER
+            .with_borrow_mut(PageViewer::notice)
+            .map(String::into_bytes),
+    )
 }
 
-/// Where what was answered lies.
+/// Where the bytes of the last answer lie.
 #[unsafe(no_mangle)]
 extern "C" fn output() -> *const u8 {
     OUTPUT.with_borrow(|output| output.as_ptr())
 }
 
-fn with_text(act: impl FnOnce(&mut Cabin, &str)) {
+fn with_text(act: impl FnOnce(&mut PageViewer, &str)) {
     INPUT.with_borrow(|input| {
         let text = String::from_utf8_lossy(input);
-        CABIN.with_borrow_mut(|cabin| act(cabin, &text));
+        VIEWER.with_borrow_mut(|viewer| act(viewer, &text));
     });
 }
 
-fn give(bytes: Option<Vec<u8>>) -> usize {
+fn answer(bytes: Option<Vec<u8>>) -> usize {
     let bytes = bytes.unwrap_or_default();
     let length = bytes.len();
     OUTPUT.set(bytes);
