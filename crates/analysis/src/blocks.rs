@@ -30,16 +30,16 @@ pub struct Estimate {
 }
 
 /// Error of the mean as it comes out at one length of the blocks.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct BlockLevel {
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct BlockLevel {
     /// Samples in a block, a power of 2.
-    pub block_length: usize,
+    block_length: usize,
     /// Blocks.
-    pub blocks: usize,
+    blocks: usize,
     /// Standard error of the mean if the block averages were independent.
-    pub error: f64,
+    error: f64,
     /// Standard error of `error`.
-    pub error_uncertainty: f64,
+    error_uncertainty: f64,
 }
 
 /// Errors of the mean for blocks of 1, 2, 4, ... samples, down to two blocks: rising with the length of the blocks, then
@@ -51,7 +51,7 @@ pub struct BlockLevel {
 ///
 /// # Errors
 /// [`Error::TooFew`] below 4 samples, [`Error::NonFinite`].
-pub fn block_levels(series: &[f64]) -> Result<Vec<BlockLevel>, Error> {
+fn block_levels(series: &[f64]) -> Result<Vec<BlockLevel>, Error> {
     let mut averages = checked(series, LEAST_SAMPLES)?.to_vec();
     let mut block_length = 1;
     let mut levels = Vec::new();

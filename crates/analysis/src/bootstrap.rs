@@ -24,25 +24,6 @@ pub struct Bootstrap {
 }
 
 impl Bootstrap {
-    /// Groups of independent things drawn anew with replacement within each group, one set of groups a resample.
-    ///
-    /// For estimates that [`bootstrap_errors`] has no place for, such as the curves of a scaling collapse made from
-    /// resampled runs ([`Collapse::bootstrap_tables`](crate::Collapse::bootstrap_tables)).
-    ///
-    /// # Errors
-    /// [`Error::TooFewResamples`] below 20.
-    pub fn resampled<T: Clone>(
-        self,
-        groups: &[Vec<T>],
-    ) -> Result<impl Iterator<Item = Vec<Vec<T>>>, Error> {
-        Ok(self.streams()?.map(|mut randomness| {
-            groups
-                .iter()
-                .map(|group| randomness.resample(group))
-                .collect()
-        }))
-    }
-
     /// Random numbers of every resample, in order.
     pub(crate) fn streams(self) -> Result<impl Iterator<Item = Randomness>, Error> {
         if self.resamples < LEAST_RESAMPLES {
@@ -76,21 +57,7 @@ pub struct Resampled {
 /// # Errors
 /// [`Error::TooFewResamples`] below 20 resamples, or where fewer than 20 succeed; [`Error::Undetermined`] where the
 /// data themselves give no estimate.
-///
-/// ```
-/// use peristalsis_analysis::{Bootstrap, bootstrap_errors};
-/// let groups = [vec![1.0, 2.0, 3.0, 4.0], vec![10.0, 12.0]];
-/// let mean = |group: &Vec<f64>| group.iter().sum::<f64>() / group.len() as f64;
-/// let bootstrap = Bootstrap { resamples: 200, seed: 1 };
-/// let found = bootstrap_errors(&groups, bootstrap, |groups| {
-///     Some([mean(&groups[1]) - mean(&groups[0])])
-/// })?;
-/// assert_eq!(found.estimates[0].value, 8.5);
-/// // sqrt(5/16 + 1/2), the variances of the means with divisor n.
-/// assert!((found.estimates[0].error - 0.9).abs() < 0.1);
-/// # Ok::<(), peristalsis_analysis::Error>(())
-/// ```
-pub fn bootstrap_errors<T: Clone, const N: usize>(
+pub(crate) fn bootstrap_errors<T: Clone, const N: usize>(
     groups: &[Vec<T>],
     bootstrap: Bootstrap,
     mut statistic: impl FnMut(&[Vec<T>]) -> Option<[f64; N]>,
@@ -99,9 +66,13 @@ pub fn bootstrap_errors<T: Clone, const N: usize>(
         points: groups.iter().map(Vec::len).sum(),
         parameters: N,
     })?;
-    let estimates = bootstrap
-        .resampled(groups)?
-        .map(|drawn| statistic(&drawn).map(|numbers| numbers.to_vec()));
+    let estimates = bootstrap.streams()?.map(|mut randomness| {
+        let drawn: Vec<Vec<T>> = groups
+            .iter()
+            .map(|group| randomness.resample(group))
+            .collect();
+        statistic(&drawn).map(|numbers| numbers.to_vec())
+    });
     summarise(&values, estimates)
 }
 
@@ -181,6 +152,7 @@ impl Randomness {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::error::mean_of;
 
     #[test]
     fn a_resample_does_not_depend_on_how_many_follow() {
@@ -202,6 +174,20 @@ mod tests {
             few.streams().err(),
             Some(Error::TooFewResamples { found: 19, .. })
         ));
+    }
+
+    #[test]
+    fn the_error_of_a_difference_of_means() {
+        let groups = [vec![1.0, 2.0, 3.0, 4.0], vec![10.0, 12.0]];
+        let bootstrap = Bootstrap {
+            resamples: 200,
+            seed: 1,
+        };
+        let difference = |groups: &[Vec<f64>]| Some([mean_of(&groups[1]) - mean_of(&groups[0])]);
+        let found = bootstrap_errors(&groups, bootstrap, difference).unwrap();
+        assert_eq!(found.estimates[0].value, 8.5);
+        // sqrt(5/16 + 1/2), the variances of the means with divisor n.
+        assert!((found.estimates[0].error - 0.9).abs() < 0.1);
     }
 
     #[test]

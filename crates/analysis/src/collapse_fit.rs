@@ -8,9 +8,6 @@ use crate::numerics::simplex::nelder_mead;
 use crate::uncertain::Interval;
 use serde::{Deserialize, Serialize};
 
-/// Least fraction of overlapping points that a collapse must keep, unless another is asked for.
-pub const LEAST_OVERLAP: f64 = 0.5;
-
 /// Value of the objective where the overlap falls short; it grows with what is missing, so that a search finds its way
 /// back.
 const SHORT: f64 = 1e6;
@@ -32,7 +29,7 @@ pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 
 /// `parameter` its own value. [`Scaling::apply`](crate::Scaling::apply) provides the common ones, any function will do.
 ///
 /// ```
-/// use peristalsis_analysis::{Collapse, Curve, CurvePoint, LEAST_OVERLAP};
+/// use peristalsis_analysis::{Collapse, Curve, CurvePoint};
 /// // y = p x: curves of p = 1 and 2 collapse as y/p^a with a = 1.
 /// let curve = |p: f64| Curve {
 ///     parameter: p,
@@ -45,7 +42,7 @@ pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 
 ///         y: point.y * libm::pow(p, -parameters[0]),
 ///         ..point
 ///     },
-///     least_overlap: LEAST_OVERLAP,
+///     least_overlap: 0.5,
 /// };
 /// let fit = collapse.fit(&[0.5], &[0.2], 1, 0)?;
 /// assert!((fit.parameters[0] - 1.0).abs() < 1e-3);
@@ -57,7 +54,7 @@ pub struct Collapse<'a> {
     pub curves: &'a [Curve],
     /// The scaling.
     pub transform: &'a Transform<'a>,
-    /// Least fraction of points that must be compared, 0 to 1; see [`LEAST_OVERLAP`]. At 0 a search is free to win by
+    /// Least fraction of points that must be compared, 0 to 1; 0.5 is a good choice. At 0 a search is free to win by
     /// pulling the curves apart.
     pub least_overlap: f64,
 }
@@ -243,10 +240,10 @@ impl Collapse<'_> {
 
     /// Errors of the best parameters from their scatter when every ordinate is moved by its error.
     ///
-    /// Each resample adds a normal number times the error to every y and searches anew from the best parameters: a
-    /// parametric bootstrap, right where the errors are normal, independent and S is near 1. A scaling that does not
-    /// hold (S well above 1) has errors beyond these. For errors from the runs themselves resample those, make curves
-    /// of each resample and see [`bootstrap_tables`](Self::bootstrap_tables).
+    /// Each resample adds a normal number times the error to every y and searches anew from the best parameters, with
+    /// half of the steps: a parametric bootstrap, right where the errors are normal, independent and S is near 1. A
+    /// scaling that does not hold (S well above 1) has errors beyond these. Resamples that do not overlap enough count
+    /// as failed.
     ///
     /// # Errors
     /// [`Error::TooFewResamples`], [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
@@ -256,38 +253,18 @@ impl Collapse<'_> {
         steps: &[f64],
         bootstrap: Bootstrap,
     ) -> Result<Resampled, Error> {
-        let tables = bootstrap.streams()?.map(|mut randomness| {
-            let mut curves = self.curves.to_vec();
-            for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
-                point.y += point.error * randomness.normal();
-            }
-            Some(curves)
-        });
-        self.bootstrap_tables(fit, steps, tables)
-    }
-
-    /// Errors of the best parameters from curves made of resampled runs, one set of curves a resample.
-    ///
-    /// Searches begin at the best parameters with half of the steps; sets that are `None`, or that do not overlap
-    /// enough, count as failed.
-    ///
-    /// # Errors
-    /// [`Error::TooFewResamples`] where fewer than 20 succeed, [`Error::LengthMismatch`], [`Error::NotPositive`] for a
-    /// step.
-    pub fn bootstrap_tables(
-        &self,
-        fit: &CollapseFit,
-        steps: &[f64],
-        tables: impl Iterator<Item = Option<Vec<Curve>>>,
-    ) -> Result<Resampled, Error> {
         same_length(fit.parameters.len(), steps.len())?;
         let steps: Vec<f64> = checked_positive(steps)?
             .iter()
             .map(|step| 0.5 * step)
             .collect();
-        let estimates = tables.map(|curves| {
+        let estimates = bootstrap.streams()?.map(|mut randomness| {
+            let mut curves = self.curves.to_vec();
+            for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
+                point.y += point.error * randomness.normal();
+            }
             let resampled = Collapse {
-                curves: &curves?,
+                curves: &curves,
                 ..*self
             };
             let (parameters, value, _) = resampled.search(&fit.parameters, &steps, None);

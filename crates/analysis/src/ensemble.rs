@@ -1,7 +1,6 @@
 //! Moments across the replicas of an ensemble.
 
-use crate::error::{Error, checked, mean_of};
-use crate::transition::Transition;
+use crate::error::{Error, check_replica, checked, mean_of, same_length};
 use serde::{Deserialize, Serialize};
 
 /// Fewest replicas: the variance must exist with one of them left out.
@@ -18,30 +17,6 @@ pub struct Moments {
     pub variance: f64,
     /// Standard error of the variance, by the jackknife.
     pub variance_error: f64,
-}
-
-/// Largest variance over time of an ensemble.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct SusceptibilityPeak {
-    /// Position of the peak in the series, from 0.
-    pub index: usize,
-    /// Standard error of the position, by the jackknife.
-    pub index_error: f64,
-    /// Height of the peak. Being the largest of many noisy values it lies above the true one, by about its error.
-    pub value: f64,
-    /// Standard error of the height, by the jackknife over replicas, the search for the peak included.
-    pub error: f64,
-}
-
-/// Mean and variance of the transition times of an ensemble.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct TransitionTimeMoments {
-    /// Moments of the observed times: `<tau>` and `chi_tau = <tau^2> - <tau>^2`.
-    pub moments: Moments,
-    /// Runs with an observed transition.
-    pub observed: usize,
-    /// Runs that ended before. Unless this is 0, the moments are conditional on an early transition, hence too small.
-    pub censored: usize,
 }
 
 /// Variance of a sample with each of its values left out in turn, in order.
@@ -88,14 +63,7 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
 ///
 /// # Errors
 /// [`Error::TooFew`] below 3 values, [`Error::NonFinite`].
-///
-/// ```
-/// use peristalsis_analysis::moments;
-/// let found = moments(&[1.0, 2.0, 3.0])?;
-/// assert_eq!((found.mean, found.variance), (2.0, 1.0));
-/// # Ok::<(), peristalsis_analysis::Error>(())
-/// ```
-pub fn moments(sample: &[f64]) -> Result<Moments, Error> {
+pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
     let mean = mean_of(checked(sample, LEAST_REPLICAS)?);
     let replicas = sample.len() as f64;
     let scatter: f64 = sample.iter().map(|x| (x - mean) * (x - mean)).sum();
@@ -109,8 +77,15 @@ pub fn moments(sample: &[f64]) -> Result<Moments, Error> {
     })
 }
 
-/// Values of all replicas at each time, checked: one column per time.
-fn columns<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Vec<f64>>, Error> {
+/// Mean `<j>(t)` and second moment `chi_J(t) = <j^2> - <j>^2` across replicas at equal times.
+///
+/// `replicas`: the series of every replica, j = J/Jmax at the same times, one series per replica. Errors of the
+/// variance by the jackknife. They are errors at each time by itself: values at nearby times share their replicas and scatter
+/// together. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans (SIAM, 1982), chapter 3.
+///
+/// # Errors
+/// [`Error::TooFew`] below 3 replicas or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
+pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>, Error> {
     if replicas.len() < LEAST_REPLICAS {
         return Err(Error::TooFew {
             needed: LEAST_REPLICAS,
@@ -119,19 +94,8 @@ fn columns<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Vec<f64>>, Error> {
     }
     let times = replicas[0].as_ref().len();
     for (replica, series) in replicas.iter().map(AsRef::as_ref).enumerate() {
-        if series.len() != times {
-            return Err(Error::LengthMismatch {
-                expected: times,
-                found: series.len(),
-            });
-        }
-        if let Some(index) = series.iter().position(|value| !value.is_finite()) {
-            return Err(Error::NonFiniteReplica {
-                replica,
-                index,
-                value: series[index],
-            });
-        }
+        same_length(times, series.len())?;
+        check_replica(replica, series)?;
     }
     if times == 0 {
         return Err(Error::TooFew {
@@ -139,94 +103,15 @@ fn columns<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Vec<f64>>, Error> {
             found: 0,
         });
     }
-    Ok((0..times)
+    (0..times)
         .map(|time| {
-            replicas
+            let column: Vec<f64> = replicas
                 .iter()
                 .map(|series| series.as_ref()[time])
-                .collect()
+                .collect();
+            moments(&column)
         })
-        .collect())
-}
-
-/// Mean `<j>(t)` and second moment `chi_J(t) = <j^2> - <j>^2` across replicas at equal times.
-///
-/// `replicas`: the series of every replica, j = J/Jmax at the same times, one series per replica. Errors as for
-/// [`moments`]. They are errors at each time by itself: values at nearby times share their replicas and scatter
-/// together.
-///
-/// # Errors
-/// [`Error::TooFew`] below 3 replicas or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
-pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>, Error> {
-    columns(replicas)?
-        .iter()
-        .map(|column| moments(column))
         .collect()
-}
-
-/// Peak over time of the second moment chi_J(t), with errors by leaving out whole replicas.
-///
-/// The earliest time counts where several share the largest value. Arguments as for [`ensemble_moments`].
-///
-/// # Errors
-/// Those of [`ensemble_moments`].
-pub fn susceptibility_peak<S: AsRef<[f64]>>(replicas: &[S]) -> Result<SusceptibilityPeak, Error> {
-    let columns = columns(replicas)?;
-    let mut whole = Peak::NONE;
-    let mut without_one = vec![Peak::NONE; replicas.len()];
-    for (index, column) in columns.iter().enumerate() {
-        whole.raise(index, moments(column)?.variance);
-        for (peak, variance) in without_one.iter_mut().zip(variances_without_one(column)) {
-            peak.raise(index, variance);
-        }
-    }
-    let heights: Vec<f64> = without_one.iter().map(|peak| peak.value).collect();
-    let positions: Vec<f64> = without_one.iter().map(|peak| peak.index as f64).collect();
-    Ok(SusceptibilityPeak {
-        index: whole.index,
-        index_error: jackknife_error(&positions),
-        value: whole.value,
-        error: jackknife_error(&heights),
-    })
-}
-
-/// Largest value so far and where it stood.
-#[derive(Clone, Copy)]
-struct Peak {
-    index: usize,
-    value: f64,
-}
-
-impl Peak {
-    const NONE: Self = Self {
-        index: 0,
-        value: f64::NEG_INFINITY,
-    };
-
-    fn raise(&mut self, index: usize, value: f64) {
-        if value > self.value {
-            *self = Self { index, value };
-        }
-    }
-}
-
-/// Mean transition time and its variance `chi_tau = <tau^2> - <tau>^2` over the runs that had a transition.
-///
-/// Censored runs are counted and reported beside the moments, which leave them out: where there are any, the moments
-/// describe early transitions only.
-///
-/// # Errors
-/// [`Error::TooFew`] with fewer than 3 observed transitions, [`Error::NonFinite`].
-pub fn transition_time_moments(transitions: &[Transition]) -> Result<TransitionTimeMoments, Error> {
-    let times: Vec<f64> = transitions
-        .iter()
-        .filter_map(|transition| transition.observed())
-        .collect();
-    Ok(TransitionTimeMoments {
-        moments: moments(&times)?,
-        observed: times.len(),
-        censored: transitions.len() - times.len(),
-    })
 }
 
 #[cfg(test)]
@@ -269,63 +154,6 @@ mod tests {
     }
 
     #[test]
-    fn the_peak_is_where_the_replicas_differ_most() {
-        // Replica i jams at its own time near sample 50: x(t) = a_i exp(-((t - 50)/10)^2), variance of a_i = 1.
-        let replicas: Vec<Vec<f64>> = white_noise(11, 400)
-            .iter()
-            .map(|amplitude| {
-                (0..100)
-                    .map(|t| {
-                        let distance = (f64::from(t) - 50.0) / 10.0;
-                        0.3 + amplitude * libm::exp(-distance * distance)
-                    })
-                    .collect()
-            })
-            .collect();
-        let peak = susceptibility_peak(&replicas).unwrap();
-        assert_eq!((peak.index, peak.index_error), (50, 0.0));
-        // sqrt(2/399) for normal amplitudes.
-        assert!((peak.error - 0.0708).abs() < 0.02, "{peak:?}");
-        assert!((peak.value - 1.0).abs() < 3.0 * peak.error);
-        let series = ensemble_moments(&replicas).unwrap();
-        assert_eq!(series.len(), 100);
-        assert_eq!(series[50].variance, peak.value);
-        assert!((series[50].variance_error - peak.error).abs() < 1e-12);
-        // A standard deviation exp(-1) of the peak's at t = 40.
-        assert!((series[40].variance / peak.value - libm::exp(-2.0)).abs() < 1e-12);
-        assert!((series[0].mean - 0.3).abs() < 1e-8);
-    }
-
-    #[test]
-    fn an_uncertain_peak_has_an_uncertain_position() {
-        let replicas: Vec<Vec<f64>> = (0..12).map(|seed| white_noise(seed, 200)).collect();
-        let peak = susceptibility_peak(&replicas).unwrap();
-        assert!(peak.index_error > 5.0, "{peak:?}");
-        assert!(peak.value > 1.0);
-    }
-
-    #[test]
-    fn censored_runs_are_counted_beside_the_moments() {
-        let at = |time| Transition::At { time, period: 0 };
-        let runs = [
-            at(1.0),
-            Transition::Censored { time: 50.0 },
-            at(2.0),
-            at(6.0),
-        ];
-        let found = transition_time_moments(&runs).unwrap();
-        assert_eq!((found.observed, found.censored), (3, 1));
-        assert_eq!((found.moments.mean, found.moments.variance), (3.0, 7.0));
-        assert_eq!(
-            transition_time_moments(&runs[..3]),
-            Err(Error::TooFew {
-                needed: 3,
-                found: 2
-            })
-        );
-    }
-
-    #[test]
     fn bad_ensembles_are_refused() {
         let none: [Vec<f64>; 0] = [];
         let few = Error::TooFew {
@@ -344,7 +172,7 @@ mod tests {
                 found: 2
             })
         );
-        let hole = susceptibility_peak(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
+        let hole = ensemble_moments(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
         assert!(matches!(
             hole,
             Err(Error::NonFiniteReplica {

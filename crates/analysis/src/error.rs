@@ -203,6 +203,18 @@ pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
     }
 }
 
+/// Refuses a series of a replica with a value that is not finite.
+pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error> {
+    match series.iter().position(|value| !value.is_finite()) {
+        Some(index) => Err(Error::NonFiniteReplica {
+            replica,
+            index,
+            value: series[index],
+        }),
+        None => Ok(()),
+    }
+}
+
 /// Refuses columns of different length.
 pub(crate) fn same_length(expected: usize, found: usize) -> Result<(), Error> {
     if expected == found {

@@ -1,6 +1,5 @@
 //! Families of distributions of transition times, and their likelihood under censoring.
 
-use crate::bootstrap::Randomness;
 use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use serde::{Deserialize, Serialize};
 
@@ -22,7 +21,7 @@ pub enum Family {
 
 impl Family {
     /// Parameters of the distribution: mean and, but for the exponential, shape.
-    pub fn parameters(self) -> usize {
+    pub(crate) fn parameters(self) -> usize {
         match self {
             Self::Exponential => 1,
             Self::Gamma | Self::Weibull => 2,
@@ -30,62 +29,13 @@ impl Family {
     }
 
     /// Relative variance `(<t^2> - <t>^2)/<t>^2` at a shape.
-    pub fn relative_variance(self, shape: f64) -> f64 {
+    pub(crate) fn relative_variance(self, shape: f64) -> f64 {
         match self {
             Self::Exponential => 1.0,
             Self::Gamma => 1.0 / shape,
             Self::Weibull => {
                 libm::expm1(ln_gamma(1.0 + 2.0 / shape) - 2.0 * ln_gamma(1.0 + 1.0 / shape))
             }
-        }
-    }
-
-    /// A time drawn from the distribution with mean 1.
-    pub(crate) fn draw(self, shape: f64, randomness: &mut Randomness) -> f64 {
-        match self {
-            Self::Exponential => -libm::log(randomness.uniform()),
-            Self::Weibull => {
-                let scale = libm::exp(-ln_gamma(1.0 + 1.0 / shape));
-                scale * libm::pow(-libm::log(randomness.uniform()), 1.0 / shape)
-            }
-            Self::Gamma => gamma_number(shape, randomness) / shape,
-        }
-    }
-
-    /// Probability of no transition up to a time, at a mean and a shape (any value for the exponential).
-    pub fn survival(self, time: f64, mean: f64, shape: f64) -> f64 {
-        if time <= 0.0 {
-            return 1.0;
-        }
-        match self {
-            Self::Exponential => libm::exp(-time / mean),
-            Self::Gamma => libm::exp(ln_upper_gamma(shape, shape * time / mean)),
-            Self::Weibull => {
-                let scaled = libm::log(time / mean) + ln_gamma(1.0 + 1.0 / shape);
-                libm::exp(-libm::exp(shape * scaled))
-            }
-        }
-    }
-}
-
-/// Gamma number of unit scale: Marsaglia & Tsang, ACM Trans. Math. Softw. 26, 363 (2000).
-fn gamma_number(shape: f64, randomness: &mut Randomness) -> f64 {
-    if shape < 1.0 {
-        let boost = libm::pow(randomness.uniform(), 1.0 / shape);
-        return gamma_number(shape + 1.0, randomness) * boost;
-    }
-    let reduced = shape - 1.0 / 3.0;
-    let slope = 1.0 / (9.0 * reduced).sqrt();
-    loop {
-        let normal = randomness.normal();
-        let root = 1.0 + slope * normal;
-        let cube = root * root * root;
-        if cube <= 0.0 {
-            continue;
-        }
-        let bound = 0.5 * normal * normal + reduced * (1.0 - cube + libm::log(cube));
-        if libm::log(randomness.uniform()) < bound {
-            return reduced * cube;
         }
     }
 }
@@ -276,6 +226,7 @@ impl GroupLikelihood<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bootstrap::Randomness;
 
     fn group() -> Group {
         Group::new([
@@ -336,7 +287,7 @@ mod tests {
             let draws: Vec<f64> = (0..20_000)
                 .map(|_| family.draw(shape, &mut randomness))
                 .collect();
-            let found = crate::moments(&draws).unwrap();
+            let found = crate::ensemble::moments(&draws).unwrap();
             assert!(
                 (found.mean - 1.0).abs() < 4.0 * found.mean_error,
                 "{family:?}"

@@ -1,11 +1,11 @@
 //! Critical width and exponent from values with errors at several widths.
 
 use crate::error::{Error, checked, checked_positive, distinct, same_length};
-use crate::law::{CriticalRange, Law, windows};
+use crate::law::{CriticalRange, Law};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, least_squares};
 use crate::numerics::minimum::{crossing, minimise_from_grid};
-use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
 /// Tolerance of the minimum in ln(w_c - w).
@@ -29,19 +29,6 @@ pub struct LawFit {
     pub degrees_of_freedom: usize,
     /// Probability of a chi^2 at least as large if the law and the errors are right.
     pub probability: f64,
-}
-
-/// A fit to the points in one window of widths.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct WindowFit {
-    /// Least width in the window.
-    pub least: f64,
-    /// Largest width in the window.
-    pub largest: f64,
-    /// Points in the window.
-    pub points: usize,
-    /// The fit.
-    pub fit: LawFit,
 }
 
 /// Points with everything that a fit needs of them.
@@ -297,65 +284,17 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
     };
     Some(LawFit {
         law: points.law,
-        critical_width: Some(Uncertain {
-            value: critical,
-            error: critical_error,
-            interval_68: ends_of_critical(NARROW),
-            interval_95: ends_of_critical(WIDE),
-        }),
-        exponent: Uncertain {
-            value: line.exponent,
-            error: exponent_error,
-            interval_68: ends_of_exponent(NARROW),
-            interval_95: ends_of_exponent(WIDE),
-        },
+        critical_width: Some(Uncertain::with_intervals(
+            critical,
+            critical_error,
+            ends_of_critical,
+        )),
+        exponent: Uncertain::with_intervals(line.exponent, exponent_error, ends_of_exponent),
         ln_amplitude: Uncertain::normal(line.ln_amplitude, amplitude_error),
         chi_squared: line.chi_squared,
         degrees_of_freedom,
         probability: chi_squared_tail(line.chi_squared, degrees_of_freedom),
     })
-}
-
-/// Fits a law in windows that leave out the smallest, then the largest widths one by one.
-///
-/// The first window holds all widths. An asymptotic law fits ever better as small widths, far from w_c, are left out,
-/// and its exponent settles; a trend beyond the errors says that the exponent is not the asymptotic one. The fits share
-/// their points and do not scatter independently. Windows without a fit are left out.
-///
-/// # Errors
-/// Those of [`fit_law`] for all points.
-pub fn fit_law_in_windows(
-    law: Law,
-    width: &[f64],
-    value: &[f64],
-    error: &[f64],
-    known: Option<Uncertain>,
-) -> Result<Vec<WindowFit>, Error> {
-    let whole = fit_law(law, width, value, error, known)?;
-    let mut places = width.to_vec();
-    places.sort_by(f64::total_cmp);
-    places.dedup();
-    let mut found = Vec::new();
-    for (least, largest) in windows(&places) {
-        let inside: Vec<usize> = (0..width.len())
-            .filter(|&i| least <= width[i] && width[i] <= largest)
-            .collect();
-        let pick = |column: &[f64]| -> Vec<f64> { inside.iter().map(|&i| column[i]).collect() };
-        let fit = if inside.len() == width.len() {
-            Ok(whole)
-        } else {
-            fit_law(law, &pick(width), &pick(value), &pick(error), known)
-        };
-        if let Ok(fit) = fit {
-            found.push(WindowFit {
-                least,
-                largest,
-                points: inside.len(),
-                fit,
-            });
-        }
-    }
-    Ok(found)
 }
 
 #[cfg(test)]

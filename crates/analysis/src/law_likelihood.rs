@@ -1,6 +1,5 @@
 //! Likelihood of the runs at all widths under a law of their mean transition time.
 
-use crate::bootstrap::Randomness;
 use crate::error::{Error, checked, checked_positive, same_length};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::law::{CriticalRange, Law};
@@ -174,9 +173,9 @@ impl LawLikelihood {
         }
     }
 
-    /// The largest likelihood with the shape between two bounds of ln k; `None` where it has none.
-    pub(crate) fn largest(&self, bounds: (f64, f64)) -> Option<Largest> {
-        let best = self.over_shapes(bounds, |ln_shape| {
+    /// The largest likelihood; `None` where it has no maximum.
+    pub(crate) fn largest(&self) -> Option<Largest> {
+        let best = self.over_shapes(LN_SHAPE_BOUNDS, |ln_shape| {
             self.best_distance(ln_shape)
                 .map_or(f64::INFINITY, |best| best.value)
         });
@@ -204,38 +203,6 @@ impl LawLikelihood {
         } else {
             self.range.critical(best.ln_distance)
         }
-    }
-
-    /// Runs drawn from a fit, watched for the given times: one list a width.
-    pub(crate) fn simulate(
-        &self,
-        best: &Largest,
-        horizons: &[Vec<f64>],
-        randomness: &mut Randomness,
-    ) -> Vec<Vec<(f64, bool)>> {
-        let shape = libm::exp(best.ln_shape);
-        let critical = self.range.critical(best.ln_distance);
-        self.places
-            .iter()
-            .zip(horizons)
-            .map(|(&place, horizons)| {
-                let mean = if self.law.is_critical() && place >= critical {
-                    f64::INFINITY
-                } else {
-                    let x = self.law.covariate(place, critical);
-                    libm::exp(best.ln_amplitude + best.exponent * x)
-                };
-                let one = |&horizon: &f64| {
-                    let time = mean * self.family.draw(shape, randomness);
-                    if time < horizon {
-                        (time, true)
-                    } else {
-                        (horizon, false)
-                    }
-                };
-                horizons.iter().map(one).collect()
-            })
-            .collect()
     }
 
     /// Parameters with the intervals where their profile likelihood stays within 1/2 and 1.92 of the largest.

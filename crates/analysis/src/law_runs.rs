@@ -1,8 +1,7 @@
 //! Critical width and exponent straight from the runs at all widths, censored ones included.
 
-use crate::bootstrap::{Bootstrap, Resampled, bootstrap_errors};
 use crate::error::Error;
-use crate::family::{Family, LN_SHAPE_BOUNDS};
+use crate::family::Family;
 use crate::law::{Law, windows};
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::transition::Transition;
@@ -66,23 +65,6 @@ pub struct WindowRunsFit {
     pub fit: LawRunsFit,
 }
 
-/// A fit with errors from resampled runs.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct LawBootstrap {
-    /// The fit to the runs themselves.
-    pub fit: LawRunsFit,
-    /// w_c with bootstrap errors.
-    pub critical_width: Option<Uncertain>,
-    /// B with bootstrap errors.
-    pub exponent: Uncertain,
-    /// Shape with bootstrap errors.
-    pub shape: Option<Uncertain>,
-    /// Resamples that gave a fit.
-    pub succeeded: usize,
-    /// Resamples that did not.
-    pub failed: usize,
-}
-
 /// Fits a law of the mean transition time to the runs at all widths by maximum likelihood.
 ///
 /// `ln L = sum_observed ln f(t_i; tau(w_i), k) + sum_censored ln S(t_i; tau(w_i), k)`
@@ -94,9 +76,9 @@ pub struct LawBootstrap {
 /// from a grid. Intervals by profile likelihood (1/2 and 1.92 below the largest), the standard error being half of the
 /// narrow one (infinite where that is open). All of it assumes the family. A wrong one biases w_c and B where runs are
 /// censored (its tail stands for the times that were not seen): compare families by [`akaike`](LawRunsFit::akaike).
-/// Without censoring below w_c it only misjudges the errors, and [`bootstrap_law`] does not. Source: Kalbfleisch &
-/// Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3 (regression under censoring); Venzon &
-/// Moolgavkar, Appl. Stat. 37, 87 (1988) (profile likelihood).
+/// Without censoring below w_c it only misjudges the errors. Source: Kalbfleisch & Prentice, The Statistical Analysis of
+/// Failure Time Data (2002), chapter 3 (regression under censoring); Venzon & Moolgavkar, Appl. Stat. 37, 87 (1988)
+/// (profile likelihood).
 ///
 /// # Errors
 /// [`Error::TooFewPlaces`] where fewer widths saw a transition than the law has parameters, [`Error::NoScatter`],
@@ -127,7 +109,7 @@ pub fn fit_law_to_runs(
         parameters: law.parameters() + family.parameters() - 1,
     };
     let best = likelihood
-        .largest(LN_SHAPE_BOUNDS)
+        .largest()
         .filter(|best| !best.is_beyond)
         .ok_or(undetermined)?;
     let (critical_width, exponent, shape) = likelihood.profiles(&best);
@@ -148,63 +130,11 @@ pub fn fit_law_to_runs(
     })
 }
 
-/// Errors of a fitted law by resampling the runs within each width.
-///
-/// Resamples whose best w_c lies at infinity count with w_c and B infinite, so that the intervals end there; those with
-/// transitions at too few widths fail and are counted. With the gamma family each distinct time of censoring costs an
-/// incomplete gamma function: some hundredths of a second a resample, where the others take a few thousandths.
-/// Percentile intervals: with few runs at the largest width that saw a transition they are too short to that side, as
-/// no resample puts w_c below what it saw.
-///
-/// # Errors
-/// Those of [`fit_law_to_runs`] and [`bootstrap_errors`].
-pub fn bootstrap_law(
-    law: Law,
-    family: Family,
-    width: &[f64],
-    transitions: &[Transition],
-    bootstrap: Bootstrap,
-) -> Result<LawBootstrap, Error> {
-    let fit = fit_law_to_runs(law, family, width, transitions)?;
-    let table = RunTable::new(width, transitions)?;
-    let shape = fit.shape.map_or(1.0, |shape| shape.value);
-    let bounds = (
-        (libm::log(shape) - 1.5).max(LN_SHAPE_BOUNDS.0),
-        (libm::log(shape) + 1.5).min(LN_SHAPE_BOUNDS.1),
-    );
-    let Resampled {
-        estimates,
-        succeeded,
-        failed,
-    } = bootstrap_errors(&table.runs, bootstrap, |runs| {
-        let likelihood = LawLikelihood::new(law, family, &table.places, runs).ok()?;
-        let best = likelihood.largest(bounds)?;
-        let shape = libm::exp(best.ln_shape);
-        let exponent = if best.is_beyond {
-            f64::INFINITY
-        } else {
-            best.exponent
-        };
-        Some([likelihood.critical_width(&best), exponent, shape])
-    })?;
-    // The search over fewer shapes ends within its tolerance of the fit, whose values stand.
-    let with_value = |estimate: Uncertain, value: f64| Uncertain { value, ..estimate };
-    Ok(LawBootstrap {
-        critical_width: fit
-            .critical_width
-            .map(|critical| with_value(estimates[0], critical.value)),
-        exponent: with_value(estimates[1], fit.exponent.value),
-        shape: fit.shape.map(|shape| with_value(estimates[2], shape.value)),
-        fit,
-        succeeded,
-        failed,
-    })
-}
-
 /// Fits a law in windows that leave out the smallest, then the largest widths one by one.
 ///
-/// The first window holds all widths; see [`fit_law_in_windows`](crate::fit_law_in_windows) for their use. Windows
-/// without a fit are left out.
+/// The first window holds all widths. An asymptotic law fits ever better as small widths, far from w_c, are left out,
+/// and its exponent settles; a trend beyond the errors says that the exponent is not the asymptotic one. The fits share
+/// their runs and do not scatter independently. Windows without a fit are left out.
 ///
 /// # Errors
 /// Those of [`fit_law_to_runs`] for all runs.

@@ -7,10 +7,10 @@
 //! | question | estimators |
 //! |---|---|
 //! | when does a run change? | [`period_means`], [`TransitionDetector`] |
-//! | is a series stationary, and its mean? | [`truncation`], [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
+//! | is a series stationary, and its mean? | [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
 //! | how are transition times distributed? | [`Survival`], [`restricted_moments`], [`fit_lifetime`], [`fit_shifted_exponential`], [`ensembles_by_width`] |
-//! | where and how does the time diverge? | [`fit_law_to_runs`], [`bootstrap_law`], [`fit_law`], windows of either |
-//! | does it diverge at all? | [`compare_laws`], [`likelihood_ratio`], [`scatter_test`], [`fit_law_with_scatter`], [`power_exponent`] |
+//! | where and how does the time diverge? | [`fit_law_to_runs`], [`fit_law_to_runs_in_windows`], [`fit_law`] |
+//! | does it diverge at all? | [`compare_laws`], [`fit_law_with_scatter`], [`power_exponent`] |
 //! | how does the flow rate fluctuate? | [`ensemble_moments`], [`second_moment`], [`second_moment_peak`] |
 //! | do the curves collapse? | [`Collapse`], [`Scaling`], [`collapse_quality`] |
 //! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
@@ -60,29 +60,21 @@ mod uncertain;
 mod synthetic;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
-pub use blocks::{BlockLevel, Estimate, block_levels, mean_with_error};
-pub use bootstrap::{Bootstrap, Resampled, bootstrap_errors};
+pub use blocks::{Estimate, mean_with_error};
+pub use bootstrap::{Bootstrap, Resampled};
 pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
-pub use collapse_fit::{Collapse, CollapseFit, LEAST_OVERLAP, Transform};
+pub use collapse_fit::{Collapse, CollapseFit, Transform};
 pub use dip::{DipTest, dip_test};
-pub use divergence::{
-    LawEvidence, LikelihoodRatio, ScatterTest, compare_laws, likelihood_ratio, scatter_test,
-};
-pub use ensemble::{
-    Moments, SusceptibilityPeak, TransitionTimeMoments, ensemble_moments, mean_and_error, moments,
-    susceptibility_peak, transition_time_moments,
-};
+pub use divergence::{LawEvidence, compare_laws};
+pub use ensemble::{Moments, ensemble_moments, mean_and_error};
 pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
 pub use family::Family;
 pub use hysteresis::{Hysteresis, hysteresis};
 pub use jump::{Jump, jump_height};
 pub use law::Law;
-pub use law_fit::{LawFit, WindowFit, fit_law, fit_law_in_windows};
-pub use law_runs::{
-    LawBootstrap, LawRunsFit, WindowRunsFit, bootstrap_law, fit_law_to_runs,
-    fit_law_to_runs_in_windows,
-};
+pub use law_fit::{LawFit, fit_law};
+pub use law_runs::{LawRunsFit, WindowRunsFit, fit_law_to_runs, fit_law_to_runs_in_windows};
 pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
 pub use logistic::{FractionCrossing, fraction_crossing};
@@ -94,9 +86,6 @@ pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, secon
 pub use shifted::{ShiftedExponentialFit, fit_shifted_exponential};
 pub use stationarity::{Stationarity, stationarity};
 pub use survival::{RestrictedMoments, Survival, SurvivalStep, restricted_moments};
-pub use transition::{
-    CONFIRMATION_PERIODS, DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector,
-    transition_time,
-};
-pub use truncation::{StationaryMean, Truncation, stationary_mean, truncation};
+pub use transition::{Direction, Transition, TransitionDetector, transition_time};
+pub use truncation::{StationaryMean, stationary_mean};
 pub use uncertain::{Interval, Uncertain};

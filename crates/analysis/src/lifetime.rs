@@ -6,7 +6,7 @@ use crate::numerics::linear::{Cholesky, curvature};
 use crate::numerics::minimum::{crossing, minimise};
 use crate::survival::times;
 use crate::transition::Transition;
-use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
 /// Tolerance of a maximum in the logarithm of mean or shape.
@@ -38,35 +38,6 @@ impl LifetimeFit {
     /// difference below 2 decides nothing. Source: Akaike, IEEE Trans. Autom. Control 19, 716 (1974).
     pub fn akaike(&self) -> f64 {
         2.0 * self.family.parameters() as f64 - 2.0 * self.log_likelihood
-    }
-
-    /// Fitted probability of no transition up to a time.
-    pub fn survival(&self, time: f64) -> f64 {
-        let shape = self.shape.map_or(1.0, |shape| shape.value);
-        self.family.survival(time, self.mean.value, shape)
-    }
-
-    /// Relative variance chi_tau/tau^2: 1 for nucleation by chance, small for a deterministic approach.
-    pub fn relative_variance(&self) -> Uncertain {
-        match self.shape {
-            None => Uncertain::normal(1.0, 0.0),
-            Some(shape) => {
-                let of = |shape: f64| self.family.relative_variance(shape);
-                let slope = (of(shape.value * 1.001) - of(shape.value / 1.001)) / 0.002;
-                let error = slope.abs() * shape.error / shape.value;
-                // It falls with the shape: the ends change places.
-                let turned = |interval: Interval| Interval {
-                    lower: of(interval.upper),
-                    upper: of(interval.lower.max(libm::exp(LN_SHAPE_BOUNDS.0))),
-                };
-                Uncertain {
-                    value: of(shape.value),
-                    error,
-                    interval_68: turned(shape.interval_68),
-                    interval_95: turned(shape.interval_95),
-                }
-            }
-        }
     }
 }
 
@@ -250,12 +221,7 @@ fn by_profile(value: f64, error: f64, largest: f64, profile: impl Fn(f64) -> f64
             upper: end(value + FARTHEST),
         }
     };
-    Uncertain {
-        value,
-        error,
-        interval_68: ends(NARROW),
-        interval_95: ends(WIDE),
-    }
+    Uncertain::with_intervals(value, error, ends)
 }
 
 #[cfg(test)]

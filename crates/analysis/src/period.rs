@@ -17,14 +17,6 @@ pub struct PeriodMeans {
     pub means: Vec<f64>,
 }
 
-impl PeriodMeans {
-    /// Middle of every period, in periods from the start of the run: k + 1/2.
-    pub fn middles(&self) -> impl Iterator<Item = f64> {
-        let first = self.first_period as f64 + 0.5;
-        (0..self.means.len()).map(move |k| first + k as f64)
-    }
-}
-
 /// Averages J/Jmax, or any other quantity, over whole periods.
 ///
 /// m_k = (1/n) sum of the n rows whose intervals make up the period from k T to (k + 1) T
@@ -116,7 +108,6 @@ mod tests {
         let averages = period_means(&period, &ratio, 4).unwrap();
         assert_eq!(averages.first_period, 4);
         assert_eq!(averages.means, [2.5]);
-        assert_eq!(averages.middles().collect::<Vec<_>>(), [4.5]);
         // Too short to reach the next whole period.
         assert_eq!(period_means(&[3.5], &[9.0], 4).unwrap().means, [0.0; 0]);
     }

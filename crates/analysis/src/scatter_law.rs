@@ -9,7 +9,7 @@ use crate::numerics::linear::{Cholesky, curvature};
 use crate::numerics::simplex::{Lowest, nelder_mead};
 use crate::regression::Regression;
 use crate::transition::Transition;
-use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
 /// First steps in ln(w_c - w), ln k and q.
@@ -154,8 +154,8 @@ pub fn fit_law_with_scatter(
         groups,
         range,
     };
-    let start = common.largest(LN_SHAPE_BOUNDS).ok_or(undetermined)?;
-    let chance = chance.largest(LN_SHAPE_BOUNDS).ok_or(undetermined)?;
+    let start = common.largest().ok_or(undetermined)?;
+    let chance = chance.largest().ok_or(undetermined)?;
     // A constant scatter may put w_c far off, or even at infinity, where a growing one does not.
     let place = start.ln_distance.min(libm::log(range.span));
     let best = [0.0, 1.0]
@@ -226,12 +226,7 @@ fn critical_width(range: CriticalRange, place: f64, error: f64) -> Uncertain {
         lower: range.critical(place - deviations * error),
         upper: range.critical(place + deviations * error),
     };
-    Uncertain {
-        value: range.critical(place),
-        error: libm::exp(place) * error,
-        interval_68: ends(NARROW),
-        interval_95: ends(WIDE),
-    }
+    Uncertain::with_intervals(range.critical(place), libm::exp(place) * error, ends)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::lifetime::group_of;
 use crate::numerics::minimum::crossing;
 use crate::survival::times;
 use crate::transition::Transition;
-use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
 /// Probabilities of the narrow and of the wide interval.
@@ -119,12 +119,7 @@ fn waiting_time(theta: f64, free: f64) -> Uncertain {
             upper: end(40.0),
         }
     };
-    Uncertain {
-        value: theta,
-        error: theta / free.sqrt(),
-        interval_68: ends(NARROW),
-        interval_95: ends(WIDE),
-    }
+    Uncertain::with_intervals(theta, theta / free.sqrt(), ends)
 }
 
 #[cfg(test)]

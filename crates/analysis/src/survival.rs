@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::transition::Transition;
-use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
 /// The survival curve just after one transition time.
@@ -288,12 +288,7 @@ fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
         lower: libm::exp(log * libm::exp(deviations * spread)),
         upper: libm::exp(log * libm::exp(-deviations * spread)),
     };
-    Uncertain {
-        value: survival,
-        error: survival * log_variance.sqrt(),
-        interval_68: ends(NARROW),
-        interval_95: ends(WIDE),
-    }
+    Uncertain::with_intervals(survival, survival * log_variance.sqrt(), ends)
 }
 
 /// Mean and variance of min(tau, horizon) from censored runs.

@@ -1,6 +1,8 @@
 //! Data with known statistics, the same at every test run.
 
 use crate::bootstrap::Randomness;
+use crate::family::Family;
+use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use crate::transition::Transition;
 
 /// Independent normal numbers of mean 0 and variance 1.
@@ -19,6 +21,57 @@ pub(crate) fn autoregressive(memory: f64, seed: u64, samples: usize) -> Vec<f64>
         series[k] = memory * series[k - 1] + innovation * series[k];
     }
     series
+}
+
+impl Family {
+    /// A time drawn from the distribution with mean 1.
+    pub(crate) fn draw(self, shape: f64, randomness: &mut Randomness) -> f64 {
+        match self {
+            Self::Exponential => -libm::log(randomness.uniform()),
+            Self::Weibull => {
+                let scale = libm::exp(-ln_gamma(1.0 + 1.0 / shape));
+                scale * libm::pow(-libm::log(randomness.uniform()), 1.0 / shape)
+            }
+            Self::Gamma => gamma_number(shape, randomness) / shape,
+        }
+    }
+
+    /// Probability of no transition up to a time, at a mean and a shape (any value for the exponential).
+    pub(crate) fn survival(self, time: f64, mean: f64, shape: f64) -> f64 {
+        if time <= 0.0 {
+            return 1.0;
+        }
+        match self {
+            Self::Exponential => libm::exp(-time / mean),
+            Self::Gamma => libm::exp(ln_upper_gamma(shape, shape * time / mean)),
+            Self::Weibull => {
+                let scaled = libm::log(time / mean) + ln_gamma(1.0 + 1.0 / shape);
+                libm::exp(-libm::exp(shape * scaled))
+            }
+        }
+    }
+}
+
+/// Gamma number of unit scale: Marsaglia & Tsang, ACM Trans. Math. Softw. 26, 363 (2000).
+fn gamma_number(shape: f64, randomness: &mut Randomness) -> f64 {
+    if shape < 1.0 {
+        let boost = libm::pow(randomness.uniform(), 1.0 / shape);
+        return gamma_number(shape + 1.0, randomness) * boost;
+    }
+    let reduced = shape - 1.0 / 3.0;
+    let slope = 1.0 / (9.0 * reduced).sqrt();
+    loop {
+        let normal = randomness.normal();
+        let root = 1.0 + slope * normal;
+        let cube = root * root * root;
+        if cube <= 0.0 {
+            continue;
+        }
+        let bound = 0.5 * normal * normal + reduced * (1.0 - cube + libm::log(cube));
+        if libm::log(randomness.uniform()) < bound {
+            return reduced * cube;
+        }
+    }
 }
 
 /// Exponential number of mean 1.

@@ -4,11 +4,8 @@ use crate::error::Error;
 use crate::period::PeriodMeans;
 use serde::{Deserialize, Serialize};
 
-/// Threshold of J/Jmax for a single run: midway between rest and jammed flow.
-pub const DEFAULT_THRESHOLD: f64 = 0.5;
-
 /// Period averages in a row that must lie beyond the threshold before a crossing counts.
-pub const CONFIRMATION_PERIODS: u32 = 3;
+const CONFIRMATION_PERIODS: u32 = 3;
 
 /// The way in which the flow rate crosses the threshold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -88,8 +85,8 @@ struct Crossing {
 /// confirmed, lies up to three periods before that time: see [`candidate`](Self::candidate).
 ///
 /// ```
-/// use peristalsis_analysis::{DEFAULT_THRESHOLD, Direction, Transition, TransitionDetector};
-/// let mut detector = TransitionDetector::new(Direction::Upward, DEFAULT_THRESHOLD, 10.0)?;
+/// use peristalsis_analysis::{Direction, Transition, TransitionDetector};
+/// let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 10.0)?;
 /// for average in [0.1, 0.4, 0.8, 0.9] {
 ///     detector.push(average)?;
 /// }

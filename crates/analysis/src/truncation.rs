@@ -13,13 +13,13 @@ const LEAST_SAMPLES: usize = 32;
 const LIMIT: f64 = 3.0;
 
 /// Where the transient of a series ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Truncation {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Truncation {
     /// Samples to leave out at the beginning.
-    pub discard: usize,
+    discard: usize,
     /// Whether the best place lies within the first half of the series. If not, the series is still in its transient,
     /// or too short to tell.
-    pub is_settled: bool,
+    is_settled: bool,
 }
 
 /// Mean of the stationary part of a series.
@@ -44,14 +44,7 @@ pub struct StationaryMean {
 ///
 /// # Errors
 /// [`Error::TooFew`] below 32 samples, [`Error::NonFinite`].
-///
-/// ```
-/// use peristalsis_analysis::truncation;
-/// let step: Vec<f64> = (0..200).map(|k| if k < 40 { 3.0 } else { f64::from(k % 2) }).collect();
-/// assert_eq!(truncation(&step)?.discard, 40);
-/// # Ok::<(), peristalsis_analysis::Error>(())
-/// ```
-pub fn truncation(series: &[f64]) -> Result<Truncation, Error> {
+fn truncation(series: &[f64]) -> Result<Truncation, Error> {
     let batches: Vec<f64> = checked(series, LEAST_SAMPLES)?
         .chunks_exact(BATCH)
         .map(|batch| batch.iter().sum::<f64>() / BATCH as f64)
@@ -202,7 +195,11 @@ mod tests {
     }
 
     #[test]
-    fn a_constant_series_is_stationary() {
+    fn a_step_is_cut_off_and_a_constant_series_is_stationary() {
+        let step: Vec<f64> = (0..200)
+            .map(|k| if k < 40 { 3.0 } else { f64::from(k % 2) })
+            .collect();
+        assert_eq!(truncation(&step).unwrap().discard, 40);
         let found = stationary_mean(&[0.5; 64]).unwrap();
         assert_eq!((found.discarded, found.estimate.mean), (0, 0.5));
     }

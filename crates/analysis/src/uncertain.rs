@@ -51,28 +51,31 @@ pub struct Uncertain {
 impl Uncertain {
     /// Normal approximation: value +- error and value +- 1.96 error.
     pub fn normal(value: f64, error: f64) -> Self {
-        let around = |deviations: f64| Interval {
+        Self::with_intervals(value, error, |deviations| Interval {
             lower: value - deviations * error,
             upper: value + deviations * error,
-        };
+        })
+    }
+
+    /// A number whose two intervals follow from the deviations, in standard errors, of a normal number at their ends.
+    pub(crate) fn with_intervals(
+        value: f64,
+        error: f64,
+        interval: impl Fn(f64) -> Interval,
+    ) -> Self {
         Self {
             value,
             error,
-            interval_68: around(NARROW),
-            interval_95: around(WIDE),
+            interval_68: interval(NARROW),
+            interval_95: interval(WIDE),
         }
-    }
-
-    /// Normal approximation for the logarithm of a positive number, of which `relative_error` is the standard error.
-    pub fn log_normal(value: f64, relative_error: f64) -> Self {
-        Self::normal(libm::log(value), relative_error).exponential()
     }
 
     /// Percentile bootstrap: standard deviation and quantiles of the estimates from resampled data.
     ///
     /// `None` with fewer than two finite estimates. Source: Efron & Tibshirani, An Introduction to the Bootstrap
     /// (1993), chapters 6 and 13.
-    pub fn from_bootstrap(value: f64, resampled: &[f64]) -> Option<Self> {
+    pub(crate) fn from_bootstrap(value: f64, resampled: &[f64]) -> Option<Self> {
         let mut sorted: Vec<f64> = resampled.iter().copied().filter(|x| !x.is_nan()).collect();
         sorted.sort_by(f64::total_cmp);
         let finite: Vec<f64> = sorted.iter().copied().filter(|x| x.is_finite()).collect();
@@ -159,7 +162,7 @@ mod tests {
         assert!(found.interval_68.contains(1.5) && !found.interval_68.contains(1.49));
         assert!((found.deviations_from(3.0) + 2.0).abs() < 1e-15);
         assert_eq!(Uncertain::normal(1.0, 0.0).deviations_from(1.0), 0.0);
-        let ratio = Uncertain::log_normal(10.0, 0.1);
+        let ratio = Uncertain::normal(libm::log(10.0), 0.1).exponential();
         assert!((ratio.error - 1.0).abs() < 1e-12);
         let product = ratio.interval_95.lower * ratio.interval_95.upper;
         assert!((product - 100.0).abs() < 1e-9);

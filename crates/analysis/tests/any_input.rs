@@ -62,7 +62,7 @@ proptest! {
         let families = [Family::Exponential, Family::Gamma, Family::Weibull];
         for family in families {
             if let Ok(fit) = fit_lifetime(family, &runs) {
-                let _ = (fit.akaike(), fit.survival(horizon), fit.relative_variance());
+                let _ = fit.akaike();
             }
             let _ = ensembles_by_width(family, &width, &runs);
         }
@@ -76,11 +76,7 @@ proptest! {
             let _ = fit_law_to_runs_in_windows(law, Family::Exponential, &width, &runs);
         }
         let _ = fit_law_with_scatter(&width, &runs);
-        let _ = bootstrap_law(Law::Power, Family::Exponential, &width, &runs, FEW);
         let _ = compare_laws(&laws, Family::Exponential, &width, &runs);
-        let horizons: Vec<f64> = rows.iter().map(|row| row.2).collect();
-        let pair = [Law::Power, Law::Exponential];
-        let _ = likelihood_ratio(pair, Family::Exponential, &width, &runs, &horizons, FEW);
     }
 
     #[test]
@@ -96,10 +92,8 @@ proptest! {
         for known in [None, Some(Uncertain::normal(at, error)), Some(Uncertain::normal(at, 0.0))] {
             for law in [Law::Power, Law::Barrier { power: at }, Law::Exponential] {
                 let _ = fit_law(law, &x, &y, &errors, known);
-                let _ = fit_law_in_windows(law, &x, &y, &errors, known);
             }
         }
-        let _ = scatter_test(&x, &y, &errors, Uncertain::normal(at, error));
         let half = rows.len() / 2;
         let upper = [&x[..half], &y[..half], &errors[..half]];
         let lower = [&x[half..], &y[half..], &errors[half..]];
@@ -117,7 +111,6 @@ proptest! {
         let _ = fraction_crossing(&values, &outcomes);
         let _ = hysteresis((&values, &outcomes), (&values, &others));
         let series: Vec<f64> = rows.iter().flat_map(|row| [row.0, row.1, row.2]).collect();
-        let _ = truncation(&series);
         let _ = stationary_mean(&series);
         let runs: Vec<&[f64]> = series.chunks(5).collect();
         let _ = second_moment_peak(&runs, AfterEnd::Leave, FEW);

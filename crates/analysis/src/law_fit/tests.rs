@@ -85,28 +85,6 @@ fn barrier_and_exponential_laws_are_found_exactly() {
 }
 
 #[test]
-fn windows_show_a_law_that_holds_only_near_the_critical_width() {
-    // A correction that dies out: tau = (w_c - w)^-1 (1 + 3 (w_c - w)^2).
-    let value = WIDTHS.map(|width| {
-        let distance = 2.82 - width;
-        (1.0 + 3.0 * distance * distance) / distance
-    });
-    let error = value.map(|value| 0.02 * value);
-    let known = Some(Uncertain::normal(2.82, 0.0));
-    let windows = fit_law_in_windows(Law::Power, &WIDTHS, &value, &error, known).unwrap();
-    assert_eq!((windows[0].points, windows[1].points), (10, 9));
-    let deviation = |window: &WindowFit| (window.fit.exponent.value - 1.0).abs();
-    assert!(deviation(&windows[0]) > 0.08);
-    // Without the six smallest widths.
-    assert_eq!((windows[6].least, windows[6].largest), (2.7, 2.78));
-    assert!(deviation(&windows[6]) < 0.05);
-    // Without the largest widths it grows worse.
-    let last = windows.last().unwrap();
-    assert_eq!((last.least, last.largest, last.points), (2.3, 2.4, 2));
-    assert!(deviation(last) > deviation(&windows[0]));
-}
-
-#[test]
 fn what_does_not_determine_a_law_is_refused() {
     let few = fit_law(Law::Power, &[2.0, 2.1, 2.1], &[1.0; 3], &[0.1; 3], None);
     assert_eq!(
@@ -157,6 +135,5 @@ proptest! {
                 }
             }
         }
-        let _ = fit_law_in_windows(Law::Power, &width, &value, &error, known);
     }
 }

@@ -107,58 +107,6 @@ fn dropping_censored_runs_moves_the_critical_width() {
     assert!(is_off, "{naive_critical:?}");
 }
 
-/// Coverage of the bootstrap's intervals of w_c and B, and the mean errors of B by profile and by bootstrap.
-fn bootstrap_coverage(until: f64, draw: impl Fn(&mut Randomness) -> f64) -> (f64, f64) {
-    let trials = 100;
-    let bootstrap = Bootstrap {
-        resamples: 100,
-        seed: 5,
-    };
-    let mut covered = [0; 4];
-    let (mut profile_error, mut bootstrap_error) = (0.0, 0.0);
-    for seed in 0..trials {
-        let (width, transitions) = runs(seed, 15, until, &draw);
-        let found = bootstrap_law(
-            Law::Power,
-            Family::Exponential,
-            &width,
-            &transitions,
-            bootstrap,
-        )
-        .unwrap();
-        let critical = found.critical_width.unwrap();
-        covered[0] += usize::from(critical.interval_68.contains(2.8));
-        covered[1] += usize::from(critical.interval_95.contains(2.8));
-        covered[2] += usize::from(found.exponent.interval_68.contains(1.0));
-        covered[3] += usize::from(found.exponent.interval_95.contains(1.0));
-        profile_error += found.fit.exponent.error;
-        bootstrap_error += found.exponent.error;
-        assert_eq!(found.succeeded + found.failed, 100);
-    }
-    // Percentiles of 100 resamples of 15 runs a width: 0.65 and 0.93 in longer tests.
-    for (k, what) in ["w_c", "exponent"].iter().enumerate() {
-        assert_coverage(covered[2 * k], trials as usize, 0.6827, 0.03, what);
-        assert_coverage(covered[2 * k + 1], trials as usize, 0.95, 0.04, what);
-    }
-    (profile_error, bootstrap_error)
-}
-
-#[test]
-fn bootstrap_intervals_cover_with_censored_runs() {
-    let (profile_error, bootstrap_error) = bootstrap_coverage(300.0, exponential);
-    assert!((bootstrap_error / profile_error - 1.0).abs() < 0.25);
-}
-
-#[test]
-fn bootstrap_intervals_cover_for_the_wrong_family_where_nothing_below_the_critical_width_is_censored()
- {
-    // Relative variance 1/4: the profile of an exponential likelihood is twice as wide as it should be.
-    let sharp =
-        |randomness: &mut Randomness| (0..4).map(|_| exponential(randomness)).sum::<f64>() / 4.0;
-    let (profile_error, bootstrap_error) = bootstrap_coverage(1e5, sharp);
-    assert!((bootstrap_error / profile_error - 0.5).abs() < 0.1);
-}
-
 #[test]
 fn windows_begin_with_all_widths_and_agree_where_the_law_holds() {
     let (width, transitions) = runs(2, 30, 300.0, exponential);

@@ -136,12 +136,6 @@ fn the_shape_tells_chance_from_determinism_and_the_criterion_finds_the_family() 
     assert!(akaike(Family::Weibull, &sharp) < akaike(Family::Gamma, &sharp));
     assert!(akaike(Family::Gamma, &sharp) < exponential - 100.0);
     assert!(akaike(Family::Weibull, &chance) > akaike(Family::Exponential, &chance) - 4.0);
-    let relative = fit_lifetime(Family::Weibull, &sharp)
-        .unwrap()
-        .relative_variance();
-    let expected = Family::Weibull.relative_variance(6.0);
-    assert!(relative.deviations_from(expected).abs() < 3.0);
-    assert!(relative.interval_68.contains(relative.value) && relative.error < 0.02);
 }
 
 #[test]
@@ -153,7 +147,8 @@ fn the_fit_follows_the_kaplan_meier_curve() {
     let fit = fit_lifetime(Family::Gamma, &sample).unwrap();
     let curve = crate::Survival::new(&sample).unwrap();
     for time in [1.0, 3.0, 5.0, 6.5] {
-        assert!((fit.survival(time) - curve.at(time)).abs() < 0.05);
+        let fitted = Family::Gamma.survival(time, fit.mean.value, fit.shape.unwrap().value);
+        assert!((fitted - curve.at(time)).abs() < 0.05);
     }
     assert_eq!(fit.observed + fit.censored, 500);
 }
