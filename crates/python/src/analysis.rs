@@ -5,20 +5,59 @@ use std::cell::RefCell;
 use numpy::PyReadonlyArray1;
 use peristalsis_analysis as analysis;
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Collapse, Curve, CurvePoint, Family, Law, Scaling, Survival, Transition,
-    Uncertain,
+    AfterEnd, Bootstrap, Collapse, Curve, CurvePoint, Direction, Family, Law, Scaling, Survival,
+    Transition, Uncertain,
 };
 use pyo3::prelude::*;
 use pythonize::{depythonize, pythonize};
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
-use crate::error::of_analysis;
+use crate::error::{AnalysisError, of_analysis};
 
-type Reals<'py> = PyReadonlyArray1<'py, f64>;
-type Truths<'py> = PyReadonlyArray1<'py, bool>;
 type Answer<'py> = PyResult<Bound<'py, PyAny>>;
-/// A curve as Python hands it over: its parameter, x, y, errors.
-type Measured<'py> = (f64, Reals<'py>, Reals<'py>, Reals<'py>);
+
+/// A column of numbers, from an array of NumPy.
+pub(crate) struct Column(Vec<f64>);
+
+impl FromPyObject<'_, '_> for Column {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let array: PyReadonlyArray1<'_, f64> = object.extract()?;
+        Ok(Self(array.as_slice()?.to_vec()))
+    }
+}
+
+/// Outcomes of runs, from the columns (time, observed): the time of the transition, or of the end of a run without one.
+pub(crate) struct Runs(Vec<Transition>);
+
+impl FromPyObject<'_, '_> for Runs {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let (Column(time), observed): (Column, Vec<bool>) = object.extract()?;
+        let outcome = |(time, observed)| match observed {
+            // No estimator of these asks for the period.
+            true => Transition::At { time, period: 0 },
+            false => Transition::Censored { time },
+        };
+        Ok(Self(time.into_iter().zip(observed).map(outcome).collect()))
+    }
+}
+
+/// A value of one of our enumerations, from its name.
+pub(crate) struct Named<T>(T);
+
+impl<T: DeserializeOwned> FromPyObject<'_, '_> for Named<T> {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        depythonize(&object)
+            .map(Self)
+            .map_err(|error| AnalysisError::new_err(error.to_string()))
+    }
+}
 
 /// Computes without the interpreter and hands the answer over.
 fn answer<'py, T: Serialize + Send>(
@@ -29,300 +68,12 @@ fn answer<'py, T: Serialize + Send>(
     Ok(pythonize(py, &value)?)
 }
 
-fn vector(array: &Reals<'_>) -> PyResult<Vec<f64>> {
-    Ok(array.as_slice()?.to_vec())
+fn uncertain((value, error): (f64, f64)) -> Uncertain {
+    Uncertain::normal(value, error)
 }
 
-fn truths(array: &Truths<'_>) -> PyResult<Vec<bool>> {
-    Ok(array.as_slice()?.to_vec())
-}
-
-/// Times of transitions, and of the ends of runs without one.
-fn transitions(time: &Reals<'_>, observed: &Truths<'_>) -> PyResult<Vec<Transition>> {
-    let (time, observed) = (time.as_slice()?, observed.as_slice()?);
-    Ok(time
-        .iter()
-        .zip(observed)
-        .map(|(&time, &observed)| match observed {
-            // Which period it was matters to none of these estimators.
-            true => Transition::At { time, period: 0 },
-            false => Transition::Censored { time },
-        })
-        .collect())
-}
-
-/// A value of one of our enumerations by its name.
-fn named<'py, T: for<'a> serde::Deserialize<'a>>(name: &Bound<'py, PyAny>) -> PyResult<T> {
-    depythonize(name).map_err(|error| crate::error::AnalysisError::new_err(error.to_string()))
-}
-
-fn uncertain(pair: (f64, f64)) -> Uncertain {
-    Uncertain::normal(pair.0, pair.1)
-}
-
-#[pyfunction]
-fn mean_with_error<'py>(py: Python<'py>, series: Reals<'py>) -> Answer<'py> {
-    let series = vector(&series)?;
-    answer(py, || analysis::mean_with_error(&series))
-}
-
-#[pyfunction]
-fn autocorrelation_time<'py>(py: Python<'py>, series: Reals<'py>) -> Answer<'py> {
-    let series = vector(&series)?;
-    answer(py, || analysis::autocorrelation_time(&series))
-}
-
-#[pyfunction]
-fn stationary_mean<'py>(py: Python<'py>, series: Reals<'py>) -> Answer<'py> {
-    let series = vector(&series)?;
-    answer(py, || analysis::stationary_mean(&series))
-}
-
-#[pyfunction]
-fn stationarity<'py>(py: Python<'py>, series: Reals<'py>) -> Answer<'py> {
-    let series = vector(&series)?;
-    answer(py, || analysis::stationarity(&series))
-}
-
-/// Time of the transition in a series of period averages, and whether there was one.
-#[pyfunction]
-fn transition_time(
-    averages: Reals<'_>,
-    direction: &Bound<'_, PyAny>,
-    threshold: f64,
-    period_duration: f64,
-) -> PyResult<(f64, bool)> {
-    let means = analysis::PeriodMeans {
-        first_period: 0,
-        means: vector(&averages)?,
-    };
-    let direction = named(direction)?;
-    let found = analysis::transition_time(&means, direction, threshold, period_duration);
-    Ok(match found.map_err(of_analysis)? {
-        Transition::At { time, .. } => (time, true),
-        Transition::Censored { time } => (time, false),
-    })
-}
-
-#[pyfunction]
-fn survival<'py>(py: Python<'py>, time: Reals<'py>, observed: Truths<'py>) -> Answer<'py> {
-    let runs = transitions(&time, &observed)?;
-    answer(py, || Survival::new(&runs))
-}
-
-#[pyfunction]
-fn survival_median<'py>(py: Python<'py>, time: Reals<'py>, observed: Truths<'py>) -> Answer<'py> {
-    let runs = transitions(&time, &observed)?;
-    answer(py, || Survival::new(&runs)?.median())
-}
-
-#[pyfunction]
-fn restricted_moments<'py>(
-    py: Python<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-    horizon: f64,
-) -> Answer<'py> {
-    let runs = transitions(&time, &observed)?;
-    answer(py, || analysis::restricted_moments(&runs, horizon))
-}
-
-#[pyfunction]
-fn fit_lifetime<'py>(
-    py: Python<'py>,
-    family: &Bound<'py, PyAny>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let (family, runs): (Family, _) = (named(family)?, transitions(&time, &observed)?);
-    answer(py, || analysis::fit_lifetime(family, &runs))
-}
-
-#[pyfunction]
-fn fit_shifted_exponential<'py>(
-    py: Python<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let runs = transitions(&time, &observed)?;
-    answer(py, || analysis::fit_shifted_exponential(&runs))
-}
-
-#[pyfunction]
-#[pyo3(signature = (law, width, value, error, known=None))]
-fn fit_law<'py>(
-    py: Python<'py>,
-    law: &Bound<'py, PyAny>,
-    width: Reals<'py>,
-    value: Reals<'py>,
-    error: Reals<'py>,
-    known: Option<(f64, f64)>,
-) -> Answer<'py> {
-    let law: Law = named(law)?;
-    let (width, value, error) = (vector(&width)?, vector(&value)?, vector(&error)?);
-    answer(py, || {
-        analysis::fit_law(law, &width, &value, &error, known.map(uncertain))
-    })
-}
-
-#[pyfunction]
-fn fit_law_to_runs<'py>(
-    py: Python<'py>,
-    law: &Bound<'py, PyAny>,
-    family: &Bound<'py, PyAny>,
-    width: Reals<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let (law, family): (Law, Family) = (named(law)?, named(family)?);
-    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || analysis::fit_law_to_runs(law, family, &width, &runs))
-}
-
-#[pyfunction]
-fn compare_laws<'py>(
-    py: Python<'py>,
-    laws: Vec<Bound<'py, PyAny>>,
-    family: &Bound<'py, PyAny>,
-    width: Reals<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let laws: Vec<Law> = laws.iter().map(named).collect::<PyResult<_>>()?;
-    let family: Family = named(family)?;
-    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || analysis::compare_laws(&laws, family, &width, &runs))
-}
-
-#[pyfunction]
-fn fit_law_to_runs_in_windows<'py>(
-    py: Python<'py>,
-    law: &Bound<'py, PyAny>,
-    family: &Bound<'py, PyAny>,
-    width: Reals<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let (law, family): (Law, Family) = (named(law)?, named(family)?);
-    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || {
-        analysis::fit_law_to_runs_in_windows(law, family, &width, &runs)
-    })
-}
-
-#[pyfunction]
-fn fit_law_with_scatter<'py>(
-    py: Python<'py>,
-    width: Reals<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || analysis::fit_law_with_scatter(&width, &runs))
-}
-
-#[pyfunction]
-fn ensembles_by_width<'py>(
-    py: Python<'py>,
-    family: &Bound<'py, PyAny>,
-    width: Reals<'py>,
-    time: Reals<'py>,
-    observed: Truths<'py>,
-) -> Answer<'py> {
-    let family: Family = named(family)?;
-    let (width, runs) = (vector(&width)?, transitions(&time, &observed)?);
-    answer(py, || analysis::ensembles_by_width(family, &width, &runs))
-}
-
-#[pyfunction]
-fn fraction_crossing<'py>(py: Python<'py>, width: Reals<'py>, jammed: Truths<'py>) -> Answer<'py> {
-    let (width, jammed) = (vector(&width)?, truths(&jammed)?);
-    answer(py, || analysis::fraction_crossing(&width, &jammed))
-}
-
-#[pyfunction]
-fn hysteresis<'py>(
-    py: Python<'py>,
-    rest: (Reals<'py>, Truths<'py>),
-    jammed: (Reals<'py>, Truths<'py>),
-) -> Answer<'py> {
-    let rest = (vector(&rest.0)?, truths(&rest.1)?);
-    let jammed = (vector(&jammed.0)?, truths(&jammed.1)?);
-    answer(py, || {
-        analysis::hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1))
-    })
-}
-
-#[pyfunction]
-fn jump_height<'py>(
-    py: Python<'py>,
-    upper: [Reals<'py>; 3],
-    lower: [Reals<'py>; 3],
-    critical: (f64, f64),
-) -> Answer<'py> {
-    let vectors = |branch: &[Reals<'_>; 3]| -> PyResult<[Vec<f64>; 3]> {
-        Ok([
-            vector(&branch[0])?,
-            vector(&branch[1])?,
-            vector(&branch[2])?,
-        ])
-    };
-    let (upper, lower) = (vectors(&upper)?, vectors(&lower)?);
-    answer(py, || {
-        analysis::jump_height(
-            [&upper[0], &upper[1], &upper[2]],
-            [&lower[0], &lower[1], &lower[2]],
-            uncertain(critical),
-        )
-    })
-}
-
-#[pyfunction]
-fn dip_test<'py>(py: Python<'py>, values: Reals<'py>, resamples: usize, seed: u64) -> Answer<'py> {
-    let values = vector(&values)?;
-    answer(py, || {
-        analysis::dip_test(&values, Bootstrap { resamples, seed })
-    })
-}
-
-#[pyfunction]
-fn two_peaks<'py>(py: Python<'py>, values: Reals<'py>) -> Answer<'py> {
-    let values = vector(&values)?;
-    answer(py, || analysis::two_peaks(&values))
-}
-
-#[pyfunction]
-fn fit_line<'py>(py: Python<'py>, x: Reals<'py>, y: Reals<'py>, error: Reals<'py>) -> Answer<'py> {
-    let (x, y, error) = (vector(&x)?, vector(&y)?, vector(&error)?);
-    answer(py, || analysis::fit_line(&x, &y, &error))
-}
-
-#[pyfunction]
-fn fit_parabola<'py>(
-    py: Python<'py>,
-    x: Reals<'py>,
-    y: Reals<'py>,
-    error: Reals<'py>,
-) -> Answer<'py> {
-    let (x, y, error) = (vector(&x)?, vector(&y)?, vector(&error)?);
-    answer(py, || analysis::fit_parabola(&x, &y, &error))
-}
-
-#[pyfunction]
-fn power_exponent<'py>(
-    py: Python<'py>,
-    x: Reals<'py>,
-    y: Reals<'py>,
-    error: Reals<'py>,
-) -> Answer<'py> {
-    let (x, y, error) = (vector(&x)?, vector(&y)?, vector(&error)?);
-    answer(py, || analysis::power_exponent(&x, &y, &error))
-}
-
-#[pyfunction]
-fn ensemble_moments<'py>(py: Python<'py>, replicas: Vec<Reals<'py>>) -> Answer<'py> {
-    let replicas: Vec<Vec<f64>> = replicas.iter().map(vector).collect::<PyResult<_>>()?;
-    answer(py, || analysis::ensemble_moments(&replicas))
+fn series(columns: &[Column]) -> Vec<&[f64]> {
+    columns.iter().map(|column| column.0.as_slice()).collect()
 }
 
 /// What stands for runs that ended early: the mean of so many last samples, or nothing.
@@ -331,44 +82,267 @@ fn after_end(held: Option<usize>) -> AfterEnd {
 }
 
 #[pyfunction]
-fn second_moment<'py>(py: Python<'py>, runs: Vec<Reals<'py>>, held: Option<usize>) -> Answer<'py> {
-    let runs: Vec<Vec<f64>> = runs.iter().map(vector).collect::<PyResult<_>>()?;
-    answer(py, || analysis::second_moment(&runs, after_end(held)))
+pub(crate) fn mean_with_error<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
+    answer(py, || analysis::mean_with_error(&series.0))
 }
 
 #[pyfunction]
-fn second_moment_peak<'py>(
+pub(crate) fn autocorrelation_time<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
+    answer(py, || analysis::autocorrelation_time(&series.0))
+}
+
+#[pyfunction]
+pub(crate) fn stationary_mean<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
+    answer(py, || analysis::stationary_mean(&series.0))
+}
+
+#[pyfunction]
+pub(crate) fn stationarity<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
+    answer(py, || analysis::stationarity(&series.0))
+}
+
+/// Time of the transition in a series of period averages, and whether there was one.
+#[pyfunction]
+pub(crate) fn transition_time(
+    averages: Column,
+    direction: Named<Direction>,
+    threshold: f64,
+    period_duration: f64,
+) -> PyResult<(f64, bool)> {
+    let means = analysis::PeriodMeans {
+        first_period: 0,
+        means: averages.0,
+    };
+    let found = analysis::transition_time(&means, direction.0, threshold, period_duration);
+    Ok(match found.map_err(of_analysis)? {
+        Transition::At { time, .. } => (time, true),
+        Transition::Censored { time } => (time, false),
+    })
+}
+
+#[pyfunction]
+pub(crate) fn survival<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
+    answer(py, || Survival::new(&runs.0))
+}
+
+#[pyfunction]
+pub(crate) fn survival_median<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
+    answer(py, || Survival::new(&runs.0)?.median())
+}
+
+#[pyfunction]
+pub(crate) fn restricted_moments<'py>(py: Python<'py>, runs: Runs, horizon: f64) -> Answer<'py> {
+    answer(py, || analysis::restricted_moments(&runs.0, horizon))
+}
+
+#[pyfunction]
+pub(crate) fn fit_lifetime<'py>(py: Python<'py>, family: Named<Family>, runs: Runs) -> Answer<'py> {
+    answer(py, || analysis::fit_lifetime(family.0, &runs.0))
+}
+
+#[pyfunction]
+pub(crate) fn fit_shifted_exponential<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
+    answer(py, || analysis::fit_shifted_exponential(&runs.0))
+}
+
+#[pyfunction]
+#[pyo3(signature = (law, width, value, error, known=None))]
+pub(crate) fn fit_law<'py>(
     py: Python<'py>,
-    runs: Vec<Reals<'py>>,
+    law: Named<Law>,
+    width: Column,
+    value: Column,
+    error: Column,
+    known: Option<(f64, f64)>,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::fit_law(law.0, &width.0, &value.0, &error.0, known.map(uncertain))
+    })
+}
+
+#[pyfunction]
+pub(crate) fn fit_law_to_runs<'py>(
+    py: Python<'py>,
+    law: Named<Law>,
+    family: Named<Family>,
+    width: Column,
+    runs: Runs,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::fit_law_to_runs(law.0, family.0, &width.0, &runs.0)
+    })
+}
+
+#[pyfunction]
+pub(crate) fn fit_law_to_runs_in_windows<'py>(
+    py: Python<'py>,
+    law: Named<Law>,
+    family: Named<Family>,
+    width: Column,
+    runs: Runs,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::fit_law_to_runs_in_windows(law.0, family.0, &width.0, &runs.0)
+    })
+}
+
+#[pyfunction]
+pub(crate) fn compare_laws<'py>(
+    py: Python<'py>,
+    laws: Named<Vec<Law>>,
+    family: Named<Family>,
+    width: Column,
+    runs: Runs,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::compare_laws(&laws.0, family.0, &width.0, &runs.0)
+    })
+}
+
+#[pyfunction]
+pub(crate) fn fit_law_with_scatter<'py>(py: Python<'py>, width: Column, runs: Runs) -> Answer<'py> {
+    answer(py, || analysis::fit_law_with_scatter(&width.0, &runs.0))
+}
+
+#[pyfunction]
+pub(crate) fn ensembles_by_width<'py>(
+    py: Python<'py>,
+    family: Named<Family>,
+    width: Column,
+    runs: Runs,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::ensembles_by_width(family.0, &width.0, &runs.0)
+    })
+}
+
+#[pyfunction]
+pub(crate) fn fraction_crossing<'py>(
+    py: Python<'py>,
+    width: Column,
+    jammed: Vec<bool>,
+) -> Answer<'py> {
+    answer(py, || analysis::fraction_crossing(&width.0, &jammed))
+}
+
+#[pyfunction]
+pub(crate) fn hysteresis<'py>(
+    py: Python<'py>,
+    rest: (Column, Vec<bool>),
+    jammed: (Column, Vec<bool>),
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::hysteresis((&rest.0.0, &rest.1), (&jammed.0.0, &jammed.1))
+    })
+}
+
+/// Columns of width, value and error of either branch.
+#[pyfunction]
+pub(crate) fn jump_height<'py>(
+    py: Python<'py>,
+    upper: [Column; 3],
+    lower: [Column; 3],
+    critical: (f64, f64),
+) -> Answer<'py> {
+    let [upper, lower] =
+        [&upper, &lower].map(|branch| branch.each_ref().map(|column| column.0.as_slice()));
+    answer(py, || {
+        analysis::jump_height(upper, lower, uncertain(critical))
+    })
+}
+
+#[pyfunction]
+pub(crate) fn dip_test<'py>(
+    py: Python<'py>,
+    values: Column,
+    resamples: usize,
+    seed: u64,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::dip_test(&values.0, Bootstrap { resamples, seed })
+    })
+}
+
+#[pyfunction]
+pub(crate) fn two_peaks<'py>(py: Python<'py>, values: Column) -> Answer<'py> {
+    answer(py, || analysis::two_peaks(&values.0))
+}
+
+#[pyfunction]
+pub(crate) fn fit_line<'py>(py: Python<'py>, x: Column, y: Column, error: Column) -> Answer<'py> {
+    answer(py, || analysis::fit_line(&x.0, &y.0, &error.0))
+}
+
+#[pyfunction]
+pub(crate) fn fit_parabola<'py>(
+    py: Python<'py>,
+    x: Column,
+    y: Column,
+    error: Column,
+) -> Answer<'py> {
+    answer(py, || analysis::fit_parabola(&x.0, &y.0, &error.0))
+}
+
+#[pyfunction]
+pub(crate) fn power_exponent<'py>(
+    py: Python<'py>,
+    x: Column,
+    y: Column,
+    error: Column,
+) -> Answer<'py> {
+    answer(py, || analysis::power_exponent(&x.0, &y.0, &error.0))
+}
+
+#[pyfunction]
+pub(crate) fn ensemble_moments<'py>(py: Python<'py>, replicas: Vec<Column>) -> Answer<'py> {
+    answer(py, || analysis::ensemble_moments(&series(&replicas)))
+}
+
+#[pyfunction]
+#[pyo3(signature = (runs, held=None))]
+pub(crate) fn second_moment<'py>(
+    py: Python<'py>,
+    runs: Vec<Column>,
+    held: Option<usize>,
+) -> Answer<'py> {
+    answer(py, || {
+        analysis::second_moment(&series(&runs), after_end(held))
+    })
+}
+
+#[pyfunction]
+#[pyo3(signature = (runs, held, resamples, seed))]
+pub(crate) fn second_moment_peak<'py>(
+    py: Python<'py>,
+    runs: Vec<Column>,
     held: Option<usize>,
     resamples: usize,
     seed: u64,
 ) -> Answer<'py> {
-    let runs: Vec<Vec<f64>> = runs.iter().map(vector).collect::<PyResult<_>>()?;
+    let bootstrap = Bootstrap { resamples, seed };
     answer(py, || {
-        analysis::second_moment_peak(&runs, after_end(held), Bootstrap { resamples, seed })
+        analysis::second_moment_peak(&series(&runs), after_end(held), bootstrap)
     })
 }
 
-/// Curves as the estimators take them.
-fn curves(measured: &[Measured<'_>]) -> PyResult<Vec<Curve>> {
-    measured
-        .iter()
-        .map(|(parameter, x, y, error)| {
-            let (x, y, error) = (x.as_slice()?, y.as_slice()?, error.as_slice()?);
-            let points = x.iter().zip(y).zip(error);
-            Ok(Curve {
-                parameter: *parameter,
-                points: points
-                    .map(|((&x, &y), &error)| CurvePoint { x, y, error })
-                    .collect(),
-            })
-        })
-        .collect()
+/// A curve, from its parameter and its columns (x, y, error).
+pub(crate) struct Measured(Curve);
+
+impl FromPyObject<'_, '_> for Measured {
+    type Error = PyErr;
+
+    fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
+        let (parameter, Column(x), Column(y), Column(error)) = object.extract()?;
+        let points = x.into_iter().zip(y).zip(error);
+        let points = points
+            .map(|((x, y), error)| CurvePoint { x, y, error })
+            .collect();
+        Ok(Self(Curve { parameter, points }))
+    }
 }
 
 /// A scaling: one of ours by its name, or a function of Python.
-enum Scheme<'py> {
+pub(crate) enum Scheme<'py> {
     Named(Scaling),
     Called {
         function: Bound<'py, PyAny>,
@@ -377,18 +351,22 @@ enum Scheme<'py> {
     },
 }
 
-impl<'py> Scheme<'py> {
-    fn new(scaling: &Bound<'py, PyAny>) -> PyResult<Self> {
+impl<'py> FromPyObject<'_, 'py> for Scheme<'py> {
+    type Error = PyErr;
+
+    fn extract(scaling: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
         Ok(if scaling.is_callable() {
             Self::Called {
-                function: scaling.clone(),
+                function: scaling.to_owned(),
                 raised: RefCell::new(None),
             }
         } else {
-            Self::Named(named(scaling)?)
+            Self::Named(scaling.extract::<Named<Scaling>>()?.0)
         })
     }
+}
 
+impl Scheme<'_> {
     fn apply(
         &self,
         parameters: &[f64],
@@ -442,7 +420,7 @@ impl<'py> Scheme<'py> {
 /// How a search for the best collapse goes about it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-struct Search {
+pub(crate) struct Search {
     start: Vec<f64>,
     steps: Vec<f64>,
     starts: usize,
@@ -454,13 +432,13 @@ struct Search {
 
 /// Best parameters with errors: (fit, resampled or None, contour, fits with one curve left out).
 #[pyfunction]
-fn fit_collapse<'py>(
+pub(crate) fn fit_collapse<'py>(
     py: Python<'py>,
-    measured: Vec<Measured<'py>>,
-    scaling: &Bound<'py, PyAny>,
+    measured: Vec<Measured>,
+    scheme: Scheme<'py>,
     search: Search,
 ) -> Answer<'py> {
-    let (curves, scheme) = (curves(&measured)?, Scheme::new(scaling)?);
+    let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
     let collapse = Collapse {
         curves: &curves,
         transform: &|parameters, curve, parameter, point| {
@@ -493,13 +471,13 @@ fn fit_collapse<'py>(
 
 /// How well curves collapse as they are scaled with given parameters: (quality, scaled curves).
 #[pyfunction]
-fn apply_collapse<'py>(
+pub(crate) fn apply_collapse<'py>(
     py: Python<'py>,
-    measured: Vec<Measured<'py>>,
-    scaling: &Bound<'py, PyAny>,
+    measured: Vec<Measured>,
+    scheme: Scheme<'py>,
     parameters: Vec<f64>,
 ) -> Answer<'py> {
-    let (curves, scheme) = (curves(&measured)?, Scheme::new(scaling)?);
+    let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
     let scaled: Vec<Vec<CurvePoint>> = curves
         .iter()
         .enumerate()
@@ -514,45 +492,9 @@ fn apply_collapse<'py>(
     let columns: Vec<[Vec<f64>; 3]> = scaled
         .iter()
         .map(|points| {
-            [
-                points.iter().map(|point| point.x).collect(),
-                points.iter().map(|point| point.y).collect(),
-                points.iter().map(|point| point.error).collect(),
-            ]
+            let picks: [fn(&CurvePoint) -> f64; 3] = [|it| it.x, |it| it.y, |it| it.error];
+            picks.map(|pick| points.iter().map(pick).collect())
         })
         .collect();
     Ok(pythonize(py, &(quality, columns))?)
-}
-
-/// Adds the functions to the module.
-pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_function(wrap_pyfunction!(mean_with_error, module)?)?;
-    module.add_function(wrap_pyfunction!(autocorrelation_time, module)?)?;
-    module.add_function(wrap_pyfunction!(stationary_mean, module)?)?;
-    module.add_function(wrap_pyfunction!(stationarity, module)?)?;
-    module.add_function(wrap_pyfunction!(transition_time, module)?)?;
-    module.add_function(wrap_pyfunction!(survival, module)?)?;
-    module.add_function(wrap_pyfunction!(survival_median, module)?)?;
-    module.add_function(wrap_pyfunction!(restricted_moments, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_lifetime, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_shifted_exponential, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_law, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_law_to_runs, module)?)?;
-    module.add_function(wrap_pyfunction!(compare_laws, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_law_to_runs_in_windows, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_law_with_scatter, module)?)?;
-    module.add_function(wrap_pyfunction!(ensembles_by_width, module)?)?;
-    module.add_function(wrap_pyfunction!(second_moment, module)?)?;
-    module.add_function(wrap_pyfunction!(second_moment_peak, module)?)?;
-    module.add_function(wrap_pyfunction!(fraction_crossing, module)?)?;
-    module.add_function(wrap_pyfunction!(hysteresis, module)?)?;
-    module.add_function(wrap_pyfunction!(jump_height, module)?)?;
-    module.add_function(wrap_pyfunction!(dip_test, module)?)?;
-    module.add_function(wrap_pyfunction!(two_peaks, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_line, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_parabola, module)?)?;
-    module.add_function(wrap_pyfunction!(power_exponent, module)?)?;
-    module.add_function(wrap_pyfunction!(ensemble_moments, module)?)?;
-    module.add_function(wrap_pyfunction!(fit_collapse, module)?)?;
-    module.add_function(wrap_pyfunction!(apply_collapse, module)?)
 }

@@ -158,18 +158,12 @@ pub(crate) fn scheduled(name: &str) -> PyResult<ScheduledParameter> {
 
 /// The JSON schema of all keys.
 #[pyfunction]
-fn schema() -> String {
+pub(crate) fn schema() -> String {
     peristalsis_configuration::schema().to_string()
 }
 
 /// Names of the presets.
 #[pyfunction]
-fn presets() -> Vec<&'static str> {
+pub(crate) fn presets() -> Vec<&'static str> {
     PRESETS.iter().map(|preset| preset.name).collect()
-}
-
-/// Adds the functions to the module.
-pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_function(wrap_pyfunction!(schema, module)?)?;
-    module.add_function(wrap_pyfunction!(presets, module)?)
 }

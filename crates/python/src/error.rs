@@ -44,17 +44,6 @@ create_exception!(
     "Data that an estimator can say nothing about."
 );
 
-/// Adds the exceptions to the module.
-pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    let py = module.py();
-    module.add("ConfigurationError", py.get_type::<ConfigurationError>())?;
-    module.add("DoesNotFitError", py.get_type::<DoesNotFitError>())?;
-    module.add("DivergedError", py.get_type::<DivergedError>())?;
-    module.add("SnapshotError", py.get_type::<SnapshotError>())?;
-    module.add("StudyFailure", py.get_type::<StudyFailure>())?;
-    module.add("AnalysisError", py.get_type::<AnalysisError>())
-}
-
 /// A configuration that cannot be.
 pub(crate) fn of_configuration(error: peristalsis_configuration::ConfigurationError) -> PyErr {
     ConfigurationError::new_err(error.to_string())

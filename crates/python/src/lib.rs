@@ -12,20 +12,36 @@ mod run;
 mod study;
 mod table;
 
-use pyo3::prelude::*;
+#[pyo3::pymodule]
+mod _core {
+    #[pymodule_export]
+    use crate::analysis::{
+        apply_collapse, autocorrelation_time, compare_laws, dip_test, ensemble_moments,
+        ensembles_by_width, fit_collapse, fit_law, fit_law_to_runs, fit_law_to_runs_in_windows,
+        fit_law_with_scatter, fit_lifetime, fit_line, fit_parabola, fit_shifted_exponential,
+        fraction_crossing, hysteresis, jump_height, mean_with_error, power_exponent,
+        restricted_moments, second_moment, second_moment_peak, stationarity, stationary_mean,
+        survival, survival_median, transition_time, two_peaks,
+    };
+    #[pymodule_export]
+    use crate::configuration::{Configuration, presets, schema};
+    #[pymodule_export]
+    use crate::error::{
+        AnalysisError, ConfigurationError, DivergedError, DoesNotFitError, SnapshotError,
+        StudyFailure,
+    };
+    #[pymodule_export]
+    use crate::newtonian::{Newtonian, trapping_threshold_at};
+    #[pymodule_export]
+    use crate::run::Run;
+    #[pymodule_export]
+    use crate::study::{Study, store_counts, store_export, store_rows};
+    #[pymodule_export]
+    use crate::table::Table;
 
-#[pymodule]
-fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add("__version__", peristalsis_run::VERSION)?;
-    module.add("REVISION", peristalsis_run::REVISION)?;
-    module.add_class::<configuration::Configuration>()?;
-    module.add_class::<run::Run>()?;
-    module.add_class::<table::Table>()?;
-    module.add_class::<newtonian::Newtonian>()?;
-    module.add_class::<study::Study>()?;
-    study::add(module)?;
-    error::add(module)?;
-    configuration::add(module)?;
-    newtonian::add(module)?;
-    analysis::add(module)
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "the name in Python")]
+    const __version__: &str = peristalsis_run::VERSION;
+    #[pymodule_export]
+    const REVISION: &str = peristalsis_run::REVISION;
 }

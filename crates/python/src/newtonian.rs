@@ -145,11 +145,6 @@ impl Newtonian {
 /// Amplitude ratio from which on a bolus is trapped at a pressure rise.
 #[pyfunction(name = "trapping_threshold")]
 #[pyo3(signature = (pressure=0.0))]
-fn trapping_threshold_at(pressure: f64) -> Option<f64> {
+pub(crate) fn trapping_threshold_at(pressure: f64) -> Option<f64> {
     trapping_threshold(pressure)
-}
-
-/// Adds the functions to the module.
-pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_function(wrap_pyfunction!(trapping_threshold_at, module)?)
 }

@@ -143,14 +143,14 @@ fn in_words(value: &SettingValue) -> String {
 
 /// The finished runs of a store, one a row.
 #[pyfunction]
-fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
+pub(crate) fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
     let rows = py.detach(|| Store::open(&path)?.rows()).map_err(of_study)?;
     Table::new(&rows)
 }
 
 /// How many runs of a store are in which state.
 #[pyfunction]
-fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+pub(crate) fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
     let survey = py
         .detach(|| Store::open(&path)?.survey())
         .map_err(of_study)?;
@@ -163,7 +163,7 @@ fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDi
 
 /// Writes the tables of a store as Parquet and CSV; answers the files.
 #[pyfunction]
-fn store_export<'py>(
+pub(crate) fn store_export<'py>(
     py: Python<'py>,
     path: PathBuf,
     folder: PathBuf,
@@ -177,11 +177,4 @@ fn store_export<'py>(
         .detach(|| Store::open(&path)?.export(&folder, series))
         .map_err(of_study)?;
     PyList::new(py, exported.files)
-}
-
-/// Adds the functions to the module.
-pub(crate) fn add(module: &Bound<'_, PyModule>) -> PyResult<()> {
-    module.add_function(wrap_pyfunction!(store_rows, module)?)?;
-    module.add_function(wrap_pyfunction!(store_counts, module)?)?;
-    module.add_function(wrap_pyfunction!(store_export, module)?)
 }

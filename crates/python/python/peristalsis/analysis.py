@@ -128,6 +128,8 @@ __all__ = [
 ]
 
 Array = npt.NDArray[np.float64]
+#: Times, and whether there was a transition.
+Runs = tuple[Array, npt.NDArray[np.bool_]]
 Numbers = npt.ArrayLike
 #: ``"power"``, ``"exponential"``, or ``{"barrier": {"power": 2.0}}``.
 Law = str | Mapping[str, Any]
@@ -149,7 +151,7 @@ def _columns(*columns: Numbers) -> list[Array]:
     return arrays
 
 
-def _runs(time: Numbers, observed: npt.ArrayLike | None) -> tuple[Array, npt.NDArray[np.bool_]]:
+def _runs(time: Numbers, observed: npt.ArrayLike | None) -> Runs:
     times = _reals(time)
     if observed is None:
         return times, np.ones(len(times), dtype=bool)
@@ -157,6 +159,12 @@ def _runs(time: Numbers, observed: npt.ArrayLike | None) -> tuple[Array, npt.NDA
     if truths.shape != times.shape:
         raise ValueError(f"{len(times)} times, but {truths.size} observed")
     return times, truths
+
+
+def _table(width: Numbers, time: Numbers, observed: npt.ArrayLike | None) -> tuple[Array, Runs]:
+    times, truths = _runs(time, observed)
+    widths, times = _columns(width, times)
+    return widths, (times, truths)
 
 
 def _pair(value: Uncertain | float | tuple[float, float]) -> tuple[float, float]:
@@ -264,7 +272,7 @@ class Survival:
 
     def __init__(self, time: Numbers, observed: npt.ArrayLike | None = None) -> None:
         self._runs = _runs(time, observed)
-        answer = _core.survival(*self._runs)
+        answer = _core.survival(self._runs)
         self.steps = tuple(result(SurvivalStep, step) for step in answer["steps"])
         self.runs: int = answer["runs"]
         self.observed: int = answer["observed"]
@@ -279,11 +287,11 @@ class Survival:
     @property
     def median(self) -> Uncertain:
         """Median transition time; raises where fewer than half of the runs had a transition."""
-        return result(Uncertain, _core.survival_median(*self._runs))
+        return result(Uncertain, _core.survival_median(self._runs))
 
     def restricted_moments(self, horizon: float) -> RestrictedMoments:
         """Mean and variance of min(tau, horizon)."""
-        return result(RestrictedMoments, _core.restricted_moments(*self._runs, float(horizon)))
+        return result(RestrictedMoments, _core.restricted_moments(self._runs, float(horizon)))
 
     def __repr__(self) -> str:
         return f"<Survival: {self.observed} transitions in {self.runs} runs, watched up to {self.watched:g}>"
@@ -300,14 +308,14 @@ def fit_lifetime(
     time: Numbers, observed: npt.ArrayLike | None = None, *, family: str = "gamma"
 ) -> LifetimeFit:
     """A distribution of transition times by maximum likelihood; `family` is exponential, gamma or weibull."""
-    return result(LifetimeFit, _core.fit_lifetime(family, *_runs(time, observed)))
+    return result(LifetimeFit, _core.fit_lifetime(family, _runs(time, observed)))
 
 
 def fit_shifted_exponential(
     time: Numbers, observed: npt.ArrayLike | None = None
 ) -> ShiftedExponentialFit:
     """A dead time, and exponential waiting after it."""
-    return result(ShiftedExponentialFit, _core.fit_shifted_exponential(*_runs(time, observed)))
+    return result(ShiftedExponentialFit, _core.fit_shifted_exponential(_runs(time, observed)))
 
 
 # Laws
@@ -347,9 +355,8 @@ def fit_law_to_runs(
     family: str = "gamma",
 ) -> LawRunsFit:
     """A law of the mean transition time, by the likelihood of every single run, the censored ones included."""
-    times, truths = _runs(time, observed)
-    widths, times = _columns(width, times)
-    return result(LawRunsFit, _core.fit_law_to_runs(_law(law), family, widths, times, truths))
+    widths, runs = _table(width, time, observed)
+    return result(LawRunsFit, _core.fit_law_to_runs(_law(law), family, widths, runs))
 
 
 def fit_law_to_runs_in_windows(
@@ -364,9 +371,8 @@ def fit_law_to_runs_in_windows(
 
     The first window holds all widths. An exponent that is one moves by no more than its error from window to window.
     """
-    times, truths = _runs(time, observed)
-    widths, times = _columns(width, times)
-    answers = _core.fit_law_to_runs_in_windows(_law(law), family, widths, times, truths)
+    widths, runs = _table(width, time, observed)
+    answers = _core.fit_law_to_runs_in_windows(_law(law), family, widths, runs)
     return [result(WindowRunsFit, answer) for answer in answers]
 
 
@@ -378,9 +384,8 @@ def fit_law_with_scatter(
     tau = A (w_c - w)^-alpha and chi_tau/tau^2 = C (w_c - w)^-q, gamma distributions of shape tau^2/chi_tau; so
     chi_tau ~ (w_c - w)^-(2 alpha + q). Needs three widths with transitions.
     """
-    times, truths = _runs(time, observed)
-    widths, times = _columns(width, times)
-    return result(ScatterLawFit, _core.fit_law_with_scatter(widths, times, truths))
+    widths, runs = _table(width, time, observed)
+    return result(ScatterLawFit, _core.fit_law_with_scatter(widths, runs))
 
 
 def ensembles_by_width(
@@ -394,9 +399,8 @@ def ensembles_by_width(
 
     Mean and variance chi_tau with errors for `fit_law` are those of each answer's `fit`.
     """
-    times, truths = _runs(time, observed)
-    widths, times = _columns(width, times)
-    answers = _core.ensembles_by_width(family, widths, times, truths)
+    widths, runs = _table(width, time, observed)
+    answers = _core.ensembles_by_width(family, widths, runs)
     return [result(WidthEnsemble, answer) for answer in answers]
 
 
@@ -409,9 +413,8 @@ def compare_laws(
     family: str = "gamma",
 ) -> list[LawEvidence]:
     """What the runs say for each of several laws, by Akaike's criterion."""
-    times, truths = _runs(time, observed)
-    widths, times = _columns(width, times)
-    answers = _core.compare_laws([_law(law) for law in laws], family, widths, times, truths)
+    widths, runs = _table(width, time, observed)
+    answers = _core.compare_laws([_law(law) for law in laws], family, widths, runs)
     return [result(LawEvidence, answer) for answer in answers]
 
 
