@@ -35,10 +35,7 @@ pub(crate) enum Failure {
     },
     /// The command line asks for something that does not exist.
     #[error("{message}")]
-    Usage {
-        message: String,
-        help: Option<String>,
-    },
+    Usage { message: String, help: String },
     /// More grains than the tube holds.
     #[error("{place}: {error}")]
     DoesNotFit {
@@ -85,6 +82,14 @@ impl From<ClaimError> for Failure {
 }
 
 impl Failure {
+    /// A command line that asks for something that does not exist, and what to ask for instead.
+    pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Self::Usage {
+            message: message.into(),
+            help: help.into(),
+        }
+    }
+
     fn exit_code(&self) -> u8 {
         match self {
             Self::Configuration(_)
@@ -141,7 +146,7 @@ impl Failure {
 
     fn help(&self) -> Option<String> {
         match self {
-            Self::Usage { help, .. } => help.clone(),
+            Self::Usage { help, .. } => Some(help.clone()),
             Self::Run(RunError::HoldsAnotherRun { .. }) => {
                 Some("name another folder with --out, or go on with that run with --resume".to_owned())
             }

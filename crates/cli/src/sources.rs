@@ -10,11 +10,10 @@ use crate::failure::Failure;
 /// The configuration that the arguments describe.
 pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Configuration, Failure> {
     if arguments.file.is_none() && arguments.preset.is_none() && arguments.overrides.is_empty() {
-        let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-        return Err(Failure::Usage {
-            message: "nothing to run: give a FILE or a --preset".to_owned(),
-            help: Some(format!("presets: {}", names.join(", "))),
-        });
+        return Err(Failure::usage(
+            "nothing to run: give a FILE or a --preset",
+            known_presets(),
+        ));
     }
     let file = match &arguments.file {
         None => None,
@@ -31,6 +30,12 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         preset: arguments.preset.as_deref(),
         overrides: &arguments.overrides,
     })?)
+}
+
+/// The names of all presets, as help.
+pub(crate) fn known_presets() -> String {
+    let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
+    format!("presets: {}", names.join(", "))
 }
 
 /// Keys that say how many grains there are.

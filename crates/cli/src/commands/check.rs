@@ -6,7 +6,7 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{print, significant};
+use crate::commands::{print, print_json, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -17,7 +17,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let estimate = estimate(&configuration, request(&arguments.frames).as_ref())
         .map_err(|error| locate(error, &arguments.configuration))?;
     if arguments.json {
-        print(&format!("{:#}\n", serde_json::json!(estimate)))?;
+        print_json(&estimate)?;
     } else {
         print(&in_words(&estimate))?;
     }

@@ -16,6 +16,7 @@ pub(crate) mod view;
 use std::io::Write;
 
 use peristalsis_run::Warning;
+use serde::Serialize;
 
 use crate::failure::Failure;
 
@@ -34,6 +35,12 @@ fn print(text: &str) -> Result<(), Failure> {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Output(error)),
         _ => Ok(()),
     }
+}
+
+/// Prints a value as JSON on standard output.
+fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    let value = serde_json::to_value(value).expect("reports have texts for keys");
+    print(&format!("{value:#}\n"))
 }
 
 /// Prints a warning on standard error: no progress, so that it is said in quiet runs as well.

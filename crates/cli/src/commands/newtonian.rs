@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use peristalsis_physics::newtonian::{NewtonianPeristalsis, Trapping};
 
 use crate::arguments::NewtonianArguments;
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
 
 /// Prints what a Newtonian fluid does.
@@ -17,12 +17,10 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
         json,
     } = *arguments;
     let fluid = NewtonianPeristalsis::from_width(width, radius, pressure).ok_or_else(|| {
-        Failure::Usage {
-            message: format!(
-                "there is no such tube: width {width}, radius {radius}, pressure {pressure}"
-            ),
-            help: Some("0 <= width <= 2 radius; a finite pressure".to_owned()),
-        }
+        Failure::usage(
+            format!("there is no such tube: width {width}, radius {radius}, pressure {pressure}"),
+            "0 <= width <= 2 radius; a finite pressure",
+        )
     })?;
     let region = match fluid.trapping() {
         Trapping::Absent => None,
@@ -41,7 +39,7 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
             "reflux_volume_fraction": reflux.map(|layer| layer.volume_fraction),
             "reflux_flow_rate": reflux.map(|layer| layer.flow_rate),
         });
-        print(&format!("{report:#}\n"))?;
+        print_json(&report)?;
         return Ok(ExitCode::SUCCESS);
     }
     let trapping = match fluid.trapping() {

@@ -5,18 +5,18 @@ use std::process::ExitCode;
 use peristalsis_configuration::{PRESETS, preset};
 
 use crate::arguments::PresetsArguments;
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
+use crate::sources::known_presets;
 
 /// Lists the presets, or prints one.
 pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.name {
         let Some(preset) = preset(name) else {
-            let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-            return Err(Failure::Usage {
-                message: format!("there is no preset `{name}`"),
-                help: Some(format!("presets: {}", names.join(", "))),
-            });
+            return Err(Failure::usage(
+                format!("there is no preset `{name}`"),
+                known_presets(),
+            ));
         };
         print(preset.text)?;
     } else if arguments.json {
@@ -24,7 +24,7 @@ pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure>
             .iter()
             .map(|preset| serde_json::json!({ "name": preset.name, "summary": preset.summary }))
             .collect();
-        print(&format!("{:#}\n", serde_json::Value::from(list)))?;
+        print_json(&list)?;
     } else {
         let width = PRESETS
             .iter()

@@ -123,11 +123,10 @@ fn instructions(arguments: &RunArguments) -> Result<Instructions, Failure> {
     if wanted.available() {
         Ok(wanted)
     } else {
-        Err(Failure::Usage {
-            message: "this machine does not have the instructions that --instructions asks for"
-                .to_owned(),
-            help: Some("leave it out: the widest that there are is the default".to_owned()),
-        })
+        Err(Failure::usage(
+            "this machine does not have the instructions that --instructions asks for",
+            "leave it out: the widest that there are is the default",
+        ))
     }
 }
 
@@ -225,13 +224,13 @@ fn open_trajectory(
     let request = request(&arguments.frames);
     let there = Trajectory::resume(folder.path(), run)?;
     match (there, request) {
-        (Some(_), Some(_)) => Err(Failure::Usage {
-            message: format!(
+        (Some(_), Some(_)) => Err(Failure::usage(
+            format!(
                 "{} has a trajectory, which goes on as it was begun",
                 folder.path().display()
             ),
-            help: Some("leave out --trajectory".to_owned()),
-        }),
+            "leave out --trajectory",
+        )),
         (None, Some(request)) => {
             let (now, end) = (run.simulation().step(), run.configuration().run.steps());
             let plan = TrajectoryPlan::new(&request, run.configuration(), now, end)?;

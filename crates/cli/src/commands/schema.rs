@@ -6,7 +6,7 @@ use peristalsis_configuration::reference;
 use serde_json::Value;
 
 use crate::arguments::SchemaArguments;
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
 
 /// Prints the JSON schema of the configuration.
@@ -24,7 +24,7 @@ fn show(arguments: SchemaArguments, schema: &Value, elsewhere: &str) -> Result<E
     if arguments.markdown {
         print(&reference(schema, &[elsewhere]))?;
     } else {
-        print(&format!("{schema:#}\n"))?;
+        print_json(schema)?;
     }
     Ok(ExitCode::SUCCESS)
 }

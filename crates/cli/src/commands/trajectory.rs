@@ -8,7 +8,7 @@ use peristalsis_run::{
 };
 
 use crate::arguments::{FrameArguments, FrameFormat, TrajectoryArguments};
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -43,7 +43,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     frames.synchronize()?;
     let report = frames.report();
     if arguments.json {
-        print(&format!("{:#}\n", serde_json::json!(report)))?;
+        print_json(&report)?;
     } else {
         print(&format!("{}\n", in_words(&report)))?;
     }

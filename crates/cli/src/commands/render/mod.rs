@@ -139,10 +139,7 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
 }
 
 fn usage(message: String, help: &str) -> Failure {
-    Failure::Usage {
-        message,
-        help: Some(help.to_owned()),
-    }
+    Failure::usage(message, help)
 }
 
 /// The trajectory that is asked for or, where that is left open, lies in the run's folder.

@@ -106,10 +106,10 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
 /// Writes the archive.
 pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     if !is_archive(&arguments.archive) {
-        return Err(Failure::Usage {
-            message: format!("{} is no name of an archive", arguments.archive.display()),
-            help: Some("let it end in .tar, by which study import knows archives".to_owned()),
-        });
+        return Err(Failure::usage(
+            format!("{} is no name of an archive", arguments.archive.display()),
+            "let it end in .tar, by which study import knows archives",
+        ));
     }
     let packed = Store::open(&arguments.store.store)?.pack(&arguments.archive)?;
     print(&format!(

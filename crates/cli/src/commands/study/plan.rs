@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use peristalsis_study::{Plan, Specification, State, Store, StudyEstimate, study_estimate};
 
 use super::{PlanArguments, usual_store};
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
 use crate::progress::seconds;
 
@@ -48,7 +48,7 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
             "finished": finished,
             "runs": runs,
         });
-        print(&format!("{report:#}\n"))?;
+        print_json(&report)?;
     } else {
         print(&in_words(&study, &estimate, finished))?;
     }

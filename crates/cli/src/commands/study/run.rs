@@ -7,7 +7,7 @@ use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
 use super::progress::Display;
 use super::status::{in_words, report};
 use super::{RunArguments, usual_store};
-use crate::commands::{print, say};
+use crate::commands::{print, print_json, say};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let ending = ending?;
     let survey = store.survey()?;
     if arguments.json {
-        print(&format!("{:#}\n", report(&store, &survey)))?;
+        print_json(&report(&store, &survey))?;
     } else {
         print(&in_words(&store, &survey))?;
     }

@@ -7,7 +7,7 @@ use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
-use crate::commands::print;
+use crate::commands::{print, print_json};
 use crate::failure::Failure;
 
 /// Runs that are named in words; more are counted.
@@ -18,7 +18,7 @@ pub(crate) fn status(arguments: &StatusArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;
     if arguments.json {
-        print(&format!("{:#}\n", report(&store, &survey)))?;
+        print_json(&report(&store, &survey))?;
     } else {
         print(&in_words(&store, &survey))?;
     }

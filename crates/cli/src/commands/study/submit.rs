@@ -18,19 +18,19 @@ const SHORTEST: Duration = Duration::from_secs(240);
 /// Makes the store of a study and writes a script for Slurm, an array of tasks that share it.
 pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     if arguments.time < SHORTEST {
-        return Err(Failure::Usage {
-            message: format!(
+        return Err(Failure::usage(
+            format!(
                 "--time is {} s, too short to save and end within it",
                 arguments.time.as_secs()
             ),
-            help: Some(format!("give {} s or more", SHORTEST.as_secs())),
-        });
+            format!("give {} s or more", SHORTEST.as_secs()),
+        ));
     }
     if let Some(option) = arguments.further_lines() {
-        return Err(Failure::Usage {
-            message: format!("{option:?} is not one option of sbatch"),
-            help: Some("give one option at a time, such as --option=--mem-per-cpu=1G".to_owned()),
-        });
+        return Err(Failure::usage(
+            format!("{option:?} is not one option of sbatch"),
+            "give one option at a time, such as --option=--mem-per-cpu=1G",
+        ));
     }
     let study = Specification::read(&arguments.file)?;
     let store = arguments
@@ -151,10 +151,10 @@ fn quoted(path: &Path) -> String {
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
     let path = std::path::absolute(path).map_err(unreadable(path))?;
     if path.to_str().is_none() {
-        return Err(Failure::Usage {
-            message: format!("{} is no text, which a script is", path.display()),
-            help: Some("give files and folders names in UTF-8".to_owned()),
-        });
+        return Err(Failure::usage(
+            format!("{} is no text, which a script is", path.display()),
+            "give files and folders names in UTF-8",
+        ));
     }
     Ok(path)
 }

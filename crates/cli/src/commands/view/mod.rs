@@ -5,7 +5,7 @@ mod studies;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use peristalsis_configuration::{PRESETS, preset};
+use peristalsis_configuration::preset;
 use peristalsis_engine::Instructions;
 use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
 use peristalsis_viewer::{Options, Recording, Viewer};
@@ -13,7 +13,7 @@ use peristalsis_viewer::{Options, Recording, Viewer};
 use crate::arguments::{ConfigurationArguments, ViewArguments};
 use crate::commands::{print, say};
 use crate::failure::Failure;
-use crate::sources;
+use crate::sources::{self, known_presets};
 use crate::stop::Stop;
 use studies::Studies;
 
@@ -47,10 +47,10 @@ fn studies(arguments: &ViewArguments) -> Result<Option<Studies>, Failure> {
     let found = Studies::at(&arguments.source)?;
     let asks = arguments.live || arguments.from_state || !arguments.overrides.is_empty();
     if found.is_some() && asks {
-        return Err(Failure::Usage {
-            message: format!("{} is a study", arguments.source.display()),
-            help: Some("--set, --live and --from-state are for a run; a study's runs are opened in the page".to_owned()),
-        });
+        return Err(Failure::usage(
+            format!("{} is a study", arguments.source.display()),
+            "--set, --live and --from-state are for a run; a study's runs are opened in the page",
+        ));
     }
     Ok(found)
 }
@@ -61,16 +61,16 @@ fn trajectory(arguments: &ViewArguments) -> Result<Option<PathBuf>, Failure> {
     let is_file = source.extension().is_some_and(|ending| ending == "gsd");
     let computed = arguments.live || arguments.from_state;
     if (is_file || source.is_dir()) && !arguments.overrides.is_empty() {
-        return Err(Failure::Usage {
-            message: format!("{} is a run that --set cannot change", source.display()),
-            help: Some(format!("view the {CONFIGURATION} of the run with --set")),
-        });
+        return Err(Failure::usage(
+            format!("{} is a run that --set cannot change", source.display()),
+            format!("view the {CONFIGURATION} of the run with --set"),
+        ));
     }
     if is_file && computed {
-        return Err(Failure::Usage {
-            message: "a trajectory is played, not computed".to_owned(),
-            help: Some("name the folder of its run".to_owned()),
-        });
+        return Err(Failure::usage(
+            "a trajectory is played, not computed",
+            "name the folder of its run",
+        ));
     }
     let in_folder = source.join(TrajectoryFormat::Gsd.file_name());
     Ok(match is_file {
@@ -87,13 +87,13 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     })?;
     let above = place.ancestors().skip(1).take(2);
     let Some(folder) = above.clone().find(|it| it.join(CONFIGURATION).is_file()) else {
-        return Err(Failure::Usage {
-            message: format!(
+        return Err(Failure::usage(
+            format!(
                 "beside {} there is no {CONFIGURATION}, which says what tube it is of",
                 path.display()
             ),
-            help: Some("leave trajectories in the folders of their runs".to_owned()),
-        });
+            "leave trajectories in the folders of their runs",
+        ));
     };
     // What a kill left has no state, and a trajectory tells J/Jmax itself.
     let (configuration, samples) = match RunFolder::open(folder) {
@@ -141,14 +141,13 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
     }
     let named = arguments.source.to_str().filter(|it| preset(it).is_some());
     if named.is_none() && !arguments.source.exists() {
-        let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-        return Err(Failure::Usage {
-            message: format!(
+        return Err(Failure::usage(
+            format!(
                 "{} is no folder, no file and no preset",
                 arguments.source.display()
             ),
-            help: Some(format!("presets: {}", names.join(", "))),
-        });
+            known_presets(),
+        ));
     }
     let configuration = ConfigurationArguments {
         file: named.is_none().then(|| arguments.source.clone()),
