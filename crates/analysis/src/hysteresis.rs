@@ -87,7 +87,7 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::assert_coverage;
+    use crate::synthetic::{Coverage, assert_coverage};
 
     fn runs(randomness: &mut Randomness, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {
         let mut rows = (Vec::new(), Vec::new());
@@ -112,20 +112,17 @@ mod tests {
     #[test]
     fn intervals_of_the_loop_cover_and_the_test_keeps_its_level() {
         let trials = 200;
-        let mut covered = [0; 2];
+        let mut coverage = Coverage::of([("loop", 0.1)]);
         let (mut false_loops, mut seen) = (0, 0);
         for seed in 0..trials {
             let open = found(seed, (2.78, 2.88), 0.04);
-            covered[0] += usize::from(open.loop_width.interval_68.contains(0.1));
-            covered[1] += usize::from(open.loop_width.interval_95.contains(0.1));
+            coverage.count([open.loop_width]);
             seen += usize::from(open.probability < 0.05);
             let closed = found(seed + 5000, (2.83, 2.83), 0.04);
             false_loops += usize::from(closed.probability < 0.05);
         }
-        let trials = trials as usize;
-        assert_coverage(covered[0], trials, 0.6827, 0.01, "loop");
-        assert_coverage(covered[1], trials, 0.95, 0.01, "loop");
-        assert_coverage(false_loops, trials, 0.05, 0.015, "false loops");
+        coverage.judge(0.01);
+        assert_coverage(false_loops, trials as usize, 0.05, 0.015, "false loops");
         assert!(seen > 195, "{seen}");
     }
 

@@ -82,14 +82,13 @@ fn branch([width, ratio, error]: [&[f64]; 3], at: f64) -> Result<(Uncertain, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{assert_coverage, white_noise};
+    use crate::synthetic::{Coverage, white_noise};
 
     #[test]
     fn intervals_of_the_height_cover_with_an_uncertain_critical_width() {
         let (jammed, unjammed) = ([2.6, 2.65, 2.7, 2.75], [2.85, 2.9, 2.95]);
-        let trials = 400;
-        let mut covered = [0; 2];
-        for seed in 0..trials {
+        let mut coverage = Coverage::of([("height", 0.7)]);
+        for seed in 0..400 {
             let noise = white_noise(seed, 8);
             let upper: Vec<f64> = (0..4)
                 .map(|i| 0.9 - 0.5 * (jammed[i] - 2.8) + 0.02 * noise[i])
@@ -104,11 +103,9 @@ mod tests {
                 critical,
             )
             .unwrap();
-            covered[0] += usize::from(jump.height.interval_68.contains(0.7));
-            covered[1] += usize::from(jump.height.interval_95.contains(0.7));
+            coverage.count([jump.height]);
         }
-        assert_coverage(covered[0], trials as usize, 0.6827, 0.01, "height");
-        assert_coverage(covered[1], trials as usize, 0.95, 0.01, "height");
+        coverage.judge(0.01);
     }
 
     #[test]

@@ -208,7 +208,6 @@ fn solved<const N: usize>(
 mod tests {
     use super::*;
     use crate::synthetic::{assert_coverage, white_noise};
-    use proptest::prelude::*;
 
     const RATES: [f64; 6] = [0.03, 0.05, 0.08, 0.1, 0.15, 0.2];
     const ERRORS: [f64; 6] = [0.01, 0.02, 0.01, 0.03, 0.02, 0.01];
@@ -303,22 +302,5 @@ mod tests {
             fit_line(&[1.0, 2.0], &[1.0], &[0.1, 0.1]),
             Err(Error::LengthMismatch { .. })
         ));
-    }
-
-    proptest! {
-        #[test]
-        fn any_points_give_finite_numbers_or_an_error(
-            points in prop::collection::vec(
-                (any::<f64>(), any::<f64>(), any::<f64>()), 0..8),
-        ) {
-            let x: Vec<f64> = points.iter().map(|p| p.0).collect();
-            let y: Vec<f64> = points.iter().map(|p| p.1).collect();
-            let error: Vec<f64> = points.iter().map(|p| p.2.abs()).collect();
-            if let Ok(fit) = fit_line(&x, &y, &error) {
-                prop_assert!(fit.chi_squared.is_finite());
-            }
-            let _ = fit_parabola(&x, &y, &error);
-            let _ = power_exponent(&x, &y, &error);
-        }
     }
 }

@@ -234,7 +234,7 @@ pub fn fraction_crossing(width: &[f64], jammed: &[bool]) -> Result<FractionCross
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::assert_coverage;
+    use crate::synthetic::Coverage;
     use proptest::prelude::*;
 
     fn runs(seed: u64, replicas: usize, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {
@@ -254,18 +254,16 @@ mod tests {
     #[test]
     fn intervals_cover_the_half_width() {
         let trials = 400;
-        let mut covered = [0; 2];
+        let mut coverage = Coverage::of([("half width", 2.79)]);
         let mut spreads = 0.0;
         for seed in 0..trials {
             let (width, jammed) = runs(seed, 10, 2.79, 0.06);
             let found = fraction_crossing(&width, &jammed).unwrap();
             assert!(!found.is_separated);
-            covered[0] += usize::from(found.width.interval_68.contains(2.79));
-            covered[1] += usize::from(found.width.interval_95.contains(2.79));
+            coverage.count([found.width]);
             spreads += found.spread;
         }
-        assert_coverage(covered[0], trials as usize, 0.6827, 0.01, "half width");
-        assert_coverage(covered[1], trials as usize, 0.95, 0.01, "half width");
+        coverage.judge(0.01);
         assert!((spreads / trials as f64 / 0.06 - 1.0).abs() < 0.1);
     }
 

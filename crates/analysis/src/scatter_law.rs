@@ -234,7 +234,7 @@ mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
     use crate::fit_law_to_runs;
-    use crate::synthetic::{assert_coverage, watched};
+    use crate::synthetic::{Coverage, assert_coverage, watched};
     use proptest::prelude::*;
 
     /// tau = 10/(2.8 - w) with chi_tau/tau^2 = C (2.8 - w)^-q, 20 runs at ten widths, watched for 500.
@@ -260,31 +260,24 @@ mod tests {
     #[test]
     fn intervals_of_all_exponents_cover_where_the_scatter_grows() {
         let trials = 80;
-        let mut covered = [0; 8];
+        let mut coverage = Coverage::of([("w_c", 2.8), ("alpha", 1.0), ("q", 1.0), ("beta", 3.0)]);
         let (mut inverse_rejected, mut constant_rejected) = (0, 0);
         for seed in 0..trials {
             // From 0.06 at 2.3 to 3 at 2.79.
             let (width, runs) = runs(seed, 0.03, 1.0);
             let found = fit_law_with_scatter(&width, &runs).unwrap();
-            let truths = [
-                (found.critical_width, 2.8),
-                (found.exponent, 1.0),
-                (found.scatter_exponent, 1.0),
-                (found.variance_exponent, 3.0),
-            ];
-            for (k, (found, truth)) in truths.into_iter().enumerate() {
-                covered[2 * k] += usize::from(found.interval_68.contains(truth));
-                covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
-            }
+            coverage.count([
+                found.critical_width,
+                found.exponent,
+                found.scatter_exponent,
+                found.variance_exponent,
+            ]);
             inverse_rejected += usize::from(found.inverse_probability < 0.1);
             constant_rejected += usize::from(found.constant_probability < 0.01);
             assert!(found.chance_probability < 0.01);
         }
+        coverage.judge(0.03);
         let trials = trials as usize;
-        for (k, what) in ["w_c", "alpha", "q", "beta"].iter().enumerate() {
-            assert_coverage(covered[2 * k], trials, 0.6827, 0.03, what);
-            assert_coverage(covered[2 * k + 1], trials, 0.95, 0.03, what);
-        }
         assert_coverage(
             inverse_rejected,
             trials,

@@ -4,6 +4,7 @@ use crate::bootstrap::Randomness;
 use crate::family::Family;
 use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use crate::transition::Transition;
+use crate::uncertain::Uncertain;
 
 /// Independent normal numbers of mean 0 and variance 1.
 pub(crate) fn white_noise(seed: u64, samples: usize) -> Vec<f64> {
@@ -85,6 +86,42 @@ pub(crate) fn watched(time: f64, until: f64) -> Transition {
         Transition::At { time, period: 0 }
     } else {
         Transition::Censored { time: until }
+    }
+}
+
+/// How many of the intervals of N estimates cover the truth.
+pub(crate) struct Coverage<const N: usize> {
+    names: [&'static str; N],
+    pub(crate) truths: [f64; N],
+    covered: [[usize; 2]; N],
+    trials: usize,
+}
+
+impl<const N: usize> Coverage<N> {
+    pub(crate) fn of(estimates: [(&'static str, f64); N]) -> Self {
+        Self {
+            names: estimates.map(|(name, _)| name),
+            truths: estimates.map(|(_, truth)| truth),
+            covered: [[0; 2]; N],
+            trials: 0,
+        }
+    }
+
+    /// Counts the estimates of one trial.
+    pub(crate) fn count(&mut self, found: [Uncertain; N]) {
+        self.trials += 1;
+        for ((found, truth), covered) in found.iter().zip(self.truths).zip(&mut self.covered) {
+            covered[0] += usize::from(found.interval_68.contains(truth));
+            covered[1] += usize::from(found.interval_95.contains(truth));
+        }
+    }
+
+    /// Asserts that both intervals of every estimate keep their level, up to a bias of `slack`.
+    pub(crate) fn judge(&self, slack: f64) {
+        for (name, [narrow, wide]) in self.names.iter().zip(self.covered) {
+            assert_coverage(narrow, self.trials, 0.6827, slack, name);
+            assert_coverage(wide, self.trials, 0.95, slack, name);
+        }
     }
 }
 

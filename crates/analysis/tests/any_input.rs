@@ -86,6 +86,7 @@ proptest! {
         let errors: Vec<f64> = rows.iter().map(|row| row.2).collect();
         if let Ok(line) = fit_line(&x, &y, &errors) {
             let _ = (line.at(at), line.scale_factor());
+            prop_assert!(line.chi_squared.is_finite());
         }
         let _ = fit_parabola(&x, &y, &errors);
         let _ = power_exponent(&x, &y, &errors);

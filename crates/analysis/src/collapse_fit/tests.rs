@@ -1,6 +1,6 @@
 use super::*;
 use crate::Scaling;
-use crate::synthetic::{assert_coverage, white_noise};
+use crate::synthetic::{Coverage, white_noise};
 use proptest::prelude::*;
 
 const RATES: [f64; 5] = [0.03, 0.05, 0.08, 0.12, 0.2];
@@ -47,7 +47,7 @@ fn exponents_are_found_with_bootstrap_errors_that_cover() {
     let transform = |p: &[f64], k: usize, rate: f64, point| scaling.apply(p, k, rate, point);
     let steps = [0.3, 0.2];
     let trials = 32;
-    let mut covered = [0; 4];
+    let mut coverage = Coverage::of([("a", 3.5), ("b", 1.5)]);
     let mut mean_quality = 0.0;
     for seed in 0..trials {
         let curves = transition_times(seed);
@@ -64,19 +64,13 @@ fn exponents_are_found_with_bootstrap_errors_that_cover() {
             seed,
         };
         let errors = collapse.bootstrap(&fit, &steps, bootstrap).unwrap();
-        for (k, truth) in [3.5, 1.5].into_iter().enumerate() {
-            let found = errors.estimates[k];
-            covered[2 * k] += usize::from(found.interval_68.contains(truth));
-            covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
-            assert!(found.error < 0.2, "{found:?}");
-        }
+        let found = [errors.estimates[0], errors.estimates[1]];
+        coverage.count(found);
+        assert!(found.iter().all(|found| found.error < 0.2), "{found:?}");
     }
     assert!((mean_quality - 1.0).abs() < 0.15, "{mean_quality}");
-    for (k, what) in ["a", "b"].iter().enumerate() {
-        // Percentiles of 40 resamples; the noise of the data counts twice in a resample.
-        assert_coverage(covered[2 * k], trials as usize, 0.6827, 0.05, what);
-        assert_coverage(covered[2 * k + 1], trials as usize, 0.95, 0.05, what);
-    }
+    // Percentiles of 40 resamples; the noise of the data counts twice in a resample.
+    coverage.judge(0.05);
 }
 
 #[test]

@@ -1,5 +1,5 @@
 use super::*;
-use crate::synthetic::{assert_coverage, white_noise};
+use crate::synthetic::{Coverage, assert_coverage, white_noise};
 use proptest::prelude::*;
 
 const WIDTHS: [f64; 10] = [2.3, 2.4, 2.5, 2.55, 2.6, 2.65, 2.7, 2.73, 2.76, 2.78];
@@ -18,45 +18,36 @@ fn noisy(seed: u64, alpha: f64) -> ([f64; 10], [f64; 10]) {
 #[test]
 fn intervals_of_critical_width_and_exponent_cover() {
     let trials = 300;
-    let mut covered = [0; 5];
+    let mut coverage = Coverage::of([("w_c", 2.82), ("exponent", 1.0)]);
+    let mut improbable = 0;
     for seed in 0..trials {
         let (value, error) = noisy(seed, 1.0);
         let fit = fit_law(Law::Power, &WIDTHS, &value, &error, None).unwrap();
-        let critical = fit.critical_width.unwrap();
-        covered[0] += usize::from(critical.interval_68.contains(2.82));
-        covered[1] += usize::from(critical.interval_95.contains(2.82));
-        covered[2] += usize::from(fit.exponent.interval_68.contains(1.0));
-        covered[3] += usize::from(fit.exponent.interval_95.contains(1.0));
-        covered[4] += usize::from(fit.probability < 0.1);
+        coverage.count([fit.critical_width.unwrap(), fit.exponent]);
+        improbable += usize::from(fit.probability < 0.1);
     }
+    coverage.judge(0.01);
     let trials = trials as usize;
-    assert_coverage(covered[0], trials, 0.6827, 0.01, "w_c");
-    assert_coverage(covered[1], trials, 0.95, 0.01, "w_c");
-    assert_coverage(covered[2], trials, 0.6827, 0.01, "exponent");
-    assert_coverage(covered[3], trials, 0.95, 0.01, "exponent");
-    assert_coverage(covered[4], trials, 0.1, 0.01, "probability of chi^2");
+    assert_coverage(improbable, trials, 0.1, 0.01, "probability of chi^2");
 }
 
 #[test]
 fn a_known_critical_width_sharpens_the_exponent_and_its_error_enters() {
-    let trials = 300;
-    let mut covered = [0; 2];
+    let mut coverage = Coverage::of([("exponent", 3.0)]);
     let (mut free_error, mut known_error, mut fixed_error) = (0.0, 0.0, 0.0);
-    for seed in 0..trials {
+    for seed in 0..300 {
         let (value, error) = noisy(seed, 3.0);
         // A measurement of w_c elsewhere, wrong by its own error.
         let elsewhere = 2.82 + 0.004 * white_noise(seed + 10_000, 1)[0];
         let known = Uncertain::normal(elsewhere, 0.004);
         let fit = |known| fit_law(Law::Power, &WIDTHS, &value, &error, known).unwrap();
         let exponent = fit(Some(known)).exponent;
-        covered[0] += usize::from(exponent.interval_68.contains(3.0));
-        covered[1] += usize::from(exponent.interval_95.contains(3.0));
+        coverage.count([exponent]);
         known_error += exponent.error;
         free_error += fit(None).exponent.error;
         fixed_error += fit(Some(Uncertain::normal(2.82, 0.0))).exponent.error;
     }
-    assert_coverage(covered[0], trials as usize, 0.6827, 0.01, "exponent");
-    assert_coverage(covered[1], trials as usize, 0.95, 0.01, "exponent");
+    coverage.judge(0.01);
     assert!(fixed_error < known_error && known_error < free_error);
 }
 

@@ -1,6 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::synthetic::{assert_coverage, exponential, watched};
+use crate::synthetic::{Coverage, assert_coverage, exponential, watched};
 use proptest::prelude::*;
 
 const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];
@@ -32,22 +32,13 @@ fn runs(
 
 #[test]
 fn profile_intervals_of_critical_width_and_exponent_cover() {
-    let trials = 200;
-    let mut covered = [0; 4];
-    for seed in 0..trials {
+    let mut coverage = Coverage::of([("w_c", 2.8), ("exponent", 1.0)]);
+    for seed in 0..200 {
         let (width, transitions) = runs(seed, 15, 300.0, exponential);
         let fit = fit_law_to_runs(Law::Power, Family::Exponential, &width, &transitions).unwrap();
-        let critical = fit.critical_width.unwrap();
-        covered[0] += usize::from(critical.interval_68.contains(2.8));
-        covered[1] += usize::from(critical.interval_95.contains(2.8));
-        covered[2] += usize::from(fit.exponent.interval_68.contains(1.0));
-        covered[3] += usize::from(fit.exponent.interval_95.contains(1.0));
+        coverage.count([fit.critical_width.unwrap(), fit.exponent]);
     }
-    let trials = trials as usize;
-    assert_coverage(covered[0], trials, 0.6827, 0.02, "w_c");
-    assert_coverage(covered[1], trials, 0.95, 0.02, "w_c");
-    assert_coverage(covered[2], trials, 0.6827, 0.02, "exponent");
-    assert_coverage(covered[3], trials, 0.95, 0.02, "exponent");
+    coverage.judge(0.02);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 use super::*;
 use crate::bootstrap::Randomness;
 use crate::error::mean_of;
-use crate::synthetic::{assert_coverage, exponential, remission, watched};
+use crate::synthetic::{Coverage, exponential, remission, watched};
 use proptest::prelude::*;
 
 #[test]
@@ -50,12 +50,16 @@ fn without_censoring_the_restricted_moments_are_those_of_the_sample() {
 
 #[test]
 fn intervals_of_survival_median_and_restricted_mean_cover() {
-    let (trials, runs, horizon) = (400, 40, 1.5);
+    let (runs, horizon) = (40, 1.5);
     let true_mean = 1.0 - libm::exp(-horizon);
     // E min(t, h)^2 = 2 (1 - (1 + h) exp(-h)).
     let true_variance = 2.0 * (1.0 - (1.0 + horizon) * libm::exp(-horizon)) - true_mean * true_mean;
-    let mut covered = [0; 6];
-    for seed in 0..trials {
+    let mut coverage = Coverage::of([
+        ("survival", libm::exp(-1.0)),
+        ("median", 2.0_f64.ln()),
+        ("restricted mean", true_mean),
+    ]);
+    for seed in 0..400 {
         let mut randomness = Randomness::new(seed, 1);
         // Watched for a time uniform from 1 to 3, whatever happens.
         let sample: Vec<Transition> = (0..runs)
@@ -74,23 +78,11 @@ fn intervals_of_survival_median_and_restricted_mean_cover() {
         let Ok(moments) = restricted_moments(&sample, horizon) else {
             panic!("seed {seed}: nobody watched at the horizon");
         };
-        let truth = [
-            (step.survival, libm::exp(-1.0)),
-            (median, 2.0_f64.ln()),
-            (moments.mean, true_mean),
-        ];
-        for (k, (found, truth)) in truth.into_iter().enumerate() {
-            covered[2 * k] += usize::from(found.interval_68.contains(truth));
-            covered[2 * k + 1] += usize::from(found.interval_95.contains(truth));
-        }
+        coverage.count([step.survival, median, moments.mean]);
         assert!((moments.variance.value - true_variance).abs() < 6.0 * moments.variance.error);
     }
-    let trials = trials as usize;
-    for (k, what) in ["survival", "median", "restricted mean"].iter().enumerate() {
-        // A survival of 40 runs has steps of 0.025, which costs some hundredths of the level.
-        assert_coverage(covered[2 * k], trials, 0.6827, 0.02, what);
-        assert_coverage(covered[2 * k + 1], trials, 0.95, 0.01, what);
-    }
+    // A survival of 40 runs has steps of 0.025, which costs some hundredths of the level.
+    coverage.judge(0.02);
 }
 
 #[test]
