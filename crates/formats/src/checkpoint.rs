@@ -113,15 +113,6 @@ pub fn decode<State: DeserializeOwned>(
     }
 }
 
-/// What the bytes are a checkpoint of, from the header alone.
-///
-/// # Errors
-/// [`FormatError::NotACheckpoint`], [`FormatError::CheckpointVersion`], [`FormatError::TruncatedCheckpoint`],
-/// [`FormatError::CorruptCheckpoint`].
-pub fn identify(bytes: &[u8]) -> Result<CheckpointIdentity, FormatError> {
-    Header::from_bytes(bytes).map(|header| header.identity)
-}
-
 /// Writes the state to a checkpoint file, whole or not at all; piece by piece, so that it takes no memory to speak of.
 ///
 /// # Errors

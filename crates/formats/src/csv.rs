@@ -123,48 +123,32 @@ fn push_quoted(text: &mut String, value: &str) {
 }
 
 fn values_of(fields: Vec<Field<'_>>) -> Values {
-    if !fields.iter().any(|field| field.quoted) {
-        let integers = || {
-            fields
-                .iter()
-                .map(|field| field.text.parse().ok())
-                .collect::<Option<Vec<i64>>>()
-        };
-        let booleans = || {
-            fields
-                .iter()
-                .map(|field| field.text.parse().ok())
-                .collect::<Option<Vec<bool>>>()
-        };
-        let real = |text: &str| {
-            if text.is_empty() {
-                Some(f64::NAN)
-            } else {
-                text.parse().ok()
-            }
-        };
-        let reals = || {
-            fields
-                .iter()
-                .map(|field| real(&field.text))
-                .collect::<Option<Vec<f64>>>()
-        };
-        let found = match fields.is_empty() {
-            true => Some(Values::Real(Vec::new())),
-            false => (integers().map(Values::Integer))
-                .or_else(|| booleans().map(Values::Boolean))
-                .or_else(|| reals().map(Values::Real)),
-        };
-        if let Some(values) = found {
-            return values;
-        }
+    if fields.is_empty() {
+        return Values::Real(Vec::new());
     }
-    Values::Text(
-        fields
-            .into_iter()
-            .map(|field| field.text.into_owned())
-            .collect(),
-    )
+    let real = |text: &str| match text {
+        "" => Some(f64::NAN),
+        text => text.parse().ok(),
+    };
+    let is_text = fields.iter().any(|field| field.quoted);
+    let found = (!is_text).then(|| {
+        (parsed(&fields, |text| text.parse().ok()).map(Values::Integer))
+            .or_else(|| parsed(&fields, |text| text.parse().ok()).map(Values::Boolean))
+            .or_else(|| parsed(&fields, real).map(Values::Real))
+    });
+    found.flatten().unwrap_or_else(|| {
+        Values::Text(
+            fields
+                .into_iter()
+                .map(|field| field.text.into_owned())
+                .collect(),
+        )
+    })
+}
+
+/// The values of all fields, if every one of them has one.
+fn parsed<T>(fields: &[Field<'_>], value: impl Fn(&str) -> Option<T>) -> Option<Vec<T>> {
+    fields.iter().map(|field| value(&field.text)).collect()
 }
 
 struct Field<'text> {

@@ -326,28 +326,18 @@ fn read_rows(chunk: ColumnReader, column: &mut Column) -> Result<(), FormatError
     };
     match (&mut column.values, chunk) {
         (Values::Real(values), ColumnReader::DoubleColumnReader(chunk)) => {
-            for_each(chunk, |value| {
-                values.push(value.unwrap_or(f64::NAN));
-                Ok(())
-            })
+            read_values(chunk, values, |value| Ok(value.unwrap_or(f64::NAN)))
         }
         (Values::Integer(values), ColumnReader::Int64ColumnReader(chunk)) => {
-            for_each(chunk, |value| {
-                values.push(value.ok_or_else(missing)?);
-                Ok(())
-            })
+            read_values(chunk, values, |value| value.ok_or_else(missing))
         }
         (Values::Text(values), ColumnReader::ByteArrayColumnReader(chunk)) => {
-            for_each(chunk, |value| {
-                values.push(value.ok_or_else(missing)?.as_utf8()?.to_owned());
-                Ok(())
+            read_values(chunk, values, |value| {
+                Ok(value.ok_or_else(missing)?.as_utf8()?.to_owned())
             })
         }
         (Values::Boolean(values), ColumnReader::BoolColumnReader(chunk)) => {
-            for_each(chunk, |value| {
-                values.push(value.ok_or_else(missing)?);
-                Ok(())
-            })
+            read_values(chunk, values, |value| value.ok_or_else(missing))
         }
         _ => Err(unsupported(
             name,
@@ -356,10 +346,11 @@ fn read_rows(chunk: ColumnReader, column: &mut Column) -> Result<(), FormatError
     }
 }
 
-/// Hands over the value of every row in order, or that there is none.
-fn for_each<T: DataType>(
+/// Adds the value of every row in order, each made of the one in the file, which may be missing.
+fn read_values<T: DataType, V>(
     mut chunk: ColumnReaderImpl<T>,
-    mut accept: impl FnMut(Option<T::T>) -> Result<(), FormatError>,
+    values: &mut Vec<V>,
+    value: impl Fn(Option<T::T>) -> Result<V, FormatError>,
 ) -> Result<(), FormatError> {
     let (mut present, mut levels) = (Vec::new(), Vec::new());
     loop {
@@ -372,7 +363,7 @@ fn for_each<T: DataType>(
         for row in 0..rows {
             // A required column has no levels.
             let is_missing = levels.get(row) == Some(&0);
-            accept(if is_missing { None } else { present.next() })?;
+            values.push(value(if is_missing { None } else { present.next() })?);
         }
         levels.clear();
     }

@@ -45,7 +45,6 @@ fn forged(mut bytes: Vec<u8>, offset: usize, value: &[u8]) -> Vec<u8> {
 fn a_state_comes_back_and_the_bytes_are_reproducible() {
     let bytes = encode(&IDENTITY, &state()).unwrap();
     assert_eq!(decoded(&bytes).unwrap(), state());
-    assert_eq!(identify(&bytes).unwrap(), IDENTITY);
     assert_eq!(bytes, encode(&IDENTITY, &state()).unwrap());
 }
 
