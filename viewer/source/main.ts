@@ -1,21 +1,18 @@
 import { Chart, ink, written } from "./charts";
 import { type Connection, Engine, type Listener, Server } from "./connection";
-import { colourAt, css, FIELDS, inWave, stops } from "./fields";
+import { FIELDS } from "./fields";
+import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
 import { element, fill, listenToLook } from "./page";
 import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
-import type { Driven, Frame, Saved, Steered, Told, Welcome } from "./protocol";
+import type { Driven, Frame, Told, Welcome } from "./protocol";
+import { digest, extent, factsOfDrive, factsOfGrain, factsOfSample } from "./readings";
 import { Recording } from "./recording";
+import { showSaved } from "./saved";
 import { Scene, WALLS, type WallLook } from "./scene";
+import { Sliders } from "./sliders";
 import { choice, wanted } from "./tubes";
-
-const NAMES: Record<Steered, { name: string; digits: number }> = {
-  width: { name: "Width <i>w</i>", digits: 3 },
-  force_amplitude: { name: "Force amplitude <i>f</i>", digits: 5 },
-  strain_rate: { name: "Strain rate <i>ε̇</i>", digits: 4 },
-  friction: { name: "Friction <i>μ</i>", digits: 2 },
-};
 
 /** Milliseconds between two drawings of the charts. */
 const CHARTS = 120;
@@ -52,8 +49,10 @@ class Page {
   private field = "axial";
   private chartsDrawn = 0;
   private chartsStale = true;
-  /** When each slider was last moved by hand. */
-  private readonly moved = new Map<Steered, number>();
+  private readonly sliders = new Sliders((parameter, value) => {
+    this.goLive();
+    this.connection.send({ type: "steer", parameter, value });
+  });
 
   constructor() {
     const listener: Listener = {
@@ -71,7 +70,7 @@ class Page {
 
   private told(message: Told): void {
     if (message.type === "welcome") this.welcome(message);
-    else if (message.type === "saved") this.saved(message);
+    else if (message.type === "saved") showSaved(message);
     else if (message.type === "missing") this.missing(message.number, message.message);
     else {
       this.status(message.message, true);
@@ -87,8 +86,8 @@ class Page {
     document.title = `${tube.title} – peristalsis`;
     element("title").textContent = tube.title;
     element("facts").textContent =
-      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${this.extent(tube)}`;
-    this.makeSliders(tube);
+      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${extent(tube)}`;
+    this.sliders.make(tube);
     this.showWithin(tube);
     document.body.dataset.ready = "true";
   }
@@ -125,13 +124,6 @@ class Page {
     siblings.onchange = () => location.assign(`../${siblings.value}/`);
   }
 
-  /** How much of it there is to see. */
-  private extent({ recorded }: Welcome): string {
-    if (!recorded) return "";
-    const lost = recorded.lost_frames > 0 ? ", cut short" : "";
-    return ` · ${recorded.clocks.length.toLocaleString("en")} recorded frames${lost}`;
-  }
-
   /** Whether a recording has no loop, for nothing was driven. */
   private isSteady(): boolean {
     const [first] = this.film.rows;
@@ -141,55 +133,6 @@ class Page {
   private missing(number: number, message: string): void {
     if (this.film instanceof Recording) this.film.miss(number);
     this.status(`frame ${number + 1} cannot be shown: ${message}`, true);
-  }
-
-  private makeSliders(tube: Welcome): void {
-    const box = element("sliders");
-    box.replaceChildren();
-    for (const [key, { name, digits }] of Object.entries(NAMES) as [Steered, (typeof NAMES)[Steered]][]) {
-      const range = tube.ranges[key];
-      if (!range) continue;
-      const label = document.createElement("label");
-      label.innerHTML = `<span>${name}</span><input type="number" inputmode="decimal"><input type="range">`;
-      const [number, slider] = label.querySelectorAll("input");
-      for (const input of [number, slider]) {
-        input.min = String(range[0]);
-        input.max = String(range[1]);
-        input.step = key === "width" ? "0.005" : String(10 ** -digits);
-      }
-      slider.step = key === "width" ? "0.005" : String((range[1] - range[0]) / 400);
-      slider.setAttribute("aria-label", label.textContent ?? key);
-      slider.id = `slider-${key}`;
-      number.id = `number-${key}`;
-      const steer = (value: number) => {
-        if (!Number.isFinite(value)) return;
-        const within = Math.min(range[1], Math.max(range[0], value));
-        number.value = within.toFixed(digits);
-        slider.value = String(within);
-        this.moved.set(key, performance.now());
-        this.goLive();
-        this.connection.send({ type: "steer", parameter: key, value: within });
-      };
-      slider.oninput = () => steer(slider.valueAsNumber);
-      number.onchange = () => steer(number.valueAsNumber);
-      box.append(label);
-    }
-    this.showDriven(tube.driven);
-  }
-
-  private showDriven(driven: Driven): void {
-    for (const key of Object.keys(NAMES) as Steered[]) {
-      const value = driven[key];
-      const slider = document.getElementById(`slider-${key}`) as HTMLInputElement | null;
-      const number = document.getElementById(`number-${key}`) as HTMLInputElement | null;
-      if (value === null || !slider || !number) continue;
-      // A slider that is in a hand stays there; a mark shows where the run is.
-      const low = Number(slider.min);
-      slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
-      if (performance.now() - (this.moved.get(key) ?? -1e9) < 4000 || number === document.activeElement) continue;
-      slider.value = String(value);
-      number.value = value.toFixed(NAMES[key].digits);
-    }
   }
 
   private receive(frame: Frame): void {
@@ -351,54 +294,16 @@ class Page {
     const asked = this.film instanceof Recording ? this.speed : (this.newest() ?? frame).speed;
     if (speed !== document.activeElement) speed.value = asked === null ? "" : String(asked);
     element("pace").textContent = frame.pace ? `at most ${written(frame.pace, 2)} T/s` : "";
-    this.showDriven((this.newest() ?? frame).driven);
-    const { sample } = frame;
-    const facts: [string, string][] = [
-      ["bottleneck", sample ? `${written(sample.bottleneck)} d` : "–"],
-      ["contacts a grain", sample ? written(sample.contacts) : "–"],
-      ["granular temperature", sample ? written(sample.granular_temperature) : "–"],
-      ["power of the wall", sample ? written(sample.wall_power) : "–"],
-      ["escaped grains", sample ? String(sample.escaped) : "–"],
-      ["energy unaccounted", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
-    ];
-    fill(element("numbers"), this.film instanceof Recording ? [...driven(frame.driven), ...facts] : facts);
+    this.sliders.show((this.newest() ?? frame).driven);
+    const facts = factsOfSample(frame);
+    fill(element("numbers"), this.film instanceof Recording ? [...factsOfDrive(frame.driven), ...facts] : facts);
     this.showGrain(frame, tube, scene.picked);
   }
 
   private showGrain(frame: Frame, tube: Welcome, grain: number): void {
     const box = element("grain");
     box.hidden = grain < 0 || grain >= frame.grains;
-    if (box.hidden) return;
-    const [x, y, z] = frame.position.subarray(3 * grain, 3 * grain + 3);
-    const [vx, vy, vz] = frame.velocity.subarray(3 * grain, 3 * grain + 3);
-    const c = frame.wave_speed || NaN;
-    const facts: [string, string][] = [
-      ["grain", String(grain)],
-      ["diameter", `${written(frame.diameter[grain])} d`],
-      ["from the axis", `${written(Math.hypot(x, y))} d`],
-      ["along the tube", `${written(z, 4)} d`],
-      ["place in the wave", written(inWave(frame, tube, z))],
-      ["along the wave", `${written((tube.heading * vz) / c)} c`],
-      ["speed", `${written(Math.hypot(vx, vy, vz) / c)} c`],
-    ];
-    if (frame.turning) {
-      const spin = frame.spin.subarray(3 * grain, 3 * grain + 3);
-      facts.push(["spin", written(Math.hypot(spin[0], spin[1], spin[2]))]);
-    }
-    fill(element("grain-numbers"), facts);
-  }
-
-  private saved(saved: Saved): void {
-    element("saved-command").textContent = saved.command;
-    element("saved-folder").textContent = saved.folder
-      ? `${saved.folder} holds the checkpoint and its configuration.`
-      : "Put both files into a folder, under these names.";
-    const name = saved.folder?.split("/").at(-1);
-    offer("saved-toml", new Blob([saved.toml], { type: "application/toml" }), name ? `${name}.toml` : "config.toml");
-    const { state } = saved;
-    element("saved-state").hidden = state === null;
-    if (state !== null) offer("saved-state", new Blob([Uint8Array.from(atob(state), (it) => it.charCodeAt(0))]), "state.checkpoint");
-    element<HTMLDialogElement>("saved").showModal();
+    if (!box.hidden) fill(element("grain-numbers"), factsOfGrain(frame, tube, grain));
   }
 
   private status(text: string, trouble: boolean): void {
@@ -410,14 +315,7 @@ class Page {
   }
 
   private showLegend(): void {
-    const field = FIELDS[this.field];
-    const scale = stops(field, this.scene?.lightness ?? false);
-    const parts = Array.from({ length: 9 }, (_, k) => css(colourAt(scale, k / 8)));
-    element("bar").style.background = `linear-gradient(90deg, ${parts.join(",")})`;
-    element("bar-from").textContent = field.ends[0];
-    element("bar-to").textContent = field.ends[1];
-    element("bar-middle").textContent = field.diverging ? "0" : "";
-    element("key").hidden = !(this.scene?.marks ?? false) || !field.diverging;
+    showField(FIELDS[this.field], this.scene?.lightness ?? false, this.scene?.marks ?? false);
   }
 
   private redraw(): void {
@@ -587,38 +485,6 @@ class Page {
       digest: frame ? digest(frame) : 0,
     };
   }
-}
-
-/** A number that another state would hardly have. */
-function digest(frame: Frame): number {
-  let sum = 0;
-  for (const numbers of [frame.position, frame.velocity]) {
-    const bits = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
-    for (const word of bits) sum = (Math.imul(sum, 16777619) ^ word) >>> 0;
-  }
-  return sum;
-}
-
-/** A file to be downloaded by a link. */
-function offer(id: string, file: Blob, name: string): void {
-  const link = element<HTMLAnchorElement>(id);
-  URL.revokeObjectURL(link.href);
-  link.href = URL.createObjectURL(file);
-  link.download = name;
-}
-
-/** What drove a recorded run, in words. */
-function driven(values: Driven): [string, string][] {
-  const of = (key: Steered, name: string, unit: string): [string, string][] => {
-    const value = values[key];
-    return value === null ? [] : [[name, written(value) + unit]];
-  };
-  return [
-    ...of("width", "width w", " d"),
-    ...of("force_amplitude", "force amplitude f", ""),
-    ...of("strain_rate", "strain rate ε̇", ""),
-    ...of("friction", "friction μ", ""),
-  ];
 }
 
 declare global {

@@ -2,23 +2,15 @@ import { keep, read } from "./choice";
 import { Chart, ink, written } from "./charts";
 import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
-import { across, type Cell, drawHeat, type Scale } from "./heat";
+import { across, drawHeat, type Scale } from "./heat";
 import { showMarks, showScale } from "./legend";
 import { element, fill, isDark, listenToLook, options } from "./page";
+import { beside, type Panel, placeOf, pointAt, put } from "./panel";
 import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
-import { withError } from "./words";
+import { valueOf } from "./words";
 
 /** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
 const EACH = { growing: 4000, done: 15000 };
-
-/** A canvas with what can be pointed at in it. */
-interface Panel {
-  chart: Chart;
-  start: string | null;
-  places: Map<Point, [number, number]>;
-  cells: Cell[];
-  lines: Point[][];
-}
 
 /** The page of studies. */
 class StudyPage {
@@ -344,32 +336,21 @@ class StudyPage {
     return facts;
   }
 
-  private shownValue(point: Point): string {
-    return (point.atLeast ? "at least " : "") + withError(point.value, point.atLeast ? NaN : point.error);
-  }
-
   private showTip(): void {
     const tip = element("tip");
     const { chosen, within, results } = this;
     tip.hidden = !chosen || !within;
     if (!chosen || !within || !results) return;
-    const cell = within.cells.find(({ point }) => point === chosen);
-    const place = cell ? [cell.left + 0.5 * cell.width, cell.top + 0.3 * cell.height] : within.places.get(chosen);
+    const place = placeOf(within, chosen);
     if (!place) {
       tip.hidden = true;
       return;
     }
-    element("tip-value").textContent = this.shownValue(chosen);
+    element("tip-value").textContent = valueOf(chosen);
     fill(element("tip-facts"), this.facts(chosen));
     const run = results.typical(chosen, this.choice.value);
     element("tip-open").textContent = run === null ? "the design of this table is not known: its runs cannot be watched" : this.touched ? "tap again to watch its run" : "click to watch its run";
-    const box = element("charts").getBoundingClientRect();
-    const canvas = within.chart.canvas.getBoundingClientRect();
-    const [x, y] = [canvas.left - box.left + place[0], canvas.top - box.top + place[1]];
-    const left = Math.min(box.width - tip.offsetWidth - 4, Math.max(4, x - 0.5 * tip.offsetWidth));
-    const above = y - tip.offsetHeight - 16;
-    tip.style.left = `${left}px`;
-    tip.style.top = `${above > 0 ? above : y + 20}px`;
+    put(tip, element("charts"), within, place);
   }
 
   private showPoint(): void {
@@ -377,7 +358,7 @@ class StudyPage {
     element("point").hidden = chosen === null;
     element("hint").hidden = chosen !== null;
     if (!chosen || !results) return;
-    element("point-value").textContent = this.shownValue(chosen);
+    element("point-value").textContent = valueOf(chosen);
     fill(element("point-facts"), this.facts(chosen));
     const runs = element("runs");
     runs.replaceChildren(
@@ -416,29 +397,17 @@ class StudyPage {
   private touched = false;
 
   private listenTo(canvas: HTMLCanvasElement, panel: Panel): void {
-    const at = (event: PointerEvent | MouseEvent, reach: number): Point | null => {
-      const box = canvas.getBoundingClientRect();
-      const [x, y] = [event.clientX - box.left, event.clientY - box.top];
-      const cell = panel.cells.find(({ left, top, width, height }) => x >= left && x < left + width && y >= top && y < top + height);
-      if (cell) return cell.point;
-      let [nearest, found]: [number, Point | null] = [reach, null];
-      for (const [point, place] of panel.places) {
-        const away = Math.hypot(place[0] - x, place[1] - y);
-        if (away < nearest) [nearest, found] = [away, point];
-      }
-      return found;
-    };
     canvas.addEventListener("pointermove", (event) => {
       if (event.pointerType === "touch") return;
       this.touched = false;
-      const point = at(event, 16);
+      const point = pointAt(panel, event, 16);
       canvas.style.cursor = point && this.results?.typical(point, this.choice.value) !== null ? "pointer" : "default";
       if (point) this.choose(point, panel);
     });
     canvas.addEventListener("pointerleave", () => (element("tip").hidden = true));
     canvas.addEventListener("click", (event) => {
       const touch = event instanceof PointerEvent && event.pointerType === "touch";
-      const point = at(event, touch ? 28 : 16);
+      const point = pointAt(panel, event, touch ? 28 : 16);
       // A finger does not hover: the first tap tells, the second opens.
       const known = !touch || (point === this.chosen && this.touched);
       this.touched = touch;
@@ -455,23 +424,9 @@ class StudyPage {
     const steps: Record<string, [number, number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
     if (event.key === "Enter" && chosen) this.watch(chosen);
     else if (event.key === "Escape") this.choose(null, null);
-    else if (event.key in steps) this.choose(this.beside(panel, steps[event.key]), panel);
+    else if (event.key in steps) this.choose(beside(panel, chosen, steps[event.key]), panel);
     else return;
     event.preventDefault();
-  }
-
-  /** The next point along its curve or row, or the nearest of the next one. */
-  private beside(panel: Panel, [along, up]: [number, number]): Point | null {
-    const lines = panel.lines.filter((line) => line.length > 0);
-    const line = lines.findIndex((it) => this.chosen !== null && it.includes(this.chosen));
-    const { chosen } = this;
-    if (line < 0 || !chosen) return lines.at(0)?.at(0) ?? null;
-    if (up !== 0) {
-      const next = lines[Math.min(lines.length - 1, Math.max(0, line + up))];
-      return next.toSorted((one, other) => Math.abs(one.x - chosen.x) - Math.abs(other.x - chosen.x))[0];
-    }
-    const place = lines[line].indexOf(chosen) + along;
-    return lines[line][Math.min(lines[line].length - 1, Math.max(0, place))];
   }
 
   private listen(): void {

@@ -1,3 +1,4 @@
+import type { Point } from "./results";
 import { powerOfTen, written } from "./charts";
 
 /** A value with its error, both to the error's second digit. */
@@ -13,4 +14,9 @@ export function withError(value: number, error: number): string {
   }
   const decimals = Math.min(10, Math.max(0, 1 - digits));
   return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`.replace("-", "−");
+}
+
+/** The value of a point, which is a lower limit where runs ended without a transition. */
+export function valueOf({ value, error, atLeast }: Point): string {
+  return (atLeast ? "at least " : "") + withError(value, atLeast ? NaN : error);
 }

@@ -1,4 +1,4 @@
-//! The figures of a reproduction, and what its report says of each.
+//! The figures of a reproduction, with their captions in its report.
 
 use std::path::{Path, PathBuf};
 
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::ViewerError;
 
-/// What `peristalsis reproduce` writes beside its report.
+/// The findings beside the report of `peristalsis reproduce`.
 const CLAIMS: &str = "claims.json";
 /// Folder of the figures.
 const FIGURES: &str = "figures";
@@ -16,10 +16,10 @@ const FIGURES: &str = "figures";
 pub struct Figure {
     /// Short name of the claim.
     claim: String,
-    /// What the claim is about, in markup.
+    /// Title of the claim, in markup.
     title: String,
     verdict: String,
-    /// In markup.
+    /// Caption, in markup.
     caption: String,
     studies: Vec<String>,
     #[serde(skip)]
@@ -54,10 +54,10 @@ struct ClaimStudy {
 }
 
 impl Figure {
-    /// The figures that the report in this folder shows, in its order; none where there is no report yet.
+    /// The figures of the report in this folder, in its order; none without a report.
     ///
     /// # Errors
-    /// [`ViewerError::Claims`] where `claims.json` is not what it should be.
+    /// [`ViewerError::Claims`] if `claims.json` cannot be read.
     pub fn of_report(folder: &Path) -> Result<Vec<Self>, ViewerError> {
         let path = folder.join(CLAIMS);
         let wrong = |reason: String| ViewerError::Claims {

@@ -1,4 +1,4 @@
-//! A frame as it is sent: a head in JSON, then numbers.
+//! The message with a frame: a head in JSON, then numbers.
 //!
 //! | bytes | content |
 //! |---|---|
@@ -21,19 +21,19 @@ use serde::Serialize;
 
 use crate::welcome::Driven;
 
-/// What a frame says beside where the spheres are.
+/// The head of a frame.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Head {
     /// Number of a recorded frame, counted from 0; null where the run is computed.
     pub(crate) number: Option<usize>,
-    /// Grows when the run jumps back, so that what was drawn after that time is void.
+    /// Grows when the run jumps back, which makes frames after that time void.
     pub(crate) epoch: u64,
     pub(crate) playing: bool,
-    /// Whether there is no more to come: the run diverged.
+    /// Whether the run diverged, so that no frame follows.
     pub(crate) ended: bool,
-    /// Periods a second that were asked for; null is as fast as possible.
+    /// Speed asked for in periods a second; null is as fast as possible.
     pub(crate) speed: Option<f64>,
-    /// Periods a second that the engine would do at most, NaN (null) before it is known.
+    /// Largest speed of the engine in periods a second; NaN (null) before it is known.
     pub(crate) pace: f64,
     pub(crate) step: u64,
     pub(crate) time: f64,
@@ -53,7 +53,7 @@ pub(crate) struct Head {
     pub(crate) sample: Option<Shown>,
 }
 
-/// A row of the time series as the charts want it.
+/// A row of the time series, for the charts.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Row {
     pub(crate) number: usize,

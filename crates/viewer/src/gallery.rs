@@ -1,4 +1,4 @@
-//! Studies and figures that are looked at together, and the runs of them that were opened.
+//! Studies and figures that are shown together, and their open runs.
 
 use std::path::PathBuf;
 use std::sync::mpsc::Receiver;
@@ -10,35 +10,35 @@ use serde_json::{Value, json};
 
 use crate::ViewerError;
 use crate::figure::Figure;
-use crate::keeper::Keeper;
-use crate::player::Player;
 use crate::recording::Recording;
-use crate::session::{Request, Session, Voices, apologize};
+use crate::recording_host::RecordingHost;
+use crate::run_host::RunHost;
+use crate::session::{Request, Session, Subscribers, refuse_all};
 use crate::study::{Study, StudyRun};
 use crate::tube::{Labels, Saves};
 
 /// Runs that stay open at a time.
 const OPEN: usize = 4;
 
-/// Which run: the number of its study, and its own in it.
+/// A run: the number of its study, and its number in the study.
 type Place = (usize, usize);
 
-/// What there is to look at.
+/// Studies, figures and open runs.
 #[derive(Debug)]
 pub(crate) struct Gallery {
     studies: Vec<Mutex<Study>>,
     figures: Vec<Figure>,
     saves: PathBuf,
-    /// The runs that are open, the one that was asked for last at the end.
+    /// The open runs, in the order in which they were last asked for.
     open: Mutex<Vec<(Place, Session)>>,
 }
 
 /// Why a run cannot be watched.
 #[derive(Debug)]
 pub(crate) enum Closed {
-    /// There is no such run.
+    /// No run has this number.
     Unknown,
-    /// Too many are watched.
+    /// Too many runs are watched.
     Full,
     /// The system gives no thread.
     Failed(ViewerError),
@@ -54,7 +54,7 @@ impl Gallery {
         }
     }
 
-    /// What there is, in JSON.
+    /// Studies and figures in JSON.
     pub(crate) fn list(&self) -> Value {
         let studies = self.studies.iter().map(|study| {
             let study = held(study);
@@ -63,11 +63,10 @@ impl Gallery {
         json!({ "studies": studies.collect::<Vec<Value>>(), "figures": self.figures })
     }
 
-    /// All of a study in JSON; `Some(None)` where the client has it in this version already, `None` where there is no such
-    /// study.
+    /// A study in JSON; `Some(None)` if the client has this version already, `None` if no study has this number.
     ///
     /// # Errors
-    /// Where its store cannot be read any more.
+    /// [`ViewerError::Study`] if its store cannot be read any more.
     pub(crate) fn study(
         &self,
         number: usize,
@@ -87,7 +86,7 @@ impl Gallery {
         self.figures.get(number)?.picture().ok()
     }
 
-    /// Whether there is such a run.
+    /// Whether the run exists.
     pub(crate) fn holds(&self, place: Place) -> bool {
         self.run(place).is_some()
     }
@@ -96,7 +95,7 @@ impl Gallery {
         held(self.studies.get(study)?).run(number)
     }
 
-    /// A run, begun where it was not open.
+    /// The session of a run, which is opened if it was not open.
     ///
     /// # Errors
     /// [`Closed`].
@@ -112,35 +111,36 @@ impl Gallery {
         if open.len() >= OPEN {
             let left = open
                 .iter()
-                .position(|(_, session)| !session.voices.are_heard());
+                .position(|(_, session)| !session.subscribers.are_present());
             open.remove(left.ok_or(Closed::Full)?);
         }
         let saves = self.saves.clone();
-        let session = Session::start(move |voices, requests| show(run, saves, voices, &requests))
-            .map_err(Closed::Failed)?;
+        let session =
+            Session::start(move |subscribers, requests| show(run, saves, subscribers, &requests))
+                .map_err(Closed::Failed)?;
         open.push((place, session.clone()));
         Ok(session)
     }
 }
 
-/// What a mutex holds: whoever panicked with it left it whole, for nothing is changed by halves.
+/// The content of a mutex, also after a panic of its holder: no change of it is left half done.
 fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Plays the recording of a run, or computes the run from its start.
-fn show(run: StudyRun, saves: PathBuf, voices: Voices, requests: &Receiver<Request>) {
+fn show(run: StudyRun, saves: PathBuf, subscribers: Subscribers, requests: &Receiver<Request>) {
     let outcome = match &run.trajectory {
         Some(path) => {
             let recording = Recording::open(path, run.configuration.clone(), Vec::new());
             recording
                 .map_err(|error| error.to_string())
                 .map(|recording| {
-                    Player {
+                    RecordingHost {
                         recording,
                         title: run.title,
                         within: Some(run.within),
-                        voices,
+                        subscribers,
                     }
                     .work(requests);
                 })
@@ -155,11 +155,11 @@ fn show(run: StudyRun, saves: PathBuf, voices: Voices, requests: &Receiver<Reque
                 record: run.record,
                 within: Some(run.within),
             };
-            Keeper::new(tube, labels, voices).work(requests);
+            RunHost::new(tube, labels, subscribers).work(requests);
         }),
     };
     if let Err(reason) = outcome {
-        apologize(&reason, requests);
+        refuse_all(&reason, requests);
     }
 }
 

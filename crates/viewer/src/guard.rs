@@ -1,4 +1,4 @@
-//! Who may speak to the viewer: those who know the token, from a page of the viewer itself.
+//! Access to the viewer: with the token, and from a page of the viewer itself.
 
 use crate::ViewerError;
 
@@ -19,7 +19,7 @@ impl Token {
         &self.0
     }
 
-    /// Whether it is this one; takes as long wherever they differ.
+    /// Whether the token is this one, in the same time wherever they differ.
     pub(crate) fn is(&self, given: &str) -> bool {
         let pairs = self.0.bytes().zip(given.bytes());
         let difference = pairs.fold(0, |sum, (one, other)| sum | (one ^ other));
@@ -27,7 +27,7 @@ impl Token {
     }
 }
 
-/// Whether a request names this machine as its host. A page elsewhere whose name was made to lead here does not.
+/// Whether a request names this machine as its host. This refuses pages elsewhere whose name resolves to loopback.
 pub(crate) fn is_loopback(host: Option<&str>) -> bool {
     let Some(host) = host else { return false };
     let name = match host.rsplit_once(':') {

@@ -15,7 +15,6 @@
 
 #[cfg(feature = "server")]
 mod assets;
-mod course;
 #[cfg(feature = "server")]
 mod figure;
 mod frame;
@@ -23,14 +22,14 @@ mod frame;
 mod gallery;
 #[cfg(feature = "server")]
 mod guard;
-#[cfg(feature = "server")]
-mod keeper;
 mod message;
 mod page_viewer;
 #[cfg(feature = "server")]
-mod player;
-#[cfg(feature = "server")]
 mod recording;
+#[cfg(feature = "server")]
+mod recording_host;
+#[cfg(feature = "server")]
+mod run_host;
 #[cfg(feature = "server")]
 mod server;
 #[cfg(feature = "server")]
@@ -39,6 +38,7 @@ mod session;
 mod socket;
 #[cfg(feature = "server")]
 mod study;
+mod timeline;
 mod tube;
 mod welcome;
 mod within;

@@ -1,36 +1,36 @@
-//! What a page asks, and what it is told besides frames: JSON.
+//! Commands from pages, and notices to them: JSON.
 
 use serde::{Deserialize, Serialize};
 
-/// What a client may ask.
+/// A command of a client.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Command {
-    /// Goes on, or stops.
+    /// Lets the run go on, or stops it.
     Play {
         /// Whether to go on.
         playing: bool,
     },
-    /// How fast to go on.
+    /// Sets the speed.
     Speed {
         /// Periods of the wave a second, at most; as fast as possible where it is missing.
         periods_per_second: Option<f64>,
     },
     /// Goes on by one frame.
     Step {},
-    /// Leads a parameter to a value while the run goes on.
+    /// Leads a parameter to a value.
     Steer {
         /// Which.
         parameter: Steered,
         /// The value, in the unit of its key.
         value: f64,
     },
-    /// Computes the run anew up to this time, on the course that it took.
+    /// Computes the run again up to this time, steered as it was.
     Seek {
         /// Time in periods of the drive's own strain rate.
         period: f64,
     },
-    /// Writes a folder from which the command line goes on.
+    /// Saves the state, from which the command line can go on.
     Save {},
     /// Asks for a frame of a recording.
     Frame {
@@ -39,7 +39,7 @@ pub(crate) enum Command {
     },
 }
 
-/// What can be changed while a run goes on.
+/// A parameter that can be changed while a run goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Steered {
@@ -53,7 +53,7 @@ pub(crate) enum Steered {
     Friction,
 }
 
-/// What clients are told besides frames.
+/// A message to clients other than a frame.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "type", rename_all = "snake_case")]
 pub(crate) enum Notice {
@@ -70,7 +70,7 @@ pub(crate) enum Notice {
         /// Time in periods.
         period: f64,
     },
-    /// A frame of a recording that cannot be had.
+    /// A frame of a recording that cannot be read.
     #[cfg(feature = "server")]
     Missing {
         /// Which, counted from 0.
@@ -78,7 +78,7 @@ pub(crate) enum Notice {
         /// Why, in words.
         message: String,
     },
-    /// Something cannot be done; the run is as it was.
+    /// A command failed; the run is as before.
     Problem {
         /// What, in words.
         message: String,
@@ -91,7 +91,7 @@ impl Notice {
     }
 }
 
-/// What clients are told of something that cannot be done, in JSON.
+/// The notice of a command that failed, in JSON.
 pub(crate) fn problem(message: &str) -> String {
     let message = message.to_owned();
     Notice::Problem { message }.to_json()

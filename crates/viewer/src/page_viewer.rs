@@ -40,7 +40,7 @@ impl PageViewer {
     /// Carries out a command in JSON.
     pub fn command(&mut self, text: &str) {
         match (Command::read(text), &mut self.tube) {
-            (Ok(command), Some(tube)) => tube.take(command),
+            (Ok(command), Some(tube)) => tube.execute(command),
             (Ok(_), None) => {}
             (Err(reason), _) => self.notices.push_back(problem(&reason)),
         }

@@ -1,4 +1,4 @@
-//! A trajectory to be played, and what is known of its run.
+//! A trajectory that is played, with the configuration and samples of its run.
 
 use std::path::{Path, PathBuf};
 
@@ -10,16 +10,16 @@ use peristalsis_observe::Sample;
 use peristalsis_run::walls;
 
 use crate::ViewerError;
-use crate::course::{Course, thin};
 use crate::frame::{Head, Row, of_recording};
+use crate::timeline::{Timeline, thin};
 use crate::welcome::{Recorded, Welcome};
 
-/// Part of its own length by which a tube may differ in a file of 32 bits.
+/// Relative difference of the tube's length that rounding to 32 bits may cause.
 const TOLERANCE: f64 = 1e-3;
-/// Part of a period by which a sample may seem to come after the frame of the same step.
+/// Difference in periods that rounding may cause between a sample and the frame of the same step.
 const SLACK: f64 = 1e-9;
 
-/// A trajectory in GSD, with the configuration of its run and, where it is known, the time series.
+/// A trajectory in GSD, with the configuration of its run and, if known, the time series.
 #[derive(Debug)]
 pub struct Recording {
     path: PathBuf,
@@ -34,8 +34,7 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// Opens a trajectory of the run with this configuration. Where the run left no samples, J/Jmax is what the trajectory
-    /// logged.
+    /// Opens a trajectory of the run with this configuration. Without samples, J/Jmax is taken from the trajectory.
     ///
     /// # Errors
     /// [`ViewerError::Trajectory`] where it cannot be read; [`ViewerError::ForeignTrajectory`] where it is of another run.
@@ -63,22 +62,26 @@ impl Recording {
         Ok(recording)
     }
 
-    /// Frames in it.
+    /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
         self.times.len()
     }
 
-    /// Frames that were begun when it was cut short.
+    /// Number of frames lost where the file was cut short.
     #[must_use]
     pub fn lost_frames(&self) -> u64 {
         self.reader.lost_frames()
     }
 
-    /// What a page must know before the first frame.
+    /// The first message to a page.
     pub(crate) fn welcome(&self, title: &str) -> Welcome {
-        let course = Course(&self.configuration);
-        let clocks = self.times.iter().map(|&time| course.clock(time)).collect();
+        let timeline = Timeline(&self.configuration);
+        let clocks = self
+            .times
+            .iter()
+            .map(|&time| timeline.clock(time))
+            .collect();
         let mut welcome = Welcome::of(&self.configuration, &self.wall, self.grains, title);
         welcome.rows = thin(self.rows.iter().copied());
         welcome.recorded = Some(Recorded {
@@ -88,7 +91,7 @@ impl Recording {
         welcome
     }
 
-    /// A frame as it is sent, counted from 0.
+    /// The bytes of a message with a frame, counted from 0.
     ///
     /// # Errors
     /// [`ViewerError::Trajectory`] where there is no such frame or it cannot be read; [`ViewerError::ForeignTrajectory`]
@@ -96,11 +99,11 @@ impl Recording {
     pub(crate) fn frame(&mut self, number: usize) -> Result<Vec<u8>, ViewerError> {
         let frame = self.reader.frame(number)?;
         self.check(&frame)?;
-        let course = Course(&self.configuration);
-        let clock = course.clock(frame.time);
+        let timeline = Timeline(&self.configuration);
+        let clock = timeline.clock(frame.time);
         let lattice = self.wall.lattice();
         let is_elastic = self.wall.mobile_spheres() > 0;
-        let slack = SLACK * course.unit_period();
+        let slack = SLACK * timeline.unit_period();
         let run = &self.configuration.run;
         let interval = run.steps_per_sample as f64 * run.time_step + slack;
         let taken = self
@@ -130,7 +133,7 @@ impl Recording {
                 lattice.rings_per_wave as usize
             },
             turning: frame.rotation.is_some(),
-            driven: course.driven(clock),
+            driven: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
         };
@@ -170,19 +173,19 @@ impl Recording {
         Ok(())
     }
 
-    /// The samples, and what frames logged that come after them.
+    /// Rows of the samples, then of later frames.
     fn read_rows(&mut self) -> Result<Vec<Row>, ViewerError> {
-        let course = Course(&self.configuration);
+        let timeline = Timeline(&self.configuration);
         let samples = self.samples.iter().enumerate();
         let mut rows: Vec<Row> = samples
-            .map(|(number, sample)| course.row_of(number, sample))
+            .map(|(number, sample)| timeline.row_of(number, sample))
             .collect();
         let sampled = self.samples.last().map_or(-1.0, |sample| sample.time);
         for (frame, &time) in self.times.iter().enumerate() {
-            if time > sampled + SLACK * course.unit_period() {
+            if time > sampled + SLACK * timeline.unit_period() {
                 let ratio = self.reader.value(frame, "flow_rate_ratio")?;
                 let ratio = ratio.unwrap_or(f64::NAN);
-                rows.push(course.row(rows.len(), time, ratio, f64::NAN));
+                rows.push(timeline.row(rows.len(), time, ratio, f64::NAN));
             }
         }
         Ok(rows)

@@ -1,23 +1,23 @@
-//! The thread that owns a recording, and gives its frames to whoever asks.
+//! The work of the thread that owns a recording: sends clients the frames that they ask for.
 
 use std::sync::mpsc::Receiver;
 
 use crate::message::problem;
 use crate::recording::Recording;
-use crate::session::{Request, Voices};
+use crate::session::{Request, Subscribers};
 use crate::within::Within;
 
-/// A recording in the hands of its viewers, each of whom plays it at their own pace.
+/// A recording and its clients, each of which plays it at its own pace.
 #[derive(Debug)]
-pub(crate) struct Player {
+pub(crate) struct RecordingHost {
     pub(crate) recording: Recording,
     pub(crate) title: String,
     pub(crate) within: Option<Within>,
-    pub(crate) voices: Voices,
+    pub(crate) subscribers: Subscribers,
 }
 
-impl Player {
-    /// Answers until nobody is left who could ask for anything. A client that has left meanwhile needs no answer.
+impl RecordingHost {
+    /// Answers requests until all clients and the server are gone. A client that has left needs no answer.
     pub(crate) fn work(mut self, requests: &Receiver<Request>) {
         while let Ok(request) = requests.recv() {
             match request {
@@ -32,7 +32,7 @@ impl Player {
                 }
                 Request::Command(_) => {
                     let message = "this is a recording, which cannot be driven; `peristalsis view --live` computes the run";
-                    self.voices.say(problem(message));
+                    self.subscribers.notify(problem(message));
                 }
             }
         }

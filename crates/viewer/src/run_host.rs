@@ -1,4 +1,4 @@
-//! The thread that owns a run, and lets whoever asks see and drive it.
+//! The work of the thread that owns a run: carries out the commands of clients and sends them frames.
 
 use std::sync::Arc;
 use std::sync::LazyLock;
@@ -7,14 +7,14 @@ use std::time::{Duration, Instant};
 
 use peristalsis_run::Run;
 
-use crate::session::{Request, Voices};
+use crate::session::{Request, Subscribers};
 use crate::tube::{FRAME, Labels, Tube};
 
-/// A run and those who look on.
+/// A run and its clients.
 #[derive(Debug)]
-pub(crate) struct Keeper {
+pub(crate) struct RunHost {
     tube: Tube,
-    voices: Voices,
+    subscribers: Subscribers,
 }
 
 /// Seconds since the program first asked.
@@ -23,19 +23,19 @@ fn seconds() -> f64 {
     BEGIN.elapsed().as_secs_f64()
 }
 
-impl Keeper {
-    pub(crate) fn new(run: Run, labels: Labels, voices: Voices) -> Self {
+impl RunHost {
+    pub(crate) fn new(run: Run, labels: Labels, subscribers: Subscribers) -> Self {
         let tube = Tube::new(run, labels, seconds);
-        Self { tube, voices }
+        Self { tube, subscribers }
     }
 
-    /// Works until nobody is left who could ask for anything.
+    /// Works until all clients and the server are gone.
     pub(crate) fn work(mut self, requests: &Receiver<Request>) {
         let frame = Duration::from_secs_f64(FRAME);
         self.publish();
         let mut next = Instant::now();
         loop {
-            let busy = self.tube.is_going() && self.voices.are_heard();
+            let busy = self.tube.is_going() && self.subscribers.are_present();
             let patience = if busy {
                 next.saturating_duration_since(Instant::now())
             } else {
@@ -57,7 +57,7 @@ impl Keeper {
         }
     }
 
-    /// Answers; a client that has left meanwhile needs no answer.
+    /// Answers a request; a client that has left needs no answer.
     fn answer(&mut self, request: Request) {
         match request {
             Request::Welcome(reply) => drop(reply.send(self.tube.welcome())),
@@ -66,7 +66,7 @@ impl Keeper {
                 drop(reply.send(Err(reason.to_owned())));
             }
             Request::Command(command) => {
-                self.tube.take(command);
+                self.tube.execute(command);
                 self.publish();
             }
         }
@@ -74,8 +74,10 @@ impl Keeper {
 
     fn publish(&mut self) {
         for notice in self.tube.notices() {
-            self.voices.say(notice);
+            self.subscribers.notify(notice);
         }
-        self.voices.frames.send_replace(Arc::new(self.tube.frame()));
+        self.subscribers
+            .frames
+            .send_replace(Arc::new(self.tube.frame()));
     }
 }

@@ -27,17 +27,17 @@ use crate::assets::asset;
 use crate::figure::Figure;
 use crate::gallery::{Closed, Gallery};
 use crate::guard::{Token, is_loopback, is_own};
-use crate::keeper::Keeper;
-use crate::player::Player;
 use crate::recording::Recording;
+use crate::recording_host::RecordingHost;
+use crate::run_host::RunHost;
 use crate::session::Session;
-use crate::socket::attend;
+use crate::socket::serve_client;
 use crate::study::Study;
 use crate::tube::{Labels, Saves};
 
 /// Connections at a time that have not become a client's; more wait.
 const CONNECTIONS: usize = 64;
-/// Time that a connection may take to say what it wants.
+/// Time within which the head of a request must come.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Bytes of a request's head, at most.
 const HEAD_BYTES: usize = 16 * 1024;
@@ -45,10 +45,10 @@ const HEAD_BYTES: usize = 16 * 1024;
 const CLIENTS: usize = 8;
 /// Bytes of a message from a client, at most.
 const MESSAGE_BYTES: usize = 4096;
-/// Time from one look at whether to stop to the next.
+/// Time between two looks whether to stop.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// What the page may load: itself, and nothing else.
+/// The page may load its own files only.
 const CONTENT_SECURITY_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; \
      connect-src 'self'; img-src 'self' data: blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
 
@@ -59,11 +59,11 @@ const JSON: &str = "application/json";
 pub struct Options {
     /// Port on loopback; 0 takes a free one.
     pub port: u16,
-    /// What the run is called; the names of saved states begin with it.
+    /// Title of the run; the names of saved states begin with it.
     pub title: String,
     /// Folder in which states are saved.
     pub saves: PathBuf,
-    /// The time series of the same run from before, if it has been computed.
+    /// The time series of the same run, if it was computed before.
     pub record: Vec<Sample>,
 }
 
@@ -77,7 +77,7 @@ pub struct Viewer {
     router: Router,
 }
 
-/// What every request needs.
+/// The state that all requests share.
 #[derive(Clone)]
 struct Shared {
     token: Arc<Token>,
@@ -85,7 +85,7 @@ struct Shared {
     clients: Arc<Semaphore>,
 }
 
-/// What there is to see.
+/// What the viewer shows.
 #[derive(Clone)]
 enum Exhibit {
     /// One run, or the recording of one.
@@ -110,25 +110,25 @@ impl Viewer {
             record: samples.map(|it| (it.time, it.flow_rate_ratio)).collect(),
             within: None,
         };
-        let session = Session::start(|voices, requests| {
-            Keeper::new(run, labels, voices).work(&requests);
+        let session = Session::start(|subscribers, requests| {
+            RunHost::new(run, labels, subscribers).work(&requests);
         })?;
         Self::listen(options.port, Exhibit::Tube(session))
     }
 
-    /// Listens on loopback and gives the frames of a recording to whoever asks. Port 0 takes a free one.
+    /// Listens on loopback and serves the frames of a recording. Port 0 takes a free one.
     ///
     /// # Errors
     /// As [`Viewer::open`].
     pub fn play(recording: Recording, title: String, port: u16) -> Result<Self, ViewerError> {
-        let session = Session::start(|voices, requests| {
-            let player = Player {
+        let session = Session::start(|subscribers, requests| {
+            let host = RecordingHost {
                 recording,
                 title,
                 within: None,
-                voices,
+                subscribers,
             };
-            player.work(&requests);
+            host.work(&requests);
         })?;
         Self::listen(port, Exhibit::Tube(session))
     }
@@ -219,14 +219,14 @@ async fn accept_all(listener: TcpListener, router: Router) {
                 .max_buf_size(HEAD_BYTES)
                 .serve_connection(TokioIo::new(stream), service)
                 .with_upgrades();
-            // Who breaks off, or talks no HTTP, has been answered as far as there is an answer.
+            // A connection that breaks off or is not HTTP needs no further answer.
             drop(connection.await);
             drop(place);
         });
     }
 }
 
-/// What is not there and what is not for everyone look the same.
+/// A path that does not exist and a wrong token get the same answer.
 fn router(shared: Shared) -> Router {
     let pages = match &shared.exhibit {
         Exhibit::Tube(_) => Router::new()
@@ -289,12 +289,12 @@ fn rooms(gallery: Arc<Gallery>) -> Router<Shared> {
         .route("/{token}/{name}", get(file))
 }
 
-/// A study, unless the client has it as it is.
+/// A study, or "not modified" if the client has this version.
 fn study_as(gallery: &Gallery, number: usize, headers: &HeaderMap) -> Response {
     let known = headers
         .get(header::IF_NONE_MATCH)
         .and_then(|tag| tag.to_str().ok()?.trim_matches('"').parse().ok());
-    // To read a store and to write a table takes some ten milliseconds, in which the other thread goes on.
+    // Reading a store takes some ten milliseconds, in which the other thread goes on.
     match tokio::task::block_in_place(|| gallery.study(number, known)) {
         None => StatusCode::NOT_FOUND.into_response(),
         Some(Ok(None)) => StatusCode::NOT_MODIFIED.into_response(),
@@ -303,7 +303,7 @@ fn study_as(gallery: &Gallery, number: usize, headers: &HeaderMap) -> Response {
     }
 }
 
-/// Lets in who knows the token, the first part of every path.
+/// Refuses requests whose path does not begin with the token.
 async fn admit(State(shared): State<Shared>, request: Request, next: Next) -> Response {
     let token = request.uri().path().split('/').nth(1).unwrap_or_default();
     if shared.token.is(token) {
@@ -313,7 +313,7 @@ async fn admit(State(shared): State<Shared>, request: Request, next: Next) -> Re
     }
 }
 
-/// Whether a request names this machine, and comes from its page or from none; it may say either only once.
+/// Whether a request names this machine as its host and comes from its page or from none; each header at most once.
 fn is_known(headers: &HeaderMap) -> bool {
     let text = |name| {
         let mut values = headers.get_all(name).iter();
@@ -327,7 +327,7 @@ fn is_known(headers: &HeaderMap) -> bool {
     is_loopback(host) && is_own(text(header::ORIGIN), host.unwrap_or_default())
 }
 
-/// Refuses who comes from elsewhere, and lets no answer be used elsewhere.
+/// Refuses requests from other pages, and forbids other pages to use the answers.
 async fn guard(request: Request, next: Next) -> Response {
     let mut response = if is_known(request.headers()) {
         next.run(request).await
@@ -380,7 +380,7 @@ async fn live_in_study(
     }
 }
 
-/// Becomes a WebSocket, where there is a place for one more client.
+/// Upgrades to a WebSocket, if there is a place for one more client.
 fn talk(
     shared: &Shared,
     session: Session,
@@ -397,7 +397,7 @@ fn talk(
         .max_message_size(MESSAGE_BYTES)
         .max_frame_size(MESSAGE_BYTES)
         .on_upgrade(async move |socket| {
-            attend(socket, session).await;
+            serve_client(socket, session).await;
             drop(place);
         })
 }

@@ -16,66 +16,68 @@ const FULL: Duration = Duration::from_millis(2);
 /// Notices that a slow client may lag behind.
 const NOTICES: usize = 64;
 
-/// What the thread is asked.
+/// A request to the thread that owns a run or a recording.
 #[derive(Debug)]
 pub(crate) enum Request {
-    /// To do something.
+    /// Carry out a command.
     Command(Command),
-    /// What a new client must know first.
+    /// The welcome of a new client.
     Welcome(oneshot::Sender<String>),
-    /// A frame of a recording; else why it cannot be had.
+    /// A frame of a recording by its number; the error says why there is no such frame.
     Frame(usize, oneshot::Sender<Result<Vec<u8>, String>>),
 }
 
-/// What clients listen to.
+/// The channels to the clients of a run: frames and notices.
 #[derive(Clone, Debug)]
-pub(crate) struct Voices {
+pub(crate) struct Subscribers {
     pub(crate) frames: watch::Sender<Arc<Vec<u8>>>,
     pub(crate) notices: broadcast::Sender<String>,
 }
 
-impl Voices {
-    /// Tells everyone; with nobody there, nobody is told.
-    pub(crate) fn say(&self, notice: String) {
+impl Subscribers {
+    /// Sends a notice to all clients there are.
+    pub(crate) fn notify(&self, notice: String) {
         drop(self.notices.send(notice));
     }
 
-    /// Whether anybody looks on.
-    pub(crate) fn are_heard(&self) -> bool {
+    /// Whether there are clients.
+    pub(crate) fn are_present(&self) -> bool {
         self.frames.receiver_count() > 0
     }
 }
 
-/// Both ends of the talk with a thread, which ends when the last of them is gone.
+/// The channels to and from the thread of a run or a recording. The thread ends when the last copy is dropped.
 #[derive(Clone, Debug)]
 pub(crate) struct Session {
     requests: SyncSender<Request>,
-    pub(crate) voices: Voices,
+    pub(crate) subscribers: Subscribers,
 }
 
 impl Session {
-    /// Puts `work` into a thread.
+    /// Starts `work` in a thread of its own.
     ///
     /// # Errors
     /// [`ViewerError::Thread`].
     pub(crate) fn start(
-        work: impl FnOnce(Voices, Receiver<Request>) + Send + 'static,
+        work: impl FnOnce(Subscribers, Receiver<Request>) + Send + 'static,
     ) -> Result<Self, ViewerError> {
         let (requests, received) = sync_channel(WAITING);
-        let voices = Voices {
+        let subscribers = Subscribers {
             frames: watch::Sender::new(Arc::new(Vec::new())),
             notices: broadcast::Sender::new(NOTICES),
         };
-        let own = voices.clone();
+        let own = subscribers.clone();
         std::thread::Builder::new()
             .name("tube".to_owned())
             .spawn(move || work(own, received))
             .map_err(ViewerError::Thread)?;
-        Ok(Self { requests, voices })
+        Ok(Self {
+            requests,
+            subscribers,
+        })
     }
 
-    /// Waits for a place among the requests: who sends too many waits for the run, and nobody's are lost. `None` where the
-    /// thread has ended.
+    /// Sends a request; where too many wait already, waits for a place. `None` if the thread has ended.
     pub(crate) async fn request(&self, mut request: Request) -> Option<()> {
         loop {
             request = match self.requests.try_send(request) {
@@ -88,8 +90,8 @@ impl Session {
     }
 }
 
-/// Says to whoever asks why there is nothing to see.
-pub(crate) fn apologize(reason: &str, requests: &Receiver<Request>) {
+/// Answers all requests with the reason why there is no run.
+pub(crate) fn refuse_all(reason: &str, requests: &Receiver<Request>) {
     while let Ok(request) = requests.recv() {
         match request {
             Request::Welcome(reply) => drop(reply.send(problem(reason))),

@@ -10,14 +10,14 @@ use tokio::sync::{broadcast, oneshot};
 use crate::message::{Command, Notice, problem};
 use crate::session::{Request, Session};
 
-/// Time that a client may take for a frame before it is left alone.
+/// Time after which a client that takes no frame is disconnected.
 const SLOW: Duration = Duration::from_secs(30);
 
-/// Serves one client until either side has had enough.
-pub(crate) async fn attend(socket: WebSocket, session: Session) {
+/// Serves one client until either side closes the connection.
+pub(crate) async fn serve_client(socket: WebSocket, session: Session) {
     let (mut to, mut from) = socket.split();
-    let mut frames = session.voices.frames.subscribe();
-    let mut notices = session.voices.notices.subscribe();
+    let mut frames = session.subscribers.frames.subscribe();
+    let mut notices = session.subscribers.notices.subscribe();
     let Some(welcome) = welcome(&session).await else {
         return;
     };
@@ -38,7 +38,7 @@ pub(crate) async fn attend(socket: WebSocket, session: Session) {
                 },
                 Some(Ok(Message::Ping(_) | Message::Pong(_))) => continue,
                 Some(Ok(Message::Binary(_))) => farewell(close_code::UNSUPPORTED, "commands are text"),
-                // Gone, or no WebSocket any more.
+                // The connection is closed or broken.
                 Some(Ok(Message::Close(_)) | Err(_)) | None => return,
             },
             changed = frames.changed() => {
@@ -46,7 +46,7 @@ pub(crate) async fn attend(socket: WebSocket, session: Session) {
                     return;
                 }
                 let frame = Arc::clone(&frames.borrow_and_update());
-                // Nothing was computed yet, or nothing is: a recording.
+                // No frame yet, or a recording, which sends none by itself.
                 if frame.is_empty() {
                     continue;
                 }
@@ -72,8 +72,8 @@ async fn welcome(session: &Session) -> Option<String> {
     answer.await.ok()
 }
 
-/// Passes a message on to the run, with the answer that is for this client alone; else the reason to close the
-/// connection.
+/// Passes a message on to the run. Answers with the message for this client, if there is one, or with the reason to close
+/// the connection.
 async fn ask(session: &Session, text: &str) -> Result<Option<Message>, String> {
     let ended = || "the run has ended".to_owned();
     match Command::read(text).map_err(|reason| format!("not a command: {reason}"))? {

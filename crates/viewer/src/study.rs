@@ -1,4 +1,4 @@
-//! A study to be looked at: its rows, and what each of its runs is computed from.
+//! A study that is shown: its rows, and the configurations of its runs.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
@@ -15,9 +15,9 @@ use crate::within::{Sibling, Within};
 
 /// J/Jmax in time, in the folder of a run of a store.
 const SERIES: &str = "timeseries.parquet";
-/// Time from one look into a store to the next, at least.
+/// Least time between two looks into a store.
 const EACH: Duration = Duration::from_secs(2);
-/// States in which a run may still come to a row.
+/// States of runs that may still give a row.
 const UNFINISHED: [&str; 3] = ["pending", "leased", "checkpointed"];
 
 /// A study: the rows of its finished runs and, where its design is known, the configuration behind each.
@@ -25,16 +25,16 @@ const UNFINISHED: [&str; 3] = ["pending", "leased", "checkpointed"];
 pub struct Study {
     name: String,
     title: String,
-    /// The folder that its runs are in; none where there is only a table.
+    /// The folder of its runs; `None` for a table alone.
     store: Option<Store>,
     plan: Option<Plan>,
     table: Table,
     /// Runs of the plan in each state.
     counts: BTreeMap<&'static str, usize>,
-    /// Every run that was ever seen; its place is what a page calls it.
+    /// All runs that were ever seen; the place is the number of the run for pages.
     runs: Vec<Identity>,
     numbers: HashMap<Identity, usize>,
-    /// Grows when there is something new to see.
+    /// Grows with every change.
     version: u64,
     looked: Instant,
 }
@@ -44,23 +44,23 @@ pub struct Study {
 pub(crate) struct StudyRun {
     pub(crate) configuration: Configuration,
     pub(crate) title: String,
-    /// What the names of saved states begin with.
+    /// Beginning of the names of saved states.
     pub(crate) stem: String,
-    /// Time and J/Jmax from when it was computed for the study.
+    /// Time and J/Jmax of the run in the study.
     pub(crate) record: Vec<(f64, f64)>,
     /// Its recording, if there is one.
     pub(crate) trajectory: Option<PathBuf>,
     pub(crate) within: Within,
 }
 
-/// What a page is told of a study.
+/// A study in JSON, for its page.
 #[derive(Debug, Serialize)]
 pub(crate) struct Shown<'a> {
     version: u64,
     name: &'a str,
     title: &'a str,
     columns: Vec<ShownColumn<'a>>,
-    /// What the run of each row is called; null where it cannot be watched.
+    /// Number of the run of each row; null where it cannot be watched.
     runs: Vec<Option<usize>>,
     counts: &'a BTreeMap<&'static str, usize>,
     /// Whether there may be more rows later.
@@ -97,7 +97,7 @@ impl<'a> From<&'a Values> for ShownValues<'a> {
 }
 
 impl Study {
-    /// The study in a store, as far as it has been computed.
+    /// The study in a store, with the rows that are there.
     ///
     /// # Errors
     /// [`ViewerError::Study`].
@@ -111,8 +111,7 @@ impl Study {
         Ok(study)
     }
 
-    /// A table of rows of finished runs. With the study that they are of, which says how each was computed, they can be
-    /// watched.
+    /// A table of rows of finished runs. With their study, which holds their configurations, the runs can be watched.
     ///
     /// # Errors
     /// [`ViewerError::NotRows`] where the table has no identities of runs; [`ViewerError::Study`] where the study file is
@@ -156,7 +155,7 @@ impl Study {
         }
     }
 
-    /// What it is called.
+    /// Its name.
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
@@ -182,7 +181,7 @@ impl Study {
         self.version
     }
 
-    /// Takes the plan, and gives each run that is new in it the next number.
+    /// Takes over the plan; each new run gets the next number.
     fn follow(&mut self, plan: Plan) {
         for run in plan.runs() {
             self.numbers.entry(run.identity).or_insert_with(|| {
@@ -193,7 +192,7 @@ impl Study {
         self.plan = Some(plan);
     }
 
-    /// Looks whether there is more to see, now and then.
+    /// Reads the store again, if the last look was some time ago.
     ///
     /// # Errors
     /// [`ViewerError::Study`] where the store cannot be read any more.
@@ -252,7 +251,7 @@ impl Study {
             .collect()
     }
 
-    /// The run of this number; `None` where there is none.
+    /// The run of this number.
     pub(crate) fn run(&self, number: usize) -> Option<StudyRun> {
         let plan = self.plan.as_ref()?;
         let identity = self.runs.get(number)?;
@@ -290,7 +289,7 @@ impl Study {
     }
 }
 
-/// The plan of a study of which these runs are finished.
+/// The plan of a study with these finished runs.
 fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
     let identities = identities(table).unwrap_or_default();
     let times = table.reals("transition_time").unwrap_or_default();
@@ -314,7 +313,7 @@ fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
     Ok(plan)
 }
 
-/// Whose rows they are.
+/// Identities of the runs of the rows.
 fn identities(table: &Table) -> Result<Vec<Identity>, String> {
     let texts = table
         .texts("identity")
@@ -325,7 +324,7 @@ fn identities(table: &Table) -> Result<Vec<Identity>, String> {
         .collect()
 }
 
-/// Time and J/Jmax of a run; `None` where they are not kept or cannot be read.
+/// Time and J/Jmax of a run; `None` if they are not kept or cannot be read.
 fn series(path: &Path) -> Option<Vec<(f64, f64)>> {
     let table = parquet::read(path).ok()?;
     let times = table.reals("time").ok()?.iter().copied();
@@ -333,7 +332,7 @@ fn series(path: &Path) -> Option<Vec<(f64, f64)>> {
     Some(times.zip(ratios).collect())
 }
 
-/// Such as "width 2.7, strain rate 0.05, from rest".
+/// A point in words, such as "width 2.7, strain rate 0.05, from rest".
 fn title_of(plan: &Plan, run: &PlannedRun) -> String {
     let point = plan.point(run);
     let mut words: Vec<String> = point
@@ -354,7 +353,7 @@ fn title_of(plan: &Plan, run: &PlannedRun) -> String {
     words.join(", ")
 }
 
-/// A name without what no file should have in its own.
+/// A name without characters that file names should not have.
 fn file_name(name: &str) -> String {
     let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '-' || letter == '_';
     name.chars()

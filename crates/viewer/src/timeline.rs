@@ -1,4 +1,4 @@
-//! How a run is driven, by its configuration, and the time series beside it.
+//! The drive of a run at any time, by its configuration, and the rows of its time series.
 
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_observe::Sample;
@@ -9,12 +9,12 @@ use crate::welcome::Driven;
 /// Rows that a client gets at first, at most.
 const FIRST_ROWS: usize = 4000;
 
-/// What a configuration says of every instant.
+/// The drive at any time, by a configuration.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Course<'a>(pub(crate) &'a Configuration);
+pub(crate) struct Timeline<'a>(pub(crate) &'a Configuration);
 
-impl Course<'_> {
-    /// Time of a period of the drive's own strain rate.
+impl Timeline<'_> {
+    /// Duration of a period at the strain rate of the drive.
     pub(crate) fn unit_period(self) -> f64 {
         self.0.drive.period().unwrap_or(1.0)
     }
@@ -59,7 +59,7 @@ impl Course<'_> {
         )
     }
 
-    /// What is driven, at a time in periods.
+    /// The driven parameters at a time in periods.
     pub(crate) fn driven(self, clock: f64) -> Driven {
         let (width, force_amplitude) = match self.0.drive.control {
             Control::Strain { width } => (
@@ -93,7 +93,7 @@ impl Course<'_> {
     }
 }
 
-/// Every so many of them, so that there are not too many.
+/// Every n-th row, n so that at most [`FIRST_ROWS`] are left.
 pub(crate) fn thin<T>(rows: impl Iterator<Item = T>) -> Vec<T> {
     let rows: Vec<T> = rows.collect();
     let each = rows.len().div_ceil(FIRST_ROWS).max(1);

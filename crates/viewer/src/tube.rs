@@ -7,9 +7,9 @@ use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_run::{Run, RunError, RunFolder};
 
-use crate::course::{Course, thin};
 use crate::frame::{Head, Row, of_run};
 use crate::message::{self, Command, Notice, Steered};
+use crate::timeline::{Timeline, thin};
 use crate::welcome::{Driven, Welcome};
 use crate::within::Within;
 
@@ -17,9 +17,9 @@ use crate::within::Within;
 pub(crate) const FRAME: f64 = 0.033;
 /// Seconds after which a frame looks whether its time is over, at the latest.
 const PATIENCE: f64 = 0.004;
-/// Periods within which a parameter goes to where its slider was put: no wall jumps.
+/// Periods within which a parameter reaches the value of its slider, so that no wall jumps.
 const RAMP: f64 = 0.25;
-/// Periods a second beyond which nobody asks for a speed.
+/// Largest speed, in periods a second.
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;
@@ -28,7 +28,7 @@ const MARKS: usize = 24;
 /// Saved states that are looked through for a free name.
 const SAVES: u32 = 9999;
 
-/// What a tube is called, where it is saved, and what is known of it from before.
+/// The title of a tube, the place of its saved states, and its time series from an earlier computation.
 #[derive(Clone, Debug)]
 pub(crate) struct Labels {
     pub(crate) title: String,
@@ -38,39 +38,39 @@ pub(crate) struct Labels {
     pub(crate) within: Option<Within>,
 }
 
-/// What becomes of states that are saved.
+/// The place of saved states.
 #[derive(Clone, Debug)]
 pub(crate) enum Saves {
-    /// Each gets a folder in this one, its name beginning so.
+    /// A new folder for each, inside this one, whose name begins with the stem.
     #[cfg_attr(
         not(feature = "server"),
         expect(dead_code, reason = "a page has no folders")
     )]
     Folders { inside: PathBuf, stem: String },
-    /// They are given to the page.
+    /// The page, as bytes.
     Page,
 }
 
-/// A run in the hands of its viewers.
+/// A run that is watched and driven.
 #[derive(Debug)]
 pub(crate) struct Tube {
     run: Run,
     labels: Labels,
     /// Seconds since any instant.
     clock: fn() -> f64,
-    /// What is to be told to everyone.
+    /// Notices that no client has got yet.
     notices: Vec<String>,
     playing: bool,
     ended: bool,
     /// Periods a second, at most.
     speed: Option<f64>,
-    /// Steps due from frames before, less than one.
+    /// Part of a step that earlier frames left over.
     due: f64,
-    /// Seconds that a step takes.
+    /// Computing time of a step in seconds.
     step_seconds: f64,
-    /// Values that sliders were put to and that parameters have not reached.
+    /// Values of sliders that the run has not been led to yet.
     wanted: [(Steered, Option<f64>); 4],
-    /// Step that is being gone to.
+    /// Step up to which the run is computed before it stops.
     seeking: Option<u64>,
     epoch: u64,
     /// Earlier states in the order of time, the first of all at least.
@@ -116,29 +116,29 @@ impl Tube {
         !self.ended && (self.playing || self.seeking.is_some())
     }
 
-    /// What a page must know first, in JSON.
+    /// The first message to a page, in JSON.
     pub(crate) fn welcome(&self) -> String {
-        let course = self.course();
+        let timeline = self.timeline();
         let (configuration, simulation) = (self.run.configuration(), self.run.simulation());
         let grains = simulation.bodies().grains;
         let title = &self.labels.title;
         let mut welcome = Welcome::of(configuration, simulation.wall(), grains, title);
         let record = self.labels.record.iter();
         welcome.driven = Driven::of(&self.run);
-        welcome.record = thin(record.map(|&(time, ratio)| (course.clock(time), ratio)));
+        welcome.record = thin(record.map(|&(time, ratio)| (timeline.clock(time), ratio)));
         welcome.within = self.labels.within.clone();
         welcome.rows = thin(self.rows(0));
         welcome.to_json()
     }
 
-    /// Does what a page asks; what cannot be done is told.
-    pub(crate) fn take(&mut self, command: Command) {
-        if let Err(error) = self.obey(command) {
+    /// Carries out a command of a page; an error becomes a notice.
+    pub(crate) fn execute(&mut self, command: Command) {
+        if let Err(error) = self.try_execute(command) {
             self.tell(&error.to_string());
         }
     }
 
-    /// What is to be told to every page since this was asked last, in JSON.
+    /// The notices since the last call, in JSON.
     pub(crate) fn notices(&mut self) -> Vec<String> {
         std::mem::take(&mut self.notices)
     }
@@ -147,7 +147,7 @@ impl Tube {
         self.notices.push(message::problem(problem));
     }
 
-    fn obey(&mut self, command: Command) -> Result<(), RunError> {
+    fn try_execute(&mut self, command: Command) -> Result<(), RunError> {
         match command {
             Command::Play { playing } => {
                 self.playing = playing && !self.ended;
@@ -179,7 +179,7 @@ impl Tube {
         Ok(())
     }
 
-    /// Leads what is at rest to where its slider was put.
+    /// Leads parameters that are at rest to the values of their sliders.
     fn steer(&mut self) -> Result<(), RunError> {
         let mut outcome = Ok(());
         for index in 0..self.wanted.len() {
@@ -207,7 +207,7 @@ impl Tube {
         outcome
     }
 
-    /// Advances for the time from one frame to the next, or to where a frame at the speed that was asked for lies.
+    /// Advances for the time between two frames, or by fewer steps at a given speed.
     pub(crate) fn advance_by_a_frame(&mut self) {
         let begin = (self.clock)();
         let most = self.steps_of_a_frame();
@@ -270,7 +270,7 @@ impl Tube {
             let mark = self.marks[index].clone();
             let reached = mark.simulation().step();
             target = target.max(reached);
-            // A course that was steered later, and of which no state is left, is not taken again.
+            // Steering after the kept state is lost with it: the run ends before the first such step.
             if let Some(&steered) = self.steered.iter().find(|&&step| step > reached) {
                 target = target.min(steered);
             }
@@ -290,7 +290,7 @@ impl Tube {
         let step = self.run.simulation().step();
         let last = self.marks.last().map_or(0, |it| it.simulation().step());
         let first = self.marks.first().map_or(0, |it| it.simulation().step());
-        // The more there is behind, the further apart.
+        // The longer the run, the further apart.
         let each = self.run.configuration().run.steps_per_sample;
         if step >= last + (20 * each).max((step - first) / (MARKS as u64 / 2)) {
             self.mark();
@@ -303,7 +303,7 @@ impl Tube {
         self.marks.retain(|mark| step(mark) < now);
         self.marks.push(self.run.clone());
         if self.marks.len() > MARKS {
-            // The one whose neighbours are nearest to each other is missed least.
+            // Drops the state whose neighbours are nearest to each other.
             let gaps = self.marks.windows(3).map(|it| step(&it[2]) - step(&it[0]));
             if let Some((index, _)) = gaps.enumerate().min_by_key(|(_, gap)| *gap) {
                 self.marks.remove(index + 1);
@@ -311,7 +311,7 @@ impl Tube {
         }
     }
 
-    /// The configuration, of a run so long that there is something to go on with.
+    /// The configuration with a duration beyond the present state, so that the saved run can go on.
     fn longer(&self) -> Configuration {
         let mut configuration = self.run.configuration().clone();
         // A static wave has no periods that could be added.
@@ -357,27 +357,27 @@ impl Tube {
         Ok(())
     }
 
-    fn course(&self) -> Course<'_> {
-        Course(self.run.configuration())
+    fn timeline(&self) -> Timeline<'_> {
+        Timeline(self.run.configuration())
     }
 
     fn unit_period(&self) -> f64 {
-        self.course().unit_period()
+        self.timeline().unit_period()
     }
 
     /// Time in periods.
     fn clock_now(&self) -> f64 {
-        self.course().clock(self.run.simulation().time())
+        self.timeline().clock(self.run.simulation().time())
     }
 
     /// Rows of the time series from a number on.
     fn rows(&self, from: usize) -> impl Iterator<Item = Row> {
         let samples = self.run.recorder().samples().iter().enumerate().skip(from);
-        let course = self.course();
-        samples.map(move |(number, sample)| course.row_of(number, sample))
+        let timeline = self.timeline();
+        samples.map(move |(number, sample)| timeline.row_of(number, sample))
     }
 
-    /// What it looks like, as the bytes of a message with a frame; `frame.rs` describes them.
+    /// The bytes of a message with the present frame; `frame.rs` describes them.
     pub(crate) fn frame(&self) -> Vec<u8> {
         let simulation = self.run.simulation();
         let (bodies, wall) = (simulation.bodies(), simulation.wall());

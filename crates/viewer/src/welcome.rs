@@ -1,12 +1,12 @@
-//! What a page must know of a run before its first frame.
+//! The first message to the page of a run.
 
 use peristalsis_configuration::{Control, ScheduledParameter};
 use peristalsis_engine::Wall;
 use peristalsis_run::{Configuration, Run, VERSION};
 use serde::Serialize;
 
-use crate::course::Course;
 use crate::frame::Row;
+use crate::timeline::Timeline;
 use crate::within::Within;
 
 /// The tube and the ranges of its sliders.
@@ -26,17 +26,17 @@ pub(crate) struct Welcome {
     rings_per_wave: u32,
     wall_sphere_diameter: f64,
     heading: f64,
-    /// Largest radius that is expected.
+    /// Largest expected radius.
     reach: f64,
-    /// Time of a period of the drive's own strain rate.
+    /// Duration of a period at the strain rate of the drive.
     unit_period: f64,
     ranges: Ranges,
     pub(crate) driven: Driven,
-    /// A run that was computed before: its whole course, (time in periods, J/Jmax).
+    /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
     pub(crate) record: Vec<(f64, f64)>,
-    /// What was computed since the viewer began, or the time series of a recording.
+    /// The time series since the viewer began, or that of a recording.
     pub(crate) rows: Vec<Row>,
-    /// Time in periods to which the run was meant to go.
+    /// Duration of the run in periods.
     end: f64,
     /// The frames of a recording; null where the run is computed.
     pub(crate) recorded: Option<Recorded>,
@@ -44,16 +44,16 @@ pub(crate) struct Welcome {
     pub(crate) within: Option<Within>,
 }
 
-/// What frames there are.
+/// The frames of a recording.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Recorded {
     /// Time of each in periods.
     pub(crate) clocks: Vec<f64>,
-    /// Frames that were begun when the file was cut short.
+    /// Number of frames lost where the file was cut short.
     pub(crate) lost_frames: u64,
 }
 
-/// Least and largest value of each slider; none where there is nothing to change.
+/// Least and largest value of each slider; `None` for a parameter that cannot be changed.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Ranges {
     width: Option<(f64, f64)>,
@@ -62,7 +62,7 @@ pub(crate) struct Ranges {
     friction: Option<(f64, f64)>,
 }
 
-/// What is driven, as it is now.
+/// Present values of the driven parameters.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Driven {
     pub(crate) width: Option<f64>,
@@ -114,7 +114,7 @@ impl Ranges {
 }
 
 impl Welcome {
-    /// At the start, with nothing measured.
+    /// The welcome at the start, without samples.
     pub(crate) fn of(
         configuration: &Configuration,
         wall: &Wall,
@@ -122,7 +122,7 @@ impl Welcome {
         title: &str,
     ) -> Self {
         let lattice = wall.lattice();
-        let course = Course(configuration);
+        let timeline = Timeline(configuration);
         let end = configuration.run.steps() as f64 * configuration.run.time_step;
         Self {
             kind: "welcome",
@@ -142,12 +142,12 @@ impl Welcome {
             wall_sphere_diameter: lattice.sphere_diameter,
             heading: wall.heading(),
             reach: 2.0 * configuration.tube.radius,
-            unit_period: course.unit_period(),
+            unit_period: timeline.unit_period(),
             ranges: Ranges::of(configuration),
-            driven: course.driven(0.0),
+            driven: timeline.driven(0.0),
             record: Vec::new(),
             rows: Vec::new(),
-            end: course.clock(end),
+            end: timeline.clock(end),
             recorded: None,
             within: None,
         }

@@ -275,30 +275,36 @@ fn requests_are_short_and_one_is_one() {
     served.client();
 }
 
-/// A WebSocket that is spoken by hand.
+/// A WebSocket that is spoken by hand; waits until the server has a place for one more client.
 #[allow(
     clippy::unwrap_used,
     reason = "a test fails where what it needs is missing"
 )]
 fn by_hand(served: &Served) -> TcpStream {
-    let mut stream = served.connect();
     let request = format!(
         "GET {}live HTTP/1.1\r\n{}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
          Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\n\r\n",
         served.base,
         served.host()
     );
-    stream
-        .write_all(request.as_bytes())
-        .expect("the server takes a request");
-    let mut head = Vec::new();
-    while !head.ends_with(b"\r\n\r\n") {
-        let mut byte = [0];
-        stream.read_exact(&mut byte).expect("the server answers");
-        head.push(byte[0]);
+    for _ in 0..500 {
+        let mut stream = served.connect();
+        stream
+            .write_all(request.as_bytes())
+            .expect("the server takes a request");
+        let mut head = Vec::new();
+        while !head.ends_with(b"\r\n\r\n") {
+            let mut byte = [0];
+            stream.read_exact(&mut byte).expect("the server answers");
+            head.push(byte[0]);
+        }
+        if head.starts_with(b"HTTP/1.1 101") {
+            return stream;
+        }
+        assert!(head.starts_with(b"HTTP/1.1 503"));
+        std::thread::sleep(Duration::from_millis(10));
     }
-    assert!(head.starts_with(b"HTTP/1.1 101"));
-    stream
+    panic!("no place is given back")
 }
 
 /// A frame of a WebSocket whose mask changes nothing.

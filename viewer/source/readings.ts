@@ -1,0 +1,70 @@
+/** Numbers of a frame in words: names with values. */
+import { written } from "./charts";
+import { inWave } from "./fields";
+import type { Driven, Frame, Steered, Welcome } from "./protocol";
+
+type Facts = [string, string][];
+
+/** How much of a recording there is to see. */
+export function extent({ recorded }: Welcome): string {
+  if (!recorded) return "";
+  const lost = recorded.lost_frames > 0 ? ", cut short" : "";
+  return ` · ${recorded.clocks.length.toLocaleString("en")} recorded frames${lost}`;
+}
+
+/** The sample that was taken last. */
+export function factsOfSample({ sample }: Frame): Facts {
+  return [
+    ["bottleneck", sample ? `${written(sample.bottleneck)} d` : "–"],
+    ["contacts a grain", sample ? written(sample.contacts) : "–"],
+    ["granular temperature", sample ? written(sample.granular_temperature) : "–"],
+    ["power of the wall", sample ? written(sample.wall_power) : "–"],
+    ["escaped grains", sample ? String(sample.escaped) : "–"],
+    ["energy unaccounted", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
+  ];
+}
+
+/** One grain. */
+export function factsOfGrain(frame: Frame, tube: Welcome, grain: number): Facts {
+  const [x, y, z] = frame.position.subarray(3 * grain, 3 * grain + 3);
+  const [vx, vy, vz] = frame.velocity.subarray(3 * grain, 3 * grain + 3);
+  const c = frame.wave_speed || NaN;
+  const facts: Facts = [
+    ["grain", String(grain)],
+    ["diameter", `${written(frame.diameter[grain])} d`],
+    ["from the axis", `${written(Math.hypot(x, y))} d`],
+    ["along the tube", `${written(z, 4)} d`],
+    ["place in the wave", written(inWave(frame, tube, z))],
+    ["along the wave", `${written((tube.heading * vz) / c)} c`],
+    ["speed", `${written(Math.hypot(vx, vy, vz) / c)} c`],
+  ];
+  if (frame.turning) {
+    const spin = frame.spin.subarray(3 * grain, 3 * grain + 3);
+    facts.push(["spin", written(Math.hypot(spin[0], spin[1], spin[2]))]);
+  }
+  return facts;
+}
+
+/** What drove a recorded run. */
+export function factsOfDrive(values: Driven): Facts {
+  const of = (key: Steered, name: string, unit: string): Facts => {
+    const value = values[key];
+    return value === null ? [] : [[name, written(value) + unit]];
+  };
+  return [
+    ...of("width", "width w", " d"),
+    ...of("force_amplitude", "force amplitude f", ""),
+    ...of("strain_rate", "strain rate ε̇", ""),
+    ...of("friction", "friction μ", ""),
+  ];
+}
+
+/** A number that another state would hardly have. */
+export function digest(frame: Frame): number {
+  let sum = 0;
+  for (const numbers of [frame.position, frame.velocity]) {
+    const bits = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
+    for (const word of bits) sum = (Math.imul(sum, 16777619) ^ word) >>> 0;
+  }
+  return sum;
+}

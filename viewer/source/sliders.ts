@@ -1,0 +1,67 @@
+import { element } from "./page";
+import type { Driven, Steered, Welcome } from "./protocol";
+
+const NAMES: Record<Steered, { name: string; digits: number }> = {
+  width: { name: "Width <i>w</i>", digits: 3 },
+  force_amplitude: { name: "Force amplitude <i>f</i>", digits: 5 },
+  strain_rate: { name: "Strain rate <i>ε̇</i>", digits: 4 },
+  friction: { name: "Friction <i>μ</i>", digits: 2 },
+};
+
+/** The sliders that steer a run. */
+export class Sliders {
+  /** When each slider was last moved by hand. */
+  private readonly moved = new Map<Steered, number>();
+
+  constructor(private readonly steered: (parameter: Steered, value: number) => void) {}
+
+  /** The sliders of what this tube can be steered by. */
+  make(tube: Welcome): void {
+    const box = element("sliders");
+    box.replaceChildren();
+    for (const [key, { name, digits }] of Object.entries(NAMES) as [Steered, (typeof NAMES)[Steered]][]) {
+      const range = tube.ranges[key];
+      if (!range) continue;
+      const label = document.createElement("label");
+      label.innerHTML = `<span>${name}</span><input type="number" inputmode="decimal"><input type="range">`;
+      const [number, slider] = label.querySelectorAll("input");
+      for (const input of [number, slider]) {
+        input.min = String(range[0]);
+        input.max = String(range[1]);
+        input.step = key === "width" ? "0.005" : String(10 ** -digits);
+      }
+      slider.step = key === "width" ? "0.005" : String((range[1] - range[0]) / 400);
+      slider.setAttribute("aria-label", label.textContent ?? key);
+      slider.id = `slider-${key}`;
+      number.id = `number-${key}`;
+      const steer = (value: number) => {
+        if (!Number.isFinite(value)) return;
+        const within = Math.min(range[1], Math.max(range[0], value));
+        number.value = within.toFixed(digits);
+        slider.value = String(within);
+        this.moved.set(key, performance.now());
+        this.steered(key, within);
+      };
+      slider.oninput = () => steer(slider.valueAsNumber);
+      number.onchange = () => steer(number.valueAsNumber);
+      box.append(label);
+    }
+    this.show(tube.driven);
+  }
+
+  /** Where the run is; sliders follow, but for those in a hand. */
+  show(driven: Driven): void {
+    for (const key of Object.keys(NAMES) as Steered[]) {
+      const value = driven[key];
+      const slider = document.getElementById(`slider-${key}`) as HTMLInputElement | null;
+      const number = document.getElementById(`number-${key}`) as HTMLInputElement | null;
+      if (value === null || !slider || !number) continue;
+      // A mark shows where the run is, also beside a slider in a hand.
+      const low = Number(slider.min);
+      slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
+      if (performance.now() - (this.moved.get(key) ?? -1e9) < 4000 || number === document.activeElement) continue;
+      slider.value = String(value);
+      number.value = value.toFixed(NAMES[key].digits);
+    }
+  }
+}
