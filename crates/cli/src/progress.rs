@@ -15,12 +15,29 @@ pub(crate) enum Display {
     /// A bar that is redrawn.
     Bar(ProgressBar),
     /// A line now and then.
-    Lines {
-        /// When the last line was printed.
-        last: Instant,
-        /// Tenth of the run that it was printed in.
-        tenth: u64,
-    },
+    Lines(LastLine),
+}
+
+/// The last line of progress on a pipe.
+pub(crate) struct LastLine {
+    printed: Instant,
+    /// Tenth of the work in which it was printed.
+    pub(crate) tenth: u64,
+}
+
+impl LastLine {
+    /// A line that is printed now.
+    pub(crate) fn now(tenth: u64) -> Self {
+        Self {
+            printed: Instant::now(),
+            tenth,
+        }
+    }
+
+    /// Whether the next line is due even within the same tenth.
+    pub(crate) fn is_old(&self) -> bool {
+        self.printed.elapsed() > LINE_INTERVAL
+    }
 }
 
 /// Redraws in a second.
@@ -28,24 +45,30 @@ const REFRESH_RATE: u8 = 10;
 /// Time after which a line is printed even within the same tenth.
 const LINE_INTERVAL: Duration = Duration::from_secs(30);
 
+/// Where bars are drawn.
+pub(crate) fn terminal() -> ProgressDrawTarget {
+    ProgressDrawTarget::stderr_with_hz(REFRESH_RATE)
+}
+
+/// How a bar is drawn.
+pub(crate) fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template)
+        .expect("the template is a constant with known fields")
+        .progress_chars("━╸─")
+}
+
 impl Display {
     pub(crate) fn new(quiet: bool, samples: u64) -> Self {
         if quiet {
             return Self::Silent;
         }
         if !std::io::stderr().is_terminal() {
-            return Self::Lines {
-                last: Instant::now(),
-                tenth: 0,
-            };
+            return Self::Lines(LastLine::now(0));
         }
-        let target = ProgressDrawTarget::stderr_with_hz(REFRESH_RATE);
-        let bar = ProgressBar::with_draw_target(Some(samples), target);
-        let style =
-            ProgressStyle::with_template("{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]")
-                .expect("the template is a constant with known fields");
-        bar.set_style(style.progress_chars("━╸─"));
-        Self::Bar(bar)
+        let bar = ProgressBar::with_draw_target(Some(samples), terminal());
+        Self::Bar(bar.with_style(style(
+            "{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]",
+        )))
     }
 
     /// Shows how far the run is.
@@ -70,11 +93,10 @@ impl Display {
                 bar.set_position(done);
                 bar.set_message(words());
             }
-            Self::Lines { last, tenth } => {
-                let now = 10 * done / of.max(1);
-                if now > *tenth || last.elapsed() > LINE_INTERVAL {
-                    *tenth = now;
-                    *last = Instant::now();
+            Self::Lines(last) => {
+                let tenth = 10 * done / of.max(1);
+                if tenth > last.tenth || last.is_old() {
+                    *last = LastLine::now(tenth);
                     let part = done as f64 / of.max(1) as f64;
                     let left = elapsed.as_secs_f64() * (1.0 - part) / part;
                     say(&format!(

@@ -1,19 +1,14 @@
 //! Progress of a study on standard error: lines that are redrawn on a terminal, plain ones on a pipe.
 
 use std::io::IsTerminal;
-use std::time::{Duration, Instant};
 
-use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar};
 use peristalsis_study::{Board, Working};
 
 use super::status::estimate;
 use crate::commands::say;
-use crate::progress::seconds;
+use crate::progress::{LastLine, seconds, style, terminal};
 
-/// Redraws in a second.
-const REFRESH_RATE: u8 = 10;
-/// Time after which a line is printed on a pipe even if no run has ended.
-const LINE_INTERVAL: Duration = Duration::from_secs(30);
 /// Estimates that are shown on a terminal.
 const ESTIMATES_SHOWN: usize = 6;
 /// Workers that are shown on a terminal.
@@ -35,10 +30,7 @@ pub(crate) enum Display {
     Bars(Bars),
     /// To a line now and then.
     Lines {
-        /// When the last line was printed.
-        last: Instant,
-        /// Tenth of the work that it was printed in.
-        tenth: u64,
+        last: LastLine,
         /// Runs that had ended.
         ended: usize,
     },
@@ -59,12 +51,11 @@ impl Display {
         }
         if !std::io::stderr().is_terminal() {
             return Self::Lines {
-                last: Instant::now(),
-                tenth: 0,
+                last: LastLine::now(0),
                 ended: usize::MAX,
             };
         }
-        let all = MultiProgress::with_draw_target(ProgressDrawTarget::stderr_with_hz(REFRESH_RATE));
+        let all = MultiProgress::with_draw_target(terminal());
         let bar = ProgressBar::new(1000).with_style(style("{bar:30.cyan/dim} {msg}"));
         let runs = all.add(bar);
         Self::Bars(Bars {
@@ -93,17 +84,16 @@ impl Display {
         match self {
             Self::Silent => {}
             Self::Bars(bars) => bars.update(board, whole),
-            Self::Lines { last, tenth, ended } => {
+            Self::Lines { last, ended } => {
                 for news in &board.news {
                     say(news);
                 }
-                let now = (10.0 * whole.fraction) as u64;
+                let tenth = (10.0 * whole.fraction) as u64;
                 let is_news = *ended != board.done + board.failed
-                    && (now != *tenth || *ended == usize::MAX || board.done == board.total);
-                if is_news || last.elapsed() > LINE_INTERVAL {
+                    && (tenth != last.tenth || *ended == usize::MAX || board.done == board.total);
+                if is_news || last.is_old() {
                     *ended = board.done + board.failed;
-                    *tenth = now;
-                    *last = Instant::now();
+                    *last = LastLine::now(tenth);
                     say(&whole.words);
                     for bracket in &board.brackets {
                         say(&format!("  {}", estimate(bracket)));
@@ -131,13 +121,6 @@ impl Display {
             }
         }
     }
-}
-
-/// How a line is drawn.
-fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template)
-        .expect("the template is a constant with known fields")
-        .progress_chars("━╸─")
 }
 
 /// A line of text.
