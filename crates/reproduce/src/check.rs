@@ -3,7 +3,7 @@
 use peristalsis_analysis::number;
 use serde::Serialize;
 
-use crate::finding::ReportTable;
+use crate::contents::ReportTable;
 
 /// A number beside its expected value.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -12,6 +12,7 @@ mod claim;
 mod claims;
 mod collapse;
 mod columns;
+mod contents;
 mod critical;
 mod error;
 mod evidence;

@@ -38,7 +38,7 @@ use std::fmt::Display;
 use peristalsis_analysis::Uncertain;
 use peristalsis_figures::Drawing;
 
-use crate::finding::{Quantity, ReportFigure, ReportTable};
+use crate::contents::{Quantity, ReportFigure, ReportTable};
 
 /// Values for placeholders by name.
 pub(crate) type Values<'a> = [(&'a str, &'a dyn Display)];

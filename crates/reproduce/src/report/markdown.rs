@@ -1,7 +1,8 @@
 //! Findings as Markdown, and their places in a document.
 
 use crate::check::{Check, Convergence};
-use crate::finding::{Finding, ReportTable};
+use crate::contents::ReportTable;
+use crate::finding::Finding;
 
 /// A finding: its paragraphs, checks, errors and figures; `figures` is the folder of the pictures as the document sees it.
 pub(crate) fn finding(finding: &Finding, figures: &str) -> String {

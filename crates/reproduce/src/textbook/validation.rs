@@ -7,9 +7,9 @@ use peristalsis_formats::{atomic, csv};
 use serde::Serialize;
 
 use crate::check::{Check, Convergence, verdict};
+use crate::contents::ReportTable;
 use crate::error::{ClaimError, make_folder};
 use crate::examination::{Examination, without_panic};
-use crate::finding::ReportTable;
 use crate::report::{json_text, markdown, write_drawing};
 use crate::studies::Size;
 use crate::textbook::case::{Case, Circumstances};
