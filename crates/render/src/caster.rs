@@ -342,13 +342,7 @@ mod tests {
         let picture = render(&scene, &view).unwrap();
         assert_eq!((picture.width(), picture.height()), (3, 40));
         assert_eq!(picture.pixel(2, 39), [1, 2, 3]);
-        let png = picture.png().unwrap();
-        let mut reader = png::Decoder::new(std::io::Cursor::new(png))
-            .read_info()
-            .unwrap();
-        let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-        reader.next_frame(&mut bytes).unwrap();
-        assert_eq!(bytes, [1, 2, 3].repeat(120));
+        assert_eq!(picture.pixels(), [1, 2, 3].repeat(120));
         for (width, height) in [(0, 4), (1 << 20, 1 << 20)] {
             (view.width, view.height) = (width, height);
             assert!(

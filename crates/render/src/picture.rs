@@ -1,7 +1,5 @@
 //! A finished picture.
 
-use crate::error::RenderError;
-
 /// Pixels, row by row from the top, three bytes of sRGB each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
@@ -62,21 +60,5 @@ impl Picture {
             self.pixels[first + 1],
             self.pixels[first + 2],
         ]
-    }
-
-    /// The picture as PNG.
-    ///
-    /// # Errors
-    /// [`RenderError::Encoding`].
-    pub fn png(&self) -> Result<Vec<u8>, RenderError> {
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, self.width, self.height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(&self.pixels)?;
-        writer.finish()?;
-        Ok(bytes)
     }
 }

@@ -2,59 +2,39 @@
 
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 
-use super::{Film, FilmPlan, of_one_size};
+use super::{Encoder, FilmPlan, Size};
 use crate::error::RenderError;
 use crate::picture::Picture;
 
-type Writer = png::Writer<BufWriter<File>>;
-
 /// An animated PNG that is being written.
-pub(super) struct ApngFilm {
-    /// Until the first picture tells the size.
-    file: Option<File>,
-    plan: FilmPlan,
-    begun: Option<((u32, u32), Writer)>,
-}
+pub(super) struct ApngEncoder(png::Writer<BufWriter<File>>);
 
-impl ApngFilm {
-    pub(super) fn new(file: File, plan: FilmPlan) -> Self {
-        Self {
-            file: Some(file),
-            plan,
-            begun: None,
-        }
-    }
-
-    fn begin(&self, file: File, (width, height): (u32, u32)) -> Result<Writer, RenderError> {
-        let mut encoder = png::Encoder::new(BufWriter::new(file), width, height);
+impl ApngEncoder {
+    pub(super) fn new(
+        path: &Path,
+        plan: FilmPlan,
+        (width, height): Size,
+    ) -> Result<Self, RenderError> {
+        let file = BufWriter::new(File::create(path).map_err(RenderError::Film)?);
+        let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
         encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
-        encoder.set_animated(self.plan.frames, 0)?;
+        encoder.set_animated(plan.frames, 0)?;
         // A delay is a fraction of two whole numbers.
-        let per_second = self.plan.frames_per_second;
-        encoder.set_frame_delay(100, (100.0 * per_second).round() as u16)?;
-        Ok(encoder.write_header()?)
+        encoder.set_frame_delay(100, (100.0 * plan.frames_per_second).round() as u16)?;
+        Ok(Self(encoder.write_header()?))
     }
 }
 
-impl Film for ApngFilm {
+impl Encoder for ApngEncoder {
     fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
-        let size = of_one_size(self.begun.as_ref().map(|(size, _)| *size), picture)?;
-        if let Some(file) = self.file.take() {
-            self.begun = Some((size, self.begin(file, size)?));
-        }
-        match &mut self.begun {
-            Some((_, writer)) => Ok(writer.write_image_data(picture.pixels())?),
-            None => Err(RenderError::Frames),
-        }
+        Ok(self.0.write_image_data(picture.pixels())?)
     }
 
     fn finish(self: Box<Self>) -> Result<(), RenderError> {
-        match self.begun {
-            Some((_, writer)) => Ok(writer.finish()?),
-            None => Err(RenderError::Frames),
-        }
+        Ok(self.0.finish()?)
     }
 }

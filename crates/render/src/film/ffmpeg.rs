@@ -1,38 +1,29 @@
 //! Films through ffmpeg, if it is there.
 
 use std::io::{Read, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use super::{Film, FilmFormat, FilmPlan, of_one_size};
+use super::{Encoder, FilmFormat, FilmPlan, Size};
 use crate::error::RenderError;
 use crate::picture::Picture;
 
 /// The variable that names another ffmpeg than the one on the path.
 const PROGRAM: &str = "FFMPEG";
 
-/// A film that ffmpeg is writing.
-pub(super) struct FfmpegFilm {
-    format: FilmFormat,
-    path: PathBuf,
-    plan: FilmPlan,
-    begun: Option<((u32, u32), Child)>,
-}
+/// ffmpeg at work on a film.
+pub(super) struct Ffmpeg(Child);
 
-impl FfmpegFilm {
-    pub(super) fn new(format: FilmFormat, path: &Path, plan: FilmPlan) -> Self {
-        Self {
-            format,
-            path: path.to_owned(),
-            plan,
-            begun: None,
-        }
-    }
-
-    fn begin(&self, (width, height): (u32, u32)) -> Result<Child, RenderError> {
+impl Ffmpeg {
+    pub(super) fn new(
+        format: FilmFormat,
+        path: &Path,
+        plan: FilmPlan,
+        (width, height): Size,
+    ) -> Result<Self, RenderError> {
         let program = std::env::var_os(PROGRAM).unwrap_or_else(|| "ffmpeg".into());
-        let [red, green, blue] = self.plan.paper;
-        let speed = self.plan.frames_per_second.to_string();
+        let [red, green, blue] = plan.paper;
+        let speed = plan.frames_per_second.to_string();
         let mut command = Command::new(&program);
         command
             .args(["-nostdin", "-loglevel", "error", "-y", "-f", "rawvideo"])
@@ -43,32 +34,13 @@ impl FfmpegFilm {
             .arg(format!(
                 "pad=ceil(iw/2)*2:ceil(ih/2)*2:color=0x{red:02x}{green:02x}{blue:02x},format=yuv420p"
             ));
-        match self.format {
-            FilmFormat::Webm => command.args([
-                "-c:v",
-                "libvpx-vp9",
-                "-crf",
-                "28",
-                "-b:v",
-                "0",
-                "-f",
-                "webm",
-            ]),
-            _ => command.args([
-                "-c:v",
-                "libx264",
-                "-crf",
-                "17",
-                "-preset",
-                "slow",
-                "-movflags",
-                "+faststart",
-                "-f",
-                "mp4",
-            ]),
+        let codec = match format {
+            FilmFormat::Webm => "-c:v libvpx-vp9 -crf 28 -b:v 0 -f webm",
+            _ => "-c:v libx264 -crf 17 -preset slow -movflags +faststart -f mp4",
         };
-        command
-            .arg(&self.path)
+        let child = command
+            .args(codec.split(' '))
+            .arg(path)
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
@@ -76,51 +48,39 @@ impl FfmpegFilm {
             .map_err(|source| RenderError::NoFfmpeg {
                 program: program.to_string_lossy().into_owned(),
                 source,
-            })
+            })?;
+        Ok(Self(child))
     }
 }
 
-impl Film for FfmpegFilm {
+impl Encoder for Ffmpeg {
     fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
-        let size = of_one_size(self.begun.as_ref().map(|(size, _)| *size), picture)?;
-        if self.begun.is_none() {
-            self.begun = Some((size, self.begin(size)?));
-        }
-        let Some((_, child)) = &mut self.begun else {
-            return Err(RenderError::Frames);
-        };
-        let written = match &mut child.stdin {
+        let written = match &mut self.0.stdin {
             Some(stdin) => stdin.write_all(picture.pixels()),
             None => Err(std::io::ErrorKind::BrokenPipe.into()),
         };
-        match written {
-            Ok(()) => Ok(()),
+        written.map_err(|error| match error.kind() {
             // It has ended before its time, and says why.
-            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(ended(child)),
-            Err(error) => Err(RenderError::Film(error)),
-        }
+            std::io::ErrorKind::BrokenPipe => ended(&mut self.0),
+            _ => RenderError::Film(error),
+        })
     }
 
     fn finish(mut self: Box<Self>) -> Result<(), RenderError> {
-        let Some((_, child)) = &mut self.begun else {
-            return Err(RenderError::Frames);
-        };
-        drop(child.stdin.take());
-        match child.wait() {
+        drop(self.0.stdin.take());
+        match self.0.wait() {
             Ok(status) if status.success() => Ok(()),
-            Ok(_) => Err(ended(child)),
+            Ok(_) => Err(ended(&mut self.0)),
             Err(error) => Err(RenderError::Film(error)),
         }
     }
 }
 
-impl Drop for FfmpegFilm {
+impl Drop for Ffmpeg {
     fn drop(&mut self) {
-        if let Some((_, child)) = &mut self.begun {
-            // A film that is given up must not go on; one that has ended is not hurt.
-            drop(child.kill());
-            drop(child.wait());
-        }
+        // A film that is given up must not go on; one that has ended is not hurt.
+        drop(self.0.kill());
+        drop(self.0.wait());
     }
 }
 

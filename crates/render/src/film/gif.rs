@@ -2,10 +2,11 @@
 
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 
 use color_quant::NeuQuant;
 
-use super::{Film, FilmPlan, of_one_size};
+use super::{Encoder, FilmPlan, Size};
 use crate::error::RenderError;
 use crate::picture::Picture;
 
@@ -19,34 +20,40 @@ const OUTLIERS_SAMPLED: usize = 7;
 const SAMPLED: i32 = 8;
 /// Difference of red, green and blue in all up to which a pixel counts as what it was.
 const TOLERANCE: i32 = 14;
-/// Longest side of a GIF.
-const LONGEST: u32 = u16::MAX as u32;
 /// Bits of each channel that colours are told apart by while they are looked up.
 const LOOKUP_BITS: u32 = 5;
 
 /// A GIF that is being written.
-pub(super) struct GifFilm {
-    file: Option<File>,
+pub(super) struct GifEncoder {
     plan: FilmPlan,
-    begun: Option<Begun>,
-    frames: u32,
-}
-
-struct Begun {
-    size: (u32, u32),
     encoder: gif::Encoder<BufWriter<File>>,
     /// What is on the screen, red, green and blue.
     screen: Vec<u8>,
+    frames: u32,
 }
 
-impl GifFilm {
-    pub(super) fn new(file: File, plan: FilmPlan) -> Self {
-        Self {
-            file: Some(file),
+impl GifEncoder {
+    pub(super) fn new(
+        path: &Path,
+        plan: FilmPlan,
+        (width, height): Size,
+    ) -> Result<Self, RenderError> {
+        let file = BufWriter::new(File::create(path).map_err(RenderError::Film)?);
+        let [Ok(across), Ok(down)] = [width, height].map(u16::try_from) else {
+            return Err(RenderError::Size {
+                width,
+                height,
+                most: u64::from(u16::MAX).pow(2),
+            });
+        };
+        let mut encoder = gif::Encoder::new(file, across, down, &[])?;
+        encoder.set_repeat(gif::Repeat::Infinite)?;
+        Ok(Self {
             plan,
-            begun: None,
+            encoder,
+            screen: Vec::new(),
             frames: 0,
-        }
+        })
     }
 
     /// Hundredths of a second that a frame stays, so that the film as a whole keeps its time.
@@ -54,52 +61,7 @@ impl GifFilm {
         let at = |frame: u32| (100.0 * f64::from(frame) / self.plan.frames_per_second).round();
         (at(self.frames + 1) - at(self.frames)) as u16
     }
-}
 
-impl Film for GifFilm {
-    fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
-        let size = of_one_size(self.begun.as_ref().map(|begun| begun.size), picture)?;
-        if let Some(file) = self.file.take() {
-            if size.0.max(size.1) > LONGEST {
-                return Err(RenderError::Size {
-                    width: size.0,
-                    height: size.1,
-                    most: u64::from(LONGEST).pow(2),
-                });
-            }
-            let out = BufWriter::new(file);
-            let mut encoder = gif::Encoder::new(out, size.0 as u16, size.1 as u16, &[])?;
-            encoder.set_repeat(gif::Repeat::Infinite)?;
-            self.begun = Some(Begun {
-                size,
-                encoder,
-                screen: Vec::new(),
-            });
-        }
-        let delay = self.delay();
-        let Some(begun) = &mut self.begun else {
-            return Err(RenderError::Frames);
-        };
-        let mut frame = begun.frame(picture);
-        frame.delay = delay;
-        begun.encoder.write_frame(&frame)?;
-        self.frames += 1;
-        Ok(())
-    }
-
-    fn finish(self: Box<Self>) -> Result<(), RenderError> {
-        let Some(begun) = self.begun else {
-            return Err(RenderError::Frames);
-        };
-        // The trailer is written as the encoder gives its file back.
-        let out = begun.encoder.into_inner()?;
-        out.into_inner()
-            .map_err(|error| RenderError::Film(error.into_error()))?;
-        Ok(())
-    }
-}
-
-impl Begun {
     /// The part of a picture that differs from what is on the screen, in colours of its own.
     fn frame(&mut self, picture: &Picture) -> gif::Frame<'static> {
         let width = picture.width() as usize;
@@ -146,6 +108,24 @@ impl Begun {
             palette: Some(palette.colours),
             ..gif::Frame::default()
         }
+    }
+}
+
+impl Encoder for GifEncoder {
+    fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
+        let mut frame = self.frame(picture);
+        frame.delay = self.delay();
+        self.encoder.write_frame(&frame)?;
+        self.frames += 1;
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> Result<(), RenderError> {
+        // The trailer is written as the encoder gives its file back.
+        let out = self.encoder.into_inner()?;
+        out.into_inner()
+            .map_err(|error| RenderError::Film(error.into_error()))?;
+        Ok(())
     }
 }
 

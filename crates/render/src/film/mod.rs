@@ -4,8 +4,7 @@ mod apng;
 mod ffmpeg;
 mod gif;
 
-use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::error::RenderError;
 use crate::picture::Picture;
@@ -24,9 +23,6 @@ pub enum FilmFormat {
 }
 
 impl FilmFormat {
-    /// Every format.
-    pub const ALL: [Self; 4] = [Self::Gif, Self::Apng, Self::Mp4, Self::Webm];
-
     /// How names of its files end.
     #[must_use]
     pub fn extension(self) -> &'static str {
@@ -38,26 +34,17 @@ impl FilmFormat {
         }
     }
 
-    /// The format that the name of a file asks for.
-    #[must_use]
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let extension = path.extension()?.to_str()?.to_ascii_lowercase();
-        Self::ALL
-            .into_iter()
-            .find(|format| format.extension() == extension)
-    }
-
-    /// Begins a film in a file, which is overwritten. All pictures must have one size.
+    /// A film in a file, which is overwritten with the first picture. All pictures must have one size.
     ///
     /// # Errors
-    /// [`RenderError::NoFfmpeg`] where ffmpeg is needed and not there; [`RenderError::Speed`], [`RenderError::Frames`].
-    pub fn create(self, path: &Path, plan: FilmPlan) -> Result<Box<dyn Film>, RenderError> {
+    /// [`RenderError::Speed`], [`RenderError::Frames`] where the plan is not possible.
+    pub fn create(self, path: &Path, plan: FilmPlan) -> Result<Film, RenderError> {
         plan.check()?;
-        let file = || File::create(path).map_err(RenderError::Film);
-        Ok(match self {
-            Self::Gif => Box::new(gif::GifFilm::new(file()?, plan)),
-            Self::Apng => Box::new(apng::ApngFilm::new(file()?, plan)),
-            Self::Mp4 | Self::Webm => Box::new(ffmpeg::FfmpegFilm::new(self, path, plan)),
+        Ok(Film {
+            format: self,
+            path: path.to_owned(),
+            plan,
+            begun: None,
         })
     }
 }
@@ -95,29 +82,62 @@ impl FilmPlan {
 }
 
 /// A film that is being made.
-pub trait Film {
+pub struct Film {
+    format: FilmFormat,
+    path: PathBuf,
+    plan: FilmPlan,
+    /// Pixels across and down, and what writes them, once the first picture tells its size.
+    begun: Option<(Size, Box<dyn Encoder>)>,
+}
+
+/// Pixels across and down.
+type Size = (u32, u32);
+
+/// What writes the pictures of a film, all of one size.
+trait Encoder {
+    fn add(&mut self, picture: &Picture) -> Result<(), RenderError>;
+
+    fn finish(self: Box<Self>) -> Result<(), RenderError>;
+}
+
+impl Film {
     /// Adds a picture.
     ///
     /// # Errors
-    /// [`RenderError`] where it has another size than the first, or cannot be encoded or written.
-    fn add(&mut self, picture: &Picture) -> Result<(), RenderError>;
+    /// [`RenderError`] where it has another size than the first, cannot be encoded or written, or where ffmpeg is needed
+    /// and not there.
+    pub fn add(&mut self, picture: &Picture) -> Result<(), RenderError> {
+        let size = (picture.width(), picture.height());
+        let (expected, encoder) = match &mut self.begun {
+            Some(begun) => begun,
+            begun => {
+                let (path, plan) = (&*self.path, self.plan);
+                let encoder: Box<dyn Encoder> = match self.format {
+                    FilmFormat::Gif => Box::new(gif::GifEncoder::new(path, plan, size)?),
+                    FilmFormat::Apng => Box::new(apng::ApngEncoder::new(path, plan, size)?),
+                    FilmFormat::Mp4 | FilmFormat::Webm => {
+                        Box::new(ffmpeg::Ffmpeg::new(self.format, path, plan, size)?)
+                    }
+                };
+                begun.insert((size, encoder))
+            }
+        };
+        if *expected != size {
+            return Err(RenderError::OtherSize {
+                expected: *expected,
+                found: size,
+            });
+        }
+        encoder.add(picture)
+    }
 
     /// Ends the film; before, its file is no film.
     ///
     /// # Errors
-    /// [`RenderError`] where it cannot be written.
-    fn finish(self: Box<Self>) -> Result<(), RenderError>;
-}
-
-/// Passes the size of a picture on where it is that of the film.
-fn of_one_size(first: Option<(u32, u32)>, picture: &Picture) -> Result<(u32, u32), RenderError> {
-    let size = (picture.width(), picture.height());
-    match first {
-        Some(expected) if expected != size => Err(RenderError::OtherSize {
-            expected,
-            found: size,
-        }),
-        _ => Ok(size),
+    /// [`RenderError`] where it has no picture or cannot be written.
+    pub fn finish(self) -> Result<(), RenderError> {
+        let (_, encoder) = self.begun.ok_or(RenderError::Frames)?;
+        encoder.finish()
     }
 }
 

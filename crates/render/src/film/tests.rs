@@ -117,17 +117,3 @@ fn pictures_of_two_sizes_are_no_film_and_neither_is_none() {
     }
     std::fs::remove_file(&path).unwrap();
 }
-
-#[test]
-fn formats_are_known_by_the_names_of_files() {
-    assert_eq!(
-        FilmFormat::of_path(Path::new("a/b.GIF")),
-        Some(FilmFormat::Gif)
-    );
-    assert_eq!(
-        FilmFormat::of_path(Path::new("film.webm")),
-        Some(FilmFormat::Webm)
-    );
-    assert_eq!(FilmFormat::of_path(Path::new("film.avi")), None);
-    assert_eq!(FilmFormat::of_path(Path::new("gif")), None);
-}
