@@ -53,4 +53,4 @@ pub use picture::{Paper, PictureFigure, PlaceMark, ScaleBar};
 pub use quantity::{Quantity, Units};
 pub use snapshot::{Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
 pub use style::Width;
-pub use text::{Letter, Level, escape, letters};
+pub use text::{Letter, Level, letters};

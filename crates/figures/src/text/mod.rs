@@ -4,7 +4,7 @@ mod font;
 mod markup;
 
 pub(crate) use font::{Face, Glyph};
-pub use markup::{Letter, Level, escape, letters};
+pub use markup::{Letter, Level, letters};
 
 /// Size of subscripts and superscripts relative to the line.
 const SCRIPT_SIZE: f64 = 0.7;
