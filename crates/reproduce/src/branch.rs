@@ -124,8 +124,7 @@ pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
     }
 }
 
-/// The runs at one value of a control that no longer drift, with the mean of J/Jmax and its error from their scatter, or
-/// from the blocks of the run where there is but one; `None` where none has a flow, or most still drift.
+/// The runs at one value of a control that no longer drift, with their flow; `None` where none has one, or most still drift.
 pub(crate) fn stationary<'a>(all: &[Row<'a>]) -> Option<(Vec<Row<'a>>, Uncertain)> {
     let rows: Vec<Row<'a>> = all
         .iter()
@@ -135,6 +134,12 @@ pub(crate) fn stationary<'a>(all: &[Row<'a>]) -> Option<(Vec<Row<'a>>, Uncertain
     if rows.is_empty() || 2 * rows.len() < all.len() {
         return None;
     }
+    let flow = flow_of(&rows);
+    Some((rows, flow))
+}
+
+/// The mean of J/Jmax with its error from the scatter, or from the blocks of the run where there is but one.
+pub(crate) fn flow_of(rows: &[Row<'_>]) -> Uncertain {
     let ratios: Vec<f64> = rows.iter().map(Row::flow_rate_ratio).collect();
     let (mean, scatter) = mean_and_error(&ratios);
     let error = if scatter.is_finite() {
@@ -142,7 +147,7 @@ pub(crate) fn stationary<'a>(all: &[Row<'a>]) -> Option<(Vec<Row<'a>>, Uncertain
     } else {
         rows[0].number("flow_rate_ratio_error")
     };
-    Some((rows, Uncertain::normal(mean, error)))
+    Uncertain::normal(mean, error)
 }
 
 /// Whether replicates ended in two flows.

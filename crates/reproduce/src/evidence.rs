@@ -74,6 +74,19 @@ impl Evidence {
     }
 }
 
+/// The first of some runs whose product was kept, with the product; `None` where no run's was.
+pub(crate) fn first_kept<'a>(
+    rows: &[Row<'a>],
+    product: impl Fn(&Row<'a>) -> Result<Option<Table>, ClaimError>,
+) -> Result<Option<(Row<'a>, Table)>, ClaimError> {
+    for row in rows {
+        if let Some(table) = product(row)? {
+            return Ok(Some((*row, table)));
+        }
+    }
+    Ok(None)
+}
+
 impl StudyResults {
     /// The finished runs in the order of the axes.
     #[must_use]

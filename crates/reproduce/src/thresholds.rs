@@ -199,7 +199,7 @@ pub(crate) const Q3_NEEDED: Statistics = Statistics {
 };
 /// For an answer of Q4: one strain rate, for it is about lengths.
 pub(crate) const Q4_NEEDED: Statistics = F8_NEEDED;
-/// Lengths that an answer of Q4 takes: an exponent through two has no say.
+/// Lengths that an answer to Q4 takes, and lengths of tubes and of sweeps in Q8: an exponent through two has no say.
 pub(crate) const LEAST_LENGTHS: usize = 3;
 /// Difference of Akaike's criterion from which on a law is worse: the better one is then exp(2), some seven times, as likely.
 pub(crate) const WORSE: f64 = 4.0;
@@ -212,3 +212,50 @@ pub(crate) const Q11_NEEDED: Statistics = Statistics {
     replicates: 5,
     runs: 150,
 };
+
+// Q6 to Q10.
+
+/// For an answer to Q6: six values of the friction, three replicates.
+pub(crate) const Q6_NEEDED: Statistics = Statistics {
+    strain_rates: 4,
+    widths: 6,
+    replicates: 3,
+    runs: 60,
+};
+
+/// For an answer to Q7: eight bottlenecks a corner, three replicates.
+pub(crate) const Q7_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 8,
+    replicates: 3,
+    runs: 192,
+};
+
+/// For an answer to Q8: two strain rates, six forces in each of three lengths, two sweeps of each kind.
+pub(crate) const Q8_NEEDED: Statistics = Statistics {
+    strain_rates: 2,
+    widths: 6,
+    replicates: 1,
+    runs: 36,
+};
+
+/// For an answer to Q9: eight pressures of the sine in either model, three replicates.
+pub(crate) const Q9_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 8,
+    replicates: 3,
+    runs: 66,
+};
+
+/// For an answer to Q10, of each setting: so many forces and replicates at one strain rate. The number of settings is asked for
+/// apart.
+pub(crate) const Q10_NEEDED: Statistics = Statistics {
+    strain_rates: 1,
+    widths: 5,
+    replicates: 2,
+    runs: 200,
+};
+/// Settings that it takes: one for each thing that the source does not give.
+pub(crate) const LEAST_SETTINGS: usize = 8;
+/// Forces without a leak from which on a setting is judged: two make one rise.
+pub(crate) const LEAST_FORCES: usize = 3;

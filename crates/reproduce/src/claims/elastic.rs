@@ -6,7 +6,7 @@ use peristalsis_figures::{ColourScale, Quantity as Axis, Units};
 use crate::branch::Branch;
 use crate::error::ClaimError;
 use crate::evidence::Evidence;
-use crate::exhibit;
+use crate::exhibit::{branch_points, rate_colours_in};
 use crate::finding::{Finding, Statistics, Verdict};
 use crate::forces::ForceLine;
 use crate::row::Row;
@@ -44,14 +44,14 @@ pub(super) fn flow_against_force() -> ChartPanel {
 /// Colours for the strain rates of some lines, whether or not they are judged.
 pub(super) fn rate_colours(lines: &[ForceLine<'_>]) -> ColourScale {
     let rates = lines.iter().map(|line| line.strain_rate);
-    exhibit::rate_colours_in(Units::Hertz, rates, (1e-3, 8e-3))
+    rate_colours_in(Units::Hertz, rates, (1e-3, 8e-3))
 }
 
 /// Both branches of each line, filled from rest and open from jammed, coloured by the strain rate.
 pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> ChartPanel {
     for (series, line) in lines.iter().enumerate() {
         let points = |branch: &Branch<'_>| -> Option<Points> {
-            let points = exhibit::branch_points("", branch)?.series(series);
+            let points = branch_points("", branch)?.series(series);
             Some(points.tint(Tint::Value(line.strain_rate)))
         };
         panel = panel

@@ -14,7 +14,10 @@ use crate::forces::{leaking, lowest, outside};
 use crate::prose::Prose;
 use crate::row::{Row, Start, grouped};
 use crate::text::number;
-use crate::thresholds::{GIVEN_WAY, LEAST_BACK_FLOW, LEAST_JUMP_AGAINST_FORCE, SIGNED_BY};
+use crate::thresholds::{
+    GIVEN_WAY, LEAST_BACK_FLOW, LEAST_FORCES, LEAST_JUMP_AGAINST_FORCE, LEAST_SETTINGS, Q10_NEEDED,
+    SIGNED_BY,
+};
 
 const PROSE: Prose = Prose::new(include_str!("q10.md"));
 
@@ -24,18 +27,6 @@ pub(super) const CLAIM: Claim = Claim {
     studies: &["elastic-sensitivity"],
     examine,
 };
-
-/// For an answer, of each setting: so many forces and replicates at one strain rate. The number of settings is asked for
-/// apart.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 5,
-    replicates: 2,
-    runs: 200,
-};
-const LEAST_SETTINGS: usize = 8;
-/// Forces without a leak from which on a setting is judged.
-const LEAST_FORCES: usize = 3;
 
 /// Keys of the wall and of the density with the preset's number, and how a departure from it is called.
 const NUMBERS: [(&str, f64, &str); 8] = [
@@ -233,7 +224,7 @@ impl<'a> Outcome<'a> {
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let outcomes = Outcome::all_of(evidence.study("elastic-sensitivity")?.rows());
     if outcomes.is_empty() {
-        let mut nothing = Finding::nothing("No runs yet.", Statistics::default(), &NEEDED);
+        let mut nothing = Finding::nothing("No runs yet.", Statistics::default(), &Q10_NEEDED);
         nothing.varied = "force";
         return Ok(nothing);
     }
@@ -267,7 +258,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         strain_rates: 1,
         ..Statistics::weakest(outcomes.iter().map(Outcome::statistics))
     };
-    let mut found = Finding::new(verdict, summary, statistics, &NEEDED);
+    let mut found = Finding::new(verdict, summary, statistics, &Q10_NEEDED);
     found.varied = "force";
     let cells = outcomes.iter().map(Outcome::cells).collect();
     found.tables.push(PROSE.table("settings", &[], cells));

@@ -6,13 +6,13 @@ use peristalsis_analysis::Uncertain;
 
 use crate::claim::Claim;
 use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
+use crate::evidence::{Evidence, StudyResults, first_kept};
 use crate::exhibit::cell;
 use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::prose::Prose;
 use crate::row::{Row, behind, grouped, mean, mean_of};
 use crate::text::number;
-use crate::thresholds::{FREE_FLIGHT, SIGNED_BY};
+use crate::thresholds::{FREE_FLIGHT, Q6_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q6.md"));
 
@@ -21,14 +21,6 @@ pub(super) const CLAIM: Claim = Claim {
     prose: PROSE,
     studies: &["back-flow"],
     examine,
-};
-
-/// For an answer: six values of the friction, three replicates.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 4,
-    widths: 6,
-    replicates: 3,
-    runs: 60,
 };
 
 /// Column of the coefficient of static friction.
@@ -188,30 +180,26 @@ struct FreeFlight {
 impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>, ClaimError> {
-        for row in &one.rows {
-            let Some(profile) = results.profile(row)? else {
-                continue;
-            };
-            let [pressure, density, velocity] =
-                ["wall_pressure", "density", "axial_velocity"].map(|name| profile.reals(name));
-            let (pressure, density, velocity) = (pressure?, density?, velocity?);
-            let largest = pressure.iter().copied().fold(0.0, f64::max);
-            let (mut bins, mut free, mut flux, mut all) = (0.0, 0.0, 0.0, 0.0);
-            for ((pressure, density), velocity) in pressure.iter().zip(density).zip(velocity) {
-                all += density;
-                if *pressure < FREE_FLIGHT * largest && velocity.is_finite() {
-                    bins += 1.0;
-                    free += density;
-                    flux += density * velocity / row.wave_speed();
-                }
+        let Some((row, profile)) = first_kept(&one.rows, |row| results.profile(row))? else {
+            return Ok(None);
+        };
+        let (pressure, density) = (profile.reals("wall_pressure")?, profile.reals("density")?);
+        let velocity = profile.reals("axial_velocity")?;
+        let largest = pressure.iter().copied().fold(0.0, f64::max);
+        let (mut bins, mut free, mut flux, mut all) = (0.0, 0.0, 0.0, 0.0);
+        for ((pressure, density), velocity) in pressure.iter().zip(density).zip(velocity) {
+            all += density;
+            if *pressure < FREE_FLIGHT * largest && velocity.is_finite() {
+                bins += 1.0;
+                free += density;
+                flux += density * velocity / row.wave_speed();
             }
-            return Ok((bins > 0.0).then(|| Self {
-                part: bins / pressure.len() as f64,
-                velocity: flux / free,
-                share: flux / all,
-            }));
         }
-        Ok(None)
+        Ok((bins > 0.0).then(|| Self {
+            part: bins / pressure.len() as f64,
+            velocity: flux / free,
+            share: flux / all,
+        }))
     }
 }
 
@@ -220,7 +208,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let samples = Samples::of(results);
     let statistics = samples.statistics();
     let Some(preset) = samples.at(PRESET) else {
-        return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
+        return Ok(Finding::nothing("No runs yet.", statistics, &Q6_NEEDED));
     };
     let at_friction = |friction| samples.at(Point { friction, ..PRESET });
     let at_tether = |tether| samples.at(Point { tether, ..PRESET });
@@ -230,7 +218,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         of_friction(preset, without),
         of_wall(preset, pinned)
     );
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &NEEDED);
+    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q6_NEEDED);
     finding.varied = "friction";
     let flight = FreeFlight::of(results, preset)?;
     finding.paragraphs.extend(balance(preset, flight));

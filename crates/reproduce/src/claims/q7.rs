@@ -14,7 +14,7 @@ use crate::forces::lowest;
 use crate::prose::Prose;
 use crate::row::{Row, Start, behind, grouped, mean};
 use crate::text::number;
-use crate::thresholds::{FAST, LEAST_BACK_FLOW, LEAST_JUMP, MOST_ESCAPED, SIGNED_BY};
+use crate::thresholds::{FAST, LEAST_BACK_FLOW, LEAST_JUMP, MOST_ESCAPED, Q7_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q7.md"));
 
@@ -23,14 +23,6 @@ pub(super) const CLAIM: Claim = Claim {
     prose: PROSE,
     studies: &["two-by-two-strain", "two-by-two-stress"],
     examine,
-};
-
-/// For an answer: eight bottlenecks a corner, three replicates.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 8,
-    replicates: 3,
-    runs: 192,
 };
 
 /// How the wall is driven.
@@ -252,7 +244,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     if corners.is_empty() {
         let statistics = Statistics::default();
-        return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
+        return Ok(Finding::nothing("No runs yet.", statistics, &Q7_NEEDED));
     }
     let statistics = Statistics {
         strain_rates: 1,
@@ -271,7 +263,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("back", &where_seen(&corners, Corner::flows_back)),
         ],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &NEEDED);
+    let mut finding = Finding::new(verdict, summary, statistics, &Q7_NEEDED);
     finding.varied = "bottleneck";
     finding.quantities = corners.iter().flat_map(Corner::quantities).collect();
     let cells = corners.iter().map(Corner::cells).collect();

@@ -13,7 +13,7 @@ use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::prose::Prose;
 use crate::row::{Row, behind, grouped, mean_of};
 use crate::text::number;
-use crate::thresholds::{LEAST_JUMP, PASSED};
+use crate::thresholds::{LEAST_JUMP, LEAST_LENGTHS, PASSED, Q8_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
 
@@ -23,15 +23,6 @@ pub(super) const CLAIM: Claim = Claim {
     studies: &["small-speed-size", "sweep-up", "sweep-down"],
     examine,
 };
-
-/// For an answer: two strain rates, six forces in each of three lengths, two sweeps of each kind.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 2,
-    widths: 6,
-    replicates: 1,
-    runs: 36,
-};
-const LEAST_LENGTHS: usize = 3;
 
 /// Part of the runs, at their end, over which the study takes its means.
 const LATE: f64 = 0.5;
@@ -292,7 +283,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         ..Statistics::weakest(of_ladders)
     };
     if rates.is_empty() {
-        return Ok(Finding::nothing("No runs yet.", statistics, &NEEDED));
+        return Ok(Finding::nothing("No runs yet.", statistics, &Q8_NEEDED));
     }
     let words: Vec<String> = rates.iter().map(AtRate::words).collect();
     let verdict = if rates.iter().all(AtRate::is_complete) {
@@ -301,7 +292,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         Verdict::Open
     };
     let summary = format!("{}.", words.join(". "));
-    let mut finding = Finding::new(verdict, summary, statistics, &NEEDED);
+    let mut finding = Finding::new(verdict, summary, statistics, &Q8_NEEDED);
     finding.varied = "force";
     finding.quantities = rates.iter().flat_map(AtRate::quantities).collect();
     if !ladders.is_empty() {

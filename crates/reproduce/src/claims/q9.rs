@@ -14,6 +14,7 @@ use crate::finding::{Finding, Quantity, Statistics, Verdict};
 use crate::prose::Prose;
 use crate::row::{Row, behind, mean_of};
 use crate::text::number;
+use crate::thresholds::Q9_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q9.md"));
 
@@ -22,14 +23,6 @@ pub(super) const CLAIM: Claim = Claim {
     prose: PROSE,
     studies: &["pumping-frictionless", "pumping-frictional"],
     examine,
-};
-
-/// For an answer: eight pressures of the sine in either model, three replicates.
-const NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 8,
-    replicates: 3,
-    runs: 66,
 };
 
 /// The waveforms in the order of series.
@@ -265,7 +258,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         return Ok(Finding::nothing(
             "No runs of the sine yet.",
             Statistics::default(),
-            &NEEDED,
+            &Q9_NEEDED,
         ));
     }
     let words: Vec<String> = pumps.iter().filter_map(Pump::words).collect();
@@ -283,7 +276,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         strain_rates: 1,
         ..Statistics::weakest(pumps.iter().map(Pump::statistics))
     };
-    let mut finding = Finding::new(verdict, summary, statistics, &NEEDED);
+    let mut finding = Finding::new(verdict, summary, statistics, &Q9_NEEDED);
     finding.varied = "back pressure";
     finding.quantities = pumps.iter().flat_map(Pump::quantities).collect();
     let cells = pumps.iter().flat_map(Pump::cells).collect();

@@ -1,15 +1,16 @@
 //! S1: the flow fields at three forces, and the last of them without friction.
 
-use peristalsis_analysis::{Uncertain, mean_and_error};
+use peristalsis_analysis::Uncertain;
 use peristalsis_figures::{
     Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Width,
 };
 use peristalsis_formats::Table;
 
 use super::elastic::{finding, is_frictionless, judged, nothing};
+use crate::branch::flow_of;
 use crate::claim::Claim;
 use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
+use crate::evidence::{Evidence, StudyResults, first_kept};
 use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
 use crate::forces::{ForceLine, together};
 use crate::prose::Prose;
@@ -50,7 +51,7 @@ impl<'a> Scene<'a> {
             .map(|((force, frictionless), rows)| Self {
                 force: -force,
                 frictionless,
-                flow: flow(&rows),
+                flow: flow_of(&rows),
                 rows,
             })
             .collect()
@@ -74,26 +75,13 @@ impl<'a> Scene<'a> {
 
     /// The first run whose spheres were kept.
     fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>, ClaimError> {
-        for row in &self.rows {
-            if let Some(spheres) = study.snapshot(row)? {
-                let (name, row) = (self.name(), *row);
-                return Ok(Some(Picture { name, row, spheres }));
-            }
-        }
-        Ok(None)
+        let kept = first_kept(&self.rows, |row| study.snapshot(row))?;
+        Ok(kept.map(|(row, spheres)| Picture {
+            name: self.name(),
+            row,
+            spheres,
+        }))
     }
-}
-
-/// The mean of J/Jmax with its error from the scatter, or from the blocks of the run where there is but one.
-fn flow(rows: &[Row<'_>]) -> Uncertain {
-    let ratios: Vec<f64> = rows.iter().map(Row::flow_rate_ratio).collect();
-    let (mean, scatter) = mean_and_error(&ratios);
-    let error = if scatter.is_finite() {
-        scatter
-    } else {
-        rows[0].number("flow_rate_ratio_error")
-    };
-    Uncertain::normal(mean, error)
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {

@@ -7,10 +7,10 @@ use peristalsis_figures::chart::{
 use peristalsis_figures::{Quantity as Axis, Scale, Width};
 use peristalsis_formats::Table;
 
-use super::{FRICTION, PINNED, PRESET, PROSE, Point, Sampled, Samples};
+use super::{PINNED, PRESET, PROSE, Point, Sampled, Samples};
 use crate::claims::elastic::label;
 use crate::error::ClaimError;
-use crate::evidence::StudyResults;
+use crate::evidence::{StudyResults, first_kept};
 use crate::exhibit::points;
 use crate::finding::ReportFigure;
 
@@ -118,11 +118,8 @@ fn balance(
         let Some(one) = samples.at(Point { friction, ..PRESET }) else {
             continue;
         };
-        for row in &one.rows {
-            if let Some(profile) = results.profile(row)? {
-                columns.push(column(row.number(FRICTION), row.wave_speed(), &profile)?);
-                break;
-            }
+        if let Some((row, profile)) = first_kept(&one.rows, |row| results.profile(row))? {
+            columns.push(column(friction, row.wave_speed(), &profile)?);
         }
     }
     let Some([radius, ..]) = columns.first_mut() else {

@@ -10,6 +10,7 @@ use peristalsis_formats::Table;
 use super::{PROSE, Pump, WAVEFORMS, dispersion, efficiency};
 use crate::branch::Point;
 use crate::error::ClaimError;
+use crate::evidence::first_kept;
 use crate::exhibit::{error_band, label, points};
 use crate::finding::ReportFigure;
 
@@ -129,12 +130,8 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>, ClaimError> {
         } else {
             "largest Δ*p* pumped against"
         };
-        for row in &point.rows {
-            if let Some(profile) = pump.results.profile(row)? {
-                profiles.push((name, profile));
-                break;
-            }
-        }
+        let kept = first_kept(&point.rows, |row| pump.results.profile(row))?;
+        profiles.extend(kept.map(|(_, profile)| (name, profile)));
     }
     Ok(profiles)
 }
