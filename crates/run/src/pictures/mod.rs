@@ -195,23 +195,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
                 Band::new(&name, &late, &[mean - error; 2], &[mean + error; 2]).tint(Tint::Orange),
             );
     }
-    for (ratio, name, pattern) in [
-        (
-            summary.newtonian_flow_rate_ratio,
-            "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*",
-            Pattern::Dashed,
-        ),
-        (
-            summary.newtonian_flow_rate_ratio_clear_bore,
-            "the same, clear bore, *φ* = *b*/(*a* − *d*/2)",
-            Pattern::DashDotted,
-        ),
-    ] {
-        if let Some(ratio) = ratio {
-            let level = Line::new(name, &[0.0, last], &[ratio; 2]);
-            panel = panel.with(level.tint(Tint::Green).pattern(pattern));
-        }
-    }
+    panel = panel.with_all(newtonian_fluid(summary, last));
     if let Some(time) = summary.transition_time {
         let passed = samples.partition_point(|sample| sample.time <= time);
         let start = if passed == 0 {
@@ -231,6 +215,25 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         .panel_height(HEIGHT)
         .legend(LegendPlace::Below)
         .draw()
+}
+
+/// What a Newtonian fluid would do in this tube, up to a last period.
+fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
+    let level = |ratio: Option<f64>, name: &str, pattern: Pattern| {
+        let line = Line::new(name, &[0.0, last], &[ratio?; 2]);
+        Some(line.tint(Tint::Green).pattern(pattern))
+    };
+    let in_bore = level(
+        summary.newtonian_flow_rate_ratio,
+        "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*",
+        Pattern::Dashed,
+    );
+    let in_clear_bore = level(
+        summary.newtonian_flow_rate_ratio_clear_bore,
+        "the same, clear bore, *φ* = *b*/(*a* − *d*/2)",
+        Pattern::DashDotted,
+    );
+    in_bore.into_iter().chain(in_clear_bore).collect()
 }
 
 fn label(quantity: Quantity) -> String {
