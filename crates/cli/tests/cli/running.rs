@@ -109,7 +109,7 @@ fn the_record_of_a_run_runs_again_to_the_same_bits() {
             "frictional",
             &[
                 "grains.number=50",
-                "run.periods=0.1",
+                "run.periods=0.2",
                 "run.integrator=adams_bashforth",
                 "run.seed=4",
             ],
@@ -139,7 +139,7 @@ fn another_seed_is_another_run() {
 #[test]
 fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
     let place = Place::new();
-    for (preset, periods) in [("frictionless", "4"), ("frictional", "0.1")] {
+    for (preset, periods) in [("frictionless", "4"), ("frictional", "0.2")] {
         for direction in ["forward", "backward"] {
             let settings = [
                 "initial.state=jammed",
