@@ -271,9 +271,10 @@ impl Failure {
 /// What to do about a state that cannot be gone on with.
 fn of_state(path: &Path, source: &RunError) -> String {
     let remedy = match source {
-        RunError::OtherPhysicsVersion { .. }
-        | RunError::Format(
-            FormatError::CheckpointVersion { .. } | FormatError::CheckpointLayout { .. },
+        RunError::Format(
+            FormatError::CheckpointVersion { .. }
+            | FormatError::CheckpointLayout { .. }
+            | FormatError::OtherPhysicsVersion { .. },
         ) => "go on with the program that wrote it",
         RunError::Format(FormatError::OtherPhysics { .. } | FormatError::CheckpointKind { .. }) => {
             "put back the config.toml that it was begun with"

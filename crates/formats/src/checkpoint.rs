@@ -12,8 +12,9 @@
 //! | 56 | 8 | length of the payload |
 //! | 64 | 8 | length of the state, that is of the payload after decompression |
 //! | 72 | 4 | CRC-32 of the payload |
-//! | 76 | 4 | CRC-32 of the 76 bytes above |
-//! | 80 | | payload: the state in the postcard encoding, compressed to an LZ4 frame |
+//! | 76 | 4 | version of the physics that the state was computed with |
+//! | 80 | 4 | CRC-32 of the 80 bytes above |
+//! | 84 | | payload: the state in the postcard encoding, compressed to an LZ4 frame |
 //!
 //! Postcard stores a real as its 64 bits, so NaN payloads, -0.0 and subnormal numbers come back as they were. A CRC-32
 //! detects every error within 32 neighbouring bits, and others but for one in 2^32. It guards against accidents, not
@@ -39,7 +40,7 @@ pub const FORMAT_VERSION: u32 = 1;
 pub const MAXIMUM_STATE_BYTES: u64 = 1 << 30;
 
 const SIGNATURE: [u8; 8] = *b"\x89PSTL\r\n\x1a";
-const HEADER_BYTES: usize = 80;
+const HEADER_BYTES: usize = 84;
 
 /// What a checkpoint is a checkpoint of; writer and reader must name the same.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +50,8 @@ pub struct CheckpointIdentity {
     /// Version of the state's own layout: raised whenever a field of its type is added, removed or moved, because the
     /// payload does not describe itself.
     pub layout_version: u32,
+    /// Version of the physics: raised whenever the same configuration and seed come to other results.
+    pub physics_version: u32,
     /// Hash of everything that decides how the state evolves: laws, walls, drive, integrator.
     pub physics_hash: [u8; 32],
 }
@@ -64,6 +67,10 @@ impl CheckpointIdentity {
         if self.layout_version != expected.layout_version {
             let (found, readable) = (self.layout_version, expected.layout_version);
             return Err(FormatError::CheckpointLayout { found, readable });
+        }
+        if self.physics_version != expected.physics_version {
+            let (found, computed) = (self.physics_version, expected.physics_version);
+            return Err(FormatError::OtherPhysicsVersion { found, computed });
         }
         if self.physics_hash != expected.physics_hash {
             let (found, expected) = (self.physics_hash, expected.physics_hash);
@@ -92,8 +99,8 @@ pub fn encode<State: Serialize>(
 /// # Errors
 /// In this order: [`FormatError::NotACheckpoint`], [`FormatError::CheckpointVersion`],
 /// [`FormatError::CorruptCheckpoint`] of the header, [`FormatError::CheckpointKind`],
-/// [`FormatError::CheckpointLayout`], [`FormatError::OtherPhysics`], [`FormatError::TruncatedCheckpoint`],
-/// [`FormatError::CorruptCheckpoint`] of the payload.
+/// [`FormatError::CheckpointLayout`], [`FormatError::OtherPhysicsVersion`], [`FormatError::OtherPhysics`],
+/// [`FormatError::TruncatedCheckpoint`], [`FormatError::CorruptCheckpoint`] of the payload.
 pub fn decode<State: DeserializeOwned>(
     identity: &CheckpointIdentity,
     bytes: &[u8],
@@ -171,8 +178,9 @@ impl Header {
         bytes[56..64].copy_from_slice(&self.payload_bytes.to_le_bytes());
         bytes[64..72].copy_from_slice(&self.state_bytes.to_le_bytes());
         bytes[72..76].copy_from_slice(&self.payload_checksum.to_le_bytes());
-        let checksum = crc32fast::hash(&bytes[..76]);
-        bytes[76..80].copy_from_slice(&checksum.to_le_bytes());
+        bytes[76..80].copy_from_slice(&self.identity.physics_version.to_le_bytes());
+        let checksum = crc32fast::hash(&bytes[..80]);
+        bytes[80..84].copy_from_slice(&checksum.to_le_bytes());
         bytes
     }
 
@@ -196,7 +204,7 @@ impl Header {
             }
         }
         let bytes = bytes.get(..HEADER_BYTES).ok_or(truncated)?;
-        if crc32fast::hash(&bytes[..76]) != u32::from_le_bytes(field(bytes, 76)) {
+        if crc32fast::hash(&bytes[..80]) != u32::from_le_bytes(field(bytes, 80)) {
             return Err(FormatError::corrupt_checkpoint(
                 "the header does not match its checksum",
             ));
@@ -205,6 +213,7 @@ impl Header {
             identity: CheckpointIdentity {
                 kind: field(bytes, 12),
                 layout_version: u32::from_le_bytes(field(bytes, 20)),
+                physics_version: u32::from_le_bytes(field(bytes, 76)),
                 physics_hash: field(bytes, 24),
             },
             payload_bytes: u64::from_le_bytes(field(bytes, 56)),

@@ -1,6 +1,5 @@
 //! The one error type of this crate.
 
-use std::fmt::Write as _;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -151,11 +150,22 @@ pub enum FormatError {
         /// The layout version that the caller reads.
         readable: u32,
     },
+    /// The state was computed with another version of the physics, so that it cannot go on to the same bits.
+    #[error(
+        "it was computed with version {found} of the physics; this program computes version {computed}, which comes to \
+         other results"
+    )]
+    OtherPhysicsVersion {
+        /// Version of the physics of the state.
+        found: u32,
+        /// Version of the physics of the reader.
+        computed: u32,
+    },
     /// The checkpoint belongs to a run with other physics.
     #[error(
         "the checkpoint belongs to other physics: hash {} in the file, {} here",
-        hexadecimal(found),
-        hexadecimal(expected)
+        crate::hexadecimal(found),
+        crate::hexadecimal(expected)
     )]
     OtherPhysics {
         /// The hash in the file.
@@ -204,13 +214,4 @@ impl FormatError {
             reason: reason.into(),
         }
     }
-}
-
-fn hexadecimal(bytes: &[u8; 32]) -> String {
-    bytes
-        .iter()
-        .fold(String::with_capacity(64), |mut text, byte| {
-            write!(text, "{byte:02x}").expect("writing to a String cannot fail");
-            text
-        })
 }

@@ -25,3 +25,8 @@ pub use checkpoint::CheckpointIdentity;
 pub use error::FormatError;
 pub use table::{Column, Table, TableBuilder, ValueKind, Values};
 pub use trajectory::{Frame, TrajectoryFile, TrajectoryFormat};
+
+/// Bytes as lower-case hexadecimal digits.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -15,6 +15,7 @@ type State = Vec<(u64, [f64; 3], Option<String>)>;
 const IDENTITY: CheckpointIdentity = CheckpointIdentity {
     kind: *b"hostile ",
     layout_version: 1,
+    physics_version: 2,
     physics_hash: [1; 32],
 };
 
@@ -98,6 +99,7 @@ fn sealed(payload: &[u8], state_bytes: usize) -> Vec<u8> {
     bytes.extend((payload.len() as u64).to_le_bytes());
     bytes.extend((state_bytes as u64).to_le_bytes());
     bytes.extend(crc32fast::hash(payload).to_le_bytes());
+    bytes.extend(IDENTITY.physics_version.to_le_bytes());
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     bytes.extend(payload);
     bytes

@@ -1,20 +1,18 @@
-//! The table of observables: a new one is a field of [`Sample`] and a row here.
+//! The tables of observables: a new one is a field of [`Sample`], [`ProfileBin`] or [`WaveFlow`] and a row here.
 
+use crate::profile::ProfileBin;
+use crate::quantity::Reading::{Measured, Real, Whole};
+use crate::quantity::{Quantity, Reading};
 use crate::sample::Sample;
+use crate::waves::WaveFlow;
 
 /// A column of the time series.
 #[derive(Clone, Copy, Debug)]
 pub struct Column {
-    /// Name, the same in files, plots and Python.
-    pub name: &'static str,
-    /// Unit, in m, d, t; "1" for pure numbers.
-    pub unit: &'static str,
-    /// What it is, in a line.
-    pub description: &'static str,
     /// Which runs have it.
     pub scope: Scope,
-    /// Its value in a sample.
-    pub value: fn(&Sample) -> f64,
+    /// The quantity, read off a sample.
+    pub quantity: Quantity<Sample>,
 }
 
 /// Which runs have a column.
@@ -34,21 +32,32 @@ const fn row(
     name: &'static str,
     unit: &'static str,
     scope: Scope,
-    description: &'static str,
+    text: &'static str,
     value: fn(&Sample) -> f64,
 ) -> Column {
     Column {
+        scope,
+        quantity: quantity(name, unit, text, Real(value)),
+    }
+}
+
+const fn quantity<Of>(
+    name: &'static str,
+    unit: &'static str,
+    text: &'static str,
+    reading: Reading<Of>,
+) -> Quantity<Of> {
+    Quantity {
         name,
         unit,
-        description,
-        scope,
-        value,
+        text,
+        reading,
     }
 }
 
 use Scope::{Always, BodyForce, ElasticWall, Friction};
 
-/// All columns, in order.
+/// The columns of the time series, in order.
 #[rustfmt::skip]
 pub const COLUMNS: &[Column] = &[
     row("time", "t", Always, "end of the interval that the row is about", |s| s.time),
@@ -94,4 +103,32 @@ pub const COLUMNS: &[Column] = &[
     row("wall_azimuthal_displacement_rms", "d", ElasticWall, "root mean square azimuthal displacement of the wall", |s| s.wall_azimuthal_displacement_rms),
     row("body_power", "m d^2/t^3", BodyForce, "mean power of the body force on the grains; negative where they are pumped against it", |s| s.body_power),
     row("body_work", "m d^2/t^2", BodyForce, "ledger: work of the body force", |s| s.ledger.body_work),
+];
+
+/// The columns of the profile in the wave's frame, in order.
+#[rustfmt::skip]
+pub const PROFILE: &[Quantity<ProfileBin>] = &[
+    quantity("position", "1", "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave", Real(|b| b.position)),
+    quantity("density", "1/d", "grains per length of tube", Measured(|b| b.density)),
+    quantity("axial_velocity", "d/t", "mean axial velocity along the wave, laboratory frame", Measured(|b| b.axial_velocity)),
+    quantity("granular_temperature", "m d^2/t^2", "sum m |v - <v>|^2/(3 N) about the bin's mean velocity", Measured(|b| b.temperature)),
+    quantity("radius", "d", "mean radius of the tube", Real(|b| b.radius)),
+    quantity("least_radius", "d", "least radius seen", Real(|b| b.least_radius)),
+    quantity("largest_radius", "d", "largest radius seen", Real(|b| b.largest_radius)),
+    quantity("wall_normal_force", "m/t^2", "axial force of the wall on the grains along the normals of contacts, per length of tube, along the wave", Measured(|b| b.wall_normal_force)),
+    quantity("wall_tangential_force", "m/t^2", "axial force of the wall on the grains by friction, per length of tube, along the wave", Measured(|b| b.wall_tangential_force)),
+    quantity("wall_pressure", "m/(d t^2)", "pressure on the wall: radial force per area 2 pi R dz, outward", Measured(|b| b.wall_pressure)),
+    quantity("wall_shear", "m/(d t^2)", "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure", Measured(|b| b.wall_shear)),
+    quantity("wall_axial_velocity", "d/t", "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall", Measured(|b| b.wall_axial_velocity)),
+];
+
+/// The columns of the flow wave by wave, in order.
+#[rustfmt::skip]
+pub const WAVES: &[Quantity<WaveFlow>] = &[
+    quantity("period", "1", "wavelengths that the wave has run by the end of the period that the row is about", Real(|w| w.period)),
+    quantity("time", "t", "end of that period", Real(|w| w.time)),
+    quantity("wave", "1", "number of the wave, from 0 on along the wave: from throat to throat, moving with them", Whole(|w| w.wave.into())),
+    quantity("grains", "1", "mean number of grains in the wave", Real(|w| w.grains)),
+    quantity("flow_rate", "1/t", "J of these grains along the wave: sum of dz/dt over lambda", Real(|w| w.flow_rate)),
+    quantity("flow_rate_ratio", "1", "J/Jmax of these grains", Real(|w| w.flow_rate_ratio)),
 ];

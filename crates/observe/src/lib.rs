@@ -9,20 +9,22 @@
 #![forbid(unsafe_code)]
 
 pub mod columns;
-pub mod diagnosis;
-pub mod dispersion;
-pub mod orientation;
-pub mod profile;
-pub mod sample;
-pub mod shape;
-pub mod view;
+mod diagnosis;
+mod dispersion;
+mod orientation;
+mod profile;
+mod quantity;
+mod sample;
+mod shape;
+mod view;
 pub mod waves;
 
-pub use columns::{COLUMNS, Column};
+pub use columns::{COLUMNS, Column, PROFILE, WAVES};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use orientation::Orientations;
 pub use profile::{PartOfWave, ProfileBin, WallForce, WaveFrameProfile, WavePart};
+pub use quantity::{Quantity, Reading, Value};
 pub use sample::{Observer, Sample};
 pub use shape::TubeShape;
 pub use view::View;

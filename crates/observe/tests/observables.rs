@@ -7,8 +7,8 @@ use peristalsis_engine::wall::{
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
 use peristalsis_observe::{
-    AxialDispersion, COLUMNS, FaultKind, Observer, TubeShape, View, WaveByWave, WaveFrameProfile,
-    WavePart, note_wall_faults,
+    AxialDispersion, COLUMNS, Column, FaultKind, Observer, PROFILE, Quantity, TubeShape, View,
+    WAVES, WaveByWave, WaveFrameProfile, WavePart, note_wall_faults,
 };
 use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Normal};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
@@ -393,29 +393,29 @@ fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
 
 #[test]
 fn columns_have_distinct_names_and_all_are_explained() {
-    for (index, column) in COLUMNS.iter().enumerate() {
-        assert!(
-            !column.unit.is_empty() && column.description.len() > 3,
-            "{}",
-            column.name
-        );
-        assert!(
-            COLUMNS[..index]
-                .iter()
-                .all(|other| other.name != column.name),
-            "{}",
-            column.name
-        );
-    }
-    for name in [
-        "time",
-        "period",
-        "flow_rate",
-        "flow_rate_ratio",
-        "kinetic_energy",
-        "escaped",
+    let series = COLUMNS.iter().map(|column| heading(&column.quantity));
+    let profile = PROFILE.iter().map(heading);
+    let waves = WAVES.iter().map(heading);
+    for table in [
+        series.collect::<Vec<_>>(),
+        profile.collect(),
+        waves.collect(),
     ] {
-        let column = COLUMNS.iter().find(|column| column.name == name).unwrap();
-        assert_eq!(column.scope, Scope::Always, "{name}");
+        for (index, (name, unit, text)) in table.iter().enumerate() {
+            assert!(!unit.is_empty() && text.len() > 3, "{name}");
+            assert!(
+                table[..index].iter().all(|other| other.0 != *name),
+                "{name}"
+            );
+        }
     }
+    for name in ["time", "period", "flow_rate_ratio", "escaped"] {
+        let of_all = |column: &&Column| column.scope == Scope::Always;
+        let mut always = COLUMNS.iter().filter(of_all);
+        assert!(always.any(|column| column.quantity.name == name), "{name}");
+    }
+}
+
+fn heading<Of>(quantity: &Quantity<Of>) -> (&'static str, &'static str, &'static str) {
+    (quantity.name, quantity.unit, quantity.text)
 }

@@ -81,17 +81,6 @@ pub enum RunError {
         /// What is missing.
         reason: String,
     },
-    /// The state was computed with other physics, so that it cannot go on to the same bits.
-    #[error(
-        "it was computed with version {found} of the physics; this program computes version {computed}, which comes to \
-         other results"
-    )]
-    OtherPhysicsVersion {
-        /// Version of the physics of the state.
-        found: u32,
-        /// Version of the physics of this program.
-        computed: u32,
-    },
     /// The saved state of a run cannot be gone on with.
     #[error("{} cannot be gone on with: {source}", path.display())]
     State {

@@ -1,23 +1,15 @@
-//! What would run, before it runs.
+//! The estimate of a run before it runs: its size, and its time from a short trial.
 
 use std::time::{Duration, Instant};
 
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
-use peristalsis_physics::contact::NormalLaw;
+use peristalsis_configuration::Configuration;
 
 use crate::RunError;
-use crate::assemble::walls;
-use crate::holding;
-use crate::leaking;
 use crate::run::Run;
 use crate::si::SiEstimate;
-use crate::softness;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
+use crate::warnings::{Warning, contact_time, overlap_warning, warnings};
 
-/// Steps that a contact should last.
-const STEPS_PER_CONTACT: f64 = 15.0;
-/// Overlap at which contact stiffness is judged, in units of the least diameter.
-const USUAL_OVERLAP: f64 = 0.1;
 /// Grains of the trial that measures speed.
 const TRIAL_GRAINS: u64 = 20_000;
 /// Length of the trial; its second half is timed, for a packing at rest has fewer contacts than a flow.
@@ -25,26 +17,7 @@ const TRIAL: Duration = Duration::from_millis(800);
 /// Time that a piece of the trial should take.
 const PIECE: Duration = Duration::from_millis(20);
 
-/// Something that will run but may not mean what was intended.
-#[derive(Clone, Debug, PartialEq, serde::Serialize)]
-pub struct Warning {
-    /// The key to look at.
-    pub key: &'static str,
-    /// What is to be expected.
-    pub message: String,
-}
-
-impl Warning {
-    /// The same, said of a circumstance.
-    fn under(self, circumstance: &str) -> Self {
-        Self {
-            message: format!("{circumstance} {}", self.message),
-            ..self
-        }
-    }
-}
-
-/// What would run.
+/// A run before it runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Estimate {
     /// Grains.
@@ -75,14 +48,14 @@ pub struct Estimate {
     pub si: Option<SiEstimate>,
     /// Expected seconds, from a short trial on this machine.
     pub expected_seconds: f64,
-    /// What a trajectory would take, if one is wanted.
+    /// The size of the trajectory, if one is wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trajectory: Option<TrajectoryEstimate>,
-    /// What looks doubtful.
+    /// Doubts.
     pub warnings: Vec<Warning>,
 }
 
-/// What would run, with the time it would take, measured by a short trial of it.
+/// The estimate of a run, with the time it would take, measured by a short trial of it.
 ///
 /// # Errors
 /// [`RunError::Engine`] where the grains do not fit; [`RunError::Trajectory`] where there cannot be such a trajectory.
@@ -103,11 +76,10 @@ pub fn estimate(
         self::trial(&configuration.at_its_hardest()).ok()
     };
     let (divergence, overlap) = match later {
-        None => (trial.divergence, softness::overlap_warning(&trial.run)),
+        None => (trial.divergence, overlap_warning(&trial.run)),
         Some(later) => (
             trial.divergence.or(later.divergence.map(in_the_end)),
-            softness::overlap_warning(&trial.run)
-                .or_else(|| softness::overlap_warning(&later.run).map(in_the_end)),
+            overlap_warning(&trial.run).or_else(|| overlap_warning(&later.run).map(in_the_end)),
         ),
     };
     warnings.extend(divergence);
@@ -136,12 +108,12 @@ pub fn estimate(
     })
 }
 
-/// A warning of what drive.schedule comes to.
+/// A warning under the hardest drive of drive.schedule.
 fn in_the_end(warning: Warning) -> Warning {
     warning.under("with the drive at the hardest that drive.schedule comes to,")
 }
 
-/// What a trial showed.
+/// The outcome of a trial.
 struct Trial {
     expected_seconds: f64,
     /// That it diverged, which the whole run would do as well.
@@ -205,105 +177,5 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         divergence,
         run,
         scale,
-    })
-}
-
-/// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
-fn contact_time(configuration: &Configuration) -> f64 {
-    let model = configuration.contact;
-    let diameter = configuration.grains.diameter_min;
-    let mut lightest = diameter * diameter * diameter;
-    if let Some(wall) = configuration.wall.elastic {
-        lightest = lightest.min(wall.sphere_mass);
-    }
-    let reduced_mass = match configuration.drive.control {
-        // Two grains; against a prescribed wall a contact lasts longer.
-        Control::Strain { .. } => 0.5 * lightest,
-        Control::Stress { .. } => {
-            let grain = diameter * diameter * diameter;
-            lightest * grain / (lightest + grain)
-        }
-    };
-    let overlap = USUAL_OVERLAP * diameter;
-    let normal = model.normal.stiffness(overlap, 0.25 * diameter);
-    let tangential = model.friction.map_or(0.0, |law| law.tangential_stiffness);
-    let stiffest = normal.max(tangential);
-    std::f64::consts::PI / (stiffest / reduced_mass).sqrt()
-}
-
-/// A time with three digits that say something, however short it is.
-fn span(time: f64) -> String {
-    if time < 0.01 {
-        format!("{time:.2e}")
-    } else {
-        format!("{time:.3}")
-    }
-}
-
-/// What looks doubtful in a configuration.
-#[must_use]
-pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    let contact_time = contact_time(configuration);
-    let step = configuration.run.time_step;
-    if step * STEPS_PER_CONTACT > contact_time {
-        warnings.push(Warning {
-            key: "run.time_step",
-            message: format!(
-                "a step of {} is too long for a contact that lasts {}: take {} or less",
-                span(step),
-                span(contact_time),
-                span(contact_time / STEPS_PER_CONTACT)
-            ),
-        });
-    }
-    if let Some(units) = &configuration.units {
-        warnings.extend(softness::warning(configuration, units));
-    }
-    warnings.extend(holding::warnings(configuration));
-    warnings.extend(prescribed_wall_warnings(configuration));
-    warnings.extend(unfinished_schedule(configuration));
-    warnings
-}
-
-/// What looks doubtful in a prescribed wall where its drive is at its hardest.
-fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
-    let mut warnings = Vec::new();
-    let hardest = configuration.at_its_hardest();
-    // An elastic wall, which may be large, is not made for nothing.
-    if let Control::Strain { .. } = hardest.drive.control
-        && let wall = walls(&hardest)
-        && let Some(wave) = wall.wave()
-    {
-        warnings.extend(leaking::warning(&hardest, wave, wall.lattice()));
-        let opening =
-            2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;
-        if opening <= 0.0 {
-            let led = configuration.drive.schedule(ScheduledParameter::Width);
-            warnings.push(Warning {
-                key: led.map_or("drive.width", |_| "drive.schedule"),
-                message: format!(
-                    "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
-                     are squeezed through the wall"
-                ),
-            });
-        }
-    }
-    warnings
-}
-
-/// That the run ends before a schedule has come to its last value.
-fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
-    let periods = configuration.run.periods?;
-    let schedules = configuration.drive.schedules.iter();
-    let rest = schedules
-        .map(|schedule| schedule.rest())
-        .fold(0.0, f64::max);
-    (rest > periods).then(|| Warning {
-        key: "drive.schedule",
-        message: format!(
-            "it goes on until {rest} periods, and the run ends after {periods}: take a longer run (run.periods) or a shorter \
-             schedule"
-        ),
     })
 }

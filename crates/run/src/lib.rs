@@ -10,16 +10,11 @@ mod assemble;
 mod error;
 mod estimate;
 mod folder;
-mod holding;
-mod late;
-mod leaking;
-mod local_flow;
 mod pictures;
 mod recorder;
 mod run;
 mod scene;
 mod si;
-mod softness;
 mod spheres;
 mod steering;
 mod stopping;
@@ -27,30 +22,30 @@ mod stopwatch;
 mod summary;
 mod tables;
 mod trajectory;
+mod warnings;
 
 pub use assemble::{assemble, newtonian_reference, walls};
 pub use error::RunError;
-pub use estimate::{Estimate, Warning, estimate, warnings};
+pub use estimate::{Estimate, estimate};
 pub use folder::{RunFolder, Written};
-pub use late::Pumping;
-pub use local_flow::LocalFlow;
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};
 pub use peristalsis_formats::{Frame, TrajectoryFormat};
+pub use peristalsis_observe::Value;
 pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
 pub use pictures::{snapshot_stack, space_time};
 pub use recorder::{Recorder, THRESHOLDS};
 pub use run::{Progress, Run, RunState, RunStateView};
 pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing};
-pub use si::{SiEstimate, SiSummary};
-pub use softness::overlap_warning;
+pub use si::SiEstimate;
 pub use stopping::Stopping;
-pub use summary::{Status, Summary, ThresholdTime};
-pub use tables::{profile_table, snapshot_table, timeseries_table, waves_table};
+pub use summary::{Pumping, RowColumn, Status, Summary, label, row_columns, set_by};
+pub use tables::{gathered, profile_table, snapshot_table, timeseries_table, waves_table};
 pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
     TrajectoryRequest, Window,
 };
+pub use warnings::{Warning, overlap_warning, warnings};
 
 /// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
 /// results, so that no old run is taken for a new one, and none goes on as another.

@@ -6,7 +6,6 @@ use std::time::Duration;
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{EngineError, Instructions, Simulation, Snapshot, SnapshotView};
-use peristalsis_formats::FormatError;
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_observe::Orientations;
 
@@ -18,8 +17,6 @@ use crate::{PHYSICS_VERSION, RunError};
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
 const STATE_LAYOUT: u32 = 8;
-/// The version of the physics of states whose hash says none: what was computed before it did.
-const UNSAID_VERSION: u32 = 2;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 
@@ -127,11 +124,11 @@ impl Run {
     /// Goes on from a checkpoint that [`Run::write_checkpoint`] wrote for the same configuration.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the checkpoint is damaged or another's, [`RunError::OtherPhysicsVersion`], and as
+    /// [`RunError::Format`] where the checkpoint is damaged, another's or of another version of the physics, and as
     /// [`Run::resume`].
     pub fn from_checkpoint(configuration: Configuration, bytes: &[u8]) -> Result<Self, RunError> {
-        let identity = checkpoint_identity(&configuration, PHYSICS_VERSION);
-        let state = checkpoint::decode(&identity, bytes).map_err(of_version)?;
+        let identity = checkpoint_identity(&configuration);
+        let state = checkpoint::decode(&identity, bytes)?;
         Self::resume(configuration, state)
     }
 
@@ -140,7 +137,7 @@ impl Run {
     /// # Errors
     /// [`RunError::Format`] where the state is too large.
     pub fn to_checkpoint(&self) -> Result<Vec<u8>, RunError> {
-        let identity = checkpoint_identity(&self.configuration, PHYSICS_VERSION);
+        let identity = checkpoint_identity(&self.configuration);
         Ok(checkpoint::encode(&identity, &self.state_view())?)
     }
 
@@ -149,7 +146,7 @@ impl Run {
     /// # Errors
     /// [`RunError::Format`] where it is too large or cannot be written; an older file stays.
     pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
-        let identity = checkpoint_identity(&self.configuration, PHYSICS_VERSION);
+        let identity = checkpoint_identity(&self.configuration);
         Ok(checkpoint::write(path, &identity, &self.state_view())?)
     }
 
@@ -159,21 +156,16 @@ impl Run {
     /// [`RunError::Format`] where the state is too large.
     pub fn to_snapshot(&self) -> Result<Vec<u8>, RunError> {
         let whole = (self.configuration.to_toml(), self.state_view());
-        Ok(checkpoint::encode(
-            &snapshot_identity(PHYSICS_VERSION),
-            &whole,
-        )?)
+        Ok(checkpoint::encode(&SNAPSHOT, &whole)?)
     }
 
     /// Goes on from what [`Run::to_snapshot`] gave, with the same bits.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the bytes are damaged or something else, [`RunError::OtherPhysicsVersion`], and as
+    /// [`RunError::Format`] where the bytes are damaged, something else or of another version of the physics, and as
     /// [`Run::resume`].
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self, RunError> {
-        let identity = snapshot_identity(PHYSICS_VERSION);
-        let (text, state): (String, RunState) =
-            checkpoint::decode(&identity, bytes).map_err(of_version)?;
+        let (text, state): (String, RunState) = checkpoint::decode(&SNAPSHOT, bytes)?;
         let configuration = Configuration::from_sources(&Sources {
             file: Some(SourceFile {
                 name: "snapshot",
@@ -354,7 +346,7 @@ impl Run {
         &self.simulation
     }
 
-    /// What has been measured.
+    /// The record of measurements.
     #[must_use]
     pub fn recorder(&self) -> &Recorder {
         &self.recorder
@@ -373,93 +365,20 @@ impl Run {
     }
 }
 
-/// What a checkpoint of such a run is a checkpoint of.
-fn checkpoint_identity(configuration: &Configuration, version: u32) -> CheckpointIdentity {
+/// The identity of the checkpoints of a run.
+fn checkpoint_identity(configuration: &Configuration) -> CheckpointIdentity {
     CheckpointIdentity {
         kind: *b"run     ",
         layout_version: STATE_LAYOUT,
-        physics_hash: with_version(configuration.physics_hash(), version),
+        physics_version: PHYSICS_VERSION,
+        physics_hash: configuration.physics_hash(),
     }
 }
 
-/// What a snapshot is: its configuration is inside, so that it says the version of the physics only.
-fn snapshot_identity(version: u32) -> CheckpointIdentity {
-    CheckpointIdentity {
-        kind: *b"snapshot",
-        layout_version: STATE_LAYOUT,
-        physics_hash: with_version([0; 32], version),
-    }
-}
-
-/// The hash with the version of the physics in its first bytes, such that [`UNSAID_VERSION`] leaves it as it is.
-fn with_version(mut hash: [u8; 32], version: u32) -> [u8; 32] {
-    let bytes = (version ^ UNSAID_VERSION).to_le_bytes();
-    hash.iter_mut()
-        .zip(bytes)
-        .for_each(|(byte, said)| *byte ^= said);
-    hash
-}
-
-/// The error of reading a state, in words of versions where the hashes differ in nothing else.
-fn of_version(error: FormatError) -> RunError {
-    let FormatError::OtherPhysics { found, expected } = &error else {
-        return error.into();
-    };
-    let (begin, rest) = found.split_at(4);
-    if rest != &expected[4..] {
-        return error.into();
-    }
-    let said = begin.iter().zip(expected).rev();
-    let difference = said.fold(0, |sum, (one, other)| sum << 8 | u32::from(one ^ other));
-    RunError::OtherPhysicsVersion {
-        found: difference ^ PHYSICS_VERSION,
-        computed: PHYSICS_VERSION,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn small() -> Run {
-        let overrides = ["grains.number=3", "tube.waves=1"].map(str::to_owned);
-        let sources = Sources {
-            file: None,
-            preset: Some("frictionless"),
-            overrides: &overrides,
-        };
-        Run::new(Configuration::from_sources(&sources).unwrap()).unwrap()
-    }
-
-    #[test]
-    fn a_state_of_another_version_of_the_physics_is_told_by_its_number() {
-        let run = small();
-        for version in [0, 1, 3, 259, u32::MAX] {
-            let identity = checkpoint_identity(&run.configuration, version);
-            let state = checkpoint::encode(&identity, &run.state_view()).unwrap();
-            let identity = snapshot_identity(version);
-            let whole = (run.configuration.to_toml(), run.state_view());
-            let snapshot = checkpoint::encode(&identity, &whole).unwrap();
-            for outcome in [
-                Run::from_checkpoint(run.configuration.clone(), &state),
-                Run::from_snapshot(&snapshot),
-            ] {
-                assert!(matches!(
-                    outcome,
-                    Err(RunError::OtherPhysicsVersion { found, computed: PHYSICS_VERSION }) if found == version
-                ));
-            }
-        }
-        let identity = checkpoint_identity(&run.configuration, PHYSICS_VERSION);
-        let state = checkpoint::encode(&identity, &run.state_view()).unwrap();
-        assert!(Run::from_checkpoint(run.configuration, &state).is_ok());
-    }
-
-    #[test]
-    fn states_from_before_the_version_was_said_go_on() {
-        let run = small();
-        let hash = run.configuration.physics_hash();
-        assert_eq!(with_version(hash, UNSAID_VERSION), hash);
-        assert_ne!(with_version(hash, UNSAID_VERSION + 1), hash);
-    }
-}
+/// The identity of snapshots, whose configuration is inside.
+const SNAPSHOT: CheckpointIdentity = CheckpointIdentity {
+    kind: *b"snapshot",
+    layout_version: STATE_LAYOUT,
+    physics_version: PHYSICS_VERSION,
+    physics_hash: [0; 32],
+};

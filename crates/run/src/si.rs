@@ -1,57 +1,8 @@
-//! Numbers of a run in SI, where the configuration says what its units are.
+//! A configuration in SI, where it says its units.
 
 use peristalsis_configuration::{Configuration, Units};
 
-use crate::summary::Summary;
-
-/// The outcome of a run in SI; missing numbers are `null` in JSON. Late means, as in the [`Summary`].
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct SiSummary {
-    /// Mass of grains that goes through a section in a second, J m \[kg/s\].
-    pub mass_flow_rate_kg_per_s: f64,
-    /// Power of wall or drive \[W\].
-    pub wall_power_w: f64,
-    /// Power against the body force \[W\].
-    pub useful_power_w: Option<f64>,
-    /// Pressure rise over a wavelength \[Pa\].
-    pub pressure_rise_pa: Option<f64>,
-    /// Pressure on the wall \[Pa\].
-    pub wall_pressure_pa: f64,
-    /// Largest pressure on the wall over the phases of the wave, each a bin of the profile wide \[Pa\].
-    pub wall_pressure_largest_pa: f64,
-    /// Time of the transition \[s\].
-    pub transition_time_s: Option<f64>,
-    /// Time through the tube \[s\].
-    pub residence_time_s: Option<f64>,
-    /// Coefficient of axial dispersion \[m^2/s\].
-    pub axial_dispersion_m2_per_s: f64,
-    /// Time reached \[s\].
-    pub time_s: f64,
-}
-
-impl SiSummary {
-    pub(crate) fn of(summary: &Summary, configuration: &Configuration, units: &Units) -> Self {
-        let (mass, time) = (configuration.mean_grain_mass(), units.time());
-        Self {
-            mass_flow_rate_kg_per_s: summary.flow_rate * mass * units.mass_flow(),
-            wall_power_w: summary.wall_power * units.power(),
-            useful_power_w: summary
-                .pumping
-                .map(|pumping| pumping.useful_power * units.power()),
-            pressure_rise_pa: summary
-                .pumping
-                .map(|pumping| pumping.pressure_rise * units.pressure()),
-            wall_pressure_pa: summary.wall_pressure * units.pressure(),
-            wall_pressure_largest_pa: summary.wall_pressure_largest * units.pressure(),
-            transition_time_s: summary.transition_time.map(|tau| tau * time),
-            residence_time_s: summary.residence_time.map(|residence| residence * time),
-            axial_dispersion_m2_per_s: summary.axial_dispersion * units.length() * units.velocity(),
-            time_s: summary.time * time,
-        }
-    }
-}
-
-/// What a configuration is in SI, before it runs.
+/// A configuration in SI, before it runs.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct SiEstimate {
     /// Mass of a grain of diameter 1 \[kg\].
@@ -106,7 +57,7 @@ impl SiEstimate {
                 * units.mass_flow(),
             body_force_m_per_s2: configuration.drive.body_force * units.velocity() / time,
             pressure_rise_pa: configuration.pressure_rise() * units.pressure(),
-            overlap_at_wave_speed: crate::softness::overlap_at_wave_speed(&hardest),
+            overlap_at_wave_speed: crate::warnings::overlap_at_wave_speed(&hardest),
         }
     }
 }

@@ -1,12 +1,12 @@
-//! The tables of a run.
+//! The tables of a run, from the tables of quantities.
 
 use peristalsis_configuration::{Configuration, Control};
-use peristalsis_formats::{FormatError, Table, Values};
+use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values};
 use peristalsis_observe::columns::Scope;
-use peristalsis_observe::{COLUMNS, ProfileBin, WaveFlow};
+use peristalsis_observe::{COLUMNS, PROFILE, ProfileBin, Quantity, Reading, Value, WAVES};
 
 use crate::run::Run;
-use crate::spheres::{SeenSphere, seen_spheres};
+use crate::spheres::{SPHERE, seen_spheres};
 use crate::{REVISION, VERSION};
 
 /// The time series: one row a sample, one column for each row of [`COLUMNS`] that applies.
@@ -15,21 +15,11 @@ use crate::{REVISION, VERSION};
 /// None that a caller can mend: the columns are of equal length.
 pub fn timeseries_table(run: &Run) -> Result<Table, FormatError> {
     let configuration = run.configuration();
-    let samples = run.recorder().samples();
-    let mut table = Table::builder();
-    for column in COLUMNS
+    let quantities = COLUMNS
         .iter()
         .filter(|column| applies(column.scope, configuration))
-    {
-        let values = samples.iter().map(column.value).collect();
-        table = table.column(
-            column.name,
-            column.unit,
-            column.description,
-            Values::Real(values),
-        );
-    }
-    with_origin(table, configuration).build()
+        .map(|column| &column.quantity);
+    table(run, quantities, run.recorder().samples())
 }
 
 /// The profile in the wave's frame over the late part of the run: one row a bin.
@@ -37,131 +27,7 @@ pub fn timeseries_table(run: &Run) -> Result<Table, FormatError> {
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
 pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
-    let configuration = run.configuration();
-    let bins = late_profile(run);
-    let column = |value: fn(&ProfileBin) -> f64| Values::Real(bins.iter().map(value).collect());
-    let table = Table::builder()
-        .column(
-            "position",
-            "1",
-            "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave",
-            column(|bin| bin.position),
-        )
-        .column(
-            "density",
-            "1/d",
-            "grains per length of tube",
-            column(|bin| bin.density.0),
-        )
-        .column(
-            "density_error",
-            "1/d",
-            "its standard error",
-            column(|bin| bin.density.1),
-        )
-        .column(
-            "axial_velocity",
-            "d/t",
-            "mean axial velocity along the wave, laboratory frame",
-            column(|bin| bin.axial_velocity.0),
-        )
-        .column(
-            "axial_velocity_error",
-            "d/t",
-            "its standard error",
-            column(|bin| bin.axial_velocity.1),
-        )
-        .column(
-            "granular_temperature",
-            "m d^2/t^2",
-            "sum m |v - <v>|^2/(3 N) about the bin's mean velocity",
-            column(|bin| bin.temperature.0),
-        )
-        .column(
-            "granular_temperature_error",
-            "m d^2/t^2",
-            "its standard error",
-            column(|bin| bin.temperature.1),
-        )
-        .column(
-            "radius",
-            "d",
-            "mean radius of the tube",
-            column(|bin| bin.radius),
-        )
-        .column(
-            "least_radius",
-            "d",
-            "least radius seen",
-            column(|bin| bin.least_radius),
-        )
-        .column(
-            "largest_radius",
-            "d",
-            "largest radius seen",
-            column(|bin| bin.largest_radius),
-        )
-        .column(
-            "wall_normal_force",
-            "m/t^2",
-            "axial force of the wall on the grains along the normals of contacts, per length of tube, along the wave",
-            column(|bin| bin.wall_normal_force.0),
-        )
-        .column(
-            "wall_normal_force_error",
-            "m/t^2",
-            "its standard error",
-            column(|bin| bin.wall_normal_force.1),
-        )
-        .column(
-            "wall_tangential_force",
-            "m/t^2",
-            "axial force of the wall on the grains by friction, per length of tube, along the wave",
-            column(|bin| bin.wall_tangential_force.0),
-        )
-        .column(
-            "wall_tangential_force_error",
-            "m/t^2",
-            "its standard error",
-            column(|bin| bin.wall_tangential_force.1),
-        )
-        .column(
-            "wall_pressure",
-            "m/(d t^2)",
-            "pressure on the wall: radial force per area 2 pi R dz, outward",
-            column(|bin| bin.wall_pressure.0),
-        )
-        .column(
-            "wall_pressure_error",
-            "m/(d t^2)",
-            "its standard error",
-            column(|bin| bin.wall_pressure.1),
-        )
-        .column(
-            "wall_shear",
-            "m/(d t^2)",
-            "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure",
-            column(|bin| bin.wall_shear.0),
-        )
-        .column(
-            "wall_shear_error",
-            "m/(d t^2)",
-            "its standard error",
-            column(|bin| bin.wall_shear.1),
-        )
-        .column(
-            "wall_axial_velocity",
-            "d/t",
-            "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall",
-            column(|bin| bin.wall_axial_velocity.0),
-        )
-        .column(
-            "wall_axial_velocity_error",
-            "d/t",
-            "its standard error",
-            column(|bin| bin.wall_axial_velocity.1),
-        );
-    with_origin(table, configuration).build()
+    table(run, PROFILE, &late_profile(run))
 }
 
 /// The flow wave by wave: one row for each wave of each whole period, period by period.
@@ -169,41 +35,7 @@ pub fn profile_table(run: &Run) -> Result<Table, FormatError> {
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
 pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
-    let flows = run.recorder().waves();
-    let column = |value: fn(&WaveFlow) -> f64| Values::Real(flows.iter().map(value).collect());
-    let table = Table::builder()
-        .column(
-            "period",
-            "1",
-            "wavelengths that the wave has run by the end of the period that the row is about",
-            column(|flow| flow.period),
-        )
-        .column("time", "t", "end of that period", column(|flow| flow.time))
-        .column(
-            "wave",
-            "1",
-            "number of the wave, from 0 on along the wave: from throat to throat, moving with them",
-            Values::Integer(flows.iter().map(|flow| flow.wave.into()).collect()),
-        )
-        .column(
-            "grains",
-            "1",
-            "mean number of grains in the wave",
-            column(|flow| flow.grains),
-        )
-        .column(
-            "flow_rate",
-            "1/t",
-            "J of these grains along the wave: sum of dz/dt over lambda",
-            column(|flow| flow.flow_rate),
-        )
-        .column(
-            "flow_rate_ratio",
-            "1",
-            "J/Jmax of these grains",
-            column(|flow| flow.flow_rate_ratio),
-        );
-    with_origin(table, run.configuration()).build()
+    table(run, WAVES, run.recorder().waves())
 }
 
 /// The spheres as they stand: one row each, grains first, then those of an elastic wall.
@@ -211,46 +43,7 @@ pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
 /// # Errors
 /// None that a caller can mend: the columns are of equal length.
 pub fn snapshot_table(run: &Run) -> Result<Table, FormatError> {
-    let spheres = seen_spheres(run);
-    let column = |value: fn(&SeenSphere) -> f64| Values::Real(spheres.iter().map(value).collect());
-    let table = Table::builder()
-        .column(
-            "grain",
-            "",
-            "whether it is a grain; otherwise a sphere of the wall",
-            Values::Boolean(spheres.iter().map(|seen| seen.is_grain).collect()),
-        )
-        .column(
-            "along",
-            "d",
-            "place along the tube, the wave running towards larger ones",
-            column(|seen| seen.sphere.along),
-        )
-        .column(
-            "across",
-            "d",
-            "place across the tube, from its axis",
-            column(|seen| seen.sphere.across),
-        )
-        .column(
-            "depth",
-            "d",
-            "place across the tube and across that",
-            column(|seen| seen.sphere.depth),
-        )
-        .column(
-            "diameter",
-            "d",
-            "diameter",
-            column(|seen| seen.sphere.diameter),
-        )
-        .column(
-            "axial_velocity",
-            "d/t",
-            "axial velocity along the wave, laboratory frame",
-            column(|seen| seen.axial_velocity),
-        );
-    with_origin(table, run.configuration()).build()
+    table(run, SPHERE, &seen_spheres(run))
 }
 
 /// The bins of the late profile.
@@ -261,6 +54,62 @@ pub(crate) fn late_profile(run: &Run) -> Vec<ProfileBin> {
         .late(run.late_fraction(), configuration.tube.wavelength)
 }
 
+/// The kind of a column that is read so.
+pub(crate) fn kind<Of>(reading: &Reading<Of>) -> ValueKind {
+    match reading {
+        Reading::Whole(_) => ValueKind::Integer,
+        Reading::Truth(_) => ValueKind::Boolean,
+        Reading::Text(_) => ValueKind::Text,
+        _ => ValueKind::Real,
+    }
+}
+
+/// A column from its values; what is missing is NaN.
+#[must_use]
+pub fn gathered(kind: ValueKind, values: impl Iterator<Item = Value>) -> Values {
+    let mut gathered = Values::empty(kind);
+    for value in values {
+        match (&mut gathered, value) {
+            (Values::Real(column), Value::Real(value)) => column.push(value),
+            (Values::Real(column), _) => column.push(f64::NAN),
+            // Seeds have 63 bits, and counts are smaller.
+            (Values::Integer(column), Value::Whole(value)) => {
+                column.push(i64::try_from(value).unwrap_or(i64::MAX));
+            }
+            (Values::Boolean(column), Value::Truth(value)) => column.push(value),
+            (Values::Text(column), Value::Text(value)) => column.push(value),
+            _ => unreachable!("a quantity is always read as one kind"),
+        }
+    }
+    gathered
+}
+
+fn table<'a, Of: 'static>(
+    run: &Run,
+    quantities: impl IntoIterator<Item = &'a Quantity<Of>>,
+    rows: &[Of],
+) -> Result<Table, FormatError> {
+    let columns = quantities.into_iter().flat_map(|quantity| {
+        let headings = quantity.headings().into_iter().enumerate();
+        headings.map(|(place, (name, text))| Column {
+            name,
+            unit: quantity.unit.to_owned(),
+            description: text.to_owned(),
+            values: gathered(
+                kind(&quantity.reading),
+                rows.iter()
+                    .map(|row| quantity.values(row).swap_remove(place)),
+            ),
+        })
+    });
+    Table::builder()
+        .columns(columns)
+        .metadata("peristalsis.version", VERSION)
+        .metadata("peristalsis.revision", REVISION)
+        .metadata("peristalsis.configuration", run.configuration().to_toml())
+        .build()
+}
+
 fn applies(scope: Scope, configuration: &Configuration) -> bool {
     match scope {
         Scope::Always => true,
@@ -268,14 +117,4 @@ fn applies(scope: Scope, configuration: &Configuration) -> bool {
         Scope::BodyForce => configuration.drive.body_force != 0.0,
         Scope::ElasticWall => matches!(configuration.drive.control, Control::Stress { .. }),
     }
-}
-
-fn with_origin(
-    table: peristalsis_formats::TableBuilder,
-    configuration: &Configuration,
-) -> peristalsis_formats::TableBuilder {
-    table
-        .metadata("peristalsis.version", VERSION)
-        .metadata("peristalsis.revision", REVISION)
-        .metadata("peristalsis.configuration", configuration.to_toml())
 }

@@ -6,7 +6,7 @@
 
 mod common;
 
-use common::{Outcome, mean, on_both_kernels, run};
+use common::{Outcome, configuration, mean, on_both_kernels, run};
 use peristalsis_engine::Kernel;
 
 /// Every value that matters here, whatever the preset's defaults.
@@ -49,7 +49,7 @@ fn tube(
         &[TUBE, &settings, more].concat(),
         seed,
     );
-    assert_eq!(outcome.summary.grains, 1093);
+    assert_eq!(configuration("frictional", &[TUBE]).grains.number, 1093);
     assert_eq!(outcome.averages.len(), periods as usize);
     outcome
 }

@@ -62,7 +62,7 @@ fn within(value: f64, least: f64, most: f64) {
 }
 
 fn late(outcome: &Outcome) -> f64 {
-    outcome.summary.flow_rate_ratio
+    outcome.summary.flow_rate_ratio.0
 }
 
 #[track_caller]

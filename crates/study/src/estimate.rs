@@ -1,6 +1,6 @@
 //! What a study would take, before it runs.
 
-use peristalsis_observe::COLUMNS;
+use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
 use peristalsis_run::{Warning, estimate, warnings};
 
 use crate::error::StudyError;
@@ -14,10 +14,6 @@ const TRIALS: usize = 3;
 const BYTES_A_NUMBER: f64 = 8.0;
 /// Bytes of a run besides its tables, in blocks of the disk: configuration, row, summary, seal.
 const BYTES_A_RUN: f64 = 36_000.0;
-/// Columns of a profile.
-const PROFILE_COLUMNS: f64 = 18.0;
-/// Columns of the flow wave by wave.
-const WAVES_COLUMNS: f64 = 6.0;
 /// Numbers of a sphere of the snapshot.
 const SNAPSHOT_COLUMNS: f64 = 6.0;
 
@@ -93,14 +89,14 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
         .map(|point| {
             let configuration = &point.configuration;
             let profile = if study.record.profile {
-                PROFILE_COLUMNS * f64::from(configuration.observe.profile_bins)
+                columns_of(PROFILE) * f64::from(configuration.observe.profile_bins)
             } else {
                 0.0
             };
             let samples = configuration.run.samples as f64;
             let waves = if study.record.waves {
                 let periods = samples / f64::from(configuration.observe.samples_per_period);
-                WAVES_COLUMNS * periods * f64::from(configuration.tube.waves)
+                columns_of(WAVES) * periods * f64::from(configuration.tube.waves)
             } else {
                 0.0
             };
@@ -127,6 +123,12 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
         bytes: bytes * replicates,
         warnings: all_warnings(plan),
     })
+}
+
+/// Number of columns in which quantities and their errors stand.
+fn columns_of<Of>(quantities: &[Quantity<Of>]) -> f64 {
+    let measured = quantities.iter().filter(|quantity| quantity.is_measured());
+    (quantities.len() + measured.count()) as f64
 }
 
 /// Warnings of all points, one of each kind.

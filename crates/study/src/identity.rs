@@ -1,14 +1,15 @@
-//! Who a run is: a hash of what determines its products.
+//! The identity of a run: a hash of all that determines its products.
 
 use std::fmt;
 use std::str::FromStr;
 
 use peristalsis_configuration::Configuration;
+use peristalsis_formats::hexadecimal;
 pub use peristalsis_run::PHYSICS_VERSION;
 use peristalsis_run::Stopping;
 use sha2::{Digest, Sha256};
 
-/// What is kept of a run besides its row of numbers.
+/// The tables of a run that are kept besides its row of numbers.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Record {
     /// Columns of the time series; `None`: all.
@@ -53,7 +54,7 @@ impl Identity {
             Some(columns) => text.push_str(&format!("columns {}\n", columns.join(" "))),
         }
         text.push_str(&format!("profile {}\n", record.profile));
-        // Said only where it is so: runs from before it could be asked for keep their identity.
+        // An option that is absent is not written.
         if record.waves {
             text.push_str("waves\n");
         }
@@ -88,11 +89,6 @@ fn leading<const N: usize>(digest: &[u8]) -> [u8; N] {
     digest[..N]
         .try_into()
         .expect("a digest of 32 bytes is longer")
-}
-
-/// Bytes as lower-case hexadecimal digits.
-pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 impl fmt::Display for Identity {

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use peristalsis_configuration::Units;
 use peristalsis_engine::Instructions;
 use peristalsis_run::{
     Pumping, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
@@ -51,10 +52,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Ending::Unwritten(error) => (Status::Interrupted, Some(error.to_string())),
         Ending::Failed(error) => (Status::Diverged, Some(error.to_string())),
     };
-    let summary = Summary {
-        trajectory,
-        ..Summary::of(&run, status, message)
-    };
+    let mut summary = Summary::of(&run, status, message);
+    summary.trajectory = trajectory;
     let written = if arguments.csv {
         Written::WithCsv
     } else {
@@ -287,13 +286,13 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         Some(time) => format!(
             "transition at t = {time:.1} ({:.1} periods): J/Jmax crosses {}",
             time * configuration.drive.strain_rate,
-            summary.transition_threshold
+            configuration.observe.transition_threshold
         ),
         None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
         None => format!("no transition within {:.1} periods", summary.periods),
     };
     let late = 100.0 * configuration.observe.late_fraction;
-    let mut flow = match (summary.flow_rate_ratio, summary.flow_rate_ratio_error) {
+    let mut flow = match summary.flow_rate_ratio {
         (ratio, error) if error.is_finite() => {
             format!("J/Jmax = {ratio:.4} ± {error:.4}, mean of the last {late:.0} %")
         }
@@ -302,10 +301,10 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         }
         _ => format!(
             "J = {:.4e}, mean of the last {late:.0} %; no J/Jmax without grains inside and a moving wave",
-            summary.flow_rate
+            summary.flow_rate()
         ),
     };
-    if let Some(newtonian) = summary.newtonian_flow_rate_ratio {
+    if let Some((newtonian, _)) = summary.newtonian {
         // The load of a fluid counts against its viscosity, which grains do not have.
         let load = if summary.pumping.is_some() {
             " without load"
@@ -318,31 +317,33 @@ fn in_words(run: &Run, summary: &Summary) -> String {
         flow.push_str(&format!(
             "\nagainst a pressure rise of {:.3e} m/(d t^2) a wavelength: useful power {:.3e}, {}",
             pumping.pressure_rise,
-            pumping.useful_power,
+            pumping.useful_power.0,
             efficiency(pumping)
         ));
     }
-    if let Some(si) = &summary.si {
+    let mass_flow = summary.flow_rate() * configuration.mean_grain_mass();
+    if let (Some(mass_flow), Some(power), Some(pressure), Some(largest)) = (
+        summary.in_si(mass_flow, Units::mass_flow),
+        summary.in_si(summary.wall_power(), Units::power),
+        summary.in_si(summary.wall_pressure, Units::pressure),
+        summary.in_si(summary.wall_pressure_largest, Units::pressure),
+    ) {
         flow.push_str(&format!(
-            "\nin SI: {:.3e} kg/s, wall power {:.3e} W, pressure on the wall {:.3e} Pa (at most {:.3e} averaged over \
-             1/{} of a wavelength)",
-            si.mass_flow_rate_kg_per_s,
-            si.wall_power_w,
-            si.wall_pressure_pa,
-            si.wall_pressure_largest_pa,
+            "\nin SI: {mass_flow:.3e} kg/s, wall power {power:.3e} W, pressure on the wall {pressure:.3e} Pa (at most \
+             {largest:.3e} averaged over 1/{} of a wavelength)",
             configuration.observe.profile_bins
         ));
     }
     let mut text = format!(
         "{transition}\n{flow}\n{} grains, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} steps in {}: \
          {:.2} million grain-steps/s\n",
-        summary.grains,
+        configuration.grains.number,
         summary.escaped,
         summary.largest_overlap,
         summary.energy_residual,
         summary.steps,
         seconds(summary.seconds),
-        summary.grain_steps_per_second / 1e6
+        summary.grain_steps_per_second() / 1e6
     );
     for diagnosis in &summary.wall_diagnosis {
         text.push_str(&format!("the wall: {diagnosis}\n"));
@@ -352,26 +353,21 @@ fn in_words(run: &Run, summary: &Summary) -> String {
 
 /// The efficiency, or why there is none.
 fn efficiency(pumping: &Pumping) -> String {
-    let Pumping {
-        efficiency,
-        efficiency_error,
-        useful_power,
-        ..
-    } = pumping;
+    let (efficiency, error) = pumping.efficiency;
     if efficiency.is_nan() {
-        return if *useful_power > 0.0 {
+        return if pumping.useful_power.0 > 0.0 {
             "efficiency – (the wall gives no power: stored energy is spent)".to_owned()
         } else {
             "efficiency – (the grains do not go against the body force)".to_owned()
         };
     }
-    let beyond = if *efficiency > 1.0 {
+    let beyond = if efficiency > 1.0 {
         " (above 1: stored energy is spent; run longer)"
     } else {
         ""
     };
-    if efficiency_error.is_finite() {
-        format!("efficiency {efficiency:.4} ± {efficiency_error:.4}{beyond}")
+    if error.is_finite() {
+        format!("efficiency {efficiency:.4} ± {error:.4}{beyond}")
     } else {
         format!("efficiency {efficiency:.4}{beyond}")
     }
@@ -385,12 +381,9 @@ mod tests {
     fn an_efficiency_is_said_where_there_is_one() {
         let said = |useful_power: f64, efficiency: f64| {
             super::efficiency(&Pumping {
-                body_force: -0.1,
                 pressure_rise: 0.1,
-                useful_power,
-                useful_power_error: 0.0,
-                efficiency,
-                efficiency_error: 0.01,
+                useful_power: (useful_power, 0.0),
+                efficiency: (efficiency, 0.01),
             })
         };
         assert_eq!(said(1.0, 0.25), "efficiency 0.2500 ± 0.0100");

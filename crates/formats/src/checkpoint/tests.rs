@@ -15,6 +15,7 @@ struct State {
 const IDENTITY: CheckpointIdentity = CheckpointIdentity {
     kind: *b"engine  ",
     layout_version: 3,
+    physics_version: 2,
     physics_hash: [7; 32],
 };
 
@@ -36,8 +37,8 @@ fn decoded(bytes: &[u8]) -> Result<State, FormatError> {
 /// The bytes with another header field written over, and the header checksum made to agree.
 fn forged(mut bytes: Vec<u8>, offset: usize, value: &[u8]) -> Vec<u8> {
     bytes[offset..offset + value.len()].copy_from_slice(value);
-    let checksum = crc32fast::hash(&bytes[..76]);
-    bytes[76..80].copy_from_slice(&checksum.to_le_bytes());
+    let checksum = crc32fast::hash(&bytes[..80]);
+    bytes[80..84].copy_from_slice(&checksum.to_le_bytes());
     bytes
 }
 
@@ -147,6 +148,16 @@ fn another_kind_layout_or_physics_is_refused_by_name() {
             readable: 4
         }
     ));
+    for version in [0, 1, 3, 259, u32::MAX] {
+        let error = read(CheckpointIdentity {
+            physics_version: version,
+            ..IDENTITY
+        });
+        assert!(matches!(
+            error,
+            FormatError::OtherPhysicsVersion { found: 2, computed } if computed == version
+        ));
+    }
     let mut physics_hash = IDENTITY.physics_hash;
     physics_hash[31] = 0xab;
     let error = read(CheckpointIdentity {
@@ -298,7 +309,7 @@ fn a_full_disk_is_called_so() {
         .map(|i| i.wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(23) | 1 << 63)
         .collect();
     let length = encode(&IDENTITY, &noise).unwrap().len();
-    for room in [0, 50, 79, 10_000, 1 << 20, length - 1, length + 79] {
+    for room in [0, 50, 79, 10_000, 1 << 20, length - 1, length + 83] {
         match stream::write(&IDENTITY, &noise, &mut Disk { room }) {
             Err(stream::StreamError::Io(error)) => {
                 assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room}");
@@ -307,7 +318,7 @@ fn a_full_disk_is_called_so() {
         }
     }
     // The header is written twice.
-    let room = length + 80;
+    let room = length + HEADER_BYTES;
     stream::write(&IDENTITY, &noise, &mut Disk { room }).unwrap();
 }
 

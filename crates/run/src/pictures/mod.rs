@@ -185,7 +185,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     }
     let threshold = configuration.observe.transition_threshold;
     panel = panel.with(Reference::horizontal(threshold).label("threshold"));
-    let (mean, error) = (summary.flow_rate_ratio, summary.flow_rate_ratio_error);
+    let (mean, error) = summary.flow_rate_ratio;
     if mean.is_finite() && error.is_finite() {
         let name = format!("late mean {}", with_error(mean, error));
         let late = [(1.0 - run.late_fraction()) * last, last];
@@ -224,12 +224,12 @@ fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
         Some(line.tint(Tint::Green).pattern(pattern))
     };
     let in_bore = level(
-        summary.newtonian_flow_rate_ratio,
+        summary.newtonian.map(|fluid| fluid.0),
         "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*",
         Pattern::Dashed,
     );
     let in_clear_bore = level(
-        summary.newtonian_flow_rate_ratio_clear_bore,
+        summary.newtonian.and_then(|fluid| fluid.1),
         "the same, clear bore, *φ* = *b*/(*a* − *d*/2)",
         Pattern::DashDotted,
     );

@@ -15,6 +15,7 @@ use peristalsis_run::Stopping;
 
 use crate::error::StudyError;
 use crate::identity::Record;
+use crate::plan::state_name;
 use axis::Axis;
 pub(crate) use axis::{neat, number};
 pub use schema::schema;
@@ -23,14 +24,6 @@ pub use schema::schema;
 const MOST_RUNS: u64 = 1_000_000;
 /// Problems that are reported at once: one wrong axis is wrong at each of its points.
 const MOST_PROBLEMS: usize = 20;
-
-/// Columns that came later than the first stores: a list of all the others is still a list of all.
-const LATER_COLUMNS: [&str; 4] = [
-    "axial_displacement",
-    "axial_displacement_variance",
-    "body_power",
-    "body_work",
-];
 
 /// A study file that has been read and checked; its points are those of [`Plan`](crate::Plan).
 #[derive(Clone, Debug)]
@@ -215,10 +208,7 @@ impl Specification {
         // All in one layer, so that two axes for two alternatives (width and amplitude) are found to conflict.
         let above = [self.base.table.clone(), join(settings.collect())];
         // Below `base`, which does not name a state where `states` does.
-        let state = state.map(|state| match state {
-            InitialState::Rest => "initial.state=rest".to_owned(),
-            InitialState::Jammed => "initial.state=jammed".to_owned(),
-        });
+        let state = state.map(|state| format!("initial.state={}", state_name(state)));
         let overrides: Vec<String> = state.into_iter().collect();
         Configuration::from_sources_and(
             &Sources {
@@ -413,14 +403,10 @@ fn columns(table: &Table) -> Option<Vec<String>> {
     let wanted = texts(table, "record.columns")?;
     let kept: Vec<String> = COLUMNS
         .iter()
-        .map(|column| column.name.to_owned())
+        .map(|column| column.quantity.name.to_owned())
         .filter(|name| wanted.contains(name))
         .collect();
-    let is_all = COLUMNS
-        .iter()
-        .filter(|column| !LATER_COLUMNS.contains(&column.name))
-        .all(|column| kept.iter().any(|name| name == column.name));
-    (!is_all).then_some(kept)
+    (kept.len() < COLUMNS.len()).then_some(kept)
 }
 
 fn text_of(table: &Table, path: &str) -> Option<String> {

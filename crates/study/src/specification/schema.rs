@@ -31,7 +31,7 @@ fn build() -> Value {
         keys.remove("resolved");
     }
     let presets: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
-    let columns: Vec<&str> = COLUMNS.iter().map(|column| column.name).collect();
+    let columns: Vec<&str> = COLUMNS.iter().map(|column| column.quantity.name).collect();
     json!({
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "peristalsis study",

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use peristalsis_formats::{atomic, csv, parquet};
+use peristalsis_formats::{atomic, csv, hexadecimal, parquet};
 use sha2::{Digest, Sha256};
 
 use super::{Entry, IMPORTED, State, Store, done, set_aside};
 use crate::error::StudyError;
-use crate::identity::{Identity, hexadecimal};
+use crate::identity::Identity;
 use crate::plan::PlannedRun;
 use crate::row::Row;
 

@@ -4,7 +4,7 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use sha2::{Digest, Sha256};
 
-use crate::identity::hexadecimal;
+use peristalsis_formats::hexadecimal;
 
 /// A process that works on a store.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -228,12 +228,7 @@ impl RunFiles {
         summary: &Summary,
         assignment: &Assignment,
     ) -> Result<Row, StudyError> {
-        let row = Row::of(
-            self.identity,
-            assignment.replicate,
-            &assignment.configuration,
-            summary,
-        );
+        let row = Row::of(self.identity, assignment.replicate, summary);
         let timeseries = kept(timeseries_table(run)?, assignment.record.columns.as_deref());
         let (science, timing) = split(summary);
         let mut products = vec![

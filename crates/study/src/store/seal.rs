@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use peristalsis_formats::atomic;
+use peristalsis_formats::{atomic, hexadecimal};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use crate::error::StudyError;
-use crate::identity::{Identity, PHYSICS_VERSION, hexadecimal};
+use crate::identity::{Identity, PHYSICS_VERSION};
 
 /// Name of the file.
 pub(crate) const SEAL: &str = "done.json";

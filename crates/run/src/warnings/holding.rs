@@ -2,10 +2,10 @@
 
 use peristalsis_configuration::Configuration;
 
-use crate::estimate::Warning;
+use super::warning::Warning;
 
 /// What looks doubtful in an elastic wall: walls of its kind were seen to fail in the tube of the preset `frictional`.
-pub(crate) fn warnings(configuration: &Configuration) -> Vec<Warning> {
+pub(super) fn warnings(configuration: &Configuration) -> Vec<Warning> {
     let Some(wall) = configuration.wall.elastic else {
         return Vec::new();
     };
@@ -51,7 +51,7 @@ pub(crate) fn warnings(configuration: &Configuration) -> Vec<Warning> {
 mod tests {
     use peristalsis_configuration::Sources;
 
-    use crate::estimate::warnings;
+    use crate::warnings::warnings;
 
     #[test]
     fn walls_that_fail_are_warned_of_by_the_key_that_makes_them_fail() {

@@ -3,7 +3,7 @@
 use peristalsis_configuration::{Configuration, Control, Elasticity, ScheduledParameter, Units};
 use peristalsis_physics::contact::NormalLaw;
 
-use crate::estimate::Warning;
+use super::warning::Warning;
 use crate::run::Run;
 
 /// Overlap over diameter up to which a soft sphere passes for a solid grain.
@@ -29,7 +29,7 @@ pub(crate) fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
 ///
 /// Advice keeps the wave's frequency: without `units.wave_frequency` the wave in SI follows the elasticity, so that the
 /// overlap, which is a function of the strain rate alone, and the steps of a period would stay as they are.
-pub(crate) fn warning(configuration: &Configuration, units: &Units) -> Option<Warning> {
+pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Warning> {
     let hardest = configuration.at_its_hardest();
     let overlap = overlap_at_wave_speed(&hardest);
     let Material {
@@ -194,7 +194,7 @@ mod tests {
     use peristalsis_configuration::Sources;
 
     use super::*;
-    use crate::estimate::warnings;
+    use crate::warnings::warnings;
 
     fn configuration(preset: &str, overrides: &[String]) -> Configuration {
         Configuration::from_sources(&Sources {

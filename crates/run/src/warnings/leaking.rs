@@ -4,7 +4,7 @@ use peristalsis_configuration::Configuration;
 use peristalsis_physics::contact::{NormalLaw, reduced_radius};
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
-use crate::estimate::Warning;
+use super::warning::Warning;
 
 /// Radius of a sphere that passes the wall without overlap above which grains will leak \[d\].
 const LEAKING_RADIUS: f64 = 0.02;
@@ -17,7 +17,7 @@ const LEAKING_ENERGY: f64 = 0.6;
 const DENSE: f64 = 10_000.0;
 
 /// What looks doubtful in the wall's lattice.
-pub(crate) fn warning(
+pub(super) fn warning(
     configuration: &Configuration,
     wave: &RadiusWave,
     lattice: &Lattice,
@@ -96,7 +96,7 @@ mod tests {
     use peristalsis_physics::contact::LinearSpringDashpot;
 
     use super::*;
-    use crate::estimate::warnings;
+    use crate::warnings::warnings;
 
     fn lattice(spheres_per_ring: u32, rings_per_wave: u32) -> Lattice {
         Lattice {

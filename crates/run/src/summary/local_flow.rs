@@ -10,24 +10,24 @@ const SAME: f64 = 1e-10;
 const FLAT: usize = 3;
 
 /// The flow in a part of the tube that travels with the wave: late means.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct LocalFlow {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LocalFlow {
     /// Grains per length of tube \[1/d\].
-    pub density: f64,
+    pub(super) density: f64,
     /// Mean axial velocity of a grain there along the wave, laboratory frame \[d/t\].
-    pub axial_velocity: f64,
+    pub(super) axial_velocity: f64,
     /// Granular temperature, mean over the grains there \[m d^2/t^2\].
-    pub granular_temperature: f64,
+    pub(super) granular_temperature: f64,
 }
 
 impl LocalFlow {
     /// The fifth of the wavelength about the bin in which the tube is narrowest, or the middle of a flat throat.
-    pub(crate) fn throat(profile: &[ProfileBin]) -> Self {
+    pub(super) fn throat(profile: &[ProfileBin]) -> Self {
         Self::about(profile, |bin| -bin.radius)
     }
 
     /// The fifth of the wavelength about the bin in which the tube is widest, or the middle of a flat belly.
-    pub(crate) fn belly(profile: &[ProfileBin]) -> Self {
+    pub(super) fn belly(profile: &[ProfileBin]) -> Self {
         Self::about(profile, |bin| bin.radius)
     }
 

@@ -1,0 +1,238 @@
+//! The outcome of a run in numbers.
+
+mod late;
+mod local_flow;
+mod table;
+mod written;
+
+use peristalsis_analysis::mean_with_error;
+use peristalsis_configuration::{Configuration, Units};
+use peristalsis_engine::initial::PackingReport;
+use peristalsis_observe::{PartOfWave, Sample, WallFault, WallForce, WavePart};
+
+pub use late::Pumping;
+use late::{axial_dispersion, residence_time};
+use local_flow::LocalFlow;
+pub use written::{RowColumn, label, row_columns, set_by};
+
+use crate::assemble::newtonian_reference;
+use crate::recorder::THRESHOLDS;
+use crate::run::Run;
+use crate::tables::late_profile;
+use crate::trajectory::TrajectoryReport;
+use crate::warnings::{Warning, overlap_warning, warnings};
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// As long as it was meant to.
+    Complete,
+    /// Ended before by its own rule, the transition having been found and having settled.
+    Settled,
+    /// Stopped before.
+    Interrupted,
+    /// A grain moved too far in one step.
+    Diverged,
+}
+
+impl Status {
+    /// Its name in files.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Complete => "complete",
+            Self::Settled => "settled",
+            Self::Interrupted => "interrupted",
+            Self::Diverged => "diverged",
+        }
+    }
+}
+
+/// The outcome of a run. Written down it has the names, units and words of the table of quantities.
+///
+/// "Late" is the last part of the run, a quarter unless configured otherwise ([`Run::late_fraction`]). A pair is a number
+/// and its standard error, NaN where the late part is too short for one. Units: d, m, t.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// How it ended.
+    pub status: Status,
+    /// Why it diverged, where it did.
+    pub message: Option<String>,
+    /// Late mean of J/Jmax of the grains inside, its error from block averages.
+    pub flow_rate_ratio: (f64, f64),
+    /// tau \[t\]; `None` where the run ended before a transition.
+    pub transition_time: Option<f64>,
+    /// tau \[t\] at each of [`THRESHOLDS`].
+    transition_times: [Option<f64>; THRESHOLDS.len()],
+    /// J/Jmax of a Newtonian fluid in this tube without load: phi = b/a, and phi = b/(a - d/2) of the clear bore.
+    pub newtonian: Option<(f64, Option<f64>)>,
+    /// Grains outside the tube at the end.
+    pub escaped: u64,
+    /// Most grains outside the tube at any sample.
+    pub escaped_most: u64,
+    /// Largest overlap of a grain's contact at any step \[d\].
+    pub largest_overlap: f64,
+    /// |energy that the ledger misses| over the integral of |power that entered|.
+    pub energy_residual: f64,
+    /// Pumping against a body force, where there is one.
+    pub pumping: Option<Pumping>,
+    /// Late mean of the pressure on the wall \[m/(d t^2)\].
+    pub wall_pressure: f64,
+    /// Largest late mean of it over the phases of the wave, each a bin of the profile wide \[m/(d t^2)\].
+    pub wall_pressure_largest: f64,
+    /// Steps done.
+    pub steps: u64,
+    /// Time reached \[t\].
+    pub time: f64,
+    /// Wavelengths that the wave has run.
+    pub periods: f64,
+    /// Seconds that engine and observables took.
+    pub seconds: f64,
+    /// Faults of an elastic wall: when, where, and the likely cause.
+    pub wall_diagnosis: Vec<String>,
+    /// Doubts about the configuration and the overlaps.
+    pub warnings: Vec<Warning>,
+    /// The trajectory that was written, if there is one.
+    pub trajectory: Option<TrajectoryReport>,
+    configuration: Configuration,
+    late: Vec<Sample>,
+    /// J/Jmax of each whole late period.
+    late_averages: Vec<f64>,
+    wall_force: WallForce,
+    narrow: PartOfWave,
+    front: PartOfWave,
+    throat: LocalFlow,
+    belly: LocalFlow,
+    residence_time: Option<(f64, f64)>,
+    axial_dispersion: (f64, f64),
+    packing: PackingReport,
+}
+
+impl Summary {
+    /// The outcome of a run so far.
+    #[must_use]
+    pub fn of(run: &Run, status: Status, message: Option<String>) -> Self {
+        let configuration = run.configuration();
+        let recorder = run.recorder();
+        let simulation = run.simulation();
+        let (samples, fraction) = (recorder.samples(), run.late_fraction());
+        let late = recorder.late(fraction);
+        let late_periods = late.len() / configuration.observe.samples_per_period as usize;
+        let averages = recorder.averages();
+        let ratios: Vec<f64> = late.iter().map(|sample| sample.flow_rate_ratio).collect();
+        let flow_rate_ratio = match mean_with_error(&ratios) {
+            Ok(estimate) => (estimate.mean, estimate.error),
+            Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
+        };
+        let profile = late_profile(run);
+        let part = |part| recorder.profile().late_part(fraction, part);
+        let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
+        let escaped = |sample: &Sample| sample.escaped as u64;
+        Self {
+            status,
+            message,
+            flow_rate_ratio,
+            transition_time: recorder.transition_time(),
+            transition_times: recorder.transition_times(),
+            newtonian: newtonian_reference(configuration),
+            escaped: samples.last().map_or(0, escaped),
+            escaped_most: samples.iter().map(escaped).max().unwrap_or(0),
+            largest_overlap: simulation.ledger().largest_overlap,
+            energy_residual: simulation.energy_residual(),
+            pumping: Pumping::of(configuration, late),
+            wall_pressure: pressures().sum::<f64>() / profile.len() as f64,
+            wall_pressure_largest: pressures().fold(f64::NAN, f64::max),
+            steps: simulation.step(),
+            time: simulation.time(),
+            periods: simulation.wall().cycles(),
+            seconds: run.elapsed().as_secs_f64(),
+            wall_diagnosis: recorder
+                .wall_faults()
+                .iter()
+                .map(WallFault::in_words)
+                .collect(),
+            warnings: warnings(configuration)
+                .into_iter()
+                .chain(overlap_warning(run))
+                .collect(),
+            trajectory: None,
+            configuration: configuration.clone(),
+            late_averages: averages[averages.len().saturating_sub(late_periods)..].to_vec(),
+            wall_force: recorder.profile().late_wall_force(fraction),
+            narrow: part(WavePart::Narrow),
+            front: part(WavePart::Front),
+            throat: LocalFlow::throat(&profile),
+            belly: LocalFlow::belly(&profile),
+            residence_time: residence_time(late),
+            axial_dispersion: axial_dispersion(late, recorder.dispersion()),
+            late: late.to_vec(),
+            packing: *run.packing(),
+        }
+    }
+
+    /// Late mean of J \[1/t\].
+    #[must_use]
+    pub fn flow_rate(&self) -> f64 {
+        self.mean(|sample| sample.flow_rate)
+    }
+
+    /// Late mean power that wall or drive put in \[m d^2/t^3\].
+    #[must_use]
+    pub fn wall_power(&self) -> f64 {
+        self.mean(|sample| sample.wall_power)
+    }
+
+    /// Grains times steps over the seconds that engine and observables took.
+    #[must_use]
+    pub fn grain_steps_per_second(&self) -> f64 {
+        let grain_steps = self.configuration.grains.number as f64 * self.steps as f64;
+        if self.seconds > 0.0 {
+            grain_steps / self.seconds
+        } else {
+            0.0
+        }
+    }
+
+    /// A number in SI, by the SI value of its unit; `None` where the configuration does not say its units.
+    #[must_use]
+    pub fn in_si(&self, value: f64, unit: fn(&Units) -> f64) -> Option<f64> {
+        let units = self.configuration.units.as_ref()?;
+        Some(value * unit(units))
+    }
+
+    fn mean(&self, value: fn(&Sample) -> f64) -> f64 {
+        mean_of(&self.late, value)
+    }
+
+    fn ratios(&self) -> Vec<f64> {
+        self.late
+            .iter()
+            .map(|sample| sample.flow_rate_ratio)
+            .collect()
+    }
+
+    /// Periods that late means are over.
+    fn late_periods(&self) -> f64 {
+        self.late.len() as f64 / f64::from(self.configuration.observe.samples_per_period)
+    }
+
+    /// Variance of the late averages of J/Jmax over a period each; NaN below two whole late periods.
+    fn flow_rate_ratio_variance(&self) -> f64 {
+        variance(&self.late_averages)
+    }
+}
+
+/// Late mean.
+fn mean_of(late: &[Sample], value: impl Fn(&Sample) -> f64) -> f64 {
+    late.iter().map(value).sum::<f64>() / late.len() as f64
+}
+
+/// Variance with the divisor n - 1; NaN below two values.
+fn variance(values: &[f64]) -> f64 {
+    let number = values.len() as f64;
+    if values.len() < 2 {
+        return f64::NAN;
+    }
+    let mean = values.iter().sum::<f64>() / number;
+    let squares: f64 = values.iter().map(|one| (one - mean) * (one - mean)).sum();
+    squares / (number - 1.0)
+}

@@ -1,0 +1,222 @@
+//! The table of what a run says of itself: a quantity is one row here, and `summary.json`, the rows of studies, SI, the
+//! labels of the viewer and the documentation follow.
+
+use peristalsis_configuration::{Configuration, Control, InitialState, Units};
+use peristalsis_observe::Reading::{
+    Measured, Optional, OptionalMeasured, Real, Text, Truth, Whole,
+};
+use peristalsis_observe::{Quantity, Reading};
+
+use super::Summary;
+use super::late::error_of;
+use crate::{REVISION, VERSION};
+
+/// A quantity of a run and where it is written.
+#[derive(Debug)]
+pub(super) struct RunQuantity {
+    pub(super) source: Source,
+    /// Key in `summary.json`, after a dot where it stands in an object of its own; empty where it is only in rows.
+    pub(super) key: &'static str,
+    /// Whether rows of studies have it.
+    pub(super) in_rows: bool,
+    /// Words or symbol at an axis; empty where the name serves.
+    pub(super) label: &'static str,
+}
+
+/// What a quantity is read off.
+#[derive(Debug)]
+pub(super) enum Source {
+    /// The configuration, which decides it alone.
+    Setting(Quantity<Configuration>),
+    /// The outcome.
+    Result(Quantity<Summary>),
+}
+
+const fn setting(
+    name: &'static str,
+    unit: &'static str,
+    text: &'static str,
+    reading: Reading<Configuration>,
+) -> RunQuantity {
+    let source = Source::Setting(Quantity {
+        name,
+        unit,
+        text,
+        reading,
+    });
+    RunQuantity {
+        source,
+        key: name,
+        in_rows: true,
+        label: "",
+    }
+}
+
+const fn result(
+    name: &'static str,
+    unit: &'static str,
+    text: &'static str,
+    reading: Reading<Summary>,
+) -> RunQuantity {
+    let source = Source::Result(Quantity {
+        name,
+        unit,
+        text,
+        reading,
+    });
+    RunQuantity {
+        source,
+        key: name,
+        in_rows: true,
+        label: "",
+    }
+}
+
+impl RunQuantity {
+    /// Written in `summary.json` under another key.
+    const fn at(self, key: &'static str) -> Self {
+        Self { key, ..self }
+    }
+
+    /// Left out of `summary.json`, beside which the configuration stands.
+    const fn only_in_rows(self) -> Self {
+        Self { key: "", ..self }
+    }
+
+    /// Left out of the rows of studies.
+    const fn only_in_summary(self) -> Self {
+        Self {
+            in_rows: false,
+            ..self
+        }
+    }
+
+    /// With words or a symbol for axes.
+    const fn labelled(self, label: &'static str) -> Self {
+        Self { label, ..self }
+    }
+}
+
+/// All quantities, in the order of the columns of rows.
+#[rustfmt::skip]
+pub(super) const QUANTITIES: &[RunQuantity] = &[
+    setting("seed", "1", "seed of the random numbers", Whole(|c| c.run.seed)),
+    setting("initial_state", "", "how the grains stood at t = 0", Text(|c| initial_state(c).to_owned())).only_in_rows(),
+    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| s.status.name().to_owned())),
+    setting("width", "d", "w = 2 (a - b); missing under stress control", Optional(width)).only_in_rows().labelled("width w / d"),
+    setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(force_amplitude)).only_in_rows().labelled("force amplitude f"),
+    setting("strain_rate", "1/t", "c/lambda", Real(|c| c.drive.strain_rate)).only_in_rows().labelled("strain rate ε̇ t"),
+    setting("volume_fraction", "1", "rho = N/(6 a^2 L), grain volumes averaged", Real(Configuration::volume_fraction)).only_in_rows().labelled("volume fraction ρ"),
+    result("number_density", "1/d^3", "n = N d*^3/(pi a^2 L)", Real(|s| s.configuration.number_density())).only_in_rows().labelled("number density n d³"),
+    setting("grains", "1", "N", Whole(|c| c.grains.number)),
+    setting("radius", "d", "a, to the centres of the wall spheres", Real(|c| c.tube.radius)).only_in_rows().labelled("radius a / d"),
+    setting("wavelength", "d", "lambda", Real(|c| c.tube.wavelength)).only_in_rows().labelled("wavelength λ / d"),
+    setting("waves", "1", "waves in the tube", Whole(|c| c.tube.waves.into())).only_in_rows().labelled("waves"),
+    setting("spheres_per_ring", "1", "wall spheres in a ring", Whole(|c| c.tube.spheres_per_ring.into())).only_in_rows().labelled("wall spheres a ring"),
+    setting("rings_per_wave", "1", "rings in a wavelength", Whole(|c| c.tube.rings_per_wave.into())).only_in_rows().labelled("rings a wave"),
+    result("time", "t", "time reached: where a run without a transition is censored", Real(|s| s.time)),
+    result("periods", "1", "wavelengths that the wave has run", Real(|s| s.periods)),
+    result("transition_time", "t", "tau; missing where there was none", Optional(|s| s.transition_time)).labelled("transition time τ / t"),
+    result("censored", "", "whether the run ended before a transition", Truth(|s| s.transition_time.is_none())),
+    setting("transition_threshold", "1", "J/Jmax whose crossing counts as the transition", Real(|c| c.observe.transition_threshold)),
+    result("transition_time_10", "t", "tau with the threshold 0.1; missing where there was none", Optional(|s| s.transition_times[0])).only_in_rows(),
+    result("transition_time_20", "t", "tau with the threshold 0.2; missing where there was none", Optional(|s| s.transition_times[1])).only_in_rows(),
+    result("transition_time_30", "t", "tau with the threshold 0.3; missing where there was none", Optional(|s| s.transition_times[2])).only_in_rows(),
+    result("transition_time_40", "t", "tau with the threshold 0.4; missing where there was none", Optional(|s| s.transition_times[3])).only_in_rows(),
+    result("transition_time_50", "t", "tau with the threshold 0.5; missing where there was none", Optional(|s| s.transition_times[4])).only_in_rows(),
+    result("transition_time_60", "t", "tau with the threshold 0.6; missing where there was none", Optional(|s| s.transition_times[5])).only_in_rows(),
+    result("transition_time_70", "t", "tau with the threshold 0.7; missing where there was none", Optional(|s| s.transition_times[6])).only_in_rows(),
+    result("transition_time_80", "t", "tau with the threshold 0.8; missing where there was none", Optional(|s| s.transition_times[7])).only_in_rows(),
+    result("transition_time_90", "t", "tau with the threshold 0.9; missing where there was none", Optional(|s| s.transition_times[8])).only_in_rows(),
+    result("flow_rate_ratio", "1", "late mean of J/Jmax, grains inside", Measured(|s| s.flow_rate_ratio)).labelled("J / Jmax, late mean"),
+    result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(|s| drift(&s.ratios()))),
+    result("flow_rate_ratio_variance", "1", "variance of the late averages of J/Jmax over a period each", Real(Summary::flow_rate_ratio_variance)).labelled("variance of J / Jmax"),
+    result("flow_rate_ratio_raw", "1", "late mean of J/Jmax of all grains", Real(|s| s.mean(|sample| sample.flow_rate_ratio_raw))),
+    result("flow_rate", "1/t", "late mean of J", Real(Summary::flow_rate)).labelled("flow rate J"),
+    result("newtonian_flow_rate_ratio", "1", "J/Jmax of a Newtonian fluid in this tube, phi = b/a", Optional(|s| s.newtonian.map(|fluid| fluid.0))),
+    result("newtonian_flow_rate_ratio_clear_bore", "1", "the same for the clear bore, phi = b/(a - d/2)", Optional(|s| s.newtonian.and_then(|fluid| fluid.1))),
+    result("escaped", "1", "grains outside the tube at the end", Whole(|s| s.escaped)).labelled("escaped grains"),
+    result("escaped_most", "1", "most grains outside the tube at any sample", Whole(|s| s.escaped_most)),
+    result("largest_overlap", "d", "largest overlap of a grain's contact at any step", Real(|s| s.largest_overlap)),
+    result("energy_residual", "1", "|what the energy ledger misses|/integral of |power that entered|", Real(|s| s.energy_residual)).labelled("energy unaccounted"),
+    result("granular_temperature", "m d^2/t^2", "late mean of the granular temperature", Real(|s| s.mean(|sample| sample.granular_temperature))).labelled("granular temperature"),
+    result("contacts", "1", "late mean number of contacts of a grain", Real(|s| s.mean(|sample| sample.contacts))).labelled("contacts a grain"),
+    result("wall_power", "m d^2/t^3", "late mean power that wall or drive put in", Real(Summary::wall_power)).labelled("power of the wall"),
+    result("dissipated_power", "m d^2/t^3", "late mean power lost", Real(|s| s.mean(|sample| sample.dissipated_power))).labelled("dissipated power"),
+    result("bottleneck", "d", "late mean of the smallest bottleneck", Real(|s| s.mean(|sample| sample.bottleneck))).labelled("bottleneck / d"),
+    setting("time_step", "t", "length of a step", Real(|c| c.run.time_step)).labelled("time step"),
+    result("steps", "1", "steps done", Whole(|s| s.steps)),
+    result("body_force", "d/t^2", "force over mass on the grains along the wave; negative is back pressure", Real(|s| s.configuration.drive.body_force)).at("pumping.body_force").labelled("body force g"),
+    result("pressure_rise", "m/(d t^2)", "pressure rise over a wavelength that the body force stands for", Real(|s| s.configuration.pressure_rise())).at("pumping.pressure_rise").labelled("pressure rise"),
+    result("wall_power_error", "m d^2/t^3", "standard error of wall_power", Real(|s| error_of(s.late.iter().map(|sample| sample.wall_power)))),
+    result("useful_power", "m d^2/t^3", "late mean power of the flow against the body force", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.useful_power))).at("pumping.useful_power").labelled("useful power"),
+    result("pumping_efficiency", "1", "useful power over wall power", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.efficiency))).at("pumping.efficiency").labelled("pumping efficiency"),
+    result("wall_normal_force", "m d/t^2", "late mean axial force of the wall on the grains of a wavelength along the normals of contacts", Measured(|s| s.wall_force.normal)),
+    result("wall_tangential_force", "m d/t^2", "the same by friction", Measured(|s| s.wall_force.tangential)),
+    result("narrow_normal_force", "m d/t^2", "part of wall_normal_force where the tube is narrower than on its mean", Measured(|s| s.narrow.normal_force)),
+    result("narrow_tangential_force", "m d/t^2", "part of wall_tangential_force there", Measured(|s| s.narrow.tangential_force)),
+    result("narrow_axial_velocity", "d/t", "late mean axial velocity of the grains there, laboratory frame", Measured(|s| s.narrow.axial_velocity)),
+    result("narrow_wall_velocity", "d/t", "late mean axial velocity of the wall's spheres there; 0 for a prescribed wall", Measured(|s| s.narrow.wall_velocity)),
+    result("front_normal_force", "m d/t^2", "part of wall_normal_force in the front of the wave, from its narrowest place to the widest one ahead", Measured(|s| s.front.normal_force)),
+    result("front_tangential_force", "m d/t^2", "part of wall_tangential_force in the front of the wave", Measured(|s| s.front.tangential_force)),
+    result("wall_pressure", "m/(d t^2)", "late mean pressure on the wall", Real(|s| s.wall_pressure)),
+    result("wall_pressure_largest", "m/(d t^2)", "largest late mean pressure on the wall over the phases of the wave", Real(|s| s.wall_pressure_largest)),
+    result("residence_time", "t", "late mean time of a grain through the tube, N/J; missing where the flow is not along the wave", OptionalMeasured(|s| s.residence_time)).labelled("residence time"),
+    result("axial_dispersion", "d^2/t", "half the late rate at which the variance of axial displacements grows from period to period", Measured(|s| s.axial_dispersion)).labelled("axial dispersion"),
+    result("late_periods", "1", "periods that late means are over", Real(Summary::late_periods)),
+    result("throat_density", "1/d", "late mean of the grains per length of tube in the fifth of the wavelength where it is narrowest", Real(|s| s.throat.density)).at("throat.density"),
+    result("throat_axial_velocity", "d/t", "mean axial velocity along the wave there", Real(|s| s.throat.axial_velocity)).at("throat.axial_velocity"),
+    result("throat_granular_temperature", "m d^2/t^2", "granular temperature there", Real(|s| s.throat.granular_temperature)).at("throat.granular_temperature"),
+    result("belly_density", "1/d", "the same where the tube is widest", Real(|s| s.belly.density)).at("belly.density"),
+    result("belly_axial_velocity", "d/t", "the same where the tube is widest", Real(|s| s.belly.axial_velocity)).at("belly.axial_velocity"),
+    result("belly_granular_temperature", "m d^2/t^2", "the same where the tube is widest", Real(|s| s.belly.granular_temperature)).at("belly.granular_temperature"),
+    result("mass_flow_rate_si", "kg/s", "late mean flow J m; missing without the table units", Optional(|s| s.in_si(s.flow_rate() * s.configuration.mean_grain_mass(), Units::mass_flow))).at("si.mass_flow_rate_kg_per_s"),
+    result("wall_power_si", "W", "wall_power in SI; missing without the table units", Optional(|s| s.in_si(s.wall_power(), Units::power))).at("si.wall_power_w"),
+    result("useful_power_si", "W", "useful_power in SI; missing without the table units", Optional(|s| s.in_si(s.pumping?.useful_power.0, Units::power))).at("si.useful_power_w"),
+    result("pressure_rise_si", "Pa", "pressure_rise in SI; missing without the table units", Optional(|s| s.in_si(s.pumping?.pressure_rise, Units::pressure))).at("si.pressure_rise_pa"),
+    result("wall_pressure_si", "Pa", "wall_pressure in SI; missing without the table units", Optional(|s| s.in_si(s.wall_pressure, Units::pressure))).at("si.wall_pressure_pa"),
+    result("wall_pressure_largest_si", "Pa", "wall_pressure_largest in SI; missing without the table units", Optional(|s| s.in_si(s.wall_pressure_largest, Units::pressure))).at("si.wall_pressure_largest_pa"),
+    result("transition_time_si", "s", "transition_time in SI", Optional(|s| s.in_si(s.transition_time?, Units::time))).at("si.transition_time_s").only_in_summary(),
+    result("residence_time_si", "s", "residence_time in SI", Optional(|s| s.in_si(s.residence_time?.0, Units::time))).at("si.residence_time_s").only_in_summary(),
+    result("axial_dispersion_si", "m^2/s", "axial_dispersion in SI", Optional(|s| s.in_si(s.in_si(s.axial_dispersion.0, Units::length)?, Units::velocity))).at("si.axial_dispersion_m2_per_s").only_in_summary(),
+    result("time_si", "s", "time in SI", Optional(|s| s.in_si(s.time, Units::time))).at("si.time_s").only_in_summary(),
+    setting("wall_spheres", "1", "spheres of the wall", Whole(|c| c.tube.wall_spheres())).only_in_summary(),
+    result("grain_steps_per_second", "1/s", "grains times steps over the seconds that engine and observables took", Real(Summary::grain_steps_per_second)).only_in_summary(),
+    result("seconds", "s", "seconds that engine and observables took", Real(|s| s.seconds)).only_in_summary(),
+    result("version", "", "version of the program", Text(|_| VERSION.to_owned())),
+    result("revision", "", "revision of its source", Text(|_| REVISION.to_owned())),
+];
+
+/// How the grains stand at t = 0.
+pub(super) fn initial_state(configuration: &Configuration) -> &'static str {
+    match configuration.initial.state {
+        InitialState::Rest => "rest",
+        InitialState::Jammed => "jammed",
+    }
+}
+
+fn width(configuration: &Configuration) -> Option<f64> {
+    match configuration.drive.control {
+        Control::Strain { width } => Some(width),
+        Control::Stress { .. } => None,
+    }
+}
+
+fn force_amplitude(configuration: &Configuration) -> Option<f64> {
+    match configuration.drive.control {
+        Control::Strain { .. } => None,
+        Control::Stress {
+            force_amplitude, ..
+        } => Some(force_amplitude),
+    }
+}
+
+/// Mean of the second half of a series less that of the first; NaN below two values.
+fn drift(series: &[f64]) -> f64 {
+    let (first, second) = series.split_at(series.len() / 2);
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    if first.is_empty() {
+        return f64::NAN;
+    }
+    mean(second) - mean(first)
+}

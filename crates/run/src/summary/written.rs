@@ -1,0 +1,204 @@
+//! A summary as it is written: `summary.json` and the row of a study, both from the table of quantities.
+
+use std::sync::LazyLock;
+
+use peristalsis_configuration::Configuration;
+use peristalsis_formats::ValueKind;
+use peristalsis_observe::{Quantity, Value};
+use serde::ser::{Serialize, SerializeMap, Serializer};
+
+use super::Summary;
+use super::table::{QUANTITIES, RunQuantity, Source};
+use crate::recorder::THRESHOLDS;
+use crate::tables::kind;
+
+/// A column of the rows of studies.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowColumn {
+    /// Name.
+    pub name: String,
+    /// Unit, in m, d, t or SI; "1" for pure numbers, empty for words.
+    pub unit: &'static str,
+    /// Its meaning, in a line.
+    pub text: &'static str,
+    /// Kind of its values.
+    pub kind: ValueKind,
+}
+
+impl RowColumn {
+    fn of<Of>(quantity: &Quantity<Of>) -> Vec<Self> {
+        let headings = quantity.headings().into_iter();
+        headings
+            .map(|(name, text)| Self {
+                name,
+                unit: quantity.unit,
+                text,
+                kind: kind(&quantity.reading),
+            })
+            .collect()
+    }
+}
+
+impl RunQuantity {
+    fn columns(&self) -> Vec<RowColumn> {
+        match &self.source {
+            Source::Setting(quantity) => RowColumn::of(quantity),
+            Source::Result(quantity) => RowColumn::of(quantity),
+        }
+    }
+
+    fn values(&self, summary: &Summary) -> Vec<Value> {
+        match &self.source {
+            Source::Setting(quantity) => quantity.values(&summary.configuration),
+            Source::Result(quantity) => quantity.values(summary),
+        }
+    }
+
+    /// Keys and values below `group`, that is before the dot of the key.
+    fn entries(&self, group: &str, summary: &Summary) -> Vec<(String, Value)> {
+        let (of, key) = self.key.split_once('.').unwrap_or(("", self.key));
+        if of != group || key.is_empty() {
+            return Vec::new();
+        }
+        let keys = [key.to_owned(), format!("{key}_error")];
+        keys.into_iter().zip(self.values(summary)).collect()
+    }
+}
+
+/// The columns of a run's quantities in the rows of studies.
+#[must_use]
+pub fn row_columns() -> &'static [RowColumn] {
+    static COLUMNS: LazyLock<Vec<RowColumn>> = LazyLock::new(|| {
+        let in_rows = QUANTITIES.iter().filter(|quantity| quantity.in_rows);
+        in_rows.flat_map(RunQuantity::columns).collect()
+    });
+    &COLUMNS
+}
+
+/// The columns of rows that a configuration alone decides, with their values for this one.
+#[must_use]
+pub fn set_by(configuration: &Configuration) -> Vec<(&'static str, Value)> {
+    QUANTITIES
+        .iter()
+        .filter_map(|quantity| match &quantity.source {
+            Source::Setting(setting) if quantity.in_rows => {
+                let value = setting.values(configuration).pop()?;
+                Some((setting.name, value))
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+/// Words or symbol of a column at an axis; `None` where its name serves.
+#[must_use]
+pub fn label(column: &str) -> Option<&'static str> {
+    QUANTITIES
+        .iter()
+        .filter(|quantity| !quantity.label.is_empty())
+        .find(|quantity| match &quantity.source {
+            Source::Setting(setting) => setting.name == column,
+            Source::Result(result) => result.name == column,
+        })
+        .map(|quantity| quantity.label)
+}
+
+impl Summary {
+    /// The values of [`row_columns`].
+    #[must_use]
+    pub fn row(&self) -> Vec<Value> {
+        let in_rows = QUANTITIES.iter().filter(|quantity| quantity.in_rows);
+        in_rows.flat_map(|quantity| quantity.values(self)).collect()
+    }
+
+    /// As JSON, indented.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self)
+            .expect("a summary is plain numbers and text, which always serialise");
+        text.push('\n');
+        text
+    }
+
+    fn entries(&self, group: &str) -> Vec<(String, Value)> {
+        QUANTITIES
+            .iter()
+            .flat_map(|quantity| quantity.entries(group, self))
+            .collect()
+    }
+}
+
+/// Keys and values as an object.
+struct Object(Vec<(String, Value)>);
+
+impl Serialize for Object {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(key, value)| (key, value)))
+    }
+}
+
+/// The transition as another threshold sees it.
+#[derive(serde::Serialize)]
+struct ThresholdTime {
+    /// J/Jmax whose crossing counts.
+    threshold: f64,
+    /// tau \[t\], where there was a transition.
+    time: Option<f64>,
+}
+
+impl Serialize for Summary {
+    /// As an object; numbers that are missing are `null` in JSON.
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let times: Vec<ThresholdTime> = THRESHOLDS
+            .into_iter()
+            .zip(self.transition_times)
+            .map(|(threshold, time)| ThresholdTime { threshold, time })
+            .collect();
+        let mut object = serializer.serialize_map(None)?;
+        for (key, value) in self.entries("") {
+            object.serialize_entry(&key, &value)?;
+        }
+        for (group, applies) in [
+            ("pumping", self.pumping.is_some()),
+            ("throat", true),
+            ("belly", true),
+            ("si", self.configuration.units.is_some()),
+        ] {
+            let entries = applies.then(|| Object(self.entries(group)));
+            object.serialize_entry(group, &entries)?;
+        }
+        object.serialize_entry("transition_times", &times)?;
+        object.serialize_entry("packing", &self.packing)?;
+        object.serialize_entry("message", &self.message)?;
+        object.serialize_entry("wall_diagnosis", &self.wall_diagnosis)?;
+        object.serialize_entry("warnings", &self.warnings)?;
+        if let Some(trajectory) = &self.trajectory {
+            object.serialize_entry("trajectory", trajectory)?;
+        }
+        object.end()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::variance;
+    use super::*;
+
+    #[test]
+    fn columns_have_distinct_names_and_all_are_explained() {
+        let columns = row_columns();
+        for (index, column) in columns.iter().enumerate() {
+            let before = &columns[..index];
+            let is_new = before.iter().all(|other| other.name != column.name);
+            assert!(is_new && column.text.len() > 2, "{}", column.name);
+        }
+        assert_eq!(label("flow_rate"), Some("flow rate J"));
+        assert_eq!(label("steps"), None);
+    }
+
+    #[test]
+    fn a_variance_takes_two_values() {
+        assert!((variance(&[1.0, 2.0, 3.0]) - 1.0).abs() < 1e-12);
+        assert!(variance(&[1.0]).is_nan());
+    }
+}

@@ -1,0 +1,119 @@
+//! Warnings: settings that can be computed but look doubtful.
+
+mod holding;
+mod leaking;
+mod softness;
+mod warning;
+
+use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
+use peristalsis_physics::contact::NormalLaw;
+
+pub(crate) use softness::overlap_at_wave_speed;
+pub use softness::overlap_warning;
+pub use warning::Warning;
+
+use crate::assemble::walls;
+
+/// Steps that a contact should last.
+const STEPS_PER_CONTACT: f64 = 15.0;
+/// Overlap at which contact stiffness is judged, in units of the least diameter.
+const USUAL_OVERLAP: f64 = 0.1;
+/// The warnings of a configuration.
+#[must_use]
+pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let contact_time = contact_time(configuration);
+    let step = configuration.run.time_step;
+    if step * STEPS_PER_CONTACT > contact_time {
+        warnings.push(Warning {
+            key: "run.time_step",
+            message: format!(
+                "a step of {} is too long for a contact that lasts {}: take {} or less",
+                span(step),
+                span(contact_time),
+                span(contact_time / STEPS_PER_CONTACT)
+            ),
+        });
+    }
+    if let Some(units) = &configuration.units {
+        warnings.extend(softness::warning(configuration, units));
+    }
+    warnings.extend(holding::warnings(configuration));
+    warnings.extend(prescribed_wall_warnings(configuration));
+    warnings.extend(unfinished_schedule(configuration));
+    warnings
+}
+
+/// What looks doubtful in a prescribed wall where its drive is at its hardest.
+fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
+    let mut warnings = Vec::new();
+    let hardest = configuration.at_its_hardest();
+    // An elastic wall, which may be large, is not made for nothing.
+    if let Control::Strain { .. } = hardest.drive.control
+        && let wall = walls(&hardest)
+        && let Some(wave) = wall.wave()
+    {
+        warnings.extend(leaking::warning(&hardest, wave, wall.lattice()));
+        let opening =
+            2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;
+        if opening <= 0.0 {
+            let led = configuration.drive.schedule(ScheduledParameter::Width);
+            warnings.push(Warning {
+                key: led.map_or("drive.width", |_| "drive.schedule"),
+                message: format!(
+                    "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
+                     are squeezed through the wall"
+                ),
+            });
+        }
+    }
+    warnings
+}
+
+/// That the run ends before a schedule has come to its last value.
+fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
+    let periods = configuration.run.periods?;
+    let schedules = configuration.drive.schedules.iter();
+    let rest = schedules
+        .map(|schedule| schedule.rest())
+        .fold(0.0, f64::max);
+    (rest > periods).then(|| Warning {
+        key: "drive.schedule",
+        message: format!(
+            "it goes on until {rest} periods, and the run ends after {periods}: take a longer run (run.periods) or a shorter \
+             schedule"
+        ),
+    })
+}
+
+/// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.
+pub(crate) fn contact_time(configuration: &Configuration) -> f64 {
+    let model = configuration.contact;
+    let diameter = configuration.grains.diameter_min;
+    let mut lightest = diameter * diameter * diameter;
+    if let Some(wall) = configuration.wall.elastic {
+        lightest = lightest.min(wall.sphere_mass);
+    }
+    let reduced_mass = match configuration.drive.control {
+        // Two grains; against a prescribed wall a contact lasts longer.
+        Control::Strain { .. } => 0.5 * lightest,
+        Control::Stress { .. } => {
+            let grain = diameter * diameter * diameter;
+            lightest * grain / (lightest + grain)
+        }
+    };
+    let overlap = USUAL_OVERLAP * diameter;
+    let normal = model.normal.stiffness(overlap, 0.25 * diameter);
+    let tangential = model.friction.map_or(0.0, |law| law.tangential_stiffness);
+    let stiffest = normal.max(tangential);
+    std::f64::consts::PI / (stiffest / reduced_mass).sqrt()
+}
+
+/// A time with three digits that say something, however short it is.
+fn span(time: f64) -> String {
+    if time < 0.01 {
+        format!("{time:.2e}")
+    } else {
+        format!("{time:.3}")
+    }
+}

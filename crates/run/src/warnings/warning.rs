@@ -1,0 +1,20 @@
+//! A warning.
+
+/// A doubt about a run that can be computed but may not mean what was intended.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Warning {
+    /// The key to look at.
+    pub key: &'static str,
+    /// The consequence to expect.
+    pub message: String,
+}
+
+impl Warning {
+    /// The same under a circumstance.
+    pub(crate) fn under(self, circumstance: &str) -> Self {
+        Self {
+            message: format!("{circumstance} {}", self.message),
+            ..self
+        }
+    }
+}
