@@ -5,7 +5,7 @@ export interface Study {
   version: number;
   name: string;
   title: string;
-  columns: { name: string; unit: string; description: string; values: (number | string | boolean | null)[] }[];
+  columns: { name: string; label: string | null; unit: string; description: string; values: (number | string | boolean | null)[] }[];
   runs: (number | null)[];
   counts: Record<string, number>;
   growing: boolean;
@@ -60,42 +60,21 @@ export interface Point {
 }
 
 /** Columns that say how a run was made, in the order in which they are offered. */
-const PARAMETERS: Record<string, string> = {
-  width: "width w / d",
-  force_amplitude: "force amplitude f",
-  strain_rate: "strain rate ε̇ t",
-  wave_speed: "wave speed c",
-  volume_fraction: "volume fraction ρ",
-  number_density: "number density n d³",
-  body_force: "body force g",
-  pressure_rise: "pressure rise",
-  radius: "radius a / d",
-  wavelength: "wavelength λ / d",
-  waves: "waves",
-  spheres_per_ring: "wall spheres a ring",
-  rings_per_wave: "rings a wave",
-  kinetic_friction: "friction μ",
-  time_step: "time step",
-};
+const PARAMETERS = [
+  "width", "force_amplitude", "strain_rate", "wave_speed", "volume_fraction", "number_density", "body_force",
+  "pressure_rise", "radius", "wavelength", "waves", "spheres_per_ring", "rings_per_wave", "kinetic_friction",
+  "time_step",
+];
 
-/** What is asked for most, by the names that readers know. */
-const QUANTITIES: Record<string, string> = {
-  flow_rate_ratio: "J / Jmax, late mean",
-  transition_time: "transition time τ / t",
-  granular_temperature: "granular temperature",
-  contacts: "contacts a grain",
-  flow_rate: "flow rate J",
-  wall_power: "power of the wall",
-  dissipated_power: "dissipated power",
-  pumping_efficiency: "pumping efficiency",
-  useful_power: "useful power",
-  flow_rate_ratio_variance: "variance of J / Jmax",
-  residence_time: "residence time",
-  axial_dispersion: "axial dispersion",
-  bottleneck: "bottleneck / d",
-  escaped: "escaped grains",
-  energy_residual: "energy unaccounted",
-};
+/** Labels of keys that are no columns of their own. */
+const KEYS: Record<string, string> = { wave_speed: "wave speed c", kinetic_friction: "friction μ" };
+
+/** Columns that are asked for most. */
+const QUANTITIES = [
+  "flow_rate_ratio", "transition_time", "granular_temperature", "contacts", "flow_rate", "wall_power",
+  "dissipated_power", "pumping_efficiency", "useful_power", "flow_rate_ratio_variance", "residence_time",
+  "axial_dispersion", "bottleneck", "escaped", "energy_residual",
+];
 
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
@@ -112,23 +91,24 @@ export class Results {
   readonly starts: string[];
   readonly rows: number;
   private readonly columns: Map<string, (number | string | boolean | null)[]>;
+  private readonly labels: Map<string, string | null>;
 
   constructor(readonly study: Study) {
     this.columns = new Map(study.columns.map((column) => [column.name, column.values]));
+    this.labels = new Map(study.columns.map((column) => [column.name, column.label]));
     this.rows = study.runs.length;
     const keys = study.columns.map(({ name }) => name).filter((name) => name.includes("."));
     this.parameters = this.findParameters(keys);
-    const parameters = new Set([...Object.keys(PARAMETERS), ...keys]);
+    const parameters = new Set([...PARAMETERS, ...keys]);
     const measured = study.columns.filter(
       ({ name, values }) => values.some((value) => typeof value === "number") && !parameters.has(name) &&
         !NEITHER.has(name) && !name.endsWith("_error"),
     );
-    const known = Object.keys(QUANTITIES);
-    const rank = (name: string) => (known.includes(name) ? known.indexOf(name) : known.length);
+    const rank = (name: string) => (QUANTITIES.includes(name) ? QUANTITIES.indexOf(name) : QUANTITIES.length);
     this.quantities = measured
-      .map(({ name, unit, description }) => ({
+      .map(({ name, label, unit, description }) => ({
         name,
-        label: QUANTITIES[name] ?? (unit && unit !== "1" ? `${words(name)} / ${unit.includes("/") ? `(${unit})` : unit}` : words(name)),
+        label: label ?? (unit && unit !== "1" ? `${words(name)} / ${unit.includes("/") ? `(${unit})` : unit}` : words(name)),
         description,
       }))
       .sort((one, other) => rank(one.name) - rank(other.name));
@@ -138,10 +118,10 @@ export class Results {
 
   /** The keys of the study's axes; of a table without them, the columns that say how a run was made. */
   private findParameters(keys: string[]): Parameter[] {
-    const names = keys.length > 0 ? keys : Object.keys(PARAMETERS);
+    const names = keys.length > 0 ? keys : PARAMETERS;
     const all = names.filter((name) => this.columns.has(name)).map((name) => ({
       name,
-      label: PARAMETERS[name.split(".").at(-1) ?? name] ?? words(name),
+      label: this.labels.get(name) ?? KEYS[name.split(".").at(-1) ?? name] ?? words(name),
       values: this.valuesOf(name, this.all()),
     }));
     return all.filter(({ values }) => values.length > 1);

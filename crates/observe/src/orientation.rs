@@ -18,7 +18,7 @@ pub struct Orientations {
 }
 
 impl Orientations {
-    /// Every grain's frame is that of the laboratory now.
+    /// Begins with every grain's frame along the laboratory's.
     #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
         let bodies = simulation.bodies();

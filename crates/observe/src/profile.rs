@@ -97,7 +97,7 @@ impl Sums {
         self.see(places * slice.mean, (slice.least, slice.largest), places);
     }
 
-    /// Adds radii seen at so many places, of which the sum, the least and the largest are known.
+    /// Adds the sum, the least and the largest of the radii at so many places.
     #[inline]
     fn see(&mut self, sum: f64, (least, largest): (f64, f64), places: f64) {
         self.radius += sum;

@@ -239,7 +239,7 @@ impl GrainSums {
     fn of(before: &Observer, after: &Observer, view: &View<'_>) -> Self {
         let bodies = view.simulation.bodies();
         let heading = view.simulation.wall().heading();
-        // Of equal lengths, which is looked at here and not for every grain.
+        // Equal lengths are checked here and not for every grain.
         let grains = view.inside.len();
         let (positions, velocities) = (&bodies.position[..grains], &bodies.velocity[..grains]);
         let (masses, inertias) = (&bodies.mass[..grains], &bodies.inertia[..grains]);
@@ -271,11 +271,11 @@ impl GrainSums {
     }
 }
 
-/// Variance of so many numbers of which sum and sum of squares are known; NaN of none.
+/// Variance from the number of values, their sum and their sum of squares; NaN without values.
 fn variance(number: f64, sum: f64, sum_of_squares: f64) -> f64 {
     let mean = sum / number;
     let variance = sum_of_squares / number - mean * mean;
-    // Rounding may leave less than nothing.
+    // Rounding may leave a negative number.
     if variance < 0.0 { 0.0 } else { variance }
 }
 

@@ -170,8 +170,7 @@ fn schedule(
 /// pressure rise, whatever the body force, for the load of a fluid counts against a viscosity, which grains do not have; the
 /// second is missing where the clear bore closes. `None` under stress control, where the width follows a schedule, for a
 /// static wave and for waveforms other than the sine.
-#[must_use]
-pub fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
+pub(crate) fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
     let changes = configuration
         .drive
         .schedule(ScheduledParameter::Width)

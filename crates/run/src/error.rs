@@ -78,7 +78,7 @@ pub enum RunError {
     NothingToResume {
         /// The folder.
         folder: PathBuf,
-        /// What is missing.
+        /// The missing part.
         reason: String,
     },
     /// The saved state of a run cannot be gone on with.

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use peristalsis_configuration::Configuration;
 
 use crate::RunError;
+use crate::assemble::newtonian_reference;
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
@@ -69,7 +70,7 @@ pub fn estimate(
         .map(|request| trajectory::estimate(request, configuration, &trial.run, trial.scale))
         .transpose()?;
     let mut warnings = warnings(configuration);
-    // What the schedules lead to is tried as well; a tube that cannot be packed as it becomes later is no fault.
+    // The end of the schedules is tried as well; a tube that cannot be packed in that shape is no fault.
     let later = if configuration.drive.schedules.is_empty() {
         None
     } else {
@@ -96,7 +97,7 @@ pub fn estimate(
         time_step: configuration.run.time_step,
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
-        newtonian_flow_rate_ratio: crate::newtonian_reference(configuration)
+        newtonian_flow_rate_ratio: newtonian_reference(configuration)
             .map(|reference| reference.0),
         si: configuration
             .units

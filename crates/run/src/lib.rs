@@ -24,7 +24,7 @@ mod tables;
 mod trajectory;
 mod warnings;
 
-pub use assemble::{assemble, newtonian_reference, walls};
+pub use assemble::{assemble, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate};
 pub use folder::{RunFolder, Written};
@@ -35,7 +35,7 @@ pub use peristalsis_observe::Value;
 pub use peristalsis_render::{Film, FilmFormat, FilmPlan, Picture, RenderError};
 pub use pictures::{snapshot_stack, space_time};
 pub use recorder::{Recorder, THRESHOLDS};
-pub use run::{Progress, Run, RunState, RunStateView};
+pub use run::{Progress, Run, RunState};
 pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing};
 pub use si::SiEstimate;
 pub use stopping::Stopping;

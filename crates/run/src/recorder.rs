@@ -1,4 +1,4 @@
-//! What a run has measured so far.
+//! The measurements of a run so far.
 
 use peristalsis_analysis::{Direction, Transition, TransitionDetector};
 use peristalsis_configuration::{Configuration, InitialState};
@@ -156,8 +156,7 @@ impl Recorder {
     }
 
     /// What went wrong with an elastic wall, the first of each kind.
-    #[must_use]
-    pub fn wall_faults(&self) -> &[WallFault] {
+    pub(crate) fn wall_faults(&self) -> &[WallFault] {
         &self.wall_faults
     }
 

@@ -44,9 +44,9 @@ pub struct RunState {
     elapsed: Duration,
 }
 
-/// A [`RunState`] of a run that still holds it all: written down, it gives the same bytes, without a copy.
+/// A [`RunState`] that borrows from its run: written down, it gives the same bytes, without a copy.
 #[derive(Clone, Debug, serde::Serialize)]
-pub struct RunStateView<'a> {
+struct RunStateView<'a> {
     snapshot: SnapshotView<'a>,
     packing: PackingReport,
     recorder: &'a Recorder,
@@ -195,8 +195,7 @@ impl Run {
     }
 
     /// The state, to be written down at once.
-    #[must_use]
-    pub fn state_view(&self) -> RunStateView<'_> {
+    fn state_view(&self) -> RunStateView<'_> {
         RunStateView {
             snapshot: self.simulation.snapshot_view(),
             packing: self.packing,

@@ -9,7 +9,7 @@ use crate::run::Run;
 const LARGEST: f64 = 1e6;
 
 impl Run {
-    /// What a parameter of the drive is for the next step, in the units of its key; `None` for the amplitude of the other
+    /// The value of a parameter of the drive for the next step, in the units of its key; `None` for the amplitude of the other
     /// control.
     #[must_use]
     pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {

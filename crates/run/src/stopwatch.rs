@@ -1,4 +1,4 @@
-//! What a piece of work took, where there is a clock.
+//! Time of a piece of work, where there is a clock.
 
 use std::time::{Duration, Instant};
 

@@ -49,7 +49,7 @@ fn tube(
         &[TUBE, &settings, more].concat(),
         seed,
     );
-    assert_eq!(configuration("frictional", &[TUBE]).grains.number, 1093);
+    assert_eq!(configuration("frictional", TUBE).grains.number, 1093);
     assert_eq!(outcome.averages.len(), periods as usize);
     outcome
 }

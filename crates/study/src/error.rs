@@ -63,7 +63,7 @@ pub enum StudyError {
     NoStore {
         /// The folder.
         path: PathBuf,
-        /// What is missing.
+        /// The missing part.
         reason: String,
     },
     /// The store holds another study.
@@ -89,7 +89,7 @@ pub enum StudyError {
     NotRows {
         /// The file.
         path: PathBuf,
-        /// What is wrong.
+        /// The fault.
         reason: String,
     },
     /// Some run cannot be estimated.

@@ -1,4 +1,4 @@
-//! What a study would take, before it runs.
+//! The time and disk that a study would take.
 
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
 use peristalsis_run::{Warning, estimate, warnings};
@@ -17,7 +17,7 @@ const BYTES_A_RUN: f64 = 36_000.0;
 /// Numbers of a sphere of the snapshot.
 const SNAPSHOT_COLUMNS: f64 = 6.0;
 
-/// What a study would take.
+/// The estimate of a study.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct StudyEstimate {
     /// Points of the axes, states included.
@@ -34,11 +34,11 @@ pub struct StudyEstimate {
     pub processor_seconds: f64,
     /// Bytes on disk of these runs when they are finished.
     pub bytes: f64,
-    /// What looks doubtful, with the points that it is about.
+    /// Warnings, with the number of points of each.
     pub warnings: Vec<StudyWarning>,
 }
 
-/// Something that will run but may not mean what was intended.
+/// A warning of some points of a study.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct StudyWarning {
     /// Points that it is about.
@@ -55,7 +55,7 @@ pub(crate) fn work(configuration: &peristalsis_run::Configuration) -> f64 {
     configuration.grains.number.max(1) as f64 * configuration.run.steps() as f64
 }
 
-/// What a study would take, with its speed measured by short trials of a few points.
+/// The estimate of a study, with its speed measured by short trials of a few points.
 ///
 /// # Errors
 /// [`StudyError::Trial`] where grains do not fit.

@@ -48,5 +48,5 @@ pub use row::Row;
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
 pub use store::{
-    Entry, Exported, LEASE_TIMEOUT, Packed, Staleness, State, Store, Survey, Verification,
+    Entry, Exported, Packed, Staleness, State, Store, Survey, Verification,
 };

@@ -12,7 +12,7 @@ use peristalsis_run::Stopping;
 use crate::identity::{Identity, Record, seed};
 use crate::specification::{Choice, Specification, joined};
 
-/// What a key of an axis is set to.
+/// The value of a key of an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub enum SettingValue {
     /// A number with a point or an exponent.
@@ -85,7 +85,7 @@ pub struct Point {
     pub state: InitialState,
     /// The configuration, with the seed of its base.
     pub configuration: Configuration,
-    /// The row of each axis; that of a refined axis has no meaning.
+    /// The row of each axis; without meaning for a refined axis.
     pub(crate) rows: Vec<usize>,
 }
 
@@ -151,7 +151,7 @@ pub struct Plan {
     replicates: u32,
     /// When a run may end before its time.
     pub stopping: Option<Stopping>,
-    /// What is kept of each run.
+    /// Tables that are kept of each run.
     pub record: Record,
 }
 
@@ -159,7 +159,7 @@ impl Plan {
     /// The runs of a study before refinement.
     ///
     /// # Errors
-    /// What is wrong with the configurations of its points, and points that are the same.
+    /// Faults of the configurations of its points, and points that are the same.
     pub fn of(study: &Specification) -> Result<Self, ConfigurationError> {
         let states: Vec<Option<InitialState>> = match &study.states {
             None => vec![None],

@@ -218,7 +218,7 @@ pub fn brackets(
 /// points added do not depend on the order in which runs end.
 ///
 /// # Errors
-/// What is wrong with the configuration of a new point.
+/// The faults of the configuration of a new point.
 pub fn refine(
     study: &Specification,
     plan: &mut Plan,

@@ -86,7 +86,7 @@ impl Row {
     ///
     /// # Errors
     /// A sentence: the fault of the text.
-    pub fn from_csv(text: &str) -> Result<Self, String> {
+    pub(crate) fn from_csv(text: &str) -> Result<Self, String> {
         let table = csv::decode(text).map_err(|error| error.to_string())?;
         let mut rows = Self::all_of(&table)?;
         match (rows.pop(), rows.is_empty()) {
@@ -113,8 +113,7 @@ impl Row {
     }
 
     /// As CSV with its header, exact to the bit.
-    #[must_use]
-    pub fn to_csv(&self) -> String {
+    pub(crate) fn to_csv(&self) -> String {
         csv::encode(&self.table)
     }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_formats::{Table, Values, parquet};
-use peristalsis_run::TrajectoryFormat;
+use peristalsis_run::{TrajectoryFormat, label};
 use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, Store, refine};
 use serde::Serialize;
 
@@ -70,6 +70,8 @@ pub(crate) struct Shown<'a> {
 #[derive(Debug, Serialize)]
 struct ShownColumn<'a> {
     name: &'a str,
+    /// Words or symbol at an axis.
+    label: Option<&'static str>,
     unit: &'a str,
     description: &'a str,
     values: ShownValues<'a>,
@@ -229,6 +231,8 @@ impl Study {
                 .filter(|column| is_known(&column.values))
                 .map(|column| ShownColumn {
                     name: &column.name,
+                    // The column of an axis has a key of the configuration for its name.
+                    label: label(column.name.rsplit('.').next().unwrap_or_default()),
                     unit: &column.unit,
                     description: &column.description,
                     values: (&column.values).into(),

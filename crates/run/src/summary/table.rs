@@ -1,4 +1,4 @@
-//! The table of what a run says of itself: a quantity is one row here, and `summary.json`, the rows of studies, SI, the
+//! The table of a run's quantities: a quantity is one row here, and `summary.json`, the rows of studies, SI, the
 //! labels of the viewer and the documentation follow.
 
 use peristalsis_configuration::{Configuration, Control, InitialState, Units};
@@ -23,7 +23,7 @@ pub(super) struct RunQuantity {
     pub(super) label: &'static str,
 }
 
-/// What a quantity is read off.
+/// The origin of a quantity's value.
 #[derive(Debug)]
 pub(super) enum Source {
     /// The configuration, which decides it alone.
@@ -211,7 +211,7 @@ fn force_amplitude(configuration: &Configuration) -> Option<f64> {
     }
 }
 
-/// Mean of the second half of a series less that of the first; NaN below two values.
+/// Mean of the second half of a series less the mean of the first half; NaN below two values.
 fn drift(series: &[f64]) -> f64 {
     let (first, second) = series.split_at(series.len() / 2);
     let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;

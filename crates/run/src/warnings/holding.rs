@@ -4,7 +4,7 @@ use peristalsis_configuration::Configuration;
 
 use super::warning::Warning;
 
-/// What looks doubtful in an elastic wall: walls of its kind were seen to fail in the tube of the preset `frictional`.
+/// The warnings of an elastic wall: walls of its kind were seen to fail in the tube of the preset `frictional`.
 pub(super) fn warnings(configuration: &Configuration) -> Vec<Warning> {
     let Some(wall) = configuration.wall.elastic else {
         return Vec::new();

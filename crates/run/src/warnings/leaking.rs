@@ -16,7 +16,7 @@ const LEAKING_ENERGY: f64 = 0.6;
 /// More wall spheres than this within a grain's reach let nothing through.
 const DENSE: f64 = 10_000.0;
 
-/// What looks doubtful in the wall's lattice.
+/// The warning of the wall's lattice.
 pub(super) fn warning(
     configuration: &Configuration,
     wave: &RadiusWave,

@@ -44,7 +44,7 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     warnings
 }
 
-/// What looks doubtful in a prescribed wall where its drive is at its hardest.
+/// The warnings of a prescribed wall where its drive is at its hardest.
 fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let hardest = configuration.at_its_hardest();

@@ -45,7 +45,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
         .drive
         .schedule(ScheduledParameter::StrainRate)
         .is_some();
-    // What is said must be right as it is said: with three digits, the frequency above the one that there is.
+    // The advice must hold as printed, with three digits: so the frequency is rounded up.
     let frequency = three_digits(strain_rate / units.time(), f64::ceil);
     let faster = frequency * units.time() / strain_rate;
     // xi ~ (k^(-1/2) c) under the linear law, (Y^(-1/2) c)^(4/5) under the Hertz law.

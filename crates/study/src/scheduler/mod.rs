@@ -61,7 +61,7 @@ struct Shared<'a> {
     common: Mutex<Common>,
     /// A run or a worker has ended.
     ended: Condvar,
-    /// What each worker is doing; apart, so that a run goes on while another is written into the index.
+    /// The work of each worker; under a lock of its own, so that a run goes on while another is written into the index.
     working: Mutex<Vec<Option<Working>>>,
 }
 
@@ -109,11 +109,11 @@ fn places(plan: &Plan) -> HashMap<Identity, usize> {
 
 impl Shared<'_> {
     fn common(&self) -> MutexGuard<'_, Common> {
-        // What a thread that panicked left is whole: each change is one assignment or one transaction.
+        // The state is whole even after a panic: each change is one assignment or one transaction.
         self.common.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// What each worker is doing.
+    /// The work of each worker.
     fn working(&self) -> MutexGuard<'_, Vec<Option<Working>>> {
         self.working.lock().unwrap_or_else(PoisonError::into_inner)
     }

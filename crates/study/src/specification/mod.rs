@@ -1,4 +1,4 @@
-//! The study file: what is varied over what base, how often, and when runs may end.
+//! The study file: base, axes, replicates and stopping rule.
 
 mod axis;
 mod schema;
@@ -30,17 +30,17 @@ const MOST_PROBLEMS: usize = 20;
 pub struct Specification {
     /// Short name.
     pub name: String,
-    /// What it is about.
+    /// Title.
     pub title: String,
     /// Runs of each point.
     pub replicates: u32,
     /// When a run may end before its time.
     pub stopping: Option<Stopping>,
-    /// What is kept of each run.
+    /// Tables that are kept of each run.
     pub record: Record,
     pub(crate) refinement: Option<Refine>,
     pub(crate) axes: Vec<Axis>,
-    /// Initial states; `None` is that of the base configuration.
+    /// Initial states; `None`: the one of the base configuration.
     pub(crate) states: Option<Vec<InitialState>>,
     base: Base,
     text: String,
@@ -50,7 +50,7 @@ pub struct Specification {
     replicates_span: Option<std::ops::Range<usize>>,
 }
 
-/// What every run builds on.
+/// The base of every run.
 #[derive(Clone, Debug)]
 struct Base {
     preset: Option<String>,
@@ -272,7 +272,7 @@ impl Specification {
     }
 }
 
-/// What the schema does not say of the keys of a study.
+/// Checks the keys of a study beyond the schema.
 fn check_keys(table: &Table, problems: &mut Problems) {
     if let Some(entry) = document::entry(table, "name")
         && let Node::Text(name) = &entry.item.node

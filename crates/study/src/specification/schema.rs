@@ -11,8 +11,8 @@ pub(super) const MOST_REPLICATES: u64 = 100_000;
 
 /// JSON schema (draft 2020-12) of a study file.
 ///
-/// Every key has a description and its range or its names; no other key is allowed. The table `base` is that of a
-/// configuration. What keys must be together, and every configuration that follows, is the reader's to check.
+/// Every key has a description and its range or its names; no other key is allowed. The table `base` is a
+/// configuration. The reader checks which keys go together, and every configuration that follows.
 #[must_use]
 pub fn schema() -> Value {
     cached().clone()

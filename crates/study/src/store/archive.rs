@@ -10,7 +10,7 @@ use peristalsis_formats::atomic;
 use super::{RUNS, Store, Verdict, done};
 use crate::error::StudyError;
 use crate::identity::Identity;
-use crate::store::index::State;
+use crate::store::entry::State;
 use crate::store::run_files::RunFiles;
 
 /// What an archive holds.

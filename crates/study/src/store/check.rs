@@ -17,7 +17,7 @@ use crate::identity::Identity;
 pub struct Verification {
     /// Finished runs whose hashes check.
     pub whole: usize,
-    /// Finished runs of which only the row is there, imported.
+    /// Finished runs with an imported row and no files.
     pub imported: usize,
     /// Runs that were not what had been sealed, with what was wrong; their files were moved aside.
     pub quarantined: Vec<(Identity, String)>,

@@ -10,7 +10,7 @@ use crate::error::StudyError;
 use crate::identity::{Identity, PHYSICS_VERSION};
 use crate::plan::{Plan, PlannedRun, SettingValue};
 use crate::row::Row;
-use crate::store::index::{Entry, State};
+use crate::store::entry::{Entry, State};
 
 /// What an export wrote.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -44,10 +44,10 @@ impl Store {
         rows_table(&survey, &finished)
     }
 
-    /// What is known of the study, and its finished runs as the index has them, a row each in the order of the axes.
+    /// A survey of the study, and its finished runs from the index, a row each in the order of the axes.
     ///
-    /// For looking on while a study is computed: no hash is checked, and no file of a run is touched. What is to be
-    /// counted on comes from [`Store::rows`].
+    /// For looking on while a study is computed: no hash is checked, and no file of a run is touched. Rows
+    /// to rely on come from [`Store::rows`].
     ///
     /// # Errors
     /// Errors of reading study file or index.

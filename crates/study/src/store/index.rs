@@ -1,6 +1,6 @@
-//! The index of a store: what the files say of each run, to be found fast, and who works on it.
+//! The index of a store: the state of each run as its files tell it, for fast look-up, and the leases.
 //!
-//! Of the runs it holds nothing that the files do not: it can be deleted, and is made again from them. The leases are in
+//! It holds no fact about runs beyond their files: it can be deleted, and is made again from them. The leases are in
 //! it alone; losing them costs work that is done twice to the same bits, and no result.
 
 use std::collections::HashMap;
@@ -11,6 +11,7 @@ use rusqlite::{
     Connection, OpenFlags, OptionalExtension, Transaction, TransactionBehavior, params,
 };
 
+use super::entry::{Entry, Lease, State};
 use super::owner::{Owner, now};
 use crate::error::StudyError;
 use crate::identity::Identity;
@@ -19,93 +20,6 @@ use crate::identity::Identity;
 const LAYOUT: i32 = 1;
 /// How long to wait for another process that writes.
 const BUSY: Duration = Duration::from_secs(60);
-
-/// Seconds by which the clock of another machine may be ahead of ours.
-const MOST_AHEAD: i64 = 3600;
-
-/// What has become of a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, serde::Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum State {
-    /// Nothing is there yet.
-    Pending,
-    /// Some process works on it.
-    Leased,
-    /// It was interrupted, and goes on from its last checkpoint.
-    Checkpointed,
-    /// Finished: the hashes of its products check, or its row was imported.
-    Done,
-    /// It ended in an error, which is kept.
-    Failed,
-    /// Its files were not what had been written; they were moved aside, and it will be computed again.
-    Quarantined,
-}
-
-impl State {
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::Pending => "pending",
-            Self::Leased => "leased",
-            Self::Checkpointed => "checkpointed",
-            Self::Done => "done",
-            Self::Failed => "failed",
-            Self::Quarantined => "quarantined",
-        }
-    }
-
-    fn of_name(name: &str) -> Self {
-        match name {
-            "checkpointed" => Self::Checkpointed,
-            "done" => Self::Done,
-            "failed" => Self::Failed,
-            "quarantined" => Self::Quarantined,
-            _ => Self::Pending,
-        }
-    }
-}
-
-/// What the index says of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// What has become of it.
-    pub state: State,
-    /// Why it failed or was quarantined; where the row of a finished run came from, if it was imported.
-    pub reason: Option<String>,
-    /// Row of a finished run as CSV.
-    pub(crate) row: Option<String>,
-    /// tau \[t\] of a finished run.
-    pub transition_time: Option<f64>,
-    /// Sizes and times of change of the products when their hashes were last checked.
-    pub(crate) stamp: Option<String>,
-}
-
-impl Entry {
-    pub(crate) fn new(state: State, reason: Option<String>) -> Self {
-        Self {
-            state,
-            reason,
-            row: None,
-            transition_time: None,
-            stamp: None,
-        }
-    }
-}
-
-/// A lease: who works on a run.
-#[derive(Clone, Debug)]
-pub(crate) struct Lease {
-    pub(crate) owner: Owner,
-    pub(crate) heartbeat: i64,
-}
-
-impl Lease {
-    /// Whether the run may be taken over: its owner is dead, or has been silent for too long. A heartbeat from a future that
-    /// no difference of clocks explains was noted before the clock was set back, and says as little.
-    fn is_void(&self, timeout: Duration) -> bool {
-        let silent = now() - self.heartbeat;
-        self.owner.is_dead() || silent > timeout.as_secs() as i64 || silent < -MOST_AHEAD
-    }
-}
 
 /// An open index.
 #[derive(Debug)]
@@ -132,7 +46,7 @@ const TABLES: &str = "
         heartbeat INTEGER NOT NULL
     ) WITHOUT ROWID;";
 
-/// All that is known of every run.
+/// Selects the entries of all runs.
 const ENTRIES: &str = "SELECT identity, state, reason, row, transition_time, stamp FROM runs";
 
 impl Index {
@@ -191,7 +105,7 @@ impl Index {
         }
     }
 
-    /// What is known of every run that is not merely pending, leases apart.
+    /// The entries of all runs that are not merely pending.
     pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
         select_entries(&self.connection, ENTRIES).map_err(|error| self.failed(error))
     }
@@ -205,7 +119,7 @@ impl Index {
         .map_err(|error| self.failed(error))
     }
 
-    /// What is known of a run, leases apart.
+    /// The entry of a run.
     pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>, StudyError> {
         self.connection
             .query_row(
@@ -224,7 +138,7 @@ impl Index {
         Ok(leases)
     }
 
-    /// Notes what has become of runs.
+    /// Notes the entries of runs.
     pub(crate) fn note<'a>(
         &mut self,
         entries: impl IntoIterator<Item = (Identity, &'a Entry)>,
@@ -237,13 +151,13 @@ impl Index {
         })
     }
 
-    /// What has become of each run, leases apart.
+    /// The state of each run.
     pub(crate) fn states(&self) -> Result<HashMap<Identity, State>, StudyError> {
         all_states(&self.connection).map_err(|error| self.failed(error))
     }
 
-    /// Forgets what was known of all runs and notes this instead. Leases stay, and so does what other processes have noted
-    /// since the states were those of `before`, when whoever calls began to look at the files.
+    /// Replaces all entries by these, which were read from the files. Leases stay, and so do entries that other processes have
+    /// noted since the states were those of `before`, when the reading of the files began.
     pub(crate) fn replace(
         &mut self,
         entries: &HashMap<Identity, Entry>,
@@ -321,7 +235,7 @@ impl Index {
         })
     }
 
-    /// Notes what has become of a run and gives its lease back; answers false, and does neither, where the lease is no
+    /// Notes the entry of a run and gives its lease back; answers false, and does neither, where the lease is no
     /// longer this owner's.
     pub(crate) fn release(
         &mut self,
@@ -400,27 +314,27 @@ fn prepare(connection: &mut Connection) -> rusqlite::Result<bool> {
             Some(verdict),
         ));
     }
-    // A bit that flipped in a value leaves a database that is whole and says what cannot be.
+    // A flipped bit in a value leaves a whole database with an impossible entry.
     select_entries(connection, ENTRIES)?;
     all_leases(connection)?;
     Ok(layout != LAYOUT)
 }
 
-/// Whether the database is not what was written, rather than out of reach.
+/// Whether the database is damaged, rather than out of reach.
 fn is_damaged(error: &rusqlite::Error) -> bool {
     use rusqlite::ErrorCode;
     match error.sqlite_error_code() {
-        // `Unknown` is an error in our statements, which are right: the tables are not those that they speak of.
+        // `Unknown` is an error in a statement. Ours are right, so the tables are not ours.
         Some(code) => matches!(
             code,
             ErrorCode::DatabaseCorrupt | ErrorCode::NotADatabase | ErrorCode::Unknown
         ),
-        // A value that is none of ours.
+        // A value that we never write.
         None => true,
     }
 }
 
-/// Whether the database is there and cannot be written to.
+/// Whether the database exists and cannot be written to.
 pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
     use rusqlite::ErrorCode;
     matches!(
@@ -501,18 +415,6 @@ fn put(connection: &Connection, identity: Identity, entry: &Entry) -> rusqlite::
             ],
         )
         .map(|_| ())
-}
-
-impl Lease {
-    /// Who holds it, in words.
-    pub(crate) fn in_words(&self) -> String {
-        format!(
-            "process {} on {}, last heard of {} s ago",
-            self.owner.process,
-            self.owner.host.split_whitespace().next().unwrap_or("?"),
-            (now() - self.heartbeat).max(0)
-        )
-    }
 }
 
 #[cfg(test)]

@@ -12,6 +12,7 @@
 
 mod archive;
 mod check;
+mod entry;
 mod export;
 mod import;
 mod index;
@@ -33,9 +34,9 @@ use crate::row::Row;
 use crate::specification::Specification;
 pub use archive::Packed;
 pub use check::Verification;
+pub use entry::{Entry, State};
 pub use export::Exported;
 pub(crate) use index::{Claim, Index, is_closed};
-pub use index::{Entry, State};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
 pub use staleness::Staleness;
@@ -51,7 +52,7 @@ const IMPORTED: &str = "imported";
 const REASON: &str = "reason.txt";
 
 /// How long an owner of whom nothing else is known may be silent before its lease is void.
-pub const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
+pub(crate) const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
 
 /// A folder that keeps the runs of a study.
 #[derive(Clone, Debug)]

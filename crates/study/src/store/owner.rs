@@ -73,7 +73,7 @@ fn host() -> String {
     )
 }
 
-/// When a process started, in ticks since boot; `None` where there is none, or the system does not tell.
+/// Start of a process, in ticks since boot; `None` without such a process, or where the system does not tell.
 fn started(process: u32) -> Option<String> {
     let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The name of the program, in brackets, may hold anything; the state follows, Z and X being those of the dead.

@@ -18,7 +18,7 @@ use crate::plan::{Plan, PlannedRun};
 use crate::row::Row;
 
 const CONFIGURATION: &str = "config.toml";
-/// What signac and row look for beside each run.
+/// The file that signac and row look for beside each run.
 pub(crate) const STATEPOINT: &str = "signac_statepoint.json";
 /// The newer and the older generation of the state.
 const CHECKPOINTS: [&str; 2] = ["state.checkpoint", "state.checkpoint.1"];
@@ -28,11 +28,11 @@ const WAVES: &str = "waves.parquet";
 const SNAPSHOT: &str = "snapshot.parquet";
 const SUMMARY: &str = "summary.json";
 const ROW: &str = "row.csv";
-/// What the run took: the one file of a finished run that is not sealed, since it differs from one time to another.
+/// The time that the run took: the one file of a finished run without a hash in the seal, for it differs each time.
 pub(crate) const TIMING: &str = "timing.json";
 const FAILED: &str = "failed.json";
 
-/// What the files say of a run.
+/// The state of a run as its files tell it.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Verdict {
     /// Nothing is there but perhaps its configuration.
@@ -52,7 +52,7 @@ pub(crate) enum Verdict {
     Failed(String),
 }
 
-/// What the store needs to know of a run to begin it.
+/// All that is needed to begin a run.
 #[derive(Clone, Debug)]
 pub(crate) struct Assignment {
     pub(crate) identity: Identity,
@@ -102,7 +102,7 @@ impl RunFiles {
         self.file(SEAL).exists()
     }
 
-    /// What the files say; a run whose files have this stamp is taken to be as it was when its hashes were checked.
+    /// The verdict of the files. A run whose files have the stamp `checked` is taken as unchanged since its hashes were checked.
     pub(crate) fn verdict(&self, checked: Option<&str>) -> Verdict {
         if self.is_sealed() {
             return self.sealed(checked).unwrap_or_else(Verdict::Damaged);
@@ -146,7 +146,7 @@ impl RunFiles {
         Ok(names)
     }
 
-    /// Makes the folder, and what of it does not change during the run; takes away what a killed process left half written.
+    /// Makes the folder with the files that do not change during the run, and removes half-written files of a killed process.
     pub(crate) fn begin(&self, assignment: &Assignment) -> Result<(), StudyError> {
         fs::create_dir_all(&self.path).map_err(StudyError::io("make", &self.path))?;
         if let Some(runs) = self.path.parent() {
@@ -171,8 +171,7 @@ impl RunFiles {
         Ok(atomic::write(&path, text.as_bytes())?)
     }
 
-    /// The run from its newest checkpoint that is whole, or from the start; with it, what was wrong with newer ones, each
-    /// of which `aside` has moved away.
+    /// The run from its newest whole checkpoint, or from the start. `aside` moves each damaged checkpoint away.
     pub(crate) fn resume(
         &self,
         assignment: &Assignment,
@@ -288,7 +287,7 @@ impl RunFiles {
     }
 }
 
-/// A summary as JSON in two parts: what the physics determines, and how long it took.
+/// A summary as JSON in two parts: the results, and the time that they took.
 fn split(summary: &Summary) -> (String, String) {
     const TIMES: [&str; 2] = ["seconds", "grain_steps_per_second"];
     let mut science = serde_json::to_value(summary).expect("a summary is plain numbers and text");

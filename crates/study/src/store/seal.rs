@@ -20,7 +20,7 @@ struct Product {
     sha256: String,
 }
 
-/// What is sealed.
+/// The seal.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 struct Contents {
     identity: String,

@@ -74,7 +74,7 @@ fn flat(value: &Value) -> BTreeMap<String, String> {
     leaves
 }
 
-/// What differs between two runs that is not the random numbers.
+/// The differences between two runs apart from the random numbers.
 fn differences(found: &BTreeMap<String, String>, wanted: &BTreeMap<String, String>) -> Vec<String> {
     let missing = "missing".to_owned();
     let keys = found

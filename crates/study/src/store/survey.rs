@@ -17,7 +17,7 @@ pub struct Survey {
     pub study: Specification,
     /// Its runs, with those that refinement has added.
     pub plan: Plan,
-    /// What is known of each run, those of other plans of the same store included.
+    /// The entry of each run, also of runs of other plans of the same store.
     pub entries: HashMap<Identity, Entry>,
     /// Which runs are being worked on, and by whom, in words.
     pub leases: HashMap<Identity, String>,

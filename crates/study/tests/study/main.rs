@@ -8,6 +8,7 @@
 mod damage;
 mod identity;
 mod interruption;
+mod quantities;
 mod refinement;
 mod specification;
 mod transfer;
