@@ -1,8 +1,8 @@
 //! The tables of observables: a new one is a field of [`Sample`], [`ProfileBin`] or [`WaveFlow`] and a row here.
 
 use crate::profile::ProfileBin;
+use crate::quantity::Quantity;
 use crate::quantity::Reading::{Measured, Real, Whole};
-use crate::quantity::{Quantity, Reading};
 use crate::sample::Sample;
 use crate::waves::WaveFlow;
 
@@ -37,21 +37,7 @@ const fn row(
 ) -> Column {
     Column {
         scope,
-        quantity: quantity(name, unit, text, Real(value)),
-    }
-}
-
-const fn quantity<Of>(
-    name: &'static str,
-    unit: &'static str,
-    text: &'static str,
-    reading: Reading<Of>,
-) -> Quantity<Of> {
-    Quantity {
-        name,
-        unit,
-        text,
-        reading,
+        quantity: Quantity::new(name, unit, text, Real(value)),
     }
 }
 
@@ -108,27 +94,27 @@ pub const COLUMNS: &[Column] = &[
 /// The columns of the profile in the wave's frame, in order.
 #[rustfmt::skip]
 pub const PROFILE: &[Quantity<ProfileBin>] = &[
-    quantity("position", "1", "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave", Real(|b| b.position)),
-    quantity("density", "1/d", "grains per length of tube", Measured(|b| b.density)),
-    quantity("axial_velocity", "d/t", "mean axial velocity along the wave, laboratory frame", Measured(|b| b.axial_velocity)),
-    quantity("granular_temperature", "m d^2/t^2", "sum m |v - <v>|^2/(3 N) about the bin's mean velocity", Measured(|b| b.temperature)),
-    quantity("radius", "d", "mean radius of the tube", Real(|b| b.radius)),
-    quantity("least_radius", "d", "least radius seen", Real(|b| b.least_radius)),
-    quantity("largest_radius", "d", "largest radius seen", Real(|b| b.largest_radius)),
-    quantity("wall_normal_force", "m/t^2", "axial force of the wall on the grains along the normals of contacts, per length of tube, along the wave", Measured(|b| b.wall_normal_force)),
-    quantity("wall_tangential_force", "m/t^2", "axial force of the wall on the grains by friction, per length of tube, along the wave", Measured(|b| b.wall_tangential_force)),
-    quantity("wall_pressure", "m/(d t^2)", "pressure on the wall: radial force per area 2 pi R dz, outward", Measured(|b| b.wall_pressure)),
-    quantity("wall_shear", "m/(d t^2)", "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure", Measured(|b| b.wall_shear)),
-    quantity("wall_axial_velocity", "d/t", "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall", Measured(|b| b.wall_axial_velocity)),
+    Quantity::new("position", "1", "middle of the bin: (z - c t)/lambda folded to one wavelength, z along the wave", Real(|b| b.position)),
+    Quantity::new("density", "1/d", "grains per length of tube", Measured(|b| b.density)),
+    Quantity::new("axial_velocity", "d/t", "mean axial velocity along the wave, laboratory frame", Measured(|b| b.axial_velocity)),
+    Quantity::new("granular_temperature", "m d^2/t^2", "sum m |v - <v>|^2/(3 N) about the bin's mean velocity", Measured(|b| b.temperature)),
+    Quantity::new("radius", "d", "mean radius of the tube", Real(|b| b.radius)),
+    Quantity::new("least_radius", "d", "least radius seen", Real(|b| b.least_radius)),
+    Quantity::new("largest_radius", "d", "largest radius seen", Real(|b| b.largest_radius)),
+    Quantity::new("wall_normal_force", "m/t^2", "axial force of the wall on the grains along the normals of contacts, per length of tube, along the wave", Measured(|b| b.wall_normal_force)),
+    Quantity::new("wall_tangential_force", "m/t^2", "axial force of the wall on the grains by friction, per length of tube, along the wave", Measured(|b| b.wall_tangential_force)),
+    Quantity::new("wall_pressure", "m/(d t^2)", "pressure on the wall: radial force per area 2 pi R dz, outward", Measured(|b| b.wall_pressure)),
+    Quantity::new("wall_shear", "m/(d t^2)", "shear on the wall along the wave: axial force on it per area 2 pi R dz, less that of the pressure", Measured(|b| b.wall_shear)),
+    Quantity::new("wall_axial_velocity", "d/t", "mean axial velocity of the wall's spheres along the wave; 0 for a prescribed wall", Measured(|b| b.wall_axial_velocity)),
 ];
 
 /// The columns of the flow wave by wave, in order.
 #[rustfmt::skip]
 pub const WAVES: &[Quantity<WaveFlow>] = &[
-    quantity("period", "1", "wavelengths that the wave has run by the end of the period that the row is about", Real(|w| w.period)),
-    quantity("time", "t", "end of that period", Real(|w| w.time)),
-    quantity("wave", "1", "number of the wave, from 0 on along the wave: from throat to throat, moving with them", Whole(|w| w.wave.into())),
-    quantity("grains", "1", "mean number of grains in the wave", Real(|w| w.grains)),
-    quantity("flow_rate", "1/t", "J of these grains along the wave: sum of dz/dt over lambda", Real(|w| w.flow_rate)),
-    quantity("flow_rate_ratio", "1", "J/Jmax of these grains", Real(|w| w.flow_rate_ratio)),
+    Quantity::new("period", "1", "wavelengths that the wave has run by the end of the period that the row is about", Real(|w| w.period)),
+    Quantity::new("time", "t", "end of that period", Real(|w| w.time)),
+    Quantity::new("wave", "1", "number of the wave, from 0 on along the wave: from throat to throat, moving with them", Whole(|w| w.wave.into())),
+    Quantity::new("grains", "1", "mean number of grains in the wave", Real(|w| w.grains)),
+    Quantity::new("flow_rate", "1/t", "J of these grains along the wave: sum of dz/dt over lambda", Real(|w| w.flow_rate)),
+    Quantity::new("flow_rate_ratio", "1", "J/Jmax of these grains", Real(|w| w.flow_rate_ratio)),
 ];

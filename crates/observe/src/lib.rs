@@ -17,7 +17,7 @@ mod quantity;
 mod sample;
 mod shape;
 mod view;
-pub mod waves;
+mod waves;
 
 pub use columns::{COLUMNS, Column, PROFILE, WAVES};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};

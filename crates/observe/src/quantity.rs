@@ -49,6 +49,22 @@ pub enum Value {
 }
 
 impl<Of> Quantity<Of> {
+    /// A quantity by name, unit and meaning.
+    #[must_use]
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        text: &'static str,
+        reading: Reading<Of>,
+    ) -> Self {
+        Self {
+            name,
+            unit,
+            text,
+            reading,
+        }
+    }
+
     /// Names and meanings of its columns: the quantity, and where it is measured its standard error.
     #[must_use]
     pub fn headings(&self) -> Vec<(String, &'static str)> {

@@ -97,8 +97,7 @@ pub fn estimate(
         time_step: configuration.run.time_step,
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
-        newtonian_flow_rate_ratio: newtonian_reference(configuration)
-            .map(|reference| reference.0),
+        newtonian_flow_rate_ratio: newtonian_reference(configuration).map(|reference| reference.0),
         si: configuration
             .units
             .as_ref()

@@ -323,7 +323,7 @@ impl Run {
     }
 
     /// Gives contacts the friction of another configuration of the same run from now on.
-    pub(crate) fn rub_by(&mut self, configuration: Configuration) -> Result<(), RunError> {
+    pub(crate) fn apply_friction(&mut self, configuration: Configuration) -> Result<(), RunError> {
         let Some(friction) = configuration.contact.friction else {
             return Ok(());
         };

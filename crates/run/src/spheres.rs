@@ -20,12 +20,12 @@ pub(crate) struct SeenSphere {
 /// The columns of a table of spheres, in order.
 #[rustfmt::skip]
 pub(crate) const SPHERE: &[Quantity<SeenSphere>] = &[
-    Quantity { name: "grain", unit: "", text: "whether it is a grain; otherwise a sphere of the wall", reading: Truth(|s| s.is_grain) },
-    Quantity { name: "along", unit: "d", text: "place along the tube, the wave running towards larger ones", reading: Real(|s| s.sphere.along) },
-    Quantity { name: "across", unit: "d", text: "place across the tube, from its axis", reading: Real(|s| s.sphere.across) },
-    Quantity { name: "depth", unit: "d", text: "place across the tube and across that", reading: Real(|s| s.sphere.depth) },
-    Quantity { name: "diameter", unit: "d", text: "diameter", reading: Real(|s| s.sphere.diameter) },
-    Quantity { name: "axial_velocity", unit: "d/t", text: "axial velocity along the wave, laboratory frame", reading: Real(|s| s.axial_velocity) },
+    Quantity::new("grain", "", "whether it is a grain; otherwise a sphere of the wall", Truth(|s| s.is_grain)),
+    Quantity::new("along", "d", "place along the tube, the wave running towards larger ones", Real(|s| s.sphere.along)),
+    Quantity::new("across", "d", "place across the tube, from its axis", Real(|s| s.sphere.across)),
+    Quantity::new("depth", "d", "place across the tube and across that", Real(|s| s.sphere.depth)),
+    Quantity::new("diameter", "d", "diameter", Real(|s| s.sphere.diameter)),
+    Quantity::new("axial_velocity", "d/t", "axial velocity along the wave, laboratory frame", Real(|s| s.axial_velocity)),
 ];
 
 /// All grains, and the spheres of an elastic wall, as they stand.

@@ -106,7 +106,7 @@ impl Run {
         };
         friction.kinetic_friction = kinetic;
         friction.static_friction = (proportion * kinetic).max(kinetic);
-        self.rub_by(configuration)
+        self.apply_friction(configuration)
     }
 
     fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {

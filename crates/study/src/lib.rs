@@ -47,6 +47,4 @@ pub use refinement::{Bracket, Finding, brackets, refine};
 pub use row::Row;
 pub use scheduler::{Board, Effort, Ending, Working, work_on};
 pub use specification::{Specification, schema};
-pub use store::{
-    Entry, Exported, Packed, Staleness, State, Store, Survey, Verification,
-};
+pub use store::{Entry, Exported, Packed, Staleness, State, Store, Survey, Verification};

@@ -38,18 +38,10 @@ const fn setting(
     text: &'static str,
     reading: Reading<Configuration>,
 ) -> RunQuantity {
-    let source = Source::Setting(Quantity {
+    RunQuantity::new(
         name,
-        unit,
-        text,
-        reading,
-    });
-    RunQuantity {
-        source,
-        key: name,
-        in_rows: true,
-        label: "",
-    }
+        Source::Setting(Quantity::new(name, unit, text, reading)),
+    )
 }
 
 const fn result(
@@ -58,21 +50,23 @@ const fn result(
     text: &'static str,
     reading: Reading<Summary>,
 ) -> RunQuantity {
-    let source = Source::Result(Quantity {
+    RunQuantity::new(
         name,
-        unit,
-        text,
-        reading,
-    });
-    RunQuantity {
-        source,
-        key: name,
-        in_rows: true,
-        label: "",
-    }
+        Source::Result(Quantity::new(name, unit, text, reading)),
+    )
 }
 
 impl RunQuantity {
+    /// Written under its name both in `summary.json` and in rows.
+    const fn new(name: &'static str, source: Source) -> Self {
+        Self {
+            source,
+            key: name,
+            in_rows: true,
+            label: "",
+        }
+    }
+
     /// Written in `summary.json` under another key.
     const fn at(self, key: &'static str) -> Self {
         Self { key, ..self }

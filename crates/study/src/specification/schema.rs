@@ -82,69 +82,84 @@ fn build() -> Value {
                 "default": 1,
                 "description": "Runs of each point, which differ in their random numbers alone.",
             },
-            "refine": {
-                "type": "object",
-                "additionalProperties": false,
-                "required": ["key", "tolerance"],
-                "description": "Adds points where the flow changes its kind: for each combination of the other axes, \
-                                bisection between the values where all runs had a transition and where none had.",
-                "properties": {
-                    "key": {
-                        "type": "string",
-                        "description": "Key of the axis to refine, such as drive.width; an axis of one key with numbers.",
-                    },
-                    "tolerance": {
-                        "type": "number",
-                        "exclusiveMinimum": 0,
-                        "description": "Distance of neighbouring values at which bisection ends, in the unit of the key.",
-                    },
-                },
+            "refine": refine(),
+            "stop": stop(),
+            "record": record(&columns),
+        },
+    })
+}
+
+/// The table of refinement.
+fn refine() -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "required": ["key", "tolerance"],
+        "description": "Adds points where the flow changes its kind: for each combination of the other axes, \
+                        bisection between the values where all runs had a transition and where none had.",
+        "properties": {
+            "key": {
+                "type": "string",
+                "description": "Key of the axis to refine, such as drive.width; an axis of one key with numbers.",
             },
-            "stop": {
-                "type": "object",
-                "additionalProperties": false,
-                "required": ["settled_periods"],
-                "description": "When a run may end before run.periods. A run without a transition never does.",
-                "properties": {
-                    "settled_periods": {
-                        "type": "integer",
-                        "minimum": 3,
-                        "maximum": 1_000_000,
-                        "description": "Wave periods to go on from the one in which the transition happened; late means \
-                                        are then taken over the second half of them.",
-                    },
-                },
+            "tolerance": {
+                "type": "number",
+                "exclusiveMinimum": 0,
+                "description": "Distance of neighbouring values at which bisection ends, in the unit of the key.",
             },
-            "record": {
-                "type": "object",
-                "additionalProperties": false,
-                "description": "What is kept of each run besides its row of numbers. How often it is sampled is \
-                                base.observe.samples_per_period.",
-                "properties": {
-                    "columns": {
-                        "type": "array",
-                        "minItems": 1,
-                        "items": { "type": "string", "enum": columns },
-                        "description": "Columns of the time series. Missing: all.",
-                    },
-                    "profile": {
-                        "type": "boolean",
-                        "default": true,
-                        "description": "Whether the profile in the wave's frame is kept.",
-                    },
-                    "waves": {
-                        "type": "boolean",
-                        "default": false,
-                        "description": "Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and \
-                                        number of the grains between two throats, a row for each wave of each period.",
-                    },
-                    "snapshot": {
-                        "type": "boolean",
-                        "default": false,
-                        "description": "Whether the spheres as they stand at the end are kept, snapshot.parquet: places along \
-                                        the wave and across it, diameters, axial velocities, a row a sphere.",
-                    },
-                },
+        },
+    })
+}
+
+/// The table of the stopping rule.
+fn stop() -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "required": ["settled_periods"],
+        "description": "When a run may end before run.periods. A run without a transition never does.",
+        "properties": {
+            "settled_periods": {
+                "type": "integer",
+                "minimum": 3,
+                "maximum": 1_000_000,
+                "description": "Wave periods to go on from the one in which the transition happened; late means \
+                                are then taken over the second half of them.",
+            },
+        },
+    })
+}
+
+/// The table of the kept files.
+fn record(columns: &[&str]) -> Value {
+    json!({
+        "type": "object",
+        "additionalProperties": false,
+        "description": "What is kept of each run besides its row of numbers. How often it is sampled is \
+                        base.observe.samples_per_period.",
+        "properties": {
+            "columns": {
+                "type": "array",
+                "minItems": 1,
+                "items": { "type": "string", "enum": columns },
+                "description": "Columns of the time series. Missing: all.",
+            },
+            "profile": {
+                "type": "boolean",
+                "default": true,
+                "description": "Whether the profile in the wave's frame is kept.",
+            },
+            "waves": {
+                "type": "boolean",
+                "default": false,
+                "description": "Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and \
+                                number of the grains between two throats, a row for each wave of each period.",
+            },
+            "snapshot": {
+                "type": "boolean",
+                "default": false,
+                "description": "Whether the spheres as they stand at the end are kept, snapshot.parquet: places along \
+                                the wave and across it, diameters, axial velocities, a row a sphere.",
             },
         },
     })
