@@ -12,7 +12,7 @@
 //! let time = [70.0, 180.0, 690.0, 2000.0];
 //! let panel = ChartPanel::new(
 //!     &Quantity::Width.label(Units::Linear),
-//!     &Quantity::TransitionTime.label(Units::Linear),
+//!     &Quantity::TransitionPeriod.label(Units::Linear),
 //! )
 //! .y_scale(Scale::Logarithmic)
 //! .with(

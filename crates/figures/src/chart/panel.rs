@@ -128,7 +128,7 @@ impl AxisWish {
         let possible = least.is_finite()
             && largest.is_finite()
             && (!logarithmic || least > 0.0 && largest > 0.0);
-        let chosen = self.least.is_some() || self.largest.is_some();
+        let chosen = self.least.is_some() && self.largest.is_some();
         if !possible || largest < least || chosen && largest <= least {
             return Err(FigureError::AxisRange {
                 axis: name,
@@ -172,6 +172,8 @@ mod tests {
         let axis = wish.axis("x", (2.0, 9.5), (0.0, 0.05)).expect("a range");
         assert_eq!(axis.range().0, 0.0);
         assert!((axis.range().1 - 10.0).abs() < 1e-12, "{:?}", axis.range());
+        let nothing = wish.axis("x", (0.0, 0.0), (0.0, 0.05)).expect("a range");
+        assert!(nothing.range().0 == 0.0 && nothing.range().1 > 0.0);
     }
 
     #[test]
