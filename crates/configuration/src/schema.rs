@@ -107,8 +107,12 @@ fn names(list: &Value) -> impl Iterator<Item = &str> {
 }
 
 /// Full names of the keys that stand in every configuration, whatever is chosen.
-pub(crate) fn required() -> Vec<String> {
-    let keys = of::<Keys>();
+pub(crate) fn required() -> &'static [String] {
+    static REQUIRED: OnceLock<Vec<String>> = OnceLock::new();
+    REQUIRED.get_or_init(|| required_of(&of::<Keys>()))
+}
+
+fn required_of(keys: &Value) -> Vec<String> {
     let mut required = Vec::new();
     for table in names(&keys["required"]) {
         let chosen = choices().iter().find(|choice| choice.table == table);

@@ -249,7 +249,7 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
 /// The keys that are needed and not given, alternatives as one.
 fn missing(table: &Table) -> Vec<String> {
     let given = |key: &str| document::entry(table, key).is_some();
-    let mut missing = schema::required();
+    let mut missing = schema::required().to_vec();
     missing.retain(|key| !given(key));
     let groups = ALTERNATIVES.iter().filter(|group| {
         layers::has_meaning(table, group[0]) && !group.iter().any(|key| given(key))
