@@ -28,12 +28,10 @@ pub struct WidthEnsemble {
     pub fit: Option<LifetimeFit>,
 }
 
-impl WidthEnsemble {}
-
 /// Sorts a table of runs by width and estimates the transition times of each.
 ///
 /// One row a run, `width` beside `transitions`; answers in order of width. Columns for [`fit_law`](crate::fit_law) and
-/// [`scatter_test`](crate::scatter_test) follow from `fit`: mean, variance chi_tau, relative variance with errors.
+/// its scatter follow from `fit`: mean, variance chi_tau, relative variance with errors.
 ///
 /// # Errors
 /// [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`], [`Error::Negative`].

@@ -71,7 +71,7 @@ fn truncation(series: &[f64]) -> Result<Truncation, Error> {
 
 /// Mean of a series without its transient, unless no part of it is stationary.
 ///
-/// Leaves out what [`truncation`] finds, and refuses the rest where its halves differ by more than 3 standard errors
+/// Leaves out what `truncation` finds, and refuses the rest where its halves differ by more than 3 standard errors
 /// ([`stationarity`]) or where the truncation lies in the second half: an average over a transient is no average. A
 /// stationary series passes in 99 cases of 100. Look at `estimate.converged` too: a series of a few correlation times
 /// cannot show its own drift. Error of the mean by blocking ([`mean_with_error`]).

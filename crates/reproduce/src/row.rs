@@ -229,7 +229,7 @@ impl<'a> Row<'a> {
         if periods.is_finite() { periods } else { 0.0 }
     }
 
-    /// Whether its late mean belongs to a stationary flow: the halves of the late part differ by at most [`MOST_DRIFT`], or
+    /// Whether its late mean belongs to a stationary flow: the halves of the late part differ by at most `MOST_DRIFT`, or
     /// the table does not say.
     #[must_use]
     pub fn is_stationary(&self) -> bool {
