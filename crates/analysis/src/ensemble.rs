@@ -154,6 +154,30 @@ mod tests {
     }
 
     #[test]
+    fn the_moments_of_an_ensemble_follow_its_replicas_in_time() {
+        // x(t) = 0.3 + a exp(-((t - 50)/10)^2), variance of a = 1.
+        let replicas: Vec<Vec<f64>> = white_noise(11, 400)
+            .iter()
+            .map(|amplitude| {
+                let at = |t: i32| {
+                    let distance = f64::from(t - 50) / 10.0;
+                    0.3 + amplitude * libm::exp(-distance * distance)
+                };
+                (0..100).map(at).collect()
+            })
+            .collect();
+        let series = ensemble_moments(&replicas).unwrap();
+        assert_eq!(series.len(), 100);
+        let peak = series[50];
+        // sqrt(2/399) for normal amplitudes.
+        assert!((peak.variance_error - 0.0708).abs() < 0.02, "{peak:?}");
+        assert!((peak.variance - 1.0).abs() < 3.0 * peak.variance_error);
+        // A standard deviation exp(-1) of the peak's at t = 40.
+        assert!((series[40].variance / peak.variance - libm::exp(-2.0)).abs() < 1e-12);
+        assert!((series[0].mean - 0.3).abs() < 1e-8);
+    }
+
+    #[test]
     fn bad_ensembles_are_refused() {
         let none: [Vec<f64>; 0] = [];
         let few = Error::TooFew {

@@ -121,7 +121,7 @@ mod tests {
             let closed = found(seed + 5000, (2.83, 2.83), 0.04);
             false_loops += usize::from(closed.probability < 0.05);
         }
-        coverage.judge(0.01);
+        coverage.judge([0.01; 2]);
         assert_coverage(false_loops, trials as usize, 0.05, 0.015, "false loops");
         assert!(seen > 195, "{seen}");
     }

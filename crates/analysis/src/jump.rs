@@ -105,7 +105,7 @@ mod tests {
             .unwrap();
             coverage.count([jump.height]);
         }
-        coverage.judge(0.01);
+        coverage.judge([0.01; 2]);
     }
 
     #[test]

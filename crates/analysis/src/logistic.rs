@@ -263,7 +263,7 @@ mod tests {
             coverage.count([found.width]);
             spreads += found.spread;
         }
-        coverage.judge(0.01);
+        coverage.judge([0.01; 2]);
         assert!((spreads / trials as f64 / 0.06 - 1.0).abs() < 0.1);
     }
 

@@ -276,7 +276,7 @@ mod tests {
             constant_rejected += usize::from(found.constant_probability < 0.01);
             assert!(found.chance_probability < 0.01);
         }
-        coverage.judge(0.03);
+        coverage.judge([0.03; 2]);
         let trials = trials as usize;
         assert_coverage(
             inverse_rejected,

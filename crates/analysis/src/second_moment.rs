@@ -190,6 +190,7 @@ mod tests {
     use crate::bootstrap::Randomness;
     use crate::synthetic::{Coverage, white_noise};
     use crate::{Law, fit_law};
+    use proptest::prelude::*;
 
     const BOOTSTRAP: Bootstrap = Bootstrap {
         resamples: 200,
@@ -264,7 +265,7 @@ mod tests {
             coverage.count([peak.value]);
         }
         // Percentiles of the variance of 40 numbers are known to be short by some hundredths.
-        coverage.judge(0.05);
+        coverage.judge([0.04, 0.05]);
     }
 
     #[test]
@@ -299,5 +300,27 @@ mod tests {
         let fit = fit_law(Law::Power, &widths, &value, &error, known).unwrap();
         assert!(fit.exponent.deviations_from(0.5).abs() < 3.0, "{fit:?}");
         assert!(fit.exponent.error < 0.15);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn any_ensemble_gives_moments_or_an_error(
+            runs in prop::collection::vec(prop::collection::vec(-1.0..2.0_f64, 0..12), 0..8),
+            samples in 0_usize..20,
+            odd in prop::option::of(any::<f64>()),
+        ) {
+            let mut runs = runs;
+            if let (Some(odd), Some(run)) = (odd, runs.first_mut()) {
+                run.push(odd);
+            }
+            let bootstrap = Bootstrap { resamples: 20, seed: 0 };
+            for after_end in [AfterEnd::Leave, AfterEnd::Hold { samples }] {
+                if let Ok(found) = second_moment(&runs, after_end) {
+                    prop_assert!(found.iter().all(|moment| moment.variance >= 0.0));
+                    let _ = second_moment_peak(&runs, after_end, bootstrap);
+                }
+            }
+        }
     }
 }

@@ -148,7 +148,7 @@ mod tests {
             let fit = fit_shifted_exponential(&sample(seed, 30, 12.5)).unwrap();
             coverage.count([fit.dead_time, fit.waiting_time, fit.mean, fit.variance]);
         }
-        coverage.judge(0.01);
+        coverage.judge([0.01; 2]);
     }
 
     #[test]

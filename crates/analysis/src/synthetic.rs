@@ -92,7 +92,7 @@ pub(crate) fn watched(time: f64, until: f64) -> Transition {
 /// How many of the intervals of N estimates cover the truth.
 pub(crate) struct Coverage<const N: usize> {
     names: [&'static str; N],
-    pub(crate) truths: [f64; N],
+    truths: [f64; N],
     covered: [[usize; 2]; N],
     trials: usize,
 }
@@ -116,11 +116,13 @@ impl<const N: usize> Coverage<N> {
         }
     }
 
-    /// Asserts that both intervals of every estimate keep their level, up to a bias of `slack`.
-    pub(crate) fn judge(&self, slack: f64) {
-        for (name, [narrow, wide]) in self.names.iter().zip(self.covered) {
-            assert_coverage(narrow, self.trials, 0.6827, slack, name);
-            assert_coverage(wide, self.trials, 0.95, slack, name);
+    /// Asserts that the intervals of 68 and of 95 per cent of every estimate keep their level, up to a bias of `slack`
+    /// of each.
+    pub(crate) fn judge(&self, slack: [f64; 2]) {
+        for (name, covered) in self.names.iter().zip(self.covered) {
+            for ((covered, level), slack) in covered.into_iter().zip([0.6827, 0.95]).zip(slack) {
+                assert_coverage(covered, self.trials, level, slack, name);
+            }
         }
     }
 }

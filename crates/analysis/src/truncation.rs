@@ -116,6 +116,7 @@ pub fn stationary_mean(series: &[f64]) -> Result<StationaryMean, Error> {
 mod tests {
     use super::*;
     use crate::synthetic::{assert_coverage, autoregressive};
+    use proptest::prelude::*;
 
     /// Noise about 0.9 after a start near 0 that dies out with a time of 60 samples.
     fn approach(seed: u64, samples: usize) -> Vec<f64> {
@@ -201,5 +202,15 @@ mod tests {
         assert_eq!(truncation(&step).unwrap().discard, 40);
         let found = stationary_mean(&[0.5; 64]).unwrap();
         assert_eq!((found.discarded, found.estimate.mean), (0, 0.5));
+    }
+
+    proptest! {
+        #[test]
+        fn any_series_is_judged(series in prop::collection::vec(any::<f64>(), 0..120)) {
+            if let Ok(found) = truncation(&series) {
+                prop_assert!(found.discard < series.len());
+            }
+            let _ = stationary_mean(&series);
+        }
     }
 }

@@ -70,7 +70,7 @@ fn exponents_are_found_with_bootstrap_errors_that_cover() {
     }
     assert!((mean_quality - 1.0).abs() < 0.15, "{mean_quality}");
     // Percentiles of 40 resamples; the noise of the data counts twice in a resample.
-    coverage.judge(0.05);
+    coverage.judge([0.05; 2]);
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn intervals_of_critical_width_and_exponent_cover() {
         coverage.count([fit.critical_width.unwrap(), fit.exponent]);
         improbable += usize::from(fit.probability < 0.1);
     }
-    coverage.judge(0.01);
+    coverage.judge([0.01; 2]);
     let trials = trials as usize;
     assert_coverage(improbable, trials, 0.1, 0.01, "probability of chi^2");
 }
@@ -47,7 +47,7 @@ fn a_known_critical_width_sharpens_the_exponent_and_its_error_enters() {
         free_error += fit(None).exponent.error;
         fixed_error += fit(Some(Uncertain::normal(2.82, 0.0))).exponent.error;
     }
-    coverage.judge(0.01);
+    coverage.judge([0.01; 2]);
     assert!(fixed_error < known_error && known_error < free_error);
 }
 

@@ -38,7 +38,7 @@ fn profile_intervals_of_critical_width_and_exponent_cover() {
         let fit = fit_law_to_runs(Law::Power, Family::Exponential, &width, &transitions).unwrap();
         coverage.count([fit.critical_width.unwrap(), fit.exponent]);
     }
-    coverage.judge(0.02);
+    coverage.judge([0.02; 2]);
 }
 
 #[test]
