@@ -52,14 +52,6 @@ pub(crate) enum Command {
     Completions(CompletionsArguments),
 }
 
-/// How a schema is printed.
-#[derive(Clone, Copy, Debug, Args)]
-pub(crate) struct SchemaArguments {
-    /// Print all keys as tables in Markdown, for people.
-    #[arg(long)]
-    pub(crate) markdown: bool,
-}
-
 /// Where a configuration comes from.
 #[derive(Debug, Args)]
 pub(crate) struct ConfigurationArguments {

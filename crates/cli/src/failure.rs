@@ -1,6 +1,6 @@
 //! Errors as a person reads them, and the exit code that goes with each.
 
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -12,8 +12,6 @@ use peristalsis_reproduce::ClaimError;
 use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
 use peristalsis_viewer::ViewerError;
-
-use crate::commands::say;
 
 /// Why a command ended without what was asked for.
 #[derive(Debug, thiserror::Error)]
@@ -321,4 +319,9 @@ fn with_help<'a>(group: Group<'a>, help: Option<&'a str>) -> Group<'a> {
         Some(help) => group.element(Level::HELP.message(help)),
         None => group,
     }
+}
+
+/// Prints a line on standard error; where nobody reads it, it is lost, which no run should end for.
+pub(crate) fn say(text: &str) {
+    drop(writeln!(std::io::stderr().lock(), "{text}"));
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use peristalsis_run::Progress;
 
-use crate::commands::say;
+use crate::failure::say;
 
 /// Where progress goes.
 pub(crate) enum Display {

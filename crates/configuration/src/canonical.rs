@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use toml::Value;
 
 use crate::configuration::{Configuration, Control};
-use crate::layers::ALTERNATIVES;
+use crate::keys::ALTERNATIVES;
 use crate::schedule::{Schedule, ScheduleForm};
 
 /// Tables and keys that do not determine the trajectory: how long it is followed, what is measured, in which units it is

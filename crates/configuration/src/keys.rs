@@ -10,6 +10,22 @@ use serde::{Deserialize, Serialize};
 
 use crate::configuration::{Drive, Grains, Initial, Observe, Run, Tube, Wall};
 
+/// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
+pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
+    &[
+        "grains.number",
+        "grains.volume_fraction",
+        "grains.number_density",
+    ],
+    &["drive.width", "drive.amplitude"],
+    &[
+        "drive.strain_rate",
+        "drive.wave_speed",
+        "units.wave_frequency",
+    ],
+    &["run.periods", "run.duration"],
+];
+
 /// Configuration of one simulation of grains in a peristaltic tube.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub(crate) struct Keys {

@@ -7,24 +7,9 @@ use peristalsis_physics::wall::ElasticNetwork;
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
+use crate::keys::ALTERNATIVES;
 use crate::schema::{self, Choice};
 use crate::units;
-
-/// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
-pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
-    &[
-        "grains.number",
-        "grains.volume_fraction",
-        "grains.number_density",
-    ],
-    &["drive.width", "drive.amplitude"],
-    &[
-        "drive.strain_rate",
-        "drive.wave_speed",
-        "units.wave_frequency",
-    ],
-    &["run.periods", "run.duration"],
-];
 
 /// A key whose value decides which other keys have a meaning.
 pub(crate) struct Switch {

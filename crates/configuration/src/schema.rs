@@ -8,8 +8,8 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::configuration::Control;
+use crate::keys::ALTERNATIVES;
 use crate::keys::Keys;
-use crate::layers::ALTERNATIVES;
 use crate::presets::PRESETS;
 
 /// JSON schema (draft 2020-12) of a configuration file.

@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use crate::table::ValueKind;
+use crate::value_kind::ValueKind;
 
 /// What can go wrong between a value in memory and its bytes on disk.
 #[derive(Debug, thiserror::Error)]

@@ -20,11 +20,13 @@ mod error;
 pub mod parquet;
 pub mod table;
 pub mod trajectory;
+mod value_kind;
 
 pub use checkpoint::CheckpointIdentity;
 pub use error::FormatError;
-pub use table::{Column, Table, TableBuilder, ValueKind, Values};
+pub use table::{Column, Table, TableBuilder, Values};
 pub use trajectory::{Frame, TrajectoryFile, TrajectoryFormat};
+pub use value_kind::ValueKind;
 
 /// Bytes as lower-case hexadecimal digits.
 pub fn hexadecimal(bytes: &[u8]) -> String {

@@ -35,7 +35,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::atomic;
 use crate::error::FormatError;
-use crate::table::{COLUMNS_KEY, Column, Table, ValueKind, Values, is_reserved};
+use crate::table::{COLUMNS_KEY, Column, Table, Values, is_reserved};
+use crate::value_kind::ValueKind;
 
 /// What stands in bytes 4 to 16 of a sealed file; the checksum follows in bytes 16 to 20.
 const SEAL_SIGNATURE: [u8; 12] = *b"\x89peristalsis";

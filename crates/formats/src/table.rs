@@ -1,9 +1,9 @@
 //! Tables: the one shape of every tabular result, whatever file it ends up in.
 
 use std::collections::{BTreeMap, HashSet};
-use std::fmt;
 
 use crate::error::FormatError;
+use crate::value_kind::ValueKind;
 
 /// Beginning of the metadata keys that Arrow keeps for itself.
 const ARROW_PREFIX: &str = "ARROW:";
@@ -14,30 +14,6 @@ pub(crate) const COLUMNS_KEY: &str = "peristalsis.columns";
 /// Whether a file format keeps this metadata key for itself.
 pub(crate) fn is_reserved(key: &str) -> bool {
     key.starts_with(ARROW_PREFIX) || key == COLUMNS_KEY
-}
-
-/// The kind of the values in one column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum ValueKind {
-    /// Double-precision numbers, with NaN for a missing one.
-    Real,
-    /// Signed 64-bit integers.
-    Integer,
-    /// Unicode text.
-    Text,
-    /// True or false.
-    Boolean,
-}
-
-impl fmt::Display for ValueKind {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Real => "real",
-            Self::Integer => "integer",
-            Self::Text => "text",
-            Self::Boolean => "boolean",
-        })
-    }
 }
 
 /// The values of one column, one a row.

@@ -19,7 +19,7 @@ use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use serde::Serialize;
 
-use crate::welcome::Driven;
+use crate::timeline::{Driven, Row};
 
 /// The head of a frame.
 #[derive(Clone, Debug, Serialize)]
@@ -51,18 +51,6 @@ pub(crate) struct Head {
     pub(crate) rows: Vec<Row>,
     /// The last sample.
     pub(crate) sample: Option<Shown>,
-}
-
-/// A row of the time series, for the charts.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Row {
-    pub(crate) number: usize,
-    pub(crate) clock: f64,
-    pub(crate) flow_rate_ratio: f64,
-    pub(crate) bottleneck: f64,
-    /// Width or force amplitude.
-    pub(crate) amplitude: f64,
-    pub(crate) strain_rate: f64,
 }
 
 /// Numbers of a sample that are shown.

@@ -10,8 +10,8 @@ use peristalsis_observe::Sample;
 use peristalsis_run::walls;
 
 use crate::ViewerError;
-use crate::frame::{Head, Row, of_recording};
-use crate::timeline::{Timeline, thin};
+use crate::frame::{Head, of_recording};
+use crate::timeline::{Row, Timeline, thin};
 use crate::welcome::{Recorded, Welcome};
 
 /// Relative difference of the tube's length that rounding to 32 bits may cause.

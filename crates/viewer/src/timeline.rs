@@ -2,12 +2,47 @@
 
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
 use peristalsis_observe::Sample;
-
-use crate::frame::Row;
-use crate::welcome::Driven;
+use peristalsis_run::Run;
+use serde::Serialize;
 
 /// Rows that a client gets at first, at most.
 const FIRST_ROWS: usize = 4000;
+
+/// A row of the time series, for the charts.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Row {
+    pub(crate) number: usize,
+    pub(crate) clock: f64,
+    pub(crate) flow_rate_ratio: f64,
+    pub(crate) bottleneck: f64,
+    /// Width or force amplitude.
+    pub(crate) amplitude: f64,
+    pub(crate) strain_rate: f64,
+}
+
+/// Present values of the driven parameters.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Driven {
+    pub(crate) width: Option<f64>,
+    pub(crate) force_amplitude: Option<f64>,
+    pub(crate) strain_rate: Option<f64>,
+    pub(crate) friction: Option<f64>,
+}
+
+impl Driven {
+    pub(crate) fn of(run: &Run) -> Self {
+        Self {
+            width: run.driven(ScheduledParameter::Width),
+            force_amplitude: run.driven(ScheduledParameter::ForceAmplitude),
+            strain_rate: run.driven(ScheduledParameter::StrainRate),
+            friction: run
+                .configuration()
+                .contact
+                .friction
+                .map(|it| it.kinetic_friction),
+        }
+    }
+}
 
 /// The drive at any time, by a configuration.
 #[derive(Clone, Copy, Debug)]

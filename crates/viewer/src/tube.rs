@@ -7,10 +7,10 @@ use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_run::{Run, RunError, RunFolder};
 
-use crate::frame::{Head, Row, of_run};
+use crate::frame::{Head, of_run};
 use crate::message::{self, Command, Notice, Steered};
-use crate::timeline::{Timeline, thin};
-use crate::welcome::{Driven, Welcome};
+use crate::timeline::{Driven, Row, Timeline, thin};
+use crate::welcome::Welcome;
 use crate::within::Within;
 
 /// Seconds from frame to frame.

@@ -1,12 +1,11 @@
 //! The first message to the page of a run.
 
-use peristalsis_configuration::{Control, ScheduledParameter};
+use peristalsis_configuration::Control;
 use peristalsis_engine::Wall;
-use peristalsis_run::{Configuration, Run, VERSION};
+use peristalsis_run::{Configuration, VERSION};
 use serde::Serialize;
 
-use crate::frame::Row;
-use crate::timeline::Timeline;
+use crate::timeline::{Driven, Row, Timeline};
 use crate::within::Within;
 
 /// The tube and the ranges of its sliders.
@@ -60,30 +59,6 @@ pub(crate) struct Ranges {
     force_amplitude: Option<(f64, f64)>,
     strain_rate: Option<(f64, f64)>,
     friction: Option<(f64, f64)>,
-}
-
-/// Present values of the driven parameters.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Driven {
-    pub(crate) width: Option<f64>,
-    pub(crate) force_amplitude: Option<f64>,
-    pub(crate) strain_rate: Option<f64>,
-    pub(crate) friction: Option<f64>,
-}
-
-impl Driven {
-    pub(crate) fn of(run: &Run) -> Self {
-        Self {
-            width: run.driven(ScheduledParameter::Width),
-            force_amplitude: run.driven(ScheduledParameter::ForceAmplitude),
-            strain_rate: run.driven(ScheduledParameter::StrainRate),
-            friction: run
-                .configuration()
-                .contact
-                .friction
-                .map(|it| it.kinetic_friction),
-        }
-    }
 }
 
 impl Ranges {

@@ -18,12 +18,7 @@ use std::io::Write;
 use peristalsis_run::Warning;
 use serde::Serialize;
 
-use crate::failure::Failure;
-
-/// Prints a line on standard error; where nobody reads it, it is lost, which no run should end for.
-pub(crate) fn say(text: &str) {
-    drop(writeln!(std::io::stderr().lock(), "{text}"));
-}
+use crate::failure::{Failure, say};
 
 /// Prints on standard output; a reader that has gone away is no failure.
 fn print(text: &str) -> Result<(), Failure> {

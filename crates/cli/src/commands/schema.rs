@@ -2,12 +2,20 @@
 
 use std::process::ExitCode;
 
+use clap::Args;
 use peristalsis_configuration::reference;
 use serde_json::Value;
 
-use crate::arguments::SchemaArguments;
 use crate::commands::{print, print_json};
 use crate::failure::Failure;
+
+/// How a schema is printed.
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct SchemaArguments {
+    /// Print all keys as tables in Markdown, for people.
+    #[arg(long)]
+    pub(crate) markdown: bool,
+}
 
 /// Prints the JSON schema of the configuration.
 pub(crate) fn schema(arguments: SchemaArguments) -> Result<ExitCode, Failure> {

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 use super::Context;
 use crate::configuration::{Grains, Tube};
 use crate::error::ProblemKind;
+use crate::keys::ALTERNATIVES;
 use crate::keys::GrainsKeys;
-use crate::layers::ALTERNATIVES;
 use crate::limits;
 
 /// The grains in a given tube.

@@ -13,8 +13,7 @@ use std::time::Duration;
 
 use clap::{Args, Subcommand};
 
-use crate::arguments::SchemaArguments;
-use crate::commands::schema::study_schema;
+use crate::commands::schema::{SchemaArguments, study_schema};
 use crate::failure::Failure;
 
 /// What to do with a study.
