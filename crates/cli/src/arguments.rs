@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use peristalsis_run::{Span, Window};
 
 use crate::commands::render::RenderArguments;
+use crate::commands::schema::SchemaArguments;
 use crate::commands::study::{StudyCommand, time_span};
 
 /// Grains in a peristaltic tube, by the discrete element method.
