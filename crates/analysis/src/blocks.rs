@@ -208,7 +208,7 @@ mod tests {
         let drift: Vec<f64> = (0..256).map(f64::from).collect();
         let estimate = mean_with_error(&drift).unwrap();
         assert!(!estimate.converged);
-        // The largest error that 8 blocks give, far above that of single samples.
+        // The largest error that 8 blocks give, far above the error of single samples.
         assert_eq!(estimate.blocks, 8);
         assert!(estimate.error > 5.0 * block_levels(&drift).unwrap()[0].error);
         let short = mean_with_error(&[1.0, 2.0, 1.0, 2.0]).unwrap();

@@ -8,7 +8,7 @@ use crate::numerics::simplex::nelder_mead;
 use crate::uncertain::Interval;
 use serde::{Deserialize, Serialize};
 
-/// Value of the objective where the overlap falls short; it grows with what is missing, so that a search finds its way
+/// Value of the objective where the overlap falls short; it grows with the missing overlap, so that a search finds its way
 /// back.
 const SHORT: f64 = 1e6;
 /// Tolerance of the search, relative to its first steps.

@@ -16,7 +16,7 @@ pub struct LawEvidence {
     pub log_likelihood: f64,
     /// Akaike's criterion 2 p - 2 ln L.
     pub akaike: f64,
-    /// Akaike's criterion less that of the best law: beyond some 10 the law has next to no support.
+    /// Akaike's criterion minus the criterion of the best law: beyond some 10 the law has next to no support.
     pub excess: f64,
     /// Akaike weight exp(-excess/2) over the sum of all laws compared: how probable it is to be the nearest of them.
     pub weight: f64,

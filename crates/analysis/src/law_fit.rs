@@ -23,7 +23,7 @@ pub struct LawFit {
     pub exponent: Uncertain,
     /// ln A, in the normal approximation.
     pub ln_amplitude: Uncertain,
-    /// Sum of the squared deviations of ln y in units of their errors, that of a known w_c included.
+    /// Sum of the squared deviations of ln y in units of their errors, the term of a known w_c included.
     pub chi_squared: f64,
     /// Points less free parameters.
     pub degrees_of_freedom: usize,

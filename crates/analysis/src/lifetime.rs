@@ -167,7 +167,7 @@ fn with_shape(family: Family, group: &Group, runs: usize) -> Result<LifetimeFit,
             .at(ln_mean)
             .value
     };
-    // Steps below the scatter of the estimates, so that the quadratic part is what is seen.
+    // Steps below the scatter of the estimates, so that only the quadratic part shows.
     let step = 0.05 / (observed as f64).sqrt();
     let information = curvature(
         |p: &[f64; 2]| -value(p[0], p[1]),

@@ -46,7 +46,7 @@ pub struct TwoPeaks {
     pub lower: Peak,
     /// Peak at the larger mean.
     pub upper: Peak,
-    /// Schwarz's criterion of one peak less that of two: positive for two peaks, beyond 10 very clearly so.
+    /// Schwarz's criterion of one peak minus the criterion of two: positive for two peaks, beyond 10 very clearly so.
     pub criterion_gain: f64,
     /// Distance of the peaks over their widths, sqrt(2) |m_2 - m_1|/sqrt(s_1^2 + s_2^2): two peaks can be seen beyond
     /// 2.
@@ -202,7 +202,7 @@ fn maximise(values: &[f64], split: f64, narrowest: f64) -> (f64, Peak, Peak) {
     let nowhere = (f64::NEG_INFINITY, peak_of(values, |_| 1.0, narrowest));
     for _ in 0..MOST_STEPS {
         let total: f64 = shares.iter().sum();
-        // A peak that has lost all of its values is none.
+        // A peak without values does not count.
         if !(total > 1e-9 && total < values.len() as f64 - 1e-9) {
             return (nowhere.0, nowhere.1, nowhere.1);
         }

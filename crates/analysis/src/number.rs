@@ -204,7 +204,7 @@ impl Layout {
     }
 }
 
-/// Mantissa from 1 to 10 and power of ten; `None` for zero and for what is not finite.
+/// Mantissa from 1 to 10 and power of ten; `None` for zero and for values that are not finite.
 fn scientific(value: f64) -> Option<(f64, i32)> {
     let text = format!("{:e}", value.abs());
     let (mantissa, power) = text.split_once('e')?;

@@ -12,7 +12,7 @@ const LEAST_RUNS: usize = 3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum AfterEnd {
-    /// Nothing: the moments at each time are those of the runs still going. Right where runs ended for reasons of their
+    /// Nothing: the moments at each time are taken over the runs still going. Right where runs ended for reasons of their
     /// own; where they were stopped because they had jammed, it removes the jammed ones and with them the variance.
     Leave,
     /// The mean of the last samples of the run: right for runs that were stopped once they had settled in the jammed

@@ -91,7 +91,7 @@ struct Crossing {
 ///     detector.push(average)?;
 /// }
 /// assert_eq!(detector.outcome(), Transition::Censored { time: 40.0 });
-/// // A quarter of the way from the middle of period 1 to that of period 2.
+/// // A quarter of the way from the middle of period 1 to the middle of period 2.
 /// assert_eq!(detector.push(0.9)?, Transition::At { time: 17.5, period: 2 });
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```

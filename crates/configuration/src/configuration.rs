@@ -15,7 +15,7 @@ use crate::limits;
 use crate::schedule::{Schedule, ScheduledParameter};
 use crate::units::Units;
 
-/// Everything that determines one run; what is alternative in TOML is resolved to one value.
+/// Everything that determines one run; alternatives of the TOML form are resolved to one value.
 ///
 /// Units: mass m, diameter d, time t as in CONVENTIONS. Two configurations with the same values here run the same.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -309,7 +309,7 @@ pub struct Observe {
     /// Samples of the time series in one wave period; a static run has 200 samples in all.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
-    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is the largest of a bin.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000))]
     pub profile_bins: u32,
     /// Part of the run, at its end, that late means and profiles are taken over.
@@ -377,7 +377,7 @@ impl Configuration {
         hardest
     }
 
-    /// Mean mass of a grain: that of its mean cubed diameter \[m\].
+    /// Mean mass of a grain, from the mean of its cubed diameter \[m\].
     #[must_use]
     pub fn mean_grain_mass(&self) -> f64 {
         self.grains.mean_cubed_diameter()

@@ -195,7 +195,7 @@ fn with_description(branch: &Value, whole: &Value) -> Value {
     branch
 }
 
-/// Whether the schema's type is that of the value.
+/// Whether the value has the schema's type.
 fn takes(schema: &Value, node: &Node) -> bool {
     let kind = schema.get("type").and_then(Value::as_str);
     match node {

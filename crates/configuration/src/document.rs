@@ -66,7 +66,7 @@ impl Node {
     }
 }
 
-/// Parses a file, to be checked and resolved by someone else; what is not TOML becomes a problem and an empty table.
+/// Parses a file, to be checked and resolved by someone else; invalid TOML becomes a problem and an empty table.
 #[must_use]
 pub fn parse_file(file: SourceFile<'_>, problems: &mut Problems) -> Table {
     parse(
@@ -75,7 +75,7 @@ pub fn parse_file(file: SourceFile<'_>, problems: &mut Problems) -> Table {
     )
 }
 
-/// Parses a whole source; what is not TOML becomes a problem and an empty table.
+/// Parses a whole source; invalid TOML becomes a problem and an empty table.
 pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
     match DeTable::parse(&source.text) {
         Ok(table) => convert_table(source, table.get_ref()),

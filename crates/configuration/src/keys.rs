@@ -1,4 +1,4 @@
-//! The keys of the TOML form as they are written: those of the resolved configuration, and those that stand for them.
+//! The keys of the TOML form as they are written: the keys of the resolved configuration, and keys that stand for them.
 //!
 //! What `schemars` says of a key (`x-unit` and the range beside its documentation) becomes the JSON schema, and the reader
 //! enforces it. m, d and t are the units of mass, length and time; "1" marks a pure number. The default "null" says that
@@ -180,7 +180,7 @@ pub(crate) struct UnitsKeys {
     /// Diameter of a grain whose diameter is 1 here: the unit of length d.
     #[schemars(extend("x-unit" = "m", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) grain_diameter: Option<f64>,
-    /// Density of the grains' material; the unit of mass is that of a sphere of diameter d, m = pi density d^3/6.
+    /// Density of the grains' material; the unit of mass is the mass of a sphere of diameter d, m = pi density d^3/6.
     #[schemars(extend("x-unit" = "kg m^-3", "exclusiveMinimum" = 0, "maximum" = 1e6))]
     pub(crate) density: Option<f64>,
     /// Stiffness of a contact, what contact.normal_stiffness stands for: it fixes the unit of time, sqrt(m/k) for k = 1.

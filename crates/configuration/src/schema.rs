@@ -198,7 +198,7 @@ fn tidy(schema: &mut Value) {
                     Some(unit) => description.push_str(&format!(" (Unit: {unit}.)")),
                 }
             }
-            // A key without a default has none, and that of a whole table is the sum of those of its keys.
+            // The default of a whole table follows from its keys; a key may have none.
             if object
                 .get("default")
                 .is_some_and(|value| value.is_object() || value.is_null())

@@ -34,7 +34,7 @@ pub struct Touching {
 /// All contacts at the present positions and velocities, in order of the first sphere; those of a grain with other moving
 /// spheres before those with a prescribed wall.
 ///
-/// No history moves on, but those of contacts with the wall are taken out of `contacts`.
+/// No history moves on, but the histories of contacts with the wall are taken out of `contacts`.
 pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,

@@ -1,4 +1,4 @@
-//! What the wave does: nothing where there is none; in its own frame a smooth wall keeps the energy of a grain.
+//! The wave: without one nothing moves; in its own frame a smooth wall keeps the energy of a grain.
 
 mod common;
 

@@ -1,4 +1,4 @@
-//! A picture of pixels with what is needed to read it: notes, marks, a scale and a bar of colours.
+//! A picture of pixels with its key: notes, marks, a scale and a bar of colours.
 
 use crate::colour::{BLACK, Colour, WHITE};
 use crate::colour_scale::ColourScale;
@@ -107,15 +107,15 @@ impl Default for PictureFigure<'_> {
 
 /// Fewest pixels in a point: letters of coarser pictures would not be read.
 const FEWEST_PIXELS_PER_POINT: f64 = 1.65;
-/// Space between the page's edge and what is written.
+/// Margin between the page's edge and the texts.
 const EDGE: f64 = 5.0;
 const BAR_HEIGHT: f64 = 5.5;
 /// Widest bar of colours, and its part of a narrow page.
 const BAR_WIDTH: f64 = 120.0;
 const BAR_PART: f64 = 0.3;
-/// Gap between the picture and what is below.
+/// Gap below the picture.
 const GAP_BELOW: f64 = 6.0;
-/// Space between the scale and what is beside it.
+/// Space around the scale.
 const ROOM_BESIDE_SCALE: f64 = 12.0;
 /// Half the width of a mark, and its height.
 const MARK: (f64, f64) = (2.2, 3.4);
@@ -124,7 +124,7 @@ impl PictureFigure<'_> {
     /// Lays the figure out, and paints it with the picture's own pixels.
     ///
     /// # Errors
-    /// If there are no pixels or no whole number of rows, or if the range of the colours is none.
+    /// If there are no pixels or no whole number of rows, or if the range of the colours is empty.
     pub fn draw(&self) -> Result<Drawing, FigureError> {
         let columns = self.columns as usize;
         let rows = self.pixels.len() / (3 * columns).max(1);

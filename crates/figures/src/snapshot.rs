@@ -220,7 +220,7 @@ impl<'a> Part<'a> {
         extent(heights.chain(outline.iter().copied())).1
     }
 
-    /// Mean diameter of the grains, of the wall spheres where there are none, or 1.
+    /// Mean diameter of the grains; without grains, of the wall spheres; without either, 1.
     fn diameter(&self) -> f64 {
         let walls = if self.grains.is_empty() {
             self.spheres.len()

@@ -111,7 +111,7 @@ fn partial_with(
     Ok(partial)
 }
 
-/// Makes the names in a folder last: that of a folder just made in it, or of a file just moved there.
+/// Makes the names in a folder durable: of a folder just made in it, or of a file just moved there.
 ///
 /// # Errors
 /// [`FormatError::Io`] where the folder cannot be opened or synchronized.

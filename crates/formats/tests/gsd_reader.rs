@@ -1,4 +1,4 @@
-//! What was written as GSD is read back; what is cut short, damaged or another's is refused in words.
+//! GSD files are read back; a file cut short, damaged or of another program is refused in words.
 
 #![allow(
     clippy::unwrap_used,

@@ -29,7 +29,7 @@ impl Orientations {
         }
     }
 
-    /// Whether they can be those of so many grains.
+    /// Whether their number fits so many grains.
     #[must_use]
     pub fn fit(&self, grains: usize) -> bool {
         [self.turned.len(), self.angular_velocity.len()] == [grains; 2]

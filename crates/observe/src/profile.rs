@@ -443,7 +443,7 @@ fn total<'a>(sums: impl IntoIterator<Item = &'a Sums>) -> Sums {
     total
 }
 
-/// Standard error of the mean of what is finite of the values; NaN below two.
+/// Standard error of the mean of the finite values; NaN below two.
 fn standard_error(values: impl Iterator<Item = f64>) -> f64 {
     let values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
     let number = values.len() as f64;

@@ -6,7 +6,7 @@
 //! the laws are written for any [`real::Real`], one number or several side by side.
 //!
 //! These types are the vocabulary of a configuration as well: a field's documentation, unit, range and default are
-//! those of its key, from which the reader, its errors and the schema follow.
+//! the ones of its key, from which the reader, its errors and the schema follow.
 
 #![forbid(unsafe_code)]
 

@@ -9,7 +9,7 @@ use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
 use glam::DVec3;
 
-/// A real number, or several side by side. Every operation is that of IEEE 754 in double precision, lane by lane.
+/// A real number, or several side by side. Every operation follows IEEE 754 in double precision, lane by lane.
 pub trait Real:
     Copy
     + Debug

@@ -312,7 +312,7 @@ mod tests {
         let veiled = render(&scene, &front(60)).unwrap();
         assert_ne!(plain.pixel(36, 20), veiled.pixel(36, 20));
         assert!(veiled.pixel(36, 20)[0] > 2 * veiled.pixel(36, 20)[2]);
-        // Glass behind what is opaque is not seen.
+        // Glass behind an opaque surface is not seen.
         scene.spheres[1].centre.z = -2.0;
         let hidden = render(&scene, &front(60)).unwrap();
         assert_eq!(plain.pixel(36, 20), hidden.pixel(36, 20));

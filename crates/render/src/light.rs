@@ -12,7 +12,7 @@ use crate::depth_map::{DepthMap, Disc};
 
 /// Directions of the sky over the whole sphere.
 const SKY_DIRECTIONS: u32 = 84;
-/// Light from further behind what is seen reaches no surface that faces the eye.
+/// Light from further behind the visible surface reaches no surface that faces the eye.
 const FURTHEST_BEHIND: f32 = -0.5;
 /// Light of the whole sky on an open surface.
 const SKY: f32 = 0.74;

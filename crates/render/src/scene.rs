@@ -7,9 +7,9 @@ use crate::colour::Colour;
 /// How a sphere's surface looks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Finish {
-    /// It hides what is behind.
+    /// Opaque.
     Opaque,
-    /// It shows what is behind, and its own rim: what stands before a cut.
+    /// Transparent but for its rim: for spheres before a cut.
     Glass,
 }
 

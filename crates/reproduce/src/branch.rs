@@ -109,7 +109,7 @@ impl Step {
     }
 }
 
-/// A number of which only two bounds are known: its error is that of a uniform distribution between them, which is the 68 per
+/// A number known only by two bounds: its error follows from a uniform distribution between them, which is the 68 per
 /// cent interval as well, so that it reads the same everywhere; the bounds are the 95 per cent interval.
 pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
     let (value, error) = (0.5 * (lower + upper), (upper - lower) / 12_f64.sqrt());

@@ -29,7 +29,7 @@ pub(crate) struct Part {
     pub(crate) statistics: Statistics,
 }
 
-/// The verdict of several lattices: that of those with enough behind them, where they agree; open where they do not. With it
+/// The verdict of several lattices: the one on which the lattices with enough evidence agree, else open. With it
 /// the statistics of the lattice that has most, and why the verdict is open, if it is.
 pub(crate) fn judge(parts: &[Part], needed: &Statistics) -> (Verdict, Statistics, String) {
     let enough: Vec<&Part> = parts

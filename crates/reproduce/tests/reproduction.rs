@@ -189,7 +189,7 @@ fn sizes_share_their_runs_and_a_stop_keeps_what_is_finished() {
     let (outcome, _) = run(&full);
     assert_eq!(outcome.ending, Ending::Complete);
     assert_eq!(summaries(&outcome)[0], "6 runs, 0 missing");
-    // A request to stop where nothing is left to do is none.
+    // A request to stop has no effect where nothing is left to do.
     assert_eq!(
         full.run(EFFORT, &|| true, &mut |_| {}).ending,
         Ending::Complete

@@ -14,7 +14,7 @@ use crate::RunError;
 /// Volume fraction above which packing is not even tried: neighbours would be nearer than half a diameter, and the pairs
 /// to relax more than fit in memory.
 const LARGEST_VOLUME_FRACTION: f64 = 10.0;
-/// Bytes that a moving sphere takes, about: its state, its neighbours and what is measured of it.
+/// Bytes that a moving sphere takes, about: its state, its neighbours and its observables.
 const BYTES_PER_SPHERE: u64 = 1000;
 
 /// Packs the grains and makes the simulation of a configuration, at time 0.
@@ -74,7 +74,7 @@ pub(crate) fn parameters(configuration: &Configuration) -> Parameters {
     }
 }
 
-/// +1 for a wave towards +z, -1 towards -z: the source writes that of the strain-controlled tube as running towards -z.
+/// +1 for a wave towards +z, -1 towards -z: the source's strain-controlled wave runs towards -z.
 fn heading(configuration: &Configuration) -> f64 {
     let along = match configuration.drive.direction {
         WaveDirection::Forward => 1.0,

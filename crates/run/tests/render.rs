@@ -1,4 +1,4 @@
-//! Pictures of runs: what is red flows along the wave, what is blue against it, and the wall stands around.
+//! Pictures of runs: red grains flow along the wave, blue ones against it, and the wall stands around.
 
 #![allow(
     clippy::unwrap_used,

@@ -165,7 +165,7 @@ fn a_run_of_many_short_pieces_is_the_run_in_one_go() {
     let frictional = [STRESS, FRICTION].concat();
     assert!(in_pieces("frictionless", STRAIN, 7) > 50);
     assert!(in_pieces("frictional", &frictional, 17) > 50);
-    // So many periods that the record joins what is long ago.
+    // So many periods that the record merges its oldest samples.
     let long = [
         "grains.number=5",
         "tube.waves=1",

@@ -68,7 +68,7 @@ impl Identity {
 
 /// The seed of one replicate: a hash of the physics of its configuration and its number.
 ///
-/// Not of the length of the run and of what is measured: a longer study of the same point follows the same trajectories.
+/// Neither the run's length nor its observables count: a longer study of the same point follows the same trajectories.
 #[must_use]
 pub fn seed(configuration: &Configuration, replicate: u32) -> u64 {
     let text = format!(

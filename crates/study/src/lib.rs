@@ -3,7 +3,7 @@
 //! A [`Specification`] is a study file that has been read and checked as a whole; [`Plan`] names its runs. Each has an
 //! [`Identity`], a hash of what determines its products, and a seed that follows from it: a point that is added changes
 //! no other. A [`Store`] keeps the runs in a folder, whose files are the truth and whose index can be made again from
-//! them. [`work_on`] computes what is missing, in several workers and beside other processes; wherever it is interrupted,
+//! them. [`work_on`] computes the missing runs, in several workers and beside other processes; wherever it is interrupted,
 //! the tables that [`Store::export`] writes in the end are the same bytes. Nothing here prints or exits.
 //!
 //! ```

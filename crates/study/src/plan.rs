@@ -226,7 +226,7 @@ impl Plan {
         problems.check()
     }
 
-    /// The points, those of refinement after the others.
+    /// The points; refinement's come after the others.
     #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points

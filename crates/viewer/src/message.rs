@@ -101,7 +101,7 @@ impl Command {
     /// Reads a command.
     ///
     /// # Errors
-    /// In words what is wrong with it.
+    /// The error, in words.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
         let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
         let number = match command {

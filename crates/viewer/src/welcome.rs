@@ -33,7 +33,7 @@ pub(crate) struct Welcome {
     pub(crate) driven: Driven,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
     pub(crate) record: Vec<(f64, f64)>,
-    /// The time series since the viewer began, or that of a recording.
+    /// The time series since the viewer began, or of a recording.
     pub(crate) rows: Vec<Row>,
     /// Duration of the run in periods.
     end: f64,

@@ -11,7 +11,7 @@ fn noisy(seed: u64, alpha: f64) -> ([f64; 10], [f64; 10]) {
     for (value, noise) in value.iter_mut().zip(noise) {
         *value *= libm::exp(0.08 * noise);
     }
-    // The relative error is what is known.
+    // The relative error is known.
     (value, value.map(|value| 0.08 * value))
 }
 

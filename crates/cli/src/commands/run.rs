@@ -254,7 +254,7 @@ fn advance(run: &mut Run, record: &mut Record, stop: &Stop, display: &mut Displa
         }
         display.update(&run.progress());
         if saved.elapsed() > SAVE_INTERVAL {
-            // The run can go on without this state; the final save reports what is wrong with the disk.
+            // The run can go on without this state; the final save reports the disk's fault.
             if let Err(error) = record.save_state(run) {
                 say(&error.to_string());
             }

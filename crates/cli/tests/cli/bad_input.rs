@@ -1,4 +1,4 @@
-//! Bad input: exit code 2, a message with its place and what is allowed, nothing on standard output, nothing made or
+//! Bad input: exit code 2, a message with the place and the allowed values, nothing on standard output, nothing made or
 //! changed. What is wrong with which key is the matter of `configuration`.
 
 use crate::Place;

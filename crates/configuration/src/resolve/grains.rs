@@ -39,7 +39,7 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
             (density * PI * square * length / cube).round()
         }
     };
-    // Also refuses what is infinite or not a number because a diameter cubed is 0.
+    // Also refuses values that are infinite or NaN because a diameter cubed is 0.
     let within = number <= limits::MOST_GRAINS as f64;
     if !within {
         let key = context.written(ALTERNATIVES[0]);

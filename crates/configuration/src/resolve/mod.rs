@@ -24,7 +24,7 @@ use crate::suggestion;
 impl Configuration {
     /// Reads a preset, a file and overrides, checks them, and resolves what they leave open.
     ///
-    /// Any text is safe to give: what is wrong with it becomes an error, never a panic.
+    /// Any text is safe to give: a fault becomes an error, never a panic.
     ///
     /// # Errors
     ///

@@ -98,7 +98,7 @@ enum Part {
 }
 
 impl<'a> Written<'a> {
-    /// The schedule of a number in a list; what is no list is its own only schedule.
+    /// The schedule of that number in a list; a single table is the whole list.
     fn nth(self, index: usize) -> Self {
         match self.item.map(|item| &item.node) {
             Some(Node::Array(items)) => Self {

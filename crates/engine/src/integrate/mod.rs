@@ -105,7 +105,7 @@ fn begin<S: Scheme<DVec3>>(
         past.angular_velocity.clone_from(&bodies.angular_velocity);
     }
     if !has_past {
-        // A past equal to the present makes the formula below that of a first step.
+        // With a past equal to the present the formula below is the formula of a first step.
         past.remember_accelerations(bodies);
     }
     for (velocity, now, before) in velocities(bodies, past) {

@@ -3,7 +3,7 @@
 /// Histories of contacts with wall spheres, grain by grain.
 ///
 /// The spheres of a prescribed wall are in no list, so each force evaluation writes down which of them a grain touches,
-/// and looks the histories up among those of the last one.
+/// and looks the histories up in the last one.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct WallMemory<H> {
     start: Vec<u32>,
@@ -29,7 +29,7 @@ impl<H: Copy + Default> WallMemory<H> {
             .map_or_else(H::default, |entry| core::mem::take(&mut entry.1))
     }
 
-    /// The history of a contact, which stays in; a fresh one where there is none.
+    /// The history of a contact, which stays in the memory; a fresh one if the contact is new.
     pub(crate) fn history(&self, grain: usize, sphere: u32) -> H {
         self.entries[self.range(grain)]
             .iter()

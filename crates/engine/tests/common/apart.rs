@@ -117,7 +117,7 @@ fn difference(one: &[DVec3], other: &[DVec3]) -> f64 {
     most(one.iter().zip(other).map(|(a, b)| (*a - *b).length()))
 }
 
-/// The largest; what is no number counts as larger than any.
+/// The largest; NaN counts as larger than any number.
 fn most(numbers: impl Iterator<Item = f64>) -> f64 {
     numbers.fold(0.0, |most, number| {
         if number <= most || most.is_nan() {

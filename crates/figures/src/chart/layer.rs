@@ -367,7 +367,7 @@ macro_rules! coloured {
                 self
             }
 
-            /// Another colour than that of the series.
+            /// A colour in place of the series' own.
             #[must_use]
             pub fn tint(mut self, tint: Tint) -> Self {
                 self.look.tint = Some(tint);

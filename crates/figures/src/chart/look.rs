@@ -6,7 +6,7 @@ use crate::colour::{
 use crate::colour_scale::ColourScale;
 use crate::geometry::{Path, Point};
 
-/// A colour of a layer: one of Okabe and Ito's, that of a direction, or that of a value on the chart's scale of colours.
+/// A colour of a layer: one of Okabe and Ito's, a direction's, or a value's on the chart's scale of colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tint {
     /// Blue, the first series.

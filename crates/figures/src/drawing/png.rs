@@ -137,7 +137,7 @@ impl Painter {
         let pen = tiny_skia::Stroke {
             width: stroke.weight as f32,
             line_join: LineJoin::Round,
-            // No pattern can be made of the lengths of a solid line, which are none.
+            // A solid line has no lengths, so no pattern.
             dash: StrokeDash::new(stroke.pattern.lengths().to_vec(), 0.0),
             ..tiny_skia::Stroke::default()
         };

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::FormatError;
 
-/// An open file of which the first `end` bytes count.
+/// An open file; its first `end` bytes count.
 #[derive(Debug)]
 pub(super) struct Growing {
     file: File,
@@ -71,7 +71,7 @@ impl Growing {
         Ok(())
     }
 
-    /// Writes over what is at `offset`; the end stays.
+    /// Overwrites the bytes at `offset`; the end stays.
     pub(super) fn write_at(&mut self, offset: u64, bytes: &[u8]) -> Result<(), FormatError> {
         self.file
             .seek(SeekFrom::Start(offset))

@@ -13,7 +13,7 @@ pub enum WavePart {
 
 /// What happens in a part of the wave: along the wave, late means, each with its error.
 ///
-/// Of the force on the grains of a wavelength what is not here acts in the rest of it.
+/// The rest of the force on the grains of a wavelength acts outside this part.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartOfWave {
     /// Axial force of the wall on the grains of the part along the normals of contacts \[m d/t^2\].

@@ -171,7 +171,7 @@ pub trait TangentialLaw: Copy {
         time_step: f64,
     ) -> TangentialForce<R>;
 
-    /// Energy held by a history: what is lost when a contact ends.
+    /// Energy held by a history: it is lost when the contact ends.
     fn stored_energy<R: Real>(&self, history: &Self::History<R>) -> R;
 }
 

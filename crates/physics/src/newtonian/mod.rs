@@ -2,7 +2,7 @@
 //!
 //! A viscous fluid in a round tube whose wall radius carries a travelling sine wave, in the limit of a long wave
 //! (a << lambda) and of no inertia. Source: Shapiro, Jaffrin & Weinberg, J. Fluid Mech. 37, 799 (1969), the
-//! axisymmetric case. With G = dP/dx the momentum balance is that of Poiseuille flow at every section,
+//! axisymmetric case. With G = dP/dx the momentum balance is Poiseuille's at every section,
 //!
 //! u(r, x) = -2 G (h^2 - r^2),   h(x) = 1 + phi sin(2 pi x),
 //!

@@ -2,7 +2,7 @@
 //!
 //! A particle of the wall layer stays on its streamline and falls back by one wavelength relative to the wave in the
 //! time T(Psi) = <1/|u - c|> lambda/c, the mean over the wave. In the laboratory it has then moved by c T - lambda. With
-//! the height of the streamline above that of the wall, epsilon = Psi - q/2, the stream function gives
+//! the height of the streamline above the wall's, epsilon = Psi - q/2, the stream function gives
 //! |u - c| = sqrt(1 + 8 epsilon dP/dx), hence
 //!
 //! T(epsilon) = < (1 + 8 epsilon dP/dx)^(-1/2) > = 1 - 4 epsilon P + O(epsilon^2),   mean velocity U = 1 - 1/T.

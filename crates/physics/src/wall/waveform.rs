@@ -105,7 +105,7 @@ impl Waveform {
         }
     }
 
-    /// Mean over the wave: that of the radius is a + b times this.
+    /// Mean g over the wave; the mean radius is a + b g.
     #[must_use]
     pub fn mean(self) -> f64 {
         match self {
@@ -151,7 +151,7 @@ const ROLLER_CURVATURES: [f64; 2] = [
     2.0 / (ROLLER_SHOULDER * (ROLLER_SHOULDER - ROLLER_CONTACT)),
 ];
 
-/// Phase less that of the nearest throat, from -1/2 to 1/2.
+/// Phase measured from the nearest throat, from -1/2 to 1/2.
 fn from_throat(phase: f64) -> f64 {
     let from_belly = phase - 0.25;
     from_belly - from_belly.floor() - 0.5

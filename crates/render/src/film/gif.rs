@@ -62,7 +62,7 @@ impl GifEncoder {
         (at(self.frames + 1) - at(self.frames)) as u16
     }
 
-    /// The part of a picture that differs from what is on the screen, in colours of its own.
+    /// The part of a picture that differs from the frame before, with its own palette.
     fn frame(&mut self, picture: &Picture) -> gif::Frame<'static> {
         let width = picture.width() as usize;
         let pixels = picture.pixels();

@@ -77,7 +77,7 @@ impl Sampled<'_> {
         Some(rest?.scaled(1e3))
     }
 
-    /// A velocity over that of the wave.
+    /// A velocity over the speed of the wave.
     fn velocity(&self, column: &str) -> Option<Uncertain> {
         mean_of(&self.rows, |row| {
             let error = row.number(&format!("{column}_error"));

@@ -70,7 +70,7 @@ struct Characteristic<'a> {
     branch: Branch<'a>,
 }
 
-/// Power of the flow against the pressure over that of the wall.
+/// Power of the flow against the pressure over the power of the wall.
 fn efficiency(point: &Point<'_>) -> Option<Uncertain> {
     point.mean("pumping_efficiency")
 }

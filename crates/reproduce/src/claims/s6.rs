@@ -102,7 +102,7 @@ impl<'a> Flow<'a> {
             NUMBERS[numbers].iter().any(|(_, _, value)| {
                 let (one, two) = (self.mean(*value), other.mean(*value));
                 let difference = (scale(one.value) - scale(two.value)).abs();
-                // To first order, so that that of a logarithm is the relative one.
+                // To first order; the error of a logarithm is the relative error.
                 let scaled =
                     |mean: &Uncertain| (scale(mean.value + mean.error) - scale(mean.value)).abs();
                 let error = scaled(&one).hypot(scaled(&two));

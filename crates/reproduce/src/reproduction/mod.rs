@@ -19,7 +19,7 @@ pub use import::{Import, ImportedRuns};
 
 /// Folder of the stores below that of the results.
 const STORES: &str = "stores";
-/// What the name of a store ends in where runs are computed again of which only rows were imported.
+/// Suffix of the store that computes runs again of which only rows were imported.
 const AGAIN: &str = "-again";
 
 /// Claims with the studies that they need, each in a store of its own.
@@ -174,7 +174,7 @@ impl Reproduction {
     /// A store that cannot be opened is told of later, and costs only the claims that need it.
     ///
     /// # Errors
-    /// [`ClaimError::Folder`], [`ClaimError::NoSuchStudy`], and [`ClaimError::Study`] for a study file that is none.
+    /// [`ClaimError::Folder`], [`ClaimError::NoSuchStudy`], and [`ClaimError::Study`] for a file that is not a valid study.
     pub fn prepare(
         folder: &Path,
         size: Size,

@@ -1,4 +1,4 @@
-//! The figures of a run: what is measured as charts, and the tube from the side.
+//! The figures of a run: charts of its measurements, and the tube from the side.
 
 mod profile;
 mod snapshot;

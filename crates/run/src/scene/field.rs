@@ -21,7 +21,7 @@ pub enum Field {
     Diameter,
     /// Way along the wave since the first frame, in wavelengths.
     AxialDisplacement,
-    /// |omega| d_i/(2 c), the speed of the surface by rotation over that of the wave.
+    /// |omega| d_i/(2 c), the surface's speed by rotation over the speed of the wave.
     AngularVelocity,
     /// (z - c t)/lambda with z along the wave, folded to \[0, 1).
     Phase,

@@ -1,4 +1,4 @@
-//! The tube as it looks: pictures of single instants, with what is needed to read them.
+//! The tube as it looks: pictures of single instants, with their scales and captions.
 
 mod caption;
 mod field;
@@ -231,7 +231,7 @@ impl PictureScene {
         }
     }
 
-    /// The picture of an instant, with what is written around it.
+    /// The picture of an instant, with the texts around it.
     ///
     /// # Errors
     /// [`RunError::Render`], [`RunError::Figure`] where it is too large for memory; [`RunError::Picture`] where the frame

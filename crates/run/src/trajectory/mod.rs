@@ -106,7 +106,7 @@ impl Trajectory {
     /// it has none.
     ///
     /// # Errors
-    /// [`RunError::Format`] where a file cannot be read or written, or its frames are not those of the plan.
+    /// [`RunError::Format`] where a file cannot be read or written, or its frames are not the planned ones.
     pub fn resume(folder: &Path, run: &mut Run) -> Result<Option<Self>, RunError> {
         let path = folder.join(PLAN);
         let text = match std::fs::read_to_string(&path) {

@@ -70,9 +70,9 @@ impl Span {
 /// A window of time in a run: `20:25`, `100:` to the end, `:5t` from the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// Its beginning; `None`: that of the run.
+    /// Its beginning; `None`: where the run begins.
     pub from: Option<Span>,
-    /// Its end; `None`: that of the run.
+    /// Its end; `None`: where the run ends.
     pub to: Option<Span>,
 }
 

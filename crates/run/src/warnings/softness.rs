@@ -157,7 +157,7 @@ impl Material {
     }
 }
 
-/// That forces given in our units are another multiple of the elasticity when it changes; nothing where there are none.
+/// Says that forces in our units become another multiple of the elasticity when it changes; nothing without such forces.
 fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String {
     let mut keys = Vec::new();
     if configuration.drive.body_force != 0.0 {

@@ -13,7 +13,7 @@ use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
 
 /// What became of a run in the hands of a worker.
 enum Outcome {
-    /// It ended, well or not, and this is what is known of it.
+    /// It ended, well or not, with this result.
     Ended(Entry),
     /// It was saved, to go on later.
     Saved,

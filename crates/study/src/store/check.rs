@@ -1,4 +1,4 @@
-//! Whether the files of a store are what was written: what is not is moved aside.
+//! Checks the files of a store against their seals; a damaged file is moved aside.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -134,7 +134,7 @@ impl Store {
         Ok(found)
     }
 
-    /// Identities that the folders below name; other names are none of ours.
+    /// Identities that the folders below name; other names are skipped.
     fn identities(&self, folder: &str) -> Result<Vec<Identity>, StudyError> {
         let folder = self.file(folder);
         let entries = match fs::read_dir(&folder) {

@@ -157,7 +157,7 @@ impl Index {
     }
 
     /// Replaces all entries by these, which were read from the files. Leases stay, and so do entries that other processes have
-    /// noted since the states were those of `before`, when the reading of the files began.
+    /// noted since `before`, when the reading of the files began.
     pub(crate) fn replace(
         &mut self,
         entries: &HashMap<Identity, Entry>,

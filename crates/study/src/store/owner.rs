@@ -76,7 +76,7 @@ fn host() -> String {
 /// Start of a process, in ticks since boot; `None` without such a process, or where the system does not tell.
 fn started(process: u32) -> Option<String> {
     let text = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name of the program, in brackets, may hold anything; the state follows, Z and X being those of the dead.
+    // The name of the program, in brackets, may hold anything; the state follows, Z and X for a dead process.
     let mut fields = text.rsplit_once(')')?.1.split_whitespace();
     let state = fields.next()?;
     if matches!(state, "Z" | "X") {

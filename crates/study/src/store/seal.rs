@@ -72,7 +72,7 @@ impl Seal {
         Ok(atomic::write(&folder.join(SEAL), text.as_bytes())?)
     }
 
-    /// Reads a seal; `Err` is a sentence on what is wrong with it.
+    /// Reads a seal; `Err` says in a sentence why it is invalid.
     pub(crate) fn read(folder: &Path, identity: Identity) -> Result<Self, String> {
         let text = std::fs::read_to_string(folder.join(SEAL))
             .map_err(|error| format!("{SEAL} cannot be read: {error}"))?;

@@ -1,4 +1,4 @@
-//! Files that are not what was written: found, moved aside, computed again to the same bytes. And files of which only the
+//! Damaged files: found, moved aside, computed again to the same bytes. And files of which only the
 //! time has changed: left alone.
 
 use std::fs;

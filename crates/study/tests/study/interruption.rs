@@ -143,7 +143,7 @@ fn points_that_are_added_leave_finished_runs_alone() {
             .unwrap();
         assert_eq!(now, before);
     }
-    // And the other way round: what is no longer asked for stays, and is not in the table.
+    // And the other way round: a run no longer asked for stays, and is not in the table.
     place.study = crate::study(&SMALL.replace("[2.5, 2.8]", "[2.6]"));
     place.complete();
     let survey = place.store().survey().unwrap();

@@ -1,4 +1,4 @@
-//! Studies from the file to the table: what is refused, who a run is, what is added, and that nothing is lost.
+//! Studies from the file to the table: errors, identities, additions, and that nothing is lost.
 
 #![allow(
     clippy::unwrap_used,

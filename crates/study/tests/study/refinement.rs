@@ -1,4 +1,4 @@
-//! Refinement against runs of which it is known when they jam.
+//! Refinement against runs whose jamming time is known.
 
 use peristalsis_configuration::InitialState;
 use peristalsis_study::{Finding, Identity, Plan, brackets, refine};

@@ -1,4 +1,4 @@
-//! The study file: what it may say, and what is refused, with place and help.
+//! The study file: valid and invalid ones; errors with place and help.
 
 use peristalsis_study::{Plan, SettingValue, Specification, schema};
 

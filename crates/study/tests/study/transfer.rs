@@ -118,7 +118,7 @@ fn a_study_goes_on_from_the_rows_that_it_is_given() {
     let out = second.path("out");
     second.store().export(&out, false).unwrap();
     assert_eq!(fs::read(out.join("small.csv")).unwrap(), tables[0]);
-    // What was computed here is not replaced by what is imported later.
+    // A run computed here is not replaced by one imported later.
     let all = whole.path("tables/small.csv");
     second.store().import_table(&all).unwrap();
     let found = second.store().scan().unwrap();

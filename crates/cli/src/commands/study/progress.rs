@@ -14,7 +14,7 @@ const ESTIMATES_SHOWN: usize = 6;
 /// Workers that are shown on a terminal.
 const WORKERS_SHOWN: usize = 8;
 
-/// How far the whole work is, of which a board may show a part.
+/// Progress of the whole work; a board may show a part of it.
 pub(crate) struct Whole {
     /// In words.
     pub(crate) words: String,
@@ -79,7 +79,7 @@ impl Display {
         );
     }
 
-    /// Shows how far a study is, and the whole of which it is a part.
+    /// Shows the progress of a study, and of the whole work.
     pub(crate) fn update_part(&mut self, board: &Board, whole: &Whole) {
         match self {
             Self::Silent => {}

@@ -11,7 +11,7 @@ use crate::commands::{print, print_json, say};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
-/// Computes what is missing of a study.
+/// Computes the missing runs of a study.
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let study = Specification::read(&arguments.file)?;

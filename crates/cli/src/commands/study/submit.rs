@@ -12,7 +12,7 @@ use crate::failure::Failure;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
 const WARNING: Duration = Duration::from_secs(60);
-/// Shortest time of a task: twice what is kept for saving at its end.
+/// Shortest time of a task: twice the time kept for saving at its end.
 const SHORTEST: Duration = Duration::from_secs(240);
 
 /// Makes the store of a study and writes a script for Slurm, an array of tasks that share it.

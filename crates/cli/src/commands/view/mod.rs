@@ -121,7 +121,7 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     Ok(Viewer::play(recording, name(folder), port)?)
 }
 
-/// The run to show, with what is known of it.
+/// The run to show, and its state.
 fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
     let options = |title: String, record| Options {
         port: arguments.port,

@@ -2,7 +2,7 @@
 //!
 //! A kernel is written once, for any [`Machine`]: how eight numbers are held in registers and what one instruction does
 //! with them. It is compiled for AVX-512, for AVX2 and for plain code, as the [`Work`] that [`Instructions::run`] is
-//! given. Every operation is that of IEEE 754, lane by lane, so that all machines give the same bits.
+//! given. Every operation follows IEEE 754, lane by lane, so that all machines give the same bits.
 //!
 //! This is the only module with unsafe code besides the tests. What makes it sound: the types `Avx512` and `Avx2` can be
 //! named nowhere else, so that code for them is reached only through [`Instructions::run`], which has looked for the

@@ -192,7 +192,7 @@ impl Container {
         let begun: Vec<&[Entry]> = written
             .chunk_by(|one, other| one.frame == other.frame)
             .collect();
-        // Where a frame ends whose arrays are all where arrays are; of what a kill cut short there is none.
+        // The end of a frame whose arrays all lie inside the file; a frame that a kill cut short has none.
         let end_of = |frame: &[Entry]| {
             let end = |entry: &Entry| {
                 let is_ours = entry.location >= first_array && kind_bytes(entry.kind) > 0;
@@ -288,7 +288,7 @@ impl Container {
         }
         let text = names.iter().flat_map(|name| name.bytes().chain([0]));
         let text = text.collect::<Vec<_>>();
-        // Ours fit; those of a file that was damaged need not.
+        // Ours fit; a damaged file's need not.
         if text.len() as u64 >= NAMES_BYTES {
             return Err(FormatError::NotATrajectory {
                 path: self.file.path().to_owned(),

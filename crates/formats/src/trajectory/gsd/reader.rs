@@ -17,7 +17,7 @@ use crate::trajectory::{Frame, Rotation};
 
 /// Major version of the container that is read.
 const MAJOR_VERSION: u16 = 2;
-/// Most bytes of names: those of all that 16 bits can number.
+/// Most bytes of names: as many names as 16 bits can number.
 const MOST_NAME_BYTES: u64 = 65_536 * NAME_UNIT;
 
 /// A trajectory in GSD that [`GsdTrajectory`](super::GsdTrajectory) wrote, or is writing.

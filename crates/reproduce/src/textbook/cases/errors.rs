@@ -65,7 +65,7 @@ pub(super) fn impact_convergences(
 /// Root mean square of the error of an impact, over places of the onset within a step and over steps of which between `steps`
 /// and one more fit into the contact.
 ///
-/// The place of the end within a step matters as much as that of the onset: with one step only, the two could cancel.
+/// Onset and end fall within a step at places that matter alike: with one step only, the two could cancel.
 pub(super) fn error_of(
     impact: &Impact,
     means: Means,
