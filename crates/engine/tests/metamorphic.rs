@@ -300,16 +300,19 @@ impl Units {
 
     fn contact(self, contact: ContactModel) -> ContactModel {
         ContactModel {
-            normal: match contact.normal {
-                Normal::Linear(law) => Normal::Linear(LinearSpringDashpot {
+            normal: if let Normal::Linear(law) = contact.normal {
+                Normal::Linear(LinearSpringDashpot {
                     normal_stiffness: self.stiffness() * law.normal_stiffness,
                     normal_damping: self.damping() * law.normal_damping,
-                }),
-                Normal::Hertz(law) => Normal::Hertz(ViscoelasticHertz {
+                })
+            } else if let Normal::Hertz(law) = contact.normal {
+                Normal::Hertz(ViscoelasticHertz {
                     young_modulus: self.stiffness() / self.length * law.young_modulus,
                     dissipation_time: self.time * law.dissipation_time,
                     ..law
-                }),
+                })
+            } else {
+                unreachable!("the states have these two laws")
             },
             friction: contact.friction.map(|law| CundallStrack {
                 tangential_stiffness: self.stiffness() * law.tangential_stiffness,

@@ -29,16 +29,17 @@ struct Law {
 
 impl Law {
     fn of(impact: &Impact) -> Self {
-        let (is_hertz, stiffness, damping) = match impact.contact.normal {
-            Normal::Linear(law) => (false, law.normal_stiffness, law.normal_damping),
-            Normal::Hertz(law) => {
-                let kappa = hertz::stiffness(&law, impact.reduced_radius());
-                let factor = match law.dissipation_form {
-                    DissipationForm::Printed => 1.0,
-                    DissipationForm::Viscoelastic => 1.5,
-                };
-                (true, kappa, kappa * factor * law.dissipation_time)
-            }
+        let (is_hertz, stiffness, damping) = if let Normal::Hertz(law) = impact.contact.normal {
+            let kappa = hertz::stiffness(&law, impact.reduced_radius());
+            let factor = match law.dissipation_form {
+                DissipationForm::Printed => 1.0,
+                DissipationForm::Viscoelastic => 1.5,
+            };
+            (true, kappa, kappa * factor * law.dissipation_time)
+        } else if let Normal::Linear(law) = impact.contact.normal {
+            (false, law.normal_stiffness, law.normal_damping)
+        } else {
+            unreachable!("the cases have impacts of these two laws")
         };
         let (tangential_stiffness, friction) = match impact.contact.friction {
             None => (0.0, 0.0),
