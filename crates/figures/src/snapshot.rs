@@ -332,8 +332,8 @@ mod tests {
     }
 
     /// Centre, radius and fill of every sphere.
-    fn spheres(snapshot: Snapshot<'_>) -> Vec<(Point, f64, Fill)> {
-        let drawing = draw(&[snapshot]).expect("drawable");
+    fn spheres(snapshots: &[Snapshot<'_>]) -> Vec<(Point, f64, Fill)> {
+        let drawing = draw(snapshots).expect("drawable");
         let sphere = |shape| match shape {
             &Shape::Path {
                 ref path,
@@ -357,7 +357,7 @@ mod tests {
         let mut grains = [grain(2.0, 0.5, 1.0), grain(4.0, -0.5, -1.0)];
         grains[1].sphere.across = 1.0;
         let [(far, radius, far_fill), (near, _, near_fill)] =
-            spheres(snapshot(&grains, NO_WALL))[..]
+            spheres(&[snapshot(&grains, NO_WALL)])[..]
         else {
             panic!("two grains")
         };
@@ -373,7 +373,22 @@ mod tests {
     #[test]
     fn a_grain_at_the_seam_shows_at_both_ends() {
         let grains = [grain(0.1, 0.0, 0.0)];
-        assert_eq!(spheres(snapshot(&grains, NO_WALL)).len(), 2);
+        assert_eq!(spheres(&[snapshot(&grains, NO_WALL)]).len(), 2);
+    }
+
+    #[test]
+    fn stacked_snapshots_have_one_scale_of_length() {
+        let grains = [grain(3.0, 0.0, 0.5)];
+        let short = snapshot(&grains, NO_WALL);
+        let long = Snapshot {
+            length: 16.0,
+            period: 32.0,
+            ..short
+        };
+        let [(_, one, _), (_, other, _)] = spheres(&[short, long])[..] else {
+            panic!("a grain each")
+        };
+        assert_eq!(one, other);
     }
 
     #[test]
@@ -386,7 +401,7 @@ mod tests {
         };
         let wall = [sphere(0.0), sphere(0.7), sphere(-0.8)];
         assert_eq!(
-            spheres(snapshot(&[], SnapshotWall::Spheres(&wall))).len(),
+            spheres(&[snapshot(&[], SnapshotWall::Spheres(&wall))]).len(),
             2
         );
     }

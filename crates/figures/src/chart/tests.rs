@@ -219,6 +219,39 @@ fn steps_and_bars_hold_their_heights() {
 }
 
 #[test]
+fn a_row_that_is_not_finite_cuts_the_curve() {
+    let x = [0.0, 1.0, 2.0, f64::INFINITY, 4.0];
+    let y = [1.0, f64::NAN, 3.0, 4.0, 5.0];
+    let drawing = figure(panel().with(Line::new("", &x, &y)));
+    let value = ruler(&drawing);
+    let pieces: Vec<Vec<Point>> = drawing
+        .paths("lines")
+        .iter()
+        .map(|it| it.points())
+        .collect();
+    let heights = pieces.iter().flatten().map(|&place| value(place).1);
+    assert_eq!(pieces.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1]);
+    assert!(
+        heights
+            .zip([1.0, 3.0, 5.0])
+            .all(|(found, expected)| (found - expected).abs() < 1e-9)
+    );
+}
+
+#[test]
+fn a_band_runs_forth_above_and_back_below() {
+    let band = Band::new("", &[1.0, 2.0], &[1.5, 2.75], &[2.5, 3.25]);
+    let drawing = figure(panel().with(band));
+    let value = ruler(&drawing);
+    let corners = [(1.0, 2.5), (2.0, 3.25), (2.0, 2.75), (1.0, 1.5)];
+    let found = drawing.paths("bands")[0].points();
+    assert_eq!(found.len(), corners.len());
+    for (point, corner) in found.into_iter().zip(corners) {
+        assert!(close(value(point), corner), "{corner:?}");
+    }
+}
+
+#[test]
 fn panels_that_share_an_axis_have_one_range_and_one_row_of_numbers() {
     let chart = |top: f64| ChartPanel::new("x", "y").with(Line::new("", &[0.0, 1.0], &[0.0, top]));
     let numbers = |shares: bool| {

@@ -4,28 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use peristalsis_configuration::{
-    Configuration, Control, InitialState, Normal, PRESETS, ScheduledParameter, SourceFile, Sources,
-    schema,
+    Configuration, Control, InitialState, Normal, PRESETS, ScheduledParameter,
 };
 
-fn preset(name: &str, overrides: &[&str]) -> Configuration {
-    let overrides: Vec<String> = overrides.iter().map(ToString::to_string).collect();
-    Configuration::from_sources(&Sources {
-        file: None,
-        preset: Some(name),
-        overrides: &overrides,
-    })
-    .unwrap_or_else(|error| panic!("{name} {overrides:?}: {error}"))
-}
+use crate::{NO_OVERRIDES, preset, read, schema_errors};
 
 fn validate(name: &str, text: &str) {
-    let table: toml::Table = text.parse().expect("presets and examples are TOML");
-    let instance = serde_json::to_value(table).expect("TOML fits JSON");
-    let validator = jsonschema::validator_for(&schema()).expect("the schema is a schema");
-    let errors: Vec<String> = validator
-        .iter_errors(&instance)
-        .map(|error| error.to_string())
-        .collect();
+    let errors = schema_errors(text);
     assert!(errors.is_empty(), "{name}: {errors:?}");
 }
 
@@ -34,7 +19,7 @@ fn presets_fit_the_schema_and_resolve() {
     assert_eq!(PRESETS.len(), 3);
     for known in PRESETS {
         validate(known.name, known.text);
-        let configuration = preset(known.name, &[]);
+        let configuration = preset(known.name, NO_OVERRIDES);
         assert!(configuration.grains.number > 0);
         assert!(known.summary.ends_with('.'));
     }
@@ -42,7 +27,7 @@ fn presets_fit_the_schema_and_resolve() {
 
 #[test]
 fn the_frictionless_preset_by_hand() {
-    let coarse = preset("frictionless", &[]);
+    let coarse = preset("frictionless", NO_OVERRIDES);
     // 6 * 0.15 * 2.25 * 100 = 202.5
     assert_eq!(coarse.grains.number, 203);
     assert_eq!(coarse.tube.wall_spheres(), 12 * 14 * 10);
@@ -53,7 +38,7 @@ fn the_frictionless_preset_by_hand() {
     assert_eq!(coarse.run.steps(), 16_000);
     assert_eq!(coarse.run.duration, 800.0);
     assert_eq!(coarse.contact.friction, None);
-    let fine = preset("frictionless-fine", &[]);
+    let fine = preset("frictionless-fine", NO_OVERRIDES);
     assert_eq!(
         (fine.tube.spheres_per_ring, fine.tube.rings_per_wave),
         (24, 26)
@@ -65,7 +50,7 @@ fn the_frictionless_preset_by_hand() {
 
 #[test]
 fn the_frictional_preset_by_hand() {
-    let frictional = preset("frictional", &[]);
+    let frictional = preset("frictional", NO_OVERRIDES);
     // 0.71 * pi * 12.25 * 40 = 1092.97
     assert_eq!(frictional.grains.number, 1093);
     assert_eq!(frictional.tube.wall_spheres(), 1012);
@@ -169,17 +154,8 @@ fn every_law_runs_in_every_tube() {
     // One of the two frictions is enough, also over a record of a frictionless run.
     let one = preset("frictionless", &["contact.static_friction=0.3"]);
     assert_eq!(one.contact.friction.unwrap().kinetic_friction, 0.3);
-    let record = preset("frictionless", &[]).to_toml();
-    let file = Some(SourceFile {
-        name: "config.toml",
-        text: &record,
-    });
-    let overrides = ["contact.static_friction=0.3".to_owned()];
-    let over = Configuration::from_sources(&Sources {
-        file,
-        preset: None,
-        overrides: &overrides,
-    });
+    let record = preset("frictionless", NO_OVERRIDES).to_toml();
+    let over = read(Some(&record), None, &["contact.static_friction=0.3"]);
     assert_eq!(over.unwrap().contact, one.contact);
 }
 
@@ -201,17 +177,7 @@ fn a_layer_replaces_the_choice_of_the_one_below() {
     let last = preset("frictionless", &["drive.width=2.5", "drive.width=2.6"]);
     assert_eq!(last.drive.control, Control::Strain { width: 2.6 });
     let file = "preset = \"frictionless\"\n[drive]\namplitude = 0.2\n";
-    let overrides = ["drive.width=2.9".to_owned()];
-    let file = Some(SourceFile {
-        name: "f.toml",
-        text: file,
-    });
-    let sources = Sources {
-        file,
-        preset: None,
-        overrides: &overrides,
-    };
-    let over = Configuration::from_sources(&sources).unwrap();
+    let over = read(Some(file), None, &["drive.width=2.9"]).unwrap();
     assert_eq!(over.drive.control, Control::Strain { width: 2.9 });
 }
 
@@ -255,16 +221,6 @@ fn the_initial_velocity_follows_the_wave_unless_given() {
     let given = preset("frictionless", &["initial.axial_velocity=-0.25"]);
     assert_eq!(given.initial.axial_velocity, -0.25);
     let record = jammed.to_toml();
-    let file = Some(SourceFile {
-        name: "config.toml",
-        text: &record,
-    });
-    let overrides = ["drive.strain_rate=0.1".to_owned()];
-    let faster = Configuration::from_sources(&Sources {
-        file,
-        preset: None,
-        overrides: &overrides,
-    })
-    .unwrap();
+    let faster = read(Some(&record), None, &["drive.strain_rate=0.1"]).unwrap();
     assert_eq!(faster.initial.axial_velocity, 1.0);
 }

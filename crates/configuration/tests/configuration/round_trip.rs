@@ -1,16 +1,9 @@
 //! The record of a run reads back bit for bit; its hash knows what matters; no text makes the reader panic.
 
-use peristalsis_configuration::{Configuration, Problem, ProblemKind, SourceFile, Sources, schema};
+use peristalsis_configuration::{Configuration, ConfigurationError, Problem, ProblemKind};
 use proptest::prelude::*;
 
-fn preset(name: &str, overrides: &[String]) -> Configuration {
-    Configuration::from_sources(&Sources {
-        file: None,
-        preset: Some(name),
-        overrides,
-    })
-    .unwrap_or_else(|error| panic!("{name} {overrides:?}: {error}"))
-}
+use crate::{NO_OVERRIDES, preset, read, schema_errors};
 
 fn words(overrides: &[&str]) -> Vec<String> {
     overrides.iter().map(ToString::to_string).collect()
@@ -123,10 +116,7 @@ proptest! {
 
     #[test]
     fn no_text_makes_the_reader_panic(text in any::<String>(), change in any::<String>()) {
-        let file = Some(SourceFile { name: "hostile.toml", text: &text });
-        let overrides = [change];
-        let sources = Sources { file, preset: Some("frictionless"), overrides: &overrides };
-        if let Err(error) = Configuration::from_sources(&sources) {
+        if let Err(error) = read(Some(&text), Some("frictionless"), &[change]) {
             check_labels(&error);
         }
     }
@@ -139,9 +129,7 @@ proptest! {
         if let Err(error) = Configuration::from_toml("hostile.toml", &text) {
             check_labels(&error);
         }
-        let overrides: Vec<String> = pieces.iter().map(ToString::to_string).collect();
-        let sources = Sources { file: None, preset: Some("frictional"), overrides: &overrides };
-        if let Err(error) = Configuration::from_sources(&sources) {
+        if let Err(error) = read(None, Some("frictional"), &pieces) {
             check_labels(&error);
         }
     }
@@ -155,9 +143,7 @@ proptest! {
         ),
     ) {
         let text: String = lines.iter().map(|(key, value)| format!("{key} = {value}\n")).collect();
-        let table: toml::Table = text.parse().unwrap();
-        let instance = serde_json::to_value(&table).unwrap();
-        let valid = jsonschema::validator_for(&schema()).unwrap().is_valid(&instance);
+        let valid = schema_errors(&text).is_empty();
         // Keys that are needed may be missing as well: the kind of a problem tells whose it is.
         let of_the_schema = |problem: &Problem| match problem.kind {
             ProblemKind::UnknownKey | ProblemKind::WrongType | ProblemKind::OutOfRange => true,
@@ -175,7 +161,7 @@ proptest! {
     }
 }
 
-fn check_labels(error: &peristalsis_configuration::ConfigurationError) {
+fn check_labels(error: &ConfigurationError) {
     assert!(!error.problems().is_empty());
     for label in error.problems().iter().flat_map(|problem| &problem.labels) {
         assert!(
@@ -293,33 +279,19 @@ fn deep_and_long_texts_are_survived() {
         "a = \"".to_owned() + &"y".repeat(1_000_000) + "\"",
     ];
     for text in &texts {
-        let file = Some(SourceFile {
-            name: "deep.toml",
-            text,
-        });
-        let overrides = [text.clone()];
-        for sources in [
-            Sources {
-                file,
-                preset: None,
-                overrides: &[],
-            },
-            Sources {
-                file: None,
-                preset: Some("frictionless"),
-                overrides: &overrides,
-            },
+        for result in [
+            read(Some(text), None, NO_OVERRIDES),
+            read(None, Some("frictionless"), &[text]),
         ] {
-            let error = Configuration::from_sources(&sources).expect_err("no key of ours");
-            check_labels(&error);
+            check_labels(&result.expect_err("no key of ours"));
         }
     }
 }
 
 #[test]
 fn the_hash_is_of_what_matters() {
-    let base = preset("frictionless", &[]);
-    let of = |overrides: &[&str]| preset("frictionless", &words(overrides));
+    let base = preset("frictionless", NO_OVERRIDES);
+    let of = |overrides: &[&str]| preset("frictionless", overrides);
     let same: [&[&str]; 7] = [
         &["drive.body_force=-0.0", "drive.waveform=sine"],
         &["grains.number=203"],
@@ -395,7 +367,7 @@ fn the_order_of_keys_and_comments_do_not_matter() {
 
 #[test]
 fn the_record_says_what_was_resolved() {
-    let record = preset("frictionless", &[]).to_toml();
+    let record = preset("frictionless", NO_OVERRIDES).to_toml();
     let table: toml::Table = record.parse().unwrap();
     let resolved = table["resolved"].as_table().unwrap();
     assert_eq!(resolved["number"].as_integer(), Some(203));
