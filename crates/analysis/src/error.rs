@@ -37,19 +37,6 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// A number of samples per period of zero.
-    #[error("a period must hold at least one sample")]
-    NoSamplesPerPeriod,
-    /// A sample does not end where its interval should: rows are missing, doubled or unevenly spaced.
-    #[error("row {row} ends at period {found}, but should end at period {expected}")]
-    UnevenSamples {
-        /// Row of the table, from 0.
-        row: usize,
-        /// Expected end of its interval, in periods.
-        expected: f64,
-        /// Its end in the table, in periods.
-        found: f64,
-    },
     /// A threshold outside the open interval from 0 (rest) to 1 (jammed).
     #[error("a threshold of {threshold} does not lie between 0 and 1")]
     Threshold {
@@ -61,12 +48,6 @@ pub enum Error {
     PeriodDuration {
         /// The period given, in the time unit of the model.
         duration: f64,
-    },
-    /// Period averages that do not begin with the run.
-    #[error("the averages begin with period {first}: a transition before it cannot be excluded")]
-    LateStart {
-        /// First period given, from 0.
-        first: u64,
     },
     /// A value that must be positive is not: a time, a strain rate, a standard error.
     #[error("value {index} is {value}, but must be positive")]

@@ -6,7 +6,7 @@
 //!
 //! | question | estimators |
 //! |---|---|
-//! | when does a run change? | [`period_means`], [`TransitionDetector`] |
+//! | when does a run change? | [`TransitionDetector`], [`transition_time`] |
 //! | is a series stationary, and its mean? | [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
 //! | how are transition times distributed? | [`Survival`], [`restricted_moments`], [`fit_lifetime`], [`fit_shifted_exponential`], [`ensembles_by_width`] |
 //! | where and how does the time diverge? | [`fit_law_to_runs`], [`fit_law_to_runs_in_windows`], [`fit_law`] |
@@ -44,7 +44,6 @@ mod logistic;
 mod mixture;
 pub mod number;
 mod numerics;
-mod period;
 mod regression;
 mod scaling;
 mod scatter_law;
@@ -79,7 +78,6 @@ pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
 pub use logistic::{FractionCrossing, fraction_crossing};
 pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
-pub use period::{PeriodMeans, period_means};
 pub use scaling::Scaling;
 pub use scatter_law::{ScatterLawFit, fit_law_with_scatter};
 pub use second_moment::{AfterEnd, MomentPeak, SecondMoment, second_moment, second_moment_peak};

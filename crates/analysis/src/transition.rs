@@ -1,7 +1,6 @@
 //! Transition time between unjammed and jammed flow, with censoring.
 
 use crate::error::Error;
-use crate::period::PeriodMeans;
 use serde::{Deserialize, Serialize};
 
 /// Period averages in a row that must lie beyond the threshold before a crossing counts.
@@ -207,24 +206,18 @@ impl TransitionDetector {
 
 /// Transition time of a finished run from its period averages; [`TransitionDetector`] states the definition.
 ///
-/// A run without a whole period is censored at time 0.
+/// `averages`: those of all whole periods from the start of the run; without any the run is censored at time 0.
 ///
 /// # Errors
-/// [`Error::LateStart`] if the averages do not begin with period 0, [`Error::NonFinite`] with the period at fault,
-/// [`Error::Threshold`], [`Error::PeriodDuration`].
+/// [`Error::NonFinite`] with the period at fault, [`Error::Threshold`], [`Error::PeriodDuration`].
 pub fn transition_time(
-    averages: &PeriodMeans,
+    averages: &[f64],
     direction: Direction,
     threshold: f64,
     period_duration: f64,
 ) -> Result<Transition, Error> {
-    if averages.first_period != 0 {
-        return Err(Error::LateStart {
-            first: averages.first_period,
-        });
-    }
     let mut detector = TransitionDetector::new(direction, threshold, period_duration)?;
-    for &average in &averages.means {
+    for &average in averages {
         detector.push(average)?;
     }
     Ok(detector.outcome())
@@ -235,19 +228,12 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn from_start(means: &[f64]) -> PeriodMeans {
-        PeriodMeans {
-            first_period: 0,
-            means: means.to_vec(),
-        }
-    }
-
     fn upward(means: &[f64]) -> Transition {
-        transition_time(&from_start(means), Direction::Upward, 0.5, 2.0).unwrap()
+        transition_time(means, Direction::Upward, 0.5, 2.0).unwrap()
     }
 
     fn downward(means: &[f64]) -> Transition {
-        transition_time(&from_start(means), Direction::Downward, 0.5, 2.0).unwrap()
+        transition_time(means, Direction::Downward, 0.5, 2.0).unwrap()
     }
 
     #[test]
@@ -336,14 +322,6 @@ mod tests {
             let refused = TransitionDetector::new(Direction::Upward, 0.5, duration);
             assert!(matches!(refused, Err(Error::PeriodDuration { .. })));
         }
-        let late = PeriodMeans {
-            first_period: 2,
-            means: vec![0.9; 5],
-        };
-        assert_eq!(
-            transition_time(&late, Direction::Upward, 0.5, 2.0),
-            Err(Error::LateStart { first: 2 })
-        );
     }
 
     /// The definition read word for word: the first period from which three averages lie beyond, none before it.
@@ -375,7 +353,7 @@ mod tests {
                 }
                 detector.push(average).unwrap();
             }
-            let batch = transition_time(&from_start(&means), direction, threshold, 3.0).unwrap();
+            let batch = transition_time(&means, direction, threshold, 3.0).unwrap();
             prop_assert_eq!(detector.outcome(), batch);
             match by_definition(&means, direction, threshold) {
                 None => prop_assert_eq!(

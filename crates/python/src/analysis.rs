@@ -1,6 +1,7 @@
 //! The estimators, on NumPy arrays; answers are dictionaries, of which `peristalsis.analysis` makes its result objects.
 
 use std::cell::RefCell;
+use std::ops::Deref;
 
 use numpy::PyReadonlyArray1;
 use peristalsis_analysis as analysis;
@@ -15,7 +16,7 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{AnalysisError, of_analysis};
 
-type Answer<'py> = PyResult<Bound<'py, PyAny>>;
+type Answer = PyResult<Py<PyAny>>;
 
 /// A column of numbers, from an array of NumPy.
 pub(crate) struct Column(Vec<f64>);
@@ -26,6 +27,20 @@ impl FromPyObject<'_, '_> for Column {
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let array: PyReadonlyArray1<'_, f64> = object.extract()?;
         Ok(Self(array.as_slice()?.to_vec()))
+    }
+}
+
+impl Deref for Column {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl AsRef<[f64]> for Column {
+    fn as_ref(&self) -> &[f64] {
+        self
     }
 }
 
@@ -46,6 +61,11 @@ impl FromPyObject<'_, '_> for Runs {
     }
 }
 
+/// Width and outcome of each run.
+type RunTable = (Column, Runs);
+/// Width of each run, and whether it ended jammed.
+type Outcomes = (Column, Vec<bool>);
+
 /// A value of one of our enumerations, from its name.
 pub(crate) struct Named<T>(T);
 
@@ -60,20 +80,15 @@ impl<T: DeserializeOwned> FromPyObject<'_, '_> for Named<T> {
 }
 
 /// Computes without the interpreter and hands the answer over.
-fn answer<'py, T: Serialize + Send>(
-    py: Python<'py>,
-    work: impl FnOnce() -> Result<T, analysis::Error> + Send,
-) -> Answer<'py> {
-    let value = py.detach(work).map_err(of_analysis)?;
-    Ok(pythonize(py, &value)?)
+fn answer<T: Serialize + Send>(work: impl FnOnce() -> Result<T, analysis::Error> + Send) -> Answer {
+    Python::attach(|py| {
+        let value = py.detach(work).map_err(of_analysis)?;
+        Ok(pythonize(py, &value)?.unbind())
+    })
 }
 
 fn uncertain((value, error): (f64, f64)) -> Uncertain {
     Uncertain::normal(value, error)
-}
-
-fn series(columns: &[Column]) -> Vec<&[f64]> {
-    columns.iter().map(|column| column.0.as_slice()).collect()
 }
 
 /// What stands for runs that ended early: the mean of so many last samples, or nothing.
@@ -82,23 +97,23 @@ fn after_end(held: Option<usize>) -> AfterEnd {
 }
 
 #[pyfunction]
-pub(crate) fn mean_with_error<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
-    answer(py, || analysis::mean_with_error(&series.0))
+pub(crate) fn mean_with_error(series: Column) -> Answer {
+    answer(|| analysis::mean_with_error(&series))
 }
 
 #[pyfunction]
-pub(crate) fn autocorrelation_time<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
-    answer(py, || analysis::autocorrelation_time(&series.0))
+pub(crate) fn autocorrelation_time(series: Column) -> Answer {
+    answer(|| analysis::autocorrelation_time(&series))
 }
 
 #[pyfunction]
-pub(crate) fn stationary_mean<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
-    answer(py, || analysis::stationary_mean(&series.0))
+pub(crate) fn stationary_mean(series: Column) -> Answer {
+    answer(|| analysis::stationary_mean(&series))
 }
 
 #[pyfunction]
-pub(crate) fn stationarity<'py>(py: Python<'py>, series: Column) -> Answer<'py> {
-    answer(py, || analysis::stationarity(&series.0))
+pub(crate) fn stationarity(series: Column) -> Answer {
+    answer(|| analysis::stationarity(&series))
 }
 
 /// Time of the transition in a series of period averages, and whether there was one.
@@ -109,11 +124,7 @@ pub(crate) fn transition_time(
     threshold: f64,
     period_duration: f64,
 ) -> PyResult<(f64, bool)> {
-    let means = analysis::PeriodMeans {
-        first_period: 0,
-        means: averages.0,
-    };
-    let found = analysis::transition_time(&means, direction.0, threshold, period_duration);
+    let found = analysis::transition_time(&averages, direction.0, threshold, period_duration);
     Ok(match found.map_err(of_analysis)? {
         Transition::At { time, .. } => (time, true),
         Transition::Censored { time } => (time, false),
@@ -121,208 +132,140 @@ pub(crate) fn transition_time(
 }
 
 #[pyfunction]
-pub(crate) fn survival<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
-    answer(py, || Survival::new(&runs.0))
+pub(crate) fn survival(runs: Runs) -> Answer {
+    answer(|| Survival::new(&runs.0))
 }
 
 #[pyfunction]
-pub(crate) fn survival_median<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
-    answer(py, || Survival::new(&runs.0)?.median())
+pub(crate) fn survival_median(runs: Runs) -> Answer {
+    answer(|| Survival::new(&runs.0)?.median())
 }
 
 #[pyfunction]
-pub(crate) fn restricted_moments<'py>(py: Python<'py>, runs: Runs, horizon: f64) -> Answer<'py> {
-    answer(py, || analysis::restricted_moments(&runs.0, horizon))
+pub(crate) fn restricted_moments(runs: Runs, horizon: f64) -> Answer {
+    answer(|| analysis::restricted_moments(&runs.0, horizon))
 }
 
 #[pyfunction]
-pub(crate) fn fit_lifetime<'py>(py: Python<'py>, family: Named<Family>, runs: Runs) -> Answer<'py> {
-    answer(py, || analysis::fit_lifetime(family.0, &runs.0))
+pub(crate) fn fit_lifetime(family: Named<Family>, runs: Runs) -> Answer {
+    answer(|| analysis::fit_lifetime(family.0, &runs.0))
 }
 
 #[pyfunction]
-pub(crate) fn fit_shifted_exponential<'py>(py: Python<'py>, runs: Runs) -> Answer<'py> {
-    answer(py, || analysis::fit_shifted_exponential(&runs.0))
+pub(crate) fn fit_shifted_exponential(runs: Runs) -> Answer {
+    answer(|| analysis::fit_shifted_exponential(&runs.0))
 }
 
 #[pyfunction]
 #[pyo3(signature = (law, width, value, error, known=None))]
-pub(crate) fn fit_law<'py>(
-    py: Python<'py>,
+pub(crate) fn fit_law(
     law: Named<Law>,
     width: Column,
     value: Column,
     error: Column,
     known: Option<(f64, f64)>,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::fit_law(law.0, &width.0, &value.0, &error.0, known.map(uncertain))
-    })
+) -> Answer {
+    answer(|| analysis::fit_law(law.0, &width, &value, &error, known.map(uncertain)))
 }
 
 #[pyfunction]
-pub(crate) fn fit_law_to_runs<'py>(
-    py: Python<'py>,
+pub(crate) fn fit_law_to_runs(law: Named<Law>, family: Named<Family>, table: RunTable) -> Answer {
+    let (width, runs) = table;
+    answer(|| analysis::fit_law_to_runs(law.0, family.0, &width, &runs.0))
+}
+
+#[pyfunction]
+pub(crate) fn fit_law_to_runs_in_windows(
     law: Named<Law>,
     family: Named<Family>,
-    width: Column,
-    runs: Runs,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::fit_law_to_runs(law.0, family.0, &width.0, &runs.0)
-    })
+    table: RunTable,
+) -> Answer {
+    let (width, runs) = table;
+    answer(|| analysis::fit_law_to_runs_in_windows(law.0, family.0, &width, &runs.0))
 }
 
 #[pyfunction]
-pub(crate) fn fit_law_to_runs_in_windows<'py>(
-    py: Python<'py>,
-    law: Named<Law>,
-    family: Named<Family>,
-    width: Column,
-    runs: Runs,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::fit_law_to_runs_in_windows(law.0, family.0, &width.0, &runs.0)
-    })
-}
-
-#[pyfunction]
-pub(crate) fn compare_laws<'py>(
-    py: Python<'py>,
+pub(crate) fn compare_laws(
     laws: Named<Vec<Law>>,
     family: Named<Family>,
-    width: Column,
-    runs: Runs,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::compare_laws(&laws.0, family.0, &width.0, &runs.0)
-    })
+    table: RunTable,
+) -> Answer {
+    let (width, runs) = table;
+    answer(|| analysis::compare_laws(&laws.0, family.0, &width, &runs.0))
 }
 
 #[pyfunction]
-pub(crate) fn fit_law_with_scatter<'py>(py: Python<'py>, width: Column, runs: Runs) -> Answer<'py> {
-    answer(py, || analysis::fit_law_with_scatter(&width.0, &runs.0))
+pub(crate) fn fit_law_with_scatter(table: RunTable) -> Answer {
+    answer(|| analysis::fit_law_with_scatter(&table.0, &table.1.0))
 }
 
 #[pyfunction]
-pub(crate) fn ensembles_by_width<'py>(
-    py: Python<'py>,
-    family: Named<Family>,
-    width: Column,
-    runs: Runs,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::ensembles_by_width(family.0, &width.0, &runs.0)
-    })
+pub(crate) fn ensembles_by_width(family: Named<Family>, table: RunTable) -> Answer {
+    answer(|| analysis::ensembles_by_width(family.0, &table.0, &table.1.0))
 }
 
 #[pyfunction]
-pub(crate) fn fraction_crossing<'py>(
-    py: Python<'py>,
-    width: Column,
-    jammed: Vec<bool>,
-) -> Answer<'py> {
-    answer(py, || analysis::fraction_crossing(&width.0, &jammed))
+pub(crate) fn fraction_crossing(runs: Outcomes) -> Answer {
+    answer(|| analysis::fraction_crossing(&runs.0, &runs.1))
 }
 
 #[pyfunction]
-pub(crate) fn hysteresis<'py>(
-    py: Python<'py>,
-    rest: (Column, Vec<bool>),
-    jammed: (Column, Vec<bool>),
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::hysteresis((&rest.0.0, &rest.1), (&jammed.0.0, &jammed.1))
-    })
+pub(crate) fn hysteresis(rest: Outcomes, jammed: Outcomes) -> Answer {
+    answer(|| analysis::hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)))
 }
 
 /// Columns of width, value and error of either branch.
 #[pyfunction]
-pub(crate) fn jump_height<'py>(
-    py: Python<'py>,
-    upper: [Column; 3],
-    lower: [Column; 3],
-    critical: (f64, f64),
-) -> Answer<'py> {
-    let [upper, lower] =
-        [&upper, &lower].map(|branch| branch.each_ref().map(|column| column.0.as_slice()));
-    answer(py, || {
-        analysis::jump_height(upper, lower, uncertain(critical))
-    })
+pub(crate) fn jump_height(upper: [Column; 3], lower: [Column; 3], critical: (f64, f64)) -> Answer {
+    let [upper, lower] = [&upper, &lower].map(|branch| branch.each_ref().map(Column::deref));
+    answer(|| analysis::jump_height(upper, lower, uncertain(critical)))
 }
 
 #[pyfunction]
-pub(crate) fn dip_test<'py>(
-    py: Python<'py>,
-    values: Column,
-    resamples: usize,
-    seed: u64,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::dip_test(&values.0, Bootstrap { resamples, seed })
-    })
+pub(crate) fn dip_test(values: Column, resamples: usize, seed: u64) -> Answer {
+    answer(|| analysis::dip_test(&values, Bootstrap { resamples, seed }))
 }
 
 #[pyfunction]
-pub(crate) fn two_peaks<'py>(py: Python<'py>, values: Column) -> Answer<'py> {
-    answer(py, || analysis::two_peaks(&values.0))
+pub(crate) fn two_peaks(values: Column) -> Answer {
+    answer(|| analysis::two_peaks(&values))
 }
 
 #[pyfunction]
-pub(crate) fn fit_line<'py>(py: Python<'py>, x: Column, y: Column, error: Column) -> Answer<'py> {
-    answer(py, || analysis::fit_line(&x.0, &y.0, &error.0))
+pub(crate) fn fit_line(x: Column, y: Column, error: Column) -> Answer {
+    answer(|| analysis::fit_line(&x, &y, &error))
 }
 
 #[pyfunction]
-pub(crate) fn fit_parabola<'py>(
-    py: Python<'py>,
-    x: Column,
-    y: Column,
-    error: Column,
-) -> Answer<'py> {
-    answer(py, || analysis::fit_parabola(&x.0, &y.0, &error.0))
+pub(crate) fn fit_parabola(x: Column, y: Column, error: Column) -> Answer {
+    answer(|| analysis::fit_parabola(&x, &y, &error))
 }
 
 #[pyfunction]
-pub(crate) fn power_exponent<'py>(
-    py: Python<'py>,
-    x: Column,
-    y: Column,
-    error: Column,
-) -> Answer<'py> {
-    answer(py, || analysis::power_exponent(&x.0, &y.0, &error.0))
+pub(crate) fn power_exponent(x: Column, y: Column, error: Column) -> Answer {
+    answer(|| analysis::power_exponent(&x, &y, &error))
 }
 
 #[pyfunction]
-pub(crate) fn ensemble_moments<'py>(py: Python<'py>, replicas: Vec<Column>) -> Answer<'py> {
-    answer(py, || analysis::ensemble_moments(&series(&replicas)))
+pub(crate) fn ensemble_moments(replicas: Vec<Column>) -> Answer {
+    answer(|| analysis::ensemble_moments(&replicas))
 }
 
 #[pyfunction]
 #[pyo3(signature = (runs, held=None))]
-pub(crate) fn second_moment<'py>(
-    py: Python<'py>,
-    runs: Vec<Column>,
-    held: Option<usize>,
-) -> Answer<'py> {
-    answer(py, || {
-        analysis::second_moment(&series(&runs), after_end(held))
-    })
+pub(crate) fn second_moment(runs: Vec<Column>, held: Option<usize>) -> Answer {
+    answer(|| analysis::second_moment(&runs, after_end(held)))
 }
 
 #[pyfunction]
 #[pyo3(signature = (runs, held, resamples, seed))]
-pub(crate) fn second_moment_peak<'py>(
-    py: Python<'py>,
+pub(crate) fn second_moment_peak(
     runs: Vec<Column>,
     held: Option<usize>,
     resamples: usize,
     seed: u64,
-) -> Answer<'py> {
-    let bootstrap = Bootstrap { resamples, seed };
-    answer(py, || {
-        analysis::second_moment_peak(&series(&runs), after_end(held), bootstrap)
-    })
+) -> Answer {
+    answer(|| analysis::second_moment_peak(&runs, after_end(held), Bootstrap { resamples, seed }))
 }
 
 /// A curve, from its parameter and its columns (x, y, error).
@@ -437,7 +380,7 @@ pub(crate) fn fit_collapse<'py>(
     measured: Vec<Measured>,
     scheme: Scheme<'py>,
     search: Search,
-) -> Answer<'py> {
+) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
     let collapse = Collapse {
         curves: &curves,
@@ -466,7 +409,7 @@ pub(crate) fn fit_collapse<'py>(
     };
     let outcome = work();
     let found = scheme.outcome(outcome)?;
-    Ok(pythonize(py, &found)?)
+    Ok(pythonize(py, &found)?.unbind())
 }
 
 /// How well curves collapse as they are scaled with given parameters: (quality, scaled curves).
@@ -476,7 +419,7 @@ pub(crate) fn apply_collapse<'py>(
     measured: Vec<Measured>,
     scheme: Scheme<'py>,
     parameters: Vec<f64>,
-) -> Answer<'py> {
+) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
     let scaled: Vec<Vec<CurvePoint>> = curves
         .iter()
@@ -496,5 +439,5 @@ pub(crate) fn apply_collapse<'py>(
             picks.map(|pick| points.iter().map(pick).collect())
         })
         .collect();
-    Ok(pythonize(py, &(quality, columns))?)
+    Ok(pythonize(py, &(quality, columns))?.unbind())
 }

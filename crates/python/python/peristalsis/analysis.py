@@ -353,8 +353,8 @@ def fit_law_to_runs(
     family: str = "gamma",
 ) -> LawRunsFit:
     """A law of the mean transition time, by the likelihood of every single run, the censored ones included."""
-    widths, runs = _table(width, time, observed)
-    return result(LawRunsFit, _core.fit_law_to_runs(_law(law), family, widths, runs))
+    table = _table(width, time, observed)
+    return result(LawRunsFit, _core.fit_law_to_runs(_law(law), family, table))
 
 
 def fit_law_to_runs_in_windows(
@@ -369,8 +369,8 @@ def fit_law_to_runs_in_windows(
 
     The first window holds all widths. An exponent that is one moves by no more than its error from window to window.
     """
-    widths, runs = _table(width, time, observed)
-    answers = _core.fit_law_to_runs_in_windows(_law(law), family, widths, runs)
+    table = _table(width, time, observed)
+    answers = _core.fit_law_to_runs_in_windows(_law(law), family, table)
     return [result(WindowRunsFit, answer) for answer in answers]
 
 
@@ -382,8 +382,8 @@ def fit_law_with_scatter(
     tau = A (w_c - w)^-alpha and chi_tau/tau^2 = C (w_c - w)^-q, gamma distributions of shape tau^2/chi_tau; so
     chi_tau ~ (w_c - w)^-(2 alpha + q). Needs three widths with transitions.
     """
-    widths, runs = _table(width, time, observed)
-    return result(ScatterLawFit, _core.fit_law_with_scatter(widths, runs))
+    table = _table(width, time, observed)
+    return result(ScatterLawFit, _core.fit_law_with_scatter(table))
 
 
 def ensembles_by_width(
@@ -397,8 +397,8 @@ def ensembles_by_width(
 
     Mean and variance chi_tau with errors for `fit_law` are those of each answer's `fit`.
     """
-    widths, runs = _table(width, time, observed)
-    answers = _core.ensembles_by_width(family, widths, runs)
+    table = _table(width, time, observed)
+    answers = _core.ensembles_by_width(family, table)
     return [result(WidthEnsemble, answer) for answer in answers]
 
 
@@ -411,8 +411,8 @@ def compare_laws(
     family: str = "gamma",
 ) -> list[LawEvidence]:
     """What the runs say for each of several laws, by Akaike's criterion."""
-    widths, runs = _table(width, time, observed)
-    answers = _core.compare_laws([_law(law) for law in laws], family, widths, runs)
+    table = _table(width, time, observed)
+    answers = _core.compare_laws([_law(law) for law in laws], family, table)
     return [result(LawEvidence, answer) for answer in answers]
 
 
@@ -436,8 +436,7 @@ def power_exponent(x: Numbers, y: Numbers, error: Numbers) -> LineFit:
 
 def fraction_crossing(width: Numbers, jammed: npt.ArrayLike) -> FractionCrossing:
     """Width at which the fraction of jammed runs falls through one half; one row a run."""
-    widths, truths = _runs(width, jammed)
-    return result(FractionCrossing, _core.fraction_crossing(widths, truths))
+    return result(FractionCrossing, _core.fraction_crossing(_runs(width, jammed)))
 
 
 def hysteresis(
