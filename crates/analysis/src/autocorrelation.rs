@@ -1,6 +1,7 @@
 //! Integrated autocorrelation time.
 
-use crate::error::{Error, checked, mean_of};
+use crate::columns::mean_of;
+use crate::error::{Error, checked};
 use serde::{Deserialize, Serialize};
 
 /// Fewest samples from which correlations are estimated.

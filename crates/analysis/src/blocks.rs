@@ -1,6 +1,7 @@
 //! Mean of a correlated series with its error, from averages over blocks.
 
-use crate::error::{Error, checked, mean_of};
+use crate::columns::{mean_and_scatter, mean_of};
+use crate::error::{Error, checked};
 use serde::{Deserialize, Serialize};
 
 /// Fewest samples from which a mean is given an error.
@@ -57,8 +58,7 @@ fn block_levels(series: &[f64]) -> Result<Vec<BlockLevel>, Error> {
     let mut levels = Vec::new();
     while averages.len() >= 2 {
         let blocks = averages.len();
-        let mean = mean_of(&averages);
-        let scatter: f64 = averages.iter().map(|x| (x - mean) * (x - mean)).sum();
+        let (_, scatter) = mean_and_scatter(&averages);
         let free = (blocks - 1) as f64;
         let error = (scatter / (free * blocks as f64)).sqrt();
         levels.push(BlockLevel {

@@ -152,7 +152,7 @@ impl Randomness {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::mean_of;
+    use crate::columns::mean_of;
 
     #[test]
     fn a_resample_does_not_depend_on_how_many_follow() {

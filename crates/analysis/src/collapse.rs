@@ -1,6 +1,6 @@
 //! Quality of a scaling collapse: how well several curves lie on one.
 
-use crate::error::Error;
+use crate::error::{Error, enough};
 use serde::{Deserialize, Serialize};
 
 /// A point of a curve with the standard error of its ordinate.
@@ -63,12 +63,7 @@ pub struct CollapseQuality {
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, Error> {
-    if curves.len() < 2 {
-        return Err(Error::TooFew {
-            needed: 2,
-            found: curves.len(),
-        });
-    }
+    enough(curves.len(), 2)?;
     let total: usize = curves.iter().map(Vec::len).sum();
     let sorted: Vec<Vec<CurvePoint>> = curves
         .iter()

@@ -2,7 +2,7 @@
 
 use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
 use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
-use crate::error::{Error, checked, checked_positive, same_length};
+use crate::error::{Error, checked, checked_positive, enough, same_length};
 use crate::numerics::minimum::crossing;
 use crate::numerics::simplex::nelder_mead;
 use crate::uncertain::Interval;
@@ -81,19 +81,10 @@ impl Collapse<'_> {
     /// # Errors
     /// Those of [`collapse_quality`].
     pub fn quality(&self, parameters: &[f64]) -> Result<CollapseQuality, Error> {
-        self.quality_without(parameters, None)
-    }
-
-    fn quality_without(
-        &self,
-        parameters: &[f64],
-        left_out: Option<usize>,
-    ) -> Result<CollapseQuality, Error> {
         let scaled: Vec<Vec<CurvePoint>> = self
             .curves
             .iter()
             .enumerate()
-            .filter(|(index, _)| Some(*index) != left_out)
             .map(|(index, curve)| {
                 let scale = |&point| (self.transform)(parameters, index, curve.parameter, point);
                 curve.points.iter().map(scale).collect()
@@ -103,8 +94,8 @@ impl Collapse<'_> {
     }
 
     /// S where enough points overlap; else a wall that leans toward more overlap.
-    fn objective(&self, parameters: &[f64], left_out: Option<usize>) -> f64 {
-        match self.quality_without(parameters, left_out) {
+    fn objective(&self, parameters: &[f64]) -> f64 {
+        match self.quality(parameters) {
             Err(_) => 3.0 * SHORT,
             Ok(found) if found.overlap < self.least_overlap || !found.is_connected => {
                 let missing = (self.least_overlap - found.overlap).max(0.0);
@@ -114,13 +105,8 @@ impl Collapse<'_> {
         }
     }
 
-    fn search(
-        &self,
-        start: &[f64],
-        steps: &[f64],
-        left_out: Option<usize>,
-    ) -> (Vec<f64>, f64, bool) {
-        let objective = |parameters: &[f64]| self.objective(parameters, left_out);
+    fn search(&self, start: &[f64], steps: &[f64]) -> (Vec<f64>, f64, bool) {
+        let objective = |parameters: &[f64]| self.objective(parameters);
         let evaluations = EVALUATIONS * start.len();
         let mut best = nelder_mead(objective, start, steps, TOLERANCE, evaluations);
         // S jumps wherever a point passes one of another curve, so that it has many shallow minima: a search begins
@@ -172,29 +158,12 @@ impl Collapse<'_> {
         starts: usize,
         seed: u64,
     ) -> Result<CollapseFit, Error> {
-        self.fit_without(start, steps, starts, seed, None)
-    }
-
-    fn fit_without(
-        &self,
-        start: &[f64],
-        steps: &[f64],
-        starts: usize,
-        seed: u64,
-        left_out: Option<usize>,
-    ) -> Result<CollapseFit, Error> {
         same_length(start.len(), steps.len())?;
         checked(start, 1)?;
         checked_positive(steps)?;
         if !(0.0..=1.0).contains(&self.least_overlap) {
             return Err(Error::Fraction {
                 value: self.least_overlap,
-            });
-        }
-        if starts == 0 {
-            return Err(Error::TooFew {
-                needed: 1,
-                found: 0,
             });
         }
         let found: Vec<(Vec<f64>, f64, bool)> = (0..starts as u64)
@@ -208,7 +177,7 @@ impl Collapse<'_> {
                         _ => start + step * (4.0 * randomness.uniform() - 2.0),
                     })
                     .collect();
-                self.search(&place, steps, left_out)
+                self.search(&place, steps)
             })
             .collect();
         let (parameters, value, converged) = found
@@ -219,7 +188,7 @@ impl Collapse<'_> {
                 needed: 1,
                 found: 0,
             })?;
-        let quality = self.quality_without(&parameters, left_out);
+        let quality = self.quality(&parameters);
         if value >= SHORT {
             return Err(match quality {
                 Err(too_few @ Error::TooFew { .. }) => too_few,
@@ -267,7 +236,7 @@ impl Collapse<'_> {
                 curves: &curves,
                 ..*self
             };
-            let (parameters, value, _) = resampled.search(&fit.parameters, &steps, None);
+            let (parameters, value, _) = resampled.search(&fit.parameters, &steps);
             (value < SHORT).then_some(parameters)
         });
         summarise(&fit.parameters, estimates)
@@ -298,7 +267,7 @@ impl Collapse<'_> {
                 let all = |rest: &[f64]| {
                     let mut parameters = rest.to_vec();
                     parameters.insert(axis, value);
-                    self.objective(&parameters, None)
+                    self.objective(&parameters)
                 };
                 let smaller: Vec<f64> = rest_steps.iter().map(|step| 0.3 * step).collect();
                 let evaluations = EVALUATIONS * rest.len().max(1);
@@ -334,14 +303,23 @@ impl Collapse<'_> {
         starts: usize,
         seed: u64,
     ) -> Result<Vec<CollapseFit>, Error> {
-        if self.curves.len() < 3 {
-            return Err(Error::TooFew {
-                needed: 3,
-                found: self.curves.len(),
-            });
-        }
+        enough(self.curves.len(), 3)?;
         (0..self.curves.len())
-            .map(|left_out| self.fit_without(start, steps, starts, seed, Some(left_out)))
+            .map(|left_out| {
+                let mut curves = self.curves.to_vec();
+                curves.remove(left_out);
+                let transform = |parameters: &[f64], curve: usize, parameter, point| {
+                    // The place of the curve among all.
+                    let curve = curve + usize::from(curve >= left_out);
+                    (self.transform)(parameters, curve, parameter, point)
+                };
+                let rest = Collapse {
+                    curves: &curves,
+                    transform: &transform,
+                    ..*self
+                };
+                rest.fit(start, steps, starts, seed)
+            })
             .collect()
     }
 }

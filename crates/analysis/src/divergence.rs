@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::family::Family;
 use crate::law::Law;
-use crate::law_likelihood::{Largest, LawLikelihood, RunTable};
+use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::transition::Transition;
 use serde::{Deserialize, Serialize};
 
@@ -55,8 +55,9 @@ pub fn compare_laws(
     let mut evidence = laws
         .iter()
         .map(|&law| {
-            let (likelihood, best) = fitted(law, family, &table)?;
-            let parameters = law.parameters() + family.parameters() - 1;
+            let likelihood = LawLikelihood::new(law, family, &table.places, &table.runs)?;
+            let best = likelihood.largest()?;
+            let parameters = law.parameters_with(family);
             Ok(LawEvidence {
                 law,
                 log_likelihood: best.log_likelihood,
@@ -80,15 +81,6 @@ pub fn compare_laws(
         evidence.weight /= total;
     }
     Ok(evidence)
-}
-
-fn fitted(law: Law, family: Family, table: &RunTable) -> Result<(LawLikelihood, Largest), Error> {
-    let likelihood = LawLikelihood::new(law, family, &table.places, &table.runs)?;
-    let best = likelihood.largest().ok_or(Error::Undetermined {
-        points: table.count(),
-        parameters: law.parameters() + family.parameters() - 1,
-    })?;
-    Ok((likelihood, best))
 }
 
 #[cfg(test)]

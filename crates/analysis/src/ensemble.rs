@@ -1,6 +1,7 @@
 //! Moments across the replicas of an ensemble.
 
-use crate::error::{Error, check_replica, checked, mean_of, same_length};
+use crate::columns::{jackknife_error, mean_and_scatter};
+use crate::error::{Error, check_replica, checked, enough, same_length};
 use serde::{Deserialize, Serialize};
 
 /// Fewest replicas: the variance must exist with one of them left out.
@@ -24,21 +25,12 @@ pub struct Moments {
 /// With `S = sum (x - <x>)^2` over all n values the rest has `S - n (x_i - <x>)^2/(n - 1)`, over n - 2.
 fn variances_without_one(sample: &[f64]) -> impl Iterator<Item = f64> {
     let replicas = sample.len() as f64;
-    let mean = mean_of(sample);
-    let scatter: f64 = sample.iter().map(|x| (x - mean) * (x - mean)).sum();
+    let (mean, scatter) = mean_and_scatter(sample);
     sample.iter().map(move |x| {
         let rest = scatter - (x - mean) * (x - mean) * replicas / (replicas - 1.0);
         // Round-off must not leave a negative variance.
         rest.max(0.0) / (replicas - 2.0)
     })
-}
-
-/// Jackknife error of an estimator from its values with one replica left out: `sqrt((n - 1)/n sum (v_i - <v>)^2)`.
-fn jackknife_error(without_one: &[f64]) -> f64 {
-    let replicas = without_one.len() as f64;
-    let mean = mean_of(without_one);
-    let scatter: f64 = without_one.iter().map(|v| (v - mean) * (v - mean)).sum();
-    ((replicas - 1.0) / replicas * scatter).sqrt()
 }
 
 /// Mean of independent values and its standard error.
@@ -50,9 +42,8 @@ fn jackknife_error(without_one: &[f64]) -> f64 {
 /// ```
 pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let number = values.len() as f64;
-    let mean = mean_of(values);
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    (mean, (squares / (number * (number - 1.0))).sqrt())
+    let (mean, scatter) = mean_and_scatter(values);
+    (mean, (scatter / (number * (number - 1.0))).sqrt())
 }
 
 /// Mean and variance of independent values with their jackknife errors.
@@ -64,9 +55,8 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
 /// # Errors
 /// [`Error::TooFew`] below 3 values, [`Error::NonFinite`].
 pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
-    let mean = mean_of(checked(sample, LEAST_REPLICAS)?);
+    let (mean, scatter) = mean_and_scatter(checked(sample, LEAST_REPLICAS)?);
     let replicas = sample.len() as f64;
-    let scatter: f64 = sample.iter().map(|x| (x - mean) * (x - mean)).sum();
     let variance = scatter / (replicas - 1.0);
     let without_one: Vec<f64> = variances_without_one(sample).collect();
     Ok(Moments {
@@ -86,23 +76,13 @@ pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
 /// # Errors
 /// [`Error::TooFew`] below 3 replicas or without times, [`Error::LengthMismatch`], [`Error::NonFiniteReplica`].
 pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>, Error> {
-    if replicas.len() < LEAST_REPLICAS {
-        return Err(Error::TooFew {
-            needed: LEAST_REPLICAS,
-            found: replicas.len(),
-        });
-    }
+    enough(replicas.len(), LEAST_REPLICAS)?;
     let times = replicas[0].as_ref().len();
     for (replica, series) in replicas.iter().map(AsRef::as_ref).enumerate() {
         same_length(times, series.len())?;
         check_replica(replica, series)?;
     }
-    if times == 0 {
-        return Err(Error::TooFew {
-            needed: 1,
-            found: 0,
-        });
-    }
+    enough(times, 1)?;
     (0..times)
         .map(|time| {
             let column: Vec<f64> = replicas

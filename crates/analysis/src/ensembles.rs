@@ -1,5 +1,6 @@
 //! The ensembles of a study, one a width, with every estimate of their transition times side by side.
 
+use crate::columns::{by_width, mean_of};
 use crate::error::Error;
 use crate::family::Family;
 use crate::law_likelihood::RunTable;
@@ -51,14 +52,9 @@ pub fn ensembles_by_width(
     width: &[f64],
     transitions: &[Transition],
 ) -> Result<Vec<WidthEnsemble>, Error> {
-    let places = RunTable::new(width, transitions)?.places;
-    let ensemble = |place: f64| {
-        let runs: Vec<Transition> = width
-            .iter()
-            .zip(transitions)
-            .filter(|(width, _)| **width == place)
-            .map(|(_, &transition)| transition)
-            .collect();
+    let table = RunTable::new(width, transitions)?;
+    let (_, transitions) = by_width(width, transitions);
+    let ensemble = |(width, runs): (f64, Vec<Transition>)| {
         let times: Vec<f64> = runs.iter().filter_map(|run| run.observed()).collect();
         let watched = runs
             .iter()
@@ -67,16 +63,21 @@ pub fn ensembles_by_width(
             })
             .fold(0.0, f64::max);
         WidthEnsemble {
-            width: place,
+            width,
             observed: times.len(),
             censored: runs.len() - times.len(),
             watched,
-            naive_mean: (!times.is_empty()).then(|| times.iter().sum::<f64>() / times.len() as f64),
+            naive_mean: (!times.is_empty()).then(|| mean_of(&times)),
             restricted: restricted_moments(&runs, watched).ok(),
             fit: fit_lifetime(family, &runs).ok(),
         }
     };
-    Ok(places.into_iter().map(ensemble).collect())
+    Ok(table
+        .places
+        .into_iter()
+        .zip(transitions)
+        .map(ensemble)
+        .collect())
 }
 
 #[cfg(test)]

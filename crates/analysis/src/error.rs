@@ -169,28 +169,34 @@ pub enum Error {
 
 /// The series, unless it is shorter than `needed` or has a value that is not finite.
 pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
-    if series.len() < needed {
-        return Err(Error::TooFew {
-            needed,
-            found: series.len(),
-        });
-    }
-    match series.iter().position(|value| !value.is_finite()) {
-        Some(index) => Err(Error::NonFinite {
-            index,
-            value: series[index],
-        }),
+    enough(series.len(), needed)?;
+    match first(series, |value| !value.is_finite()) {
+        Some((index, value)) => Err(Error::NonFinite { index, value }),
         None => Ok(series),
     }
 }
 
+/// Refuses fewer values than `needed`.
+pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Error> {
+    if found < needed {
+        return Err(Error::TooFew { needed, found });
+    }
+    Ok(())
+}
+
+/// The first value with a property, and its place.
+fn first(column: &[f64], is_so: impl Fn(f64) -> bool) -> Option<(usize, f64)> {
+    let index = column.iter().position(|&value| is_so(value))?;
+    Some((index, column[index]))
+}
+
 /// Refuses a series of a replica with a value that is not finite.
 pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error> {
-    match series.iter().position(|value| !value.is_finite()) {
-        Some(index) => Err(Error::NonFiniteReplica {
+    match first(series, |value| !value.is_finite()) {
+        Some((index, value)) => Err(Error::NonFiniteReplica {
             replica,
             index,
-            value: series[index],
+            value,
         }),
         None => Ok(()),
     }
@@ -198,34 +204,35 @@ pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error>
 
 /// Refuses columns of different length.
 pub(crate) fn same_length(expected: usize, found: usize) -> Result<(), Error> {
-    if expected == found {
-        Ok(())
-    } else {
-        Err(Error::LengthMismatch { expected, found })
+    if expected != found {
+        return Err(Error::LengthMismatch { expected, found });
     }
+    Ok(())
 }
 
 /// Refuses values that are not finite and positive.
 pub(crate) fn checked_positive(column: &[f64]) -> Result<&[f64], Error> {
     checked(column, 0)?;
-    match column.iter().position(|&value| value <= 0.0) {
-        Some(index) => Err(Error::NotPositive {
-            index,
-            value: column[index],
-        }),
+    match first(column, |value| value <= 0.0) {
+        Some((index, value)) => Err(Error::NotPositive { index, value }),
         None => Ok(column),
     }
 }
 
-/// Number of distinct values.
-pub(crate) fn distinct(column: &[f64]) -> usize {
-    let mut sorted = column.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.dedup();
-    sorted.len()
+/// Refuses points (x, y, error) that are not of equal number, finite, and with positive errors.
+pub(crate) fn check_points(x: &[f64], y: &[f64], error: &[f64]) -> Result<(), Error> {
+    same_length(x.len(), y.len())?;
+    same_length(x.len(), error.len())?;
+    checked(x, 0)?;
+    checked(y, 0)?;
+    checked_positive(error)?;
+    Ok(())
 }
 
-/// Arithmetic mean, summed in order; the series must not be empty.
-pub(crate) fn mean_of(series: &[f64]) -> f64 {
-    series.iter().sum::<f64>() / series.len() as f64
+/// Refuses fewer distinct places than a fit needs.
+pub(crate) fn enough_places(found: usize, needed: usize) -> Result<(), Error> {
+    if found < needed {
+        return Err(Error::TooFewPlaces { needed, found });
+    }
+    Ok(())
 }

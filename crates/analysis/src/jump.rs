@@ -1,6 +1,7 @@
 //! Height of the jump of the flow rate at the critical width.
 
-use crate::error::{Error, checked, checked_positive, distinct, same_length};
+use crate::columns::distinct;
+use crate::error::{Error, check_points, checked, enough};
 use crate::line::fit_line;
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
@@ -59,12 +60,9 @@ pub fn jump_height(
 
 /// Value of a branch at a width, and its slope.
 fn branch([width, ratio, error]: [&[f64]; 3], at: f64) -> Result<(Uncertain, f64), Error> {
-    same_length(width.len(), ratio.len())?;
-    same_length(width.len(), error.len())?;
-    checked(width, 1)?;
-    checked(ratio, 1)?;
-    checked_positive(error)?;
-    if distinct(width) > 1 {
+    check_points(width, ratio, error)?;
+    enough(width.len(), 1)?;
+    if distinct(width).len() > 1 {
         let line = fit_line(width, ratio, error)?;
         return Ok((line.at(at), line.slope.value));
     }

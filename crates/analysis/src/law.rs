@@ -1,5 +1,7 @@
 //! Laws of a transition time, or of another positive quantity, against the width of the bottleneck.
 
+use crate::family::Family;
+use crate::uncertain::Interval;
 use serde::{Deserialize, Serialize};
 
 /// How a quantity y grows as the width w rises toward the critical width w_c.
@@ -33,6 +35,11 @@ impl Law {
     /// Whether the law ends at a critical width.
     pub fn is_critical(self) -> bool {
         self != Self::Exponential
+    }
+
+    /// Free parameters with a family of distributions about the mean, whose shape is common to all widths.
+    pub(crate) fn parameters_with(self, family: Family) -> usize {
+        self.parameters() + family.parameters() - 1
     }
 
     /// Covariate x at a distance w_c - w > 0, or at a width for the exponential law.
@@ -101,23 +108,25 @@ impl CriticalRange {
         (0..Self::PLACES).map(|k| low + step * k as f64).collect()
     }
 
+    /// Interval of w_c about its best place ln(w_c - top), where a function of such places is at most 0; see
+    /// [`Interval::around`].
+    pub(crate) fn interval(
+        self,
+        best: f64,
+        outside: impl Fn(f64) -> f64,
+        first_step: f64,
+    ) -> Interval {
+        let (nearest, farthest) = self.bounds();
+        // A w_c within round-off of the largest width is as good as that width.
+        let limits = [nearest.min(best) - 7.0, farthest];
+        Interval::around(best, outside, first_step, limits, Interval::OPEN)
+            .map(|ln_distance| self.critical(ln_distance))
+    }
+
     /// Whether a fit has run away to a w_c that the widths do not determine.
     pub(crate) fn is_beyond(self, ln_distance: f64) -> bool {
         ln_distance > self.bounds().1 - 0.02
     }
-}
-
-/// Windows that hold all places, then leave out the smallest, then the largest one by one; places in order.
-pub(crate) fn windows(places: &[f64]) -> impl Iterator<Item = (f64, f64)> {
-    let ends = places.first().copied().zip(places.last().copied());
-    ends.into_iter().flat_map(move |(first, last)| {
-        let without_small = places.iter().map(move |&least| (least, last));
-        let without_large = places[..places.len() - 1]
-            .iter()
-            .rev()
-            .map(move |&largest| (first, largest));
-        without_small.chain(without_large)
-    })
 }
 
 #[cfg(test)]

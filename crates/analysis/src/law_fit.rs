@@ -1,10 +1,11 @@
 //! Critical width and exponent from values with errors at several widths.
 
-use crate::error::{Error, checked, checked_positive, distinct, same_length};
+use crate::columns::distinct;
+use crate::error::{Error, check_points, checked, checked_positive, enough_places};
 use crate::law::{CriticalRange, Law};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, least_squares};
-use crate::numerics::minimum::{crossing, minimise_from_grid};
+use crate::numerics::minimum::minimise_from_grid;
 use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
 
@@ -165,11 +166,8 @@ pub fn fit_law(
     error: &[f64],
     known: Option<Uncertain>,
 ) -> Result<LawFit, Error> {
-    same_length(width.len(), value.len())?;
-    same_length(width.len(), error.len())?;
-    checked(width, 0)?;
+    check_points(width, value, error)?;
     checked_positive(value)?;
-    checked_positive(error)?;
     if let Law::Barrier { power } = law {
         checked_positive(&[power])?;
     }
@@ -183,10 +181,7 @@ pub fn fit_law(
     };
     // A known w_c with an error is a point beside the others.
     let needed = if known.is_some() { 2 } else { law.parameters() };
-    let found = distinct(width);
-    if found < needed {
-        return Err(Error::TooFewPlaces { needed, found });
-    }
+    enough_places(distinct(width).len(), needed)?;
     let top = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let points = Points {
         law,
@@ -254,14 +249,7 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
     let ends_of_critical = |deviations: f64| {
         let outside = |place: f64| excess(at_distance(place), deviations);
         let step = (deviations * critical_error / (critical - range.top)).clamp(1e-6, 1.0);
-        let (nearest, farthest) = range.bounds();
-        // A w_c within round-off of the largest width is as good as that width.
-        let lower = crossing(outside, best.place, step, nearest.min(best.place) - 7.0);
-        let upper = crossing(outside, best.place, step, farthest);
-        Interval {
-            lower: lower.map_or(range.top, |place| range.critical(place)),
-            upper: upper.map_or(f64::INFINITY, |place| range.critical(place)),
-        }
+        range.interval(best.place, outside, step)
     };
     let ends_of_exponent = |deviations: f64| {
         let outside = |exponent: f64| {
@@ -273,14 +261,8 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
             excess(least.map_or(f64::INFINITY, |least| least.value), deviations)
         };
         let step = deviations * exponent_error;
-        let end = |side: f64| {
-            let limit = line.exponent + side * 200.0 * step;
-            crossing(outside, line.exponent, step, limit).unwrap_or(side * f64::INFINITY)
-        };
-        Interval {
-            lower: end(-1.0),
-            upper: end(1.0),
-        }
+        let limits = [line.exponent - 200.0 * step, line.exponent + 200.0 * step];
+        Interval::around(line.exponent, outside, step, limits, Interval::OPEN)
     };
     Some(LawFit {
         law: points.law,

@@ -1,11 +1,12 @@
 //! Likelihood of the runs at all widths under a law of their mean transition time.
 
-use crate::error::{Error, checked, checked_positive, same_length};
+use crate::columns::by_width;
+use crate::error::{Error, checked, checked_positive, enough_places, same_length};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::law::{CriticalRange, Law};
-use crate::numerics::minimum::{Minimum, crossing, minimise, minimise_from_grid};
+use crate::lifetime::positive_times;
+use crate::numerics::minimum::{Minimum, minimise, minimise_from_grid};
 use crate::regression::Regression;
-use crate::survival::times;
 use crate::transition::Transition;
 use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
 
@@ -23,30 +24,8 @@ impl RunTable {
     pub(crate) fn new(width: &[f64], transitions: &[Transition]) -> Result<Self, Error> {
         same_length(width.len(), transitions.len())?;
         checked(width, 0)?;
-        let times = times(transitions)?;
-        let at_0 = |&(time, observed): &(f64, bool)| observed && time == 0.0;
-        if let Some(index) = times.iter().position(at_0) {
-            return Err(Error::NotPositive { index, value: 0.0 });
-        }
-        let mut places = width.to_vec();
-        places.sort_by(f64::total_cmp);
-        // -0 and 0 are one width.
-        places.dedup_by(|a, b| a == b);
-        let runs = places
-            .iter()
-            .map(|&place| {
-                let here = width
-                    .iter()
-                    .zip(&times)
-                    .filter(|(width, _)| **width == place);
-                here.map(|(_, &run)| run).collect()
-            })
-            .collect();
+        let (places, runs) = by_width(width, &positive_times(transitions)?);
         Ok(Self { places, runs })
-    }
-
-    pub(crate) fn count(&self) -> usize {
-        self.runs.iter().map(Vec::len).sum()
     }
 }
 
@@ -57,6 +36,8 @@ pub(crate) struct LawLikelihood {
     places: Vec<f64>,
     groups: Vec<Group>,
     range: CriticalRange,
+    /// Runs, those that say nothing included.
+    pub(crate) runs: usize,
 }
 
 /// Largest likelihood of a law and family.
@@ -86,19 +67,10 @@ impl LawLikelihood {
             .iter()
             .map(|runs| Group::new(runs.iter().copied()))
             .collect();
-        let with_transition = |(_, group): &(&f64, &Group)| group.observed() > 0;
-        let seen: Vec<f64> = places
-            .iter()
-            .zip(&groups)
-            .filter(with_transition)
-            .map(|(&place, _)| place)
-            .collect();
-        if seen.len() < law.parameters() {
-            return Err(Error::TooFewPlaces {
-                needed: law.parameters(),
-                found: seen.len(),
-            });
-        }
+        let with_transition = |&(_, group): &(f64, &Group)| group.observed() > 0;
+        let seen = places.iter().copied().zip(&groups).filter(with_transition);
+        let seen: Vec<f64> = seen.map(|(place, _)| place).collect();
+        enough_places(seen.len(), law.parameters())?;
         if family != Family::Exponential && !groups.iter().any(Group::scatters) {
             return Err(Error::NoScatter {
                 observed: groups.iter().map(Group::observed).sum(),
@@ -111,6 +83,7 @@ impl LawLikelihood {
             places: places.to_vec(),
             groups,
             range: CriticalRange::new(&seen, top),
+            runs: runs.iter().map(Vec::len).sum(),
         })
     }
 
@@ -173,20 +146,40 @@ impl LawLikelihood {
         }
     }
 
-    /// The largest likelihood; `None` where it has no maximum.
-    pub(crate) fn largest(&self) -> Option<Largest> {
+    /// Transitions seen.
+    pub(crate) fn observed(&self) -> usize {
+        self.groups.iter().map(Group::observed).sum()
+    }
+
+    /// What is said where the likelihood has no maximum that counts.
+    pub(crate) fn undetermined(&self) -> Error {
+        Error::Undetermined {
+            points: self.runs,
+            parameters: self.law.parameters_with(self.family),
+        }
+    }
+
+    /// The largest likelihood.
+    ///
+    /// # Errors
+    /// [`Error::Undetermined`] where it has no maximum.
+    pub(crate) fn largest(&self) -> Result<Largest, Error> {
         let best = self.over_shapes(LN_SHAPE_BOUNDS, |ln_shape| {
             self.best_distance(ln_shape)
                 .map_or(f64::INFINITY, |best| best.value)
         });
         let ln_shape = best.place;
-        let ln_distance = self.best_distance(ln_shape)?.place;
+        let best = self.best_distance(ln_shape);
+        let ln_distance = best.ok_or_else(|| self.undetermined())?.place;
         let (ln_amplitude, exponent, log_likelihood) = self
             .regression(&self.at_shape(ln_shape), ln_distance)
             .largest();
         let shape_is_inside =
             ln_shape > LN_SHAPE_BOUNDS.0 + 0.01 && ln_shape < LN_SHAPE_BOUNDS.1 - 0.01;
-        (log_likelihood.is_finite() && exponent.is_finite() && shape_is_inside).then_some(Largest {
+        if !(log_likelihood.is_finite() && exponent.is_finite() && shape_is_inside) {
+            return Err(self.undetermined());
+        }
+        Ok(Largest {
             ln_distance,
             ln_shape,
             ln_amplitude,
@@ -210,43 +203,27 @@ impl LawLikelihood {
         &self,
         best: &Largest,
     ) -> (Option<Uncertain>, Uncertain, Option<Uncertain>) {
-        let observed: usize = self.groups.iter().map(Group::observed).sum();
-        let first_step = 1.0 / (observed as f64).sqrt();
+        let first_step = 1.0 / (self.observed() as f64).sqrt();
         let bounds = (
             (best.ln_shape - 10.0 * first_step).max(LN_SHAPE_BOUNDS.0),
             (best.ln_shape + 10.0 * first_step).min(LN_SHAPE_BOUNDS.1),
         );
-        let ends = |value: f64, step: f64, limits: (f64, f64), profile: &dyn Fn(f64) -> f64| {
-            [NARROW, WIDE].map(|deviations| {
-                let outside = |place: f64| {
-                    profile(place) + best.log_likelihood - 0.5 * deviations * deviations
-                };
-                let end = |limit: f64| crossing(outside, value, deviations * step, limit);
-                (end(limits.0), end(limits.1))
-            })
+        let excess = |deficit: f64, deviations: f64| {
+            deficit + best.log_likelihood - 0.5 * deviations * deviations
         };
         let critical = self.law.is_critical().then(|| {
-            let value = best.ln_distance;
-            let (nearest, farthest) = self.range.bounds();
-            let limits = (nearest.min(value) - 7.0, farthest);
-            let found = ends(value, first_step, limits, &|place| {
-                let value = |k| -self.regression(&self.at_shape(k), place).largest().2;
-                self.over_shapes(bounds, value).value
+            let intervals = [NARROW, WIDE].map(|deviations| {
+                let outside = |place: f64| {
+                    let value = |k| -self.regression(&self.at_shape(k), place).largest().2;
+                    excess(self.over_shapes(bounds, value).value, deviations)
+                };
+                let step = deviations * first_step;
+                self.range.interval(best.ln_distance, outside, step)
             });
-            let critical = |place: f64| self.range.critical(place);
-            assembled(
-                critical(value),
-                found.map(|(lower, upper)| Interval {
-                    lower: lower.map_or(self.range.top, critical),
-                    upper: upper.map_or(f64::INFINITY, critical),
-                }),
-            )
+            Uncertain::between(self.range.critical(best.ln_distance), intervals)
         });
         let grid = self.range.grid();
-        let exponent_step = first_step * best.exponent.abs().max(1e-3);
-        let far = 1e3 * exponent_step;
-        let limits = (best.exponent - far, best.exponent + far);
-        let found = ends(best.exponent, exponent_step, limits, &|exponent| {
+        let at_exponent = |exponent: f64| {
             let least = self.over_shapes(bounds, |ln_shape| {
                 let likelihoods = self.at_shape(ln_shape);
                 let value = |place: f64| -self.regression(&likelihoods, place).at_slope(exponent);
@@ -257,39 +234,28 @@ impl LawLikelihood {
                 }
             });
             least.value
+        };
+        let step = first_step * best.exponent.abs().max(1e-3);
+        let limits = [best.exponent - 1e3 * step, best.exponent + 1e3 * step];
+        let intervals = [NARROW, WIDE].map(|deviations| {
+            let outside = |exponent: f64| excess(at_exponent(exponent), deviations);
+            let step = deviations * step;
+            Interval::around(best.exponent, outside, step, limits, Interval::OPEN)
         });
-        let exponent = assembled(best.exponent, found.map(open_ended));
+        let exponent = Uncertain::between(best.exponent, intervals);
         let shape = (self.family != Family::Exponential).then(|| {
-            let found = ends(best.ln_shape, first_step, LN_SHAPE_BOUNDS, &|ln_shape| {
-                self.best_distance(ln_shape)
-                    .map_or(f64::INFINITY, |best| best.value)
+            let limits = LN_SHAPE_BOUNDS.into();
+            let intervals = [NARROW, WIDE].map(|deviations| {
+                let outside = |ln_shape: f64| {
+                    let best = self.best_distance(ln_shape);
+                    excess(best.map_or(f64::INFINITY, |best| best.value), deviations)
+                };
+                let step = deviations * first_step;
+                Interval::around(best.ln_shape, outside, step, limits, Interval::OPEN)
+                    .map(libm::exp)
             });
-            let in_logarithm = found.map(open_ended);
-            assembled(
-                libm::exp(best.ln_shape),
-                in_logarithm.map(|interval| Interval {
-                    lower: libm::exp(interval.lower),
-                    upper: libm::exp(interval.upper),
-                }),
-            )
+            Uncertain::between(libm::exp(best.ln_shape), intervals)
         });
         (critical, exponent, shape)
-    }
-}
-
-fn open_ended((lower, upper): (Option<f64>, Option<f64>)) -> Interval {
-    Interval {
-        lower: lower.unwrap_or(f64::NEG_INFINITY),
-        upper: upper.unwrap_or(f64::INFINITY),
-    }
-}
-
-/// A value with its narrow and wide interval; the standard error is half of the narrow one.
-fn assembled(value: f64, [narrow, wide]: [Interval; 2]) -> Uncertain {
-    Uncertain {
-        value,
-        error: 0.5 * narrow.length(),
-        interval_68: narrow,
-        interval_95: wide,
     }
 }

@@ -2,11 +2,12 @@
 
 use crate::error::Error;
 use crate::family::Family;
-use crate::law::{Law, windows};
+use crate::law::Law;
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
+use std::ops::Range;
 
 /// A law of the mean transition time fitted to the runs at all widths.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,7 +36,7 @@ pub struct LawRunsFit {
 impl LawRunsFit {
     /// Free parameters.
     pub fn parameters(&self) -> usize {
-        self.law.parameters() + self.family.parameters() - 1
+        self.law.parameters_with(self.family)
     }
 
     /// Akaike's criterion 2 p - 2 ln L, comparable between laws and families on the same runs.
@@ -103,20 +104,22 @@ pub fn fit_law_to_runs(
     transitions: &[Transition],
 ) -> Result<LawRunsFit, Error> {
     let table = RunTable::new(width, transitions)?;
-    let likelihood = LawLikelihood::new(law, family, &table.places, &table.runs)?;
-    let undetermined = Error::Undetermined {
-        points: table.count(),
-        parameters: law.parameters() + family.parameters() - 1,
-    };
-    let best = likelihood
-        .largest()
-        .filter(|best| !best.is_beyond)
-        .ok_or(undetermined)?;
+    fit_places(law, family, &table.places, &table.runs)
+}
+
+fn fit_places(
+    law: Law,
+    family: Family,
+    places: &[f64],
+    runs: &[Vec<(f64, bool)>],
+) -> Result<LawRunsFit, Error> {
+    let likelihood = LawLikelihood::new(law, family, places, runs)?;
+    let best = likelihood.largest()?;
+    if best.is_beyond {
+        return Err(likelihood.undetermined());
+    }
     let (critical_width, exponent, shape) = likelihood.profiles(&best);
-    let observed = transitions
-        .iter()
-        .filter(|transition| transition.observed().is_some())
-        .count();
+    let observed = likelihood.observed();
     Ok(LawRunsFit {
         law,
         family,
@@ -126,7 +129,7 @@ pub fn fit_law_to_runs(
         shape,
         log_likelihood: best.log_likelihood,
         observed,
-        censored: transitions.len() - observed,
+        censored: likelihood.runs - observed,
     })
 }
 
@@ -144,29 +147,22 @@ pub fn fit_law_to_runs_in_windows(
     width: &[f64],
     transitions: &[Transition],
 ) -> Result<Vec<WindowRunsFit>, Error> {
-    let whole = fit_law_to_runs(law, family, width, transitions)?;
-    let places = RunTable::new(width, transitions)?.places;
-    let mut found = Vec::new();
-    for (least, largest) in windows(&places) {
-        let inside: Vec<usize> = (0..width.len())
-            .filter(|&i| least <= width[i] && width[i] <= largest)
-            .collect();
-        let widths: Vec<f64> = inside.iter().map(|&i| width[i]).collect();
-        let runs: Vec<Transition> = inside.iter().map(|&i| transitions[i]).collect();
-        let fit = if inside.len() == width.len() {
-            Ok(whole)
-        } else {
-            fit_law_to_runs(law, family, &widths, &runs)
-        };
-        if let Ok(fit) = fit {
-            found.push(WindowRunsFit {
-                least,
-                largest,
-                fit,
-            });
-        }
-    }
-    Ok(found)
+    let RunTable { places, runs } = RunTable::new(width, transitions)?;
+    let fit_window = |window: Range<usize>| {
+        let (places, runs) = (&places[window.clone()], &runs[window]);
+        fit_places(law, family, places, runs).map(|fit| WindowRunsFit {
+            least: places[0],
+            largest: places[places.len() - 1],
+            fit,
+        })
+    };
+    let number = places.len();
+    let without_smallest = (1..number).map(|first| first..number);
+    let without_largest = (1..number).rev().map(|end| 0..end);
+    let windows = without_smallest.chain(without_largest);
+    let whole = fit_window(0..number)?;
+    let others = windows.filter_map(|window| fit_window(window).ok());
+    Ok([whole].into_iter().chain(others).collect())
 }
 
 #[cfg(test)]

@@ -26,6 +26,7 @@ mod blocks;
 mod bootstrap;
 mod collapse;
 mod collapse_fit;
+mod columns;
 mod dip;
 mod divergence;
 mod ensemble;

@@ -3,7 +3,7 @@
 use crate::error::Error;
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::numerics::linear::{Cholesky, curvature};
-use crate::numerics::minimum::{crossing, minimise};
+use crate::numerics::minimum::minimise;
 use crate::survival::times;
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
@@ -41,14 +41,19 @@ impl LifetimeFit {
     }
 }
 
-/// Checked runs of one ensemble: at least `needed` transitions, all at positive times.
-pub(crate) fn group_of(transitions: &[Transition], needed: usize) -> Result<Group, Error> {
+/// Time of a run and whether it is a transition; checked, transitions being at positive times.
+pub(crate) fn positive_times(transitions: &[Transition]) -> Result<Vec<(f64, bool)>, Error> {
     let times = times(transitions)?;
     let transition_at_0 = |&(time, observed): &(f64, bool)| observed && time == 0.0;
-    if let Some(index) = times.iter().position(transition_at_0) {
-        return Err(Error::NotPositive { index, value: 0.0 });
+    match times.iter().position(transition_at_0) {
+        Some(index) => Err(Error::NotPositive { index, value: 0.0 }),
+        None => Ok(times),
     }
-    let group = Group::new(times);
+}
+
+/// Checked runs of one ensemble: at least `needed` transitions, all at positive times.
+pub(crate) fn group_of(transitions: &[Transition], needed: usize) -> Result<Group, Error> {
+    let group = Group::new(positive_times(transitions)?);
     if group.observed() < needed {
         return Err(Error::TooFewObserved {
             needed,
@@ -213,15 +218,11 @@ fn with_shape(family: Family, group: &Group, runs: usize) -> Result<LifetimeFit,
 
 /// A parameter with the intervals where its profile likelihood stays within 1/2 and 1.92 of the largest.
 fn by_profile(value: f64, error: f64, largest: f64, profile: impl Fn(f64) -> f64) -> Uncertain {
-    let ends = |deviations: f64| {
+    let limits = [value - FARTHEST, value + FARTHEST];
+    Uncertain::with_intervals(value, error, |deviations| {
         let deficit = |place: f64| largest - profile(place) - 0.5 * deviations * deviations;
-        let end = |limit: f64| crossing(deficit, value, deviations * error, limit).unwrap_or(limit);
-        Interval {
-            lower: end(value - FARTHEST),
-            upper: end(value + FARTHEST),
-        }
-    };
-    Uncertain::with_intervals(value, error, ends)
+        Interval::around(value, deficit, deviations * error, limits, limits)
+    })
 }
 
 #[cfg(test)]

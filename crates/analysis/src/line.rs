@@ -1,8 +1,9 @@
 //! Straight lines, parabolas and powers through points with errors.
 
-use crate::error::{Error, checked, checked_positive, distinct, same_length};
+use crate::columns::distinct;
+use crate::error::{Error, check_points, checked_positive, enough_places};
 use crate::numerics::gamma::{chi_squared_tail, two_sided_tail};
-use crate::numerics::linear::{LeastSquares, least_squares};
+use crate::numerics::linear::{LeastSquares, error_of, least_squares};
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
 
@@ -68,18 +69,8 @@ impl LineFit {
 
 /// Weights of checked columns with at least so many distinct places.
 fn weights(x: &[f64], y: &[f64], error: &[f64], parameters: usize) -> Result<Vec<f64>, Error> {
-    same_length(x.len(), y.len())?;
-    same_length(x.len(), error.len())?;
-    checked(x, 0)?;
-    checked(y, 0)?;
-    checked_positive(error)?;
-    let found = distinct(x);
-    if found < parameters {
-        return Err(Error::TooFewPlaces {
-            needed: parameters,
-            found,
-        });
-    }
+    check_points(x, y, error)?;
+    enough_places(distinct(x).len(), parameters)?;
     Ok(error.iter().map(|error| 1.0 / (error * error)).collect())
 }
 
@@ -153,13 +144,7 @@ pub fn fit_parabola(x: &[f64], y: &[f64], error: &[f64]) -> Result<CurveFit, Err
     ];
     let coefficient = |row: usize| {
         let [p, q, r] = back[row];
-        let mut variance = 0.0;
-        for i in 0..3 {
-            for j in 0..3 {
-                variance += back[row][i] * fit.covariance[i][j] * back[row][j];
-            }
-        }
-        Uncertain::normal(p * a + q * b + r * c, variance.max(0.0).sqrt())
+        Uncertain::normal(p * a + q * b + r * c, error_of(&back[row], &fit.covariance))
     };
     let quadratic = coefficient(2);
     let degrees_of_freedom = x.len() - 3;
@@ -183,8 +168,7 @@ pub fn fit_parabola(x: &[f64], y: &[f64], error: &[f64]) -> Result<CurveFit, Err
 /// # Errors
 /// [`Error::NotPositive`] for an x, a y or an error, else as for [`fit_line`].
 pub fn power_exponent(x: &[f64], y: &[f64], error: &[f64]) -> Result<LineFit, Error> {
-    same_length(x.len(), y.len())?;
-    same_length(x.len(), error.len())?;
+    check_points(x, y, error)?;
     let logarithms =
         |column: &[f64]| -> Vec<f64> { column.iter().map(|&value| libm::log(value)).collect() };
     let ln_x = logarithms(checked_positive(x)?);

@@ -1,7 +1,8 @@
 //! The width at which half of the runs end jammed.
 
-use crate::error::{Error, checked, same_length};
-use crate::numerics::minimum::{Minimum, crossing, minimise, minimise_from_grid};
+use crate::columns::by_width;
+use crate::error::{Error, checked, enough_places, same_length};
+use crate::numerics::minimum::{Minimum, minimise, minimise_from_grid};
 use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
 use serde::{Deserialize, Serialize};
 
@@ -39,37 +40,17 @@ impl Fractions {
     pub(crate) fn new(width: &[f64], jammed: &[bool]) -> Result<Self, Error> {
         same_length(width.len(), jammed.len())?;
         checked(width, 2)?;
-        let mut places = width.to_vec();
-        places.sort_by(f64::total_cmp);
-        places.dedup_by(|a, b| a == b);
-        let rows = places
-            .iter()
-            .map(|&place| {
-                let here = || {
-                    width
-                        .iter()
-                        .zip(jammed)
-                        .filter(|(width, _)| **width == place)
-                };
-                let count = |count: usize| count as f64;
-                (
-                    count(here().count()),
-                    count(here().filter(|(_, jammed)| **jammed).count()),
-                )
-            })
-            .collect();
-        let fractions = Self { places, rows };
-        let all: f64 = fractions.rows.iter().map(|row| row.1).sum();
-        if all == 0.0 || all == width.len() as f64 {
+        if jammed.iter().all(|&one| one == jammed[0]) {
             return Err(Error::OneOutcome { runs: width.len() });
         }
-        if fractions.places.len() < 2 {
-            return Err(Error::TooFewPlaces {
-                needed: 2,
-                found: fractions.places.len(),
-            });
-        }
-        Ok(fractions)
+        let (places, outcomes) = by_width(width, jammed);
+        enough_places(places.len(), 2)?;
+        let count = |outcomes: Vec<bool>| {
+            let jammed = outcomes.iter().filter(|&&jammed| jammed).count();
+            (outcomes.len() as f64, jammed as f64)
+        };
+        let rows = outcomes.into_iter().map(count).collect();
+        Ok(Self { places, rows })
     }
 
     pub(crate) fn least(&self) -> f64 {
@@ -201,26 +182,14 @@ pub fn fraction_crossing(width: &[f64], jammed: &[bool]) -> Result<FractionCross
     if outside || spread > 50.0 * range {
         return Err(undetermined);
     }
-    let ends = |deviations: f64| {
+    let far = 20.0 * range;
+    let limits = [best.place - far, best.place + far];
+    let intervals = [NARROW, WIDE].map(|deviations| {
         let beyond = |half: f64| deficit(half) - best.value - 0.5 * deviations * deviations;
-        let step = 0.05 * range;
-        let end = |side: f64| {
-            let limit = best.place + side * 20.0 * range;
-            crossing(beyond, best.place, step, limit).unwrap_or(side * f64::INFINITY)
-        };
-        Interval {
-            lower: end(-1.0),
-            upper: end(1.0),
-        }
-    };
-    let interval_68 = ends(NARROW);
+        Interval::around(best.place, beyond, 0.05 * range, limits, Interval::OPEN)
+    });
     Ok(FractionCrossing {
-        width: Uncertain {
-            value: best.place,
-            error: 0.5 * interval_68.length(),
-            interval_68,
-            interval_95: ends(WIDE),
-        },
+        width: Uncertain::between(best.place, intervals),
         spread,
         last_all,
         first_none,

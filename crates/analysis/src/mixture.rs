@@ -1,6 +1,6 @@
 //! One peak or two: histogram, and a mixture of two normal distributions against one.
 
-use crate::error::{Error, checked};
+use crate::error::{Error, checked, enough};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -84,12 +84,7 @@ impl TwoPeaks {
 pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<Histogram, Error> {
     checked(values, 0)?;
     checked(&[lower, upper], 2)?;
-    if bins == 0 {
-        return Err(Error::TooFew {
-            needed: 1,
-            found: 0,
-        });
-    }
+    enough(bins, 1)?;
     let range = upper - lower;
     if !(range > 0.0 && range.is_finite()) {
         return Err(Error::NotPositive {

@@ -5,11 +5,11 @@ use crate::family::{Family, Group, LN_SHAPE_BOUNDS};
 use crate::law::{CriticalRange, Law};
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::numerics::gamma::chi_squared_tail;
-use crate::numerics::linear::{Cholesky, curvature};
+use crate::numerics::linear::{Cholesky, curvature, error_of};
 use crate::numerics::simplex::{Lowest, nelder_mead};
 use crate::regression::Regression;
 use crate::transition::Transition;
-use crate::uncertain::{Interval, Uncertain};
+use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
 
 /// First steps in ln(w_c - w), ln k and q.
@@ -145,7 +145,7 @@ pub fn fit_law_with_scatter(
     let common = LawLikelihood::new(Law::Power, Family::Gamma, &table.places, &table.runs)?;
     let chance = LawLikelihood::new(Law::Power, Family::Exponential, &table.places, &table.runs)?;
     let undetermined = Error::Undetermined {
-        points: table.count(),
+        points: width.len(),
         parameters: 5,
     };
     let (places, groups, range) = common.parts();
@@ -154,8 +154,8 @@ pub fn fit_law_with_scatter(
         groups,
         range,
     };
-    let start = common.largest().ok_or(undetermined)?;
-    let chance = chance.largest().ok_or(undetermined)?;
+    let start = common.largest().map_err(|_| undetermined)?;
+    let chance = chance.largest().map_err(|_| undetermined)?;
     // A constant scatter may put w_c far off, or even at infinity, where a growing one does not.
     let place = start.ln_distance.min(libm::log(range.span));
     let best = [0.0, 1.0]
@@ -174,19 +174,15 @@ pub fn fit_law_with_scatter(
     };
     let probability =
         |worse: f64, free: usize| chi_squared_tail(2.0 * (worse - deficit).max(0.0), free);
-    let error = |weights: [f64; 4]| {
-        let mut variance = 0.0;
-        for row in 0..4 {
-            for column in 0..4 {
-                variance += weights[row] * covariance[row][column] * weights[column];
-            }
-        }
-        variance.max(0.0).sqrt()
-    };
-    let q = parameters[2];
+    let error = |weights: [f64; 4]| error_of(&weights, &covariance);
+    let [place, _, q] = parameters;
+    let place_error = error([0.0, 1.0, 0.0, 0.0]);
     let observed = groups.iter().map(Group::observed).sum();
     Ok(ScatterLawFit {
-        critical_width: critical_width(range, parameters[0], error([0.0, 1.0, 0.0, 0.0])),
+        critical_width: Uncertain::normal(place, place_error)
+            .map(libm::exp(place) * place_error, |place| {
+                range.critical(place)
+            }),
         exponent: Uncertain::normal(exponent, error([1.0, 0.0, 0.0, 0.0])),
         scatter_exponent: Uncertain::normal(q, error([0.0, 0.0, 0.0, 1.0])),
         variance_exponent: Uncertain::normal(2.0 * exponent + q, error([2.0, 0.0, 0.0, 1.0])),
@@ -197,7 +193,7 @@ pub fn fit_law_with_scatter(
         constant_probability: probability(at_q(0.0), 1),
         inverse_probability: probability(at_q(1.0), 1),
         observed,
-        censored: table.count() - observed,
+        censored: width.len() - observed,
     })
 }
 
@@ -218,15 +214,6 @@ fn covariance(
     let finite = information.iter().flatten().all(|entry| entry.is_finite());
     let inverse = finite.then(|| Cholesky::new(&information))??.inverse();
     Some(inverse)
-}
-
-/// w_c from its logarithmic distance to the largest width that saw a transition.
-fn critical_width(range: CriticalRange, place: f64, error: f64) -> Uncertain {
-    let ends = |deviations: f64| Interval {
-        lower: range.critical(place - deviations * error),
-        upper: range.critical(place + deviations * error),
-    };
-    Uncertain::with_intervals(range.critical(place), libm::exp(place) * error, ends)
 }
 
 #[cfg(test)]

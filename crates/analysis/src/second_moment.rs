@@ -1,7 +1,8 @@
 //! Second moment of the flow rate across an ensemble whose runs may end early, and its peak.
 
 use crate::bootstrap::{Bootstrap, bootstrap_errors};
-use crate::error::{Error, check_replica};
+use crate::columns::{mean_and_scatter, mean_of};
+use crate::error::{Error, check_replica, enough};
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
 
@@ -75,10 +76,7 @@ pub fn second_moment<S: AsRef<[f64]>>(
     let moments = moments_of(&runs.iter().collect::<Vec<_>>());
     if moments.is_empty() {
         let with_sample = runs.iter().filter(|run| !run.series.is_empty()).count();
-        return Err(Error::TooFew {
-            needed: LEAST_RUNS,
-            found: with_sample,
-        });
+        enough(with_sample, LEAST_RUNS)?;
     }
     Ok(moments)
 }
@@ -112,7 +110,7 @@ pub fn second_moment_peak<S: AsRef<[f64]>>(
     Ok(MomentPeak {
         index: found.estimates[0],
         value,
-        bias: resampled.iter().sum::<f64>() / resampled.len() as f64 - value.value,
+        bias: mean_of(resampled) - value.value,
     })
 }
 
@@ -123,12 +121,7 @@ struct Run<'a> {
 }
 
 fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<Run<'_>>, Error> {
-    if runs.len() < LEAST_RUNS {
-        return Err(Error::TooFew {
-            needed: LEAST_RUNS,
-            found: runs.len(),
-        });
-    }
+    enough(runs.len(), LEAST_RUNS)?;
     runs.iter()
         .map(AsRef::as_ref)
         .enumerate()
@@ -137,7 +130,7 @@ fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<
             let held = match after_end {
                 AfterEnd::Hold { samples } if !series.is_empty() => {
                     let last = &series[series.len().saturating_sub(samples.max(1))..];
-                    Some(last.iter().sum::<f64>() / last.len() as f64)
+                    Some(mean_of(last))
                 }
                 _ => None,
             };
@@ -157,12 +150,10 @@ fn moments_of(runs: &[&Run<'_>]) -> Vec<SecondMoment> {
                     .filter_map(|run| run.series.get(time).copied().or(run.held)),
             );
             (values.len() >= LEAST_RUNS).then(|| {
-                let count = values.len() as f64;
-                let mean = values.iter().sum::<f64>() / count;
-                let scatter: f64 = values.iter().map(|x| (x - mean) * (x - mean)).sum();
+                let (mean, scatter) = mean_and_scatter(&values);
                 SecondMoment {
                     mean,
-                    variance: scatter / (count - 1.0),
+                    variance: scatter / (values.len() as f64 - 1.0),
                     runs: values.len(),
                 }
             })
@@ -171,17 +162,8 @@ fn moments_of(runs: &[&Run<'_>]) -> Vec<SecondMoment> {
 }
 
 fn highest(moments: &[SecondMoment]) -> Option<(usize, f64)> {
-    moments
-        .iter()
-        .map(|moment| moment.variance)
-        .enumerate()
-        .fold(
-            None,
-            |best: Option<(usize, f64)>, (index, value)| match best {
-                Some((_, highest)) if highest >= value => best,
-                _ => Some((index, value)),
-            },
-        )
+    let variances = moments.iter().map(|moment| moment.variance).enumerate();
+    variances.reduce(|best, other| if best.1 >= other.1 { best } else { other })
 }
 
 #[cfg(test)]

@@ -2,7 +2,6 @@
 
 use crate::error::Error;
 use crate::lifetime::group_of;
-use crate::numerics::minimum::crossing;
 use crate::survival::times;
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
@@ -107,19 +106,13 @@ pub fn fit_shifted_exponential(transitions: &[Transition]) -> Result<ShiftedExpo
 
 /// Mean waiting time with the intervals of its likelihood; `free` transitions after the first.
 fn waiting_time(theta: f64, free: f64) -> Uncertain {
-    let ends = |deviations: f64| {
+    let limits = [-40.0, 40.0];
+    let log = Uncertain::with_intervals(0.0, 1.0 / free.sqrt(), |deviations| {
         // In the logarithm u of the ratio to theta: free (u + exp(-u) - 1) = z^2/2.
         let excess = |u: f64| free * (u + libm::expm1(-u)) - 0.5 * deviations * deviations;
-        let end = |limit| {
-            let log = crossing(excess, 0.0, deviations / free.sqrt(), limit);
-            theta * libm::exp(log.unwrap_or(limit))
-        };
-        Interval {
-            lower: end(-40.0),
-            upper: end(40.0),
-        }
-    };
-    Uncertain::with_intervals(theta, theta / free.sqrt(), ends)
+        Interval::around(0.0, excess, deviations / free.sqrt(), limits, limits)
+    });
+    log.map(theta / free.sqrt(), |log| theta * libm::exp(log))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Survival curve of censored transition times, without assuming a distribution.
 
-use crate::error::Error;
+use crate::columns::jackknife_error;
+use crate::error::{Error, enough};
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
@@ -127,12 +128,7 @@ impl Survival {
     /// [`Error::TooFew`] without runs, [`Error::NonFinite`], [`Error::Negative`].
     pub fn new(transitions: &[Transition]) -> Result<Self, Error> {
         let times = times(transitions)?;
-        if times.is_empty() {
-            return Err(Error::TooFew {
-                needed: 1,
-                found: 0,
-            });
-        }
+        enough(times.len(), 1)?;
         let watched = times.iter().map(|time| time.0).fold(0.0, f64::max);
         let observed = times.iter().filter(|time| time.1).count();
         let mut survival = 1.0;
@@ -191,17 +187,13 @@ impl Survival {
             level: LEVEL,
             survival: self.at(self.watched),
         })?;
-        let ends = |interval: &dyn Fn(&Uncertain) -> Interval| Interval {
+        let ends = |interval: fn(&Uncertain) -> Interval| Interval {
             lower: first(&|survival| interval(survival).lower).unwrap_or(value),
             upper: first(&|survival| interval(survival).upper).unwrap_or(f64::INFINITY),
         };
-        let interval_68 = ends(&|survival| survival.interval_68);
-        Ok(Uncertain {
-            value,
-            error: 0.5 * interval_68.length(),
-            interval_68,
-            interval_95: ends(&|survival| survival.interval_95),
-        })
+        let narrow = ends(|survival| survival.interval_68);
+        let wide = ends(|survival| survival.interval_95);
+        Ok(Uncertain::between(value, [narrow, wide]))
     }
 
     /// Mean of min(tau, horizon) with its error: what can be said of the mean without assuming a distribution.
@@ -271,16 +263,10 @@ impl Survival {
 /// Survival with Greenwood's variance of its logarithm and intervals of ln(-ln S).
 fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
     if survival <= 0.0 {
-        let below = |interval: Interval| Interval {
-            lower: 0.0,
-            upper: interval.upper,
-        };
-        return Uncertain {
-            value: 0.0,
-            error: 0.0,
-            interval_68: below(before.interval_68),
-            interval_95: below(before.interval_95),
-        };
+        let mut last = Uncertain::normal(0.0, 0.0);
+        last.interval_68.upper = before.interval_68.upper;
+        last.interval_95.upper = before.interval_95.upper;
+        return last;
     }
     let log = libm::log(survival);
     let spread = log_variance.sqrt() / log.abs();
@@ -313,7 +299,6 @@ pub fn restricted_moments(
         (second - first * first).max(0.0) * runs / (runs - 1.0)
     };
     let times = times(transitions)?;
-    let runs = times.len() as f64;
     let without_one: Vec<f64> = (0..times.len())
         .map(|left_out| {
             let mut rest = times.clone();
@@ -321,12 +306,10 @@ pub fn restricted_moments(
             variance_of(rest)
         })
         .collect();
-    let mean = without_one.iter().sum::<f64>() / runs;
-    let scatter: f64 = without_one.iter().map(|v| (v - mean) * (v - mean)).sum();
     Ok(RestrictedMoments {
         horizon,
         mean: survival.restricted_mean(horizon)?,
-        variance: Uncertain::normal(variance_of(times), ((runs - 1.0) / runs * scatter).sqrt()),
+        variance: Uncertain::normal(variance_of(times), jackknife_error(&without_one)),
     })
 }
 

@@ -1,5 +1,7 @@
 //! A number with its uncertainty.
 
+use crate::columns::mean_and_scatter;
+use crate::numerics::minimum::crossing;
 use serde::{Deserialize, Serialize};
 
 /// Standard deviations of the narrow interval: 68.27 per cent.
@@ -21,9 +23,34 @@ pub struct Interval {
 }
 
 impl Interval {
+    /// Ends that are open to either side.
+    pub(crate) const OPEN: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+    /// Where a function that is at most 0 at `inside` stays so, up to the crossings that are sought in steps from
+    /// `first_step` on as far as `limits`; a side without one ends at that of `open`.
+    pub(crate) fn around(
+        inside: f64,
+        outside: impl Fn(f64) -> f64,
+        first_step: f64,
+        limits: [f64; 2],
+        open: [f64; 2],
+    ) -> Self {
+        let [lower, upper] = [0, 1]
+            .map(|side| crossing(&outside, inside, first_step, limits[side]).unwrap_or(open[side]));
+        Self { lower, upper }
+    }
+
     /// Whether a value lies in the interval, ends included.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
+    }
+
+    /// The interval of an increasing function of the number.
+    pub(crate) fn map(&self, function: impl Fn(f64) -> f64) -> Self {
+        Self {
+            lower: function(self.lower),
+            upper: function(self.upper),
+        }
     }
 
     /// Distance of the ends.
@@ -71,6 +98,16 @@ impl Uncertain {
         }
     }
 
+    /// A number with its narrow and wide interval; the standard error is half of the narrow one.
+    pub(crate) fn between(value: f64, [interval_68, interval_95]: [Interval; 2]) -> Self {
+        Self {
+            value,
+            error: 0.5 * interval_68.length(),
+            interval_68,
+            interval_95,
+        }
+    }
+
     /// Percentile bootstrap: standard deviation and quantiles of the estimates from resampled data.
     ///
     /// `None` with fewer than two finite estimates. Source: Efron & Tibshirani, An Introduction to the Bootstrap
@@ -82,16 +119,14 @@ impl Uncertain {
         if finite.len() < 2 {
             return None;
         }
-        let count = finite.len() as f64;
-        let mean = finite.iter().sum::<f64>() / count;
-        let scatter: f64 = finite.iter().map(|x| (x - mean) * (x - mean)).sum();
+        let (_, scatter) = mean_and_scatter(&finite);
         let between = |tail: f64| Interval {
             lower: quantile(&sorted, tail),
             upper: quantile(&sorted, 1.0 - tail),
         };
         Some(Self {
             value,
-            error: (scatter / (count - 1.0)).sqrt(),
+            error: (scatter / (finite.len() as f64 - 1.0)).sqrt(),
             interval_68: between(NARROW_TAIL),
             interval_95: between(WIDE_TAIL),
         })
@@ -105,15 +140,11 @@ impl Uncertain {
 
     /// An increasing function of the number, with a given standard error.
     pub(crate) fn map(self, error: f64, function: impl Fn(f64) -> f64) -> Self {
-        let ends = |interval: Interval| Interval {
-            lower: function(interval.lower),
-            upper: function(interval.upper),
-        };
         Self {
             value: function(self.value),
             error,
-            interval_68: ends(self.interval_68),
-            interval_95: ends(self.interval_95),
+            interval_68: self.interval_68.map(&function),
+            interval_95: self.interval_95.map(&function),
         }
     }
 

@@ -101,6 +101,17 @@ pub(crate) fn least_squares<const N: usize>(
     })
 }
 
+/// Standard error of a weighted sum of numbers with a covariance.
+pub(crate) fn error_of<const N: usize>(weights: &[f64; N], covariance: &[[f64; N]; N]) -> f64 {
+    let mut variance = 0.0;
+    for (row, left) in covariance.iter().zip(weights) {
+        for (entry, right) in row.iter().zip(weights) {
+            variance += left * entry * right;
+        }
+    }
+    variance.max(0.0).sqrt()
+}
+
 /// Second derivatives of a function by central differences with the given steps.
 pub(crate) fn curvature<const N: usize>(
     function: impl Fn(&[f64; N]) -> f64,

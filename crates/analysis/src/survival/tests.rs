@@ -1,6 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::error::mean_of;
+use crate::columns::mean_of;
 use crate::synthetic::{Coverage, exponential, remission, watched};
 use proptest::prelude::*;
 
