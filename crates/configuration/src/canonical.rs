@@ -1,6 +1,6 @@
 //! The canonical written form of a configuration: the record of a run, and its hashes.
 
-use std::fmt::Write;
+use std::fmt::Display;
 
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -45,19 +45,18 @@ impl Configuration {
         for entry in self.entries() {
             if entry.table != table {
                 if table == "drive" {
-                    self.write_schedules(&mut text);
+                    for schedule in &self.drive.schedules {
+                        text += "\n[[drive.schedule]]\n";
+                        text += &lines(keys_of(schedule));
+                    }
                 }
-                append(&mut text, format_args!("\n[{}]\n", entry.table));
+                text += &format!("\n[{}]\n", entry.table);
                 table = entry.table;
             }
-            let value = written(&entry.value);
-            append(&mut text, format_args!("{} = {value}\n", entry.key));
+            text += &lines([(entry.key, entry.value)]);
         }
-        text.push_str("\n# Derived from the keys above; read and ignored.\n[resolved]\n");
-        for (key, value) in self.derived() {
-            append(&mut text, format_args!("{key} = {}\n", written(&value)));
-        }
-        text
+        text += "\n# Derived from the keys above; read and ignored.\n[resolved]\n";
+        text + &lines(self.derived())
     }
 
     /// SHA-256 of everything that determines the trajectory: grains, contact, tube, drive, wall, initial state, time
@@ -81,13 +80,13 @@ impl Configuration {
         let mut text = heading.to_owned();
         for entry in self.entries().iter().filter(|entry| counts(entry)) {
             let (path, value) = (entry.path(), bits(&entry.value));
-            append(&mut text, format_args!("{path}={value}\n"));
+            text += &format!("{path}={value}\n");
         }
         for schedule in &self.drive.schedules {
-            append(&mut text, format_args!("{}:", name(schedule.parameter)));
+            text += &format!("{}:", name(schedule.parameter));
             for (time, value) in schedule.knots() {
                 let (time, value) = (bits(&time.into()), bits(&value.into()));
-                append(&mut text, format_args!("{time},{value};"));
+                text += &format!("{time},{value};");
             }
             text.push('\n');
         }
@@ -114,20 +113,14 @@ impl Configuration {
             }
         }
         let paths: Vec<String> = entries.iter().map(Entry::path).collect();
-        let mut absent = Vec::new();
-        if self.drive.body_force == 0.0 {
-            absent.push("drive.body_force");
-        }
-        if self.initial.axial_velocity.to_bits() == self.natural_axial_velocity().to_bits() {
-            absent.push("initial.axial_velocity");
-        }
-        entries.retain(|entry| {
-            let path = entry.path();
-            let second = ALTERNATIVES.iter().any(|group| {
+        let natural = self.natural_axial_velocity();
+        entries.retain(|entry| match entry.path().as_str() {
+            "drive.body_force" => self.drive.body_force != 0.0,
+            "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
+            path => !ALTERNATIVES.iter().any(|group| {
                 let first = group.iter().find(|key| paths.iter().any(|it| it == *key));
-                group.contains(&path.as_str()) && first.is_some_and(|first| *first != path)
-            });
-            !second && !absent.contains(&path.as_str())
+                group.contains(&path) && first.is_some_and(|first| *first != path)
+            }),
         });
         entries
     }
@@ -180,13 +173,6 @@ impl Configuration {
         ]);
         derived
     }
-
-    fn write_schedules(&self, text: &mut String) {
-        for schedule in &self.drive.schedules {
-            text.push_str("\n[[drive.schedule]]\n");
-            write_schedule(schedule, text);
-        }
-    }
 }
 
 fn set(tables: &mut toml::Table, table: &str, key: &str, value: Value) {
@@ -211,9 +197,19 @@ fn list(table: &str, keys: &toml::Table, entries: &mut Vec<Entry>) {
     }
 }
 
+/// Keys with their values, one a line.
+fn lines<Key: Display>(keys: impl IntoIterator<Item = (Key, Value)>) -> String {
+    let line = |(key, value): (Key, Value)| format!("{key} = {}\n", written(&value));
+    keys.into_iter().map(line).collect()
+}
+
 /// As TOML; numbers with the fewest digits that read back as the same bits.
 fn written(value: &Value) -> String {
     match value {
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(written).collect();
+            format!("[{}]", items.join(", "))
+        }
         Value::Float(number) => format!("{number:?}"),
         Value::String(name) => format!("\"{name}\""),
         other => other.to_string(),
@@ -236,40 +232,30 @@ pub(crate) fn name(choice: impl Serialize) -> String {
     }
 }
 
-fn write_schedule(schedule: &Schedule, text: &mut String) {
-    let list = |numbers: Vec<f64>| {
-        let numbers: Vec<String> = numbers.iter().map(|number| format!("{number:?}")).collect();
-        numbers.join(", ")
-    };
-    let form = match &schedule.form {
-        ScheduleForm::Ramp { .. } => "ramp",
-        ScheduleForm::Steps { .. } => "steps",
-        ScheduleForm::Course { .. } => "course",
-    };
-    let parameter = name(schedule.parameter);
-    append(
-        text,
-        format_args!("form = \"{form}\"\nparameter = \"{parameter}\"\n"),
-    );
-    match &schedule.form {
+/// The keys of a schedule in a table of its own.
+fn keys_of(schedule: &Schedule) -> Vec<(&'static str, Value)> {
+    let (form, keys) = match &schedule.form {
         ScheduleForm::Ramp {
             from,
             to,
             start,
             end,
         } => {
-            append(text, format_args!("from = {from:?}\nto = {to:?}\n"));
-            append(text, format_args!("start = {start:?}\nend = {end:?}\n"));
+            let keys = [("from", from), ("to", to), ("start", start), ("end", end)];
+            (
+                "ramp",
+                keys.map(|(key, value)| (key, Value::from(*value))).to_vec(),
+            )
         }
-        ScheduleForm::Steps { steps: points } | ScheduleForm::Course { knots: points } => {
-            let (times, values) = points.iter().copied().unzip();
-            let (times, values) = (list(times), list(values));
-            append(text, format_args!("at = [{times}]\nvalues = [{values}]\n"));
-        }
-    }
+        ScheduleForm::Steps { steps } => ("steps", keys_of_points(steps)),
+        ScheduleForm::Course { knots } => ("course", keys_of_points(knots)),
+    };
+    let parameter = name(schedule.parameter);
+    let names = [("form", form.into()), ("parameter", parameter.into())];
+    names.into_iter().chain(keys).collect()
 }
 
-fn append(text: &mut String, arguments: std::fmt::Arguments<'_>) {
-    text.write_fmt(arguments)
-        .expect("writing to a string cannot fail");
+fn keys_of_points(points: &[(f64, f64)]) -> Vec<(&'static str, Value)> {
+    let (times, values): (Vec<f64>, Vec<f64>) = points.iter().copied().unzip();
+    vec![("at", times.into()), ("values", values.into())]
 }

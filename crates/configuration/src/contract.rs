@@ -1,10 +1,11 @@
 //! The schema as the reader's contract: unknown keys, types, names and ranges, each with its place.
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::document::{Item, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
-use crate::schema;
+use crate::schema::{self, joined, texts};
+use crate::source::Origin;
 use crate::suggestion;
 
 /// Checks a layer against the schema; all problems in one go.
@@ -37,7 +38,7 @@ struct Contract<'a> {
 impl Contract<'_> {
     fn table(&mut self, table: &Table, schema: &Value, path: &str) {
         // An object without properties (the record's derived values) is open.
-        let Some(properties) = schema.get("properties") else {
+        let Some(properties) = schema["properties"].as_object() else {
             return;
         };
         for (name, entry) in table {
@@ -46,41 +47,31 @@ impl Contract<'_> {
                 self.item(&entry.item, inner, &full);
                 continue;
             }
-            let mut problem =
-                Problem::new(ProblemKind::UnknownKey, format!("there is no key {full}"))
-                    .key(&full)
-                    .at(&entry.key, "unknown key");
-            problem = match suggestion::nearest_key(&full, self.known) {
-                Some(near) => problem.help(format!("did you mean {near}?")),
-                None => problem.help(format!("known here: {}", names_of(properties))),
+            let help = match suggestion::nearest_key(&full, self.known) {
+                Some(near) => format!("did you mean {near}?"),
+                None => format!("known here: {}", names_of(properties)),
             };
-            self.problems.push(Some(&entry.key), problem);
+            let message = format!("there is no key {full}");
+            let place = (&entry.key, "unknown key");
+            self.refuse(ProblemKind::UnknownKey, &full, place, message, help);
         }
-        self.required(table, schema, path);
-    }
-
-    fn required(&mut self, table: &Table, schema: &Value, path: &str) {
-        let required = schema.get("required").and_then(Value::as_array);
-        for name in required.into_iter().flatten().filter_map(Value::as_str) {
-            if table.contains_key(name) {
-                continue;
+        let required = texts(&schema["required"]);
+        for name in required.filter(|name| !table.contains_key(*name)) {
+            let full = joined(path, name);
+            let message = format!("{full} is missing in this table");
+            let help = allowed(&schema["properties"][name]);
+            let mut problem = Problem::new(ProblemKind::Missing, message)
+                .key(full)
+                .help(help);
+            if let Some(entry) = table.values().next() {
+                problem = problem.at(&entry.key, "in this table");
             }
-            let place = table.values().next().map(|entry| &entry.key);
-            let mut problem = Problem::new(
-                ProblemKind::Missing,
-                format!("{} is missing in this table", joined(path, name)),
-            )
-            .key(joined(path, name))
-            .help(allowed(&schema["properties"][name]));
-            if let Some(place) = place {
-                problem = problem.at(place, "in this table");
-            }
-            self.problems.push(place, problem);
+            self.problems.push(problem);
         }
     }
 
     fn item(&mut self, item: &Item, schema: &Value, path: &str) {
-        if let Some(branches) = schema.get("anyOf").and_then(Value::as_array) {
+        if let Some(branches) = schema["anyOf"].as_array() {
             match branches.iter().find(|branch| takes(branch, &item.node)) {
                 Some(branch) => self.item(item, &with_description(branch, schema), path),
                 None => self.wrong_type(item, schema, path),
@@ -101,31 +92,24 @@ impl Contract<'_> {
     }
 
     fn wrong_type(&mut self, item: &Item, schema: &Value, path: &str) {
-        let message = format!("{path} is {}, which it cannot be", item.node.description());
-        let problem = Problem::new(ProblemKind::WrongType, message)
-            .key(path)
-            .at(&item.origin, format!("this is {}", item.node.description()))
-            .help(allowed(schema));
-        self.problems.push(Some(&item.origin), problem);
+        let found = item.node.description();
+        let place = (&item.origin, &*format!("this is {found}"));
+        let message = format!("{path} is {found}, which it cannot be");
+        let kind = ProblemKind::WrongType;
+        self.refuse(kind, path, place, message, allowed(schema));
     }
 
     fn array(&mut self, item: &Item, items: &[Item], schema: &Value, path: &str) {
-        let least = schema.get("minItems").and_then(Value::as_u64).unwrap_or(0);
-        if (items.len() as u64) < least {
-            let problem = Problem::new(
-                ProblemKind::OutOfRange,
-                format!("the list {path} is too short"),
-            )
-            .key(path)
-            .at(&item.origin, "this list")
-            .help(allowed(schema));
-            self.problems.push(Some(&item.origin), problem);
+        if (items.len() as u64) < schema["minItems"].as_u64().unwrap_or(0) {
+            let place = (&item.origin, "this list");
+            let message = format!("the list {path} is too short");
+            let kind = ProblemKind::OutOfRange;
+            self.refuse(kind, path, place, message, allowed(schema));
         }
-        let Some(inner) = schema.get("items") else {
-            return;
-        };
-        for (index, element) in items.iter().enumerate() {
-            self.item(element, inner, &format!("{path}[{index}]"));
+        if let Some(inner) = schema.get("items") {
+            for (index, element) in items.iter().enumerate() {
+                self.item(element, inner, &format!("{path}[{index}]"));
+            }
         }
     }
 
@@ -138,51 +122,45 @@ impl Contract<'_> {
             Some(near) => format!("did you mean \"{near}\"? {}", allowed(schema)),
             None => allowed(schema),
         };
-        let problem = Problem::new(ProblemKind::WrongType, format!("{path} cannot be {text:?}"))
-            .key(path)
-            .at(&item.origin, "unknown name")
-            .help(help);
-        self.problems.push(Some(&item.origin), problem);
+        let place = (&item.origin, "unknown name");
+        let message = format!("{path} cannot be {text:?}");
+        self.refuse(ProblemKind::WrongType, path, place, message, help);
     }
 
     fn range(&mut self, item: &Item, number: f64, schema: &Value, path: &str) {
-        let bound = |name: &str| schema.get(name).and_then(Value::as_f64);
+        let bound = |name: &str| schema[name].as_f64();
         let complaint = if !number.is_finite() {
-            Some("is not a finite number")
+            "is not a finite number"
         } else if bound("minimum").is_some_and(|least| number < least)
             || bound("exclusiveMinimum").is_some_and(|least| number <= least)
         {
-            Some("is too small")
+            "is too small"
         } else if bound("maximum").is_some_and(|most| number > most) {
-            Some("is too large")
+            "is too large"
         } else {
-            None
+            return;
         };
-        let Some(complaint) = complaint else { return };
         let message = format!("{path} = {} {complaint}", item.origin.text());
-        let problem = Problem::new(ProblemKind::OutOfRange, message)
-            .key(path)
-            .at(&item.origin, complaint)
-            .help(allowed(schema));
-        self.problems.push(Some(&item.origin), problem);
+        let (kind, place) = (ProblemKind::OutOfRange, (&item.origin, complaint));
+        self.refuse(kind, path, place, message, allowed(schema));
+    }
+
+    /// Notes a problem with a key at one place, of which something is said.
+    fn refuse(
+        &mut self,
+        kind: ProblemKind,
+        key: &str,
+        (origin, label): (&Origin, &str),
+        message: String,
+        help: String,
+    ) {
+        let problem = Problem::new(kind, message).key(key).help(help);
+        self.problems.push(problem.at(origin, label));
     }
 }
 
-fn joined(path: &str, name: &str) -> String {
-    if path.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{path}.{name}")
-    }
-}
-
-fn names_of(properties: &Value) -> String {
-    let names: Vec<&str> = properties
-        .as_object()
-        .into_iter()
-        .flat_map(|map| map.keys())
-        .map(String::as_str)
-        .collect();
+fn names_of(properties: &Map<String, Value>) -> String {
+    let names: Vec<&str> = properties.keys().map(String::as_str).collect();
     names.join(", ")
 }
 
@@ -197,7 +175,7 @@ fn with_description(branch: &Value, whole: &Value) -> Value {
 
 /// Whether the value has the schema's type.
 fn takes(schema: &Value, node: &Node) -> bool {
-    let kind = schema.get("type").and_then(Value::as_str);
+    let kind = schema["type"].as_str();
     match node {
         Node::Table(_) => kind == Some("object"),
         Node::Array(_) => kind == Some("array"),
@@ -211,35 +189,22 @@ fn takes(schema: &Value, node: &Node) -> bool {
 
 /// The names that a schema allows.
 fn names(schema: &Value) -> Vec<&str> {
-    let by_enum = schema
-        .get("enum")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten();
-    let by_const = schema
-        .get("oneOf")
-        .and_then(Value::as_array)
-        .into_iter()
-        .flatten();
-    by_enum
-        .filter_map(Value::as_str)
-        .chain(by_const.filter_map(|one| one.get("const").and_then(Value::as_str)))
-        .collect()
+    let by_const = schema["oneOf"].as_array().into_iter().flatten();
+    let by_const = by_const.filter_map(|one| one["const"].as_str());
+    texts(&schema["enum"]).chain(by_const).collect()
 }
 
 /// What a key allows, in words, with its description.
 pub(crate) fn allowed(schema: &Value) -> String {
-    let mut text = match kind_in_words(schema) {
-        kind if kind.is_empty() => String::new(),
+    let kind = match kind_in_words(schema) {
+        kind if kind.is_empty() => kind,
         kind => format!("allowed: {kind}"),
     };
-    if let Some(description) = schema.get("description").and_then(Value::as_str) {
-        if !text.is_empty() {
-            text.push_str(". ");
-        }
-        text.push_str(description);
-    }
-    text
+    let description = schema["description"].as_str().unwrap_or_default();
+    let parts = [&*kind, description]
+        .into_iter()
+        .filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join(". ")
 }
 
 fn kind_in_words(schema: &Value) -> String {
@@ -248,22 +213,17 @@ fn kind_in_words(schema: &Value) -> String {
         let quoted: Vec<String> = names.iter().map(|name| format!("\"{name}\"")).collect();
         return quoted.join(", ");
     }
-    if let Some(branches) = schema.get("anyOf").and_then(Value::as_array) {
+    if let Some(branches) = schema["anyOf"].as_array() {
         let kinds: Vec<String> = branches.iter().map(kind_in_words).collect();
         return kinds.join(", or ");
     }
-    match schema.get("type").and_then(Value::as_str) {
+    match schema["type"].as_str() {
         Some("number") => format!("a number{}", range_in_words(schema)),
         Some("integer") => format!("a whole number{}", range_in_words(schema)),
         Some("boolean") => "true or false".into(),
         Some("string") => "a text".into(),
-        Some("array") => {
-            format!(
-                "a list of {}",
-                schema.get("items").map(kind_in_words).unwrap_or_default()
-            )
-        }
-        Some("object") => match schema.get("properties") {
+        Some("array") => format!("a list of {}", kind_in_words(&schema["items"])),
+        Some("object") => match schema["properties"].as_object() {
             Some(properties) => format!("a table of {}", names_of(properties)),
             None => "a table".into(),
         },
@@ -272,23 +232,14 @@ fn kind_in_words(schema: &Value) -> String {
 }
 
 fn range_in_words(schema: &Value) -> String {
-    let bound = |name: &str| schema.get(name).and_then(Value::as_f64).map(short);
-    let least = match (bound("minimum"), bound("exclusiveMinimum")) {
-        (Some(least), _) => format!(", {least} or more"),
-        (None, Some(least)) => format!(" above {least}"),
-        (None, None) => String::new(),
+    let bound = |name: &str, before: &str, after: &str| match schema[name].as_f64() {
+        Some(bound) if bound.abs() < 1e6 => format!("{before}{bound}{after}"),
+        Some(bound) => format!("{before}{bound:e}{after}"),
+        None => String::new(),
     };
-    let most = bound("maximum")
-        .map(|most| format!(", at most {most}"))
-        .unwrap_or_default();
-    least + &most
-}
-
-/// A limit in few characters.
-fn short(limit: f64) -> String {
-    if limit.abs() < 1e6 {
-        limit.to_string()
-    } else {
-        format!("{limit:e}")
-    }
+    let least = match schema.get("minimum") {
+        Some(_) => bound("minimum", ", ", " or more"),
+        None => bound("exclusiveMinimum", " above ", ""),
+    };
+    least + &bound("maximum", ", at most ", "")
 }

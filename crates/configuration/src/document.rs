@@ -88,7 +88,7 @@ pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
             let problem = Problem::new(ProblemKind::Syntax, message)
                 .at(&origin, "here")
                 .help("one `key = value` a line, tables as `[drive]`, text in double quotes");
-            problems.push(Some(&origin), problem);
+            problems.push(problem);
             Table::new()
         }
     }
@@ -97,50 +97,42 @@ pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
 /// Parses one override, `key=value`: the value is TOML, or a bare word that stands for a text.
 pub(crate) fn parse_override(text: &str, problems: &mut Problems) -> Table {
     let source = Source::new(SourceKind::Override, Source::override_name(text), text);
-    let whole = Origin {
-        source: Arc::clone(&source),
-        span: 0..text.len(),
-    };
-    let usage = "write key=value, for example drive.width=2.7 or initial.state=jammed";
-    let refuse = |problems: &mut Problems, message: String| {
+    read_override(&source).unwrap_or_else(|message| {
+        let whole = Origin {
+            source,
+            span: 0..text.len(),
+        };
         let problem = Problem::new(ProblemKind::Syntax, message)
             .at(&whole, "this override")
-            .help(usage);
-        problems.push(Some(&whole), problem);
+            .help("write key=value, for example drive.width=2.7 or initial.state=jammed");
+        problems.push(problem);
         Table::new()
-    };
+    })
+}
+
+/// The table of one key, or why the text is none.
+fn read_override(source: &Arc<Source>) -> Result<Table, String> {
+    let text = &*source.text;
     let Some((key, value)) = text.split_once('=') else {
-        return refuse(problems, format!("an override needs a `=`: {text:?}"));
+        return Err(format!("an override needs a `=`: {text:?}"));
     };
     if text.contains(['\n', '\r']) || key.contains(['[', '#']) {
-        return refuse(
-            problems,
-            format!("an override is one key and one value: {text:?}"),
-        );
+        return Err(format!("an override is one key and one value: {text:?}"));
     }
-    let word = value.trim();
-    let parsed = match DeTable::parse(text) {
-        Ok(table) => Ok(convert_table(&source, table.get_ref())),
-        Err(error) if is_bare_word(word) => {
-            // The key alone is TOML with an empty text for value, which the word then replaces.
-            let with_empty_text = format!("{key}=\"\"");
-            let start = key.len() + 1 + (value.len() - value.trim_start().len());
-            DeTable::parse(&with_empty_text)
-                .map(|table| {
-                    let mut table = convert_table(&source, table.get_ref());
-                    replace_leaf(&mut table, word, start..start + word.len());
-                    table
-                })
-                .map_err(|_| error)
-        }
-        Err(error) => Err(error),
+    let error = match DeTable::parse(text) {
+        Ok(table) => return Ok(convert_table(source, table.get_ref())),
+        Err(error) => error.message().replace('\n', ", "),
     };
-    match parsed {
-        Ok(table) => table,
-        Err(error) => {
-            let message = format!("this override is not `key=value`: {}", error.message());
-            refuse(problems, message.replace('\n', ", "))
+    // The key alone is TOML with an empty text for value, which the word then replaces.
+    let (word, with_empty_text) = (value.trim(), format!("{key}=\"\""));
+    match DeTable::parse(&with_empty_text) {
+        Ok(table) if is_bare_word(word) => {
+            let mut table = convert_table(source, table.get_ref());
+            let start = text.len() - value.trim_start().len();
+            replace_leaf(&mut table, word, start..start + word.len());
+            Ok(table)
         }
+        _ => Err(format!("this override is not `key=value`: {error}")),
     }
 }
 
@@ -216,6 +208,26 @@ pub fn entry<'a>(table: &'a Table, path: &str) -> Option<&'a Entry> {
             _ => None,
         },
     }
+}
+
+/// The longest beginning of a path such as `drive.schedule[1].values[0]` that was written, and its place.
+pub(crate) fn written<'t, 'p>(table: &'t Table, path: &'p str) -> (&'p str, Option<&'t Origin>) {
+    let (mut found, mut place, mut node) = ("", None, None::<&Node>);
+    let mut start = 0;
+    let ends = path.match_indices(['.', '[']).map(|(end, _)| end);
+    for end in ends.chain([path.len()]) {
+        let name = path[start..end].trim_end_matches(']');
+        let item = match node {
+            None => table.get(name).map(|entry| &entry.item),
+            Some(Node::Table(inner)) => inner.get(name).map(|entry| &entry.item),
+            Some(Node::Array(items)) => name.parse().ok().and_then(|it: usize| items.get(it)),
+            Some(_) => None,
+        };
+        let Some(item) = item else { break };
+        (found, place, node) = (&path[..end], Some(&item.origin), Some(&item.node));
+        start = end + 1;
+    }
+    (found, place)
 }
 
 /// Takes the entry at a dotted path out; tables left empty stay.

@@ -16,10 +16,15 @@ pub struct ConfigurationError {
 }
 
 impl ConfigurationError {
-    /// `problems` is not empty.
-    pub(crate) fn new(problems: Vec<Problem>) -> Self {
-        debug_assert!(!problems.is_empty(), "an error has at least one problem");
-        Self { problems }
+    /// `Ok` without problems, else all of them in their order.
+    ///
+    /// # Errors
+    /// The problems.
+    pub fn all(problems: Vec<Problem>) -> Result<(), Self> {
+        match problems.is_empty() {
+            true => Ok(()),
+            false => Err(Self { problems }),
+        }
     }
 
     /// The problems, at least one.
@@ -29,12 +34,16 @@ impl ConfigurationError {
     }
 }
 
+impl From<Problem> for ConfigurationError {
+    fn from(problem: Problem) -> Self {
+        let problems = vec![problem];
+        Self { problems }
+    }
+}
+
 fn paragraphs(problems: &[Problem]) -> String {
-    problems
-        .iter()
-        .map(ToString::to_string)
-        .collect::<Vec<_>>()
-        .join("\n")
+    let paragraphs: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    paragraphs.join("\n")
 }
 
 /// The kind of a [`Problem`].
@@ -72,6 +81,8 @@ pub struct Problem {
     pub help: Option<String>,
     /// Where it was written, the main place first; empty if nowhere (a missing key).
     pub labels: Vec<Label>,
+    /// Its place in the order of the texts; problems without one come last.
+    order: (SourceKind, usize),
 }
 
 /// A place in a text that a problem has to do with.
@@ -90,14 +101,8 @@ pub struct Label {
 impl Label {
     pub(crate) fn new(origin: &Origin, message: impl Into<String>) -> Self {
         let text = &origin.source.text;
-        let boundary = |mut byte: usize| {
-            byte = byte.min(text.len());
-            while !text.is_char_boundary(byte) {
-                byte -= 1;
-            }
-            byte
-        };
-        let (start, end) = (boundary(origin.span.start), boundary(origin.span.end));
+        let [start, end] =
+            [origin.span.start, origin.span.end].map(|byte| text.floor_char_boundary(byte));
         Self {
             source_name: Arc::clone(&origin.source.name),
             source_text: Arc::clone(text),
@@ -147,6 +152,7 @@ impl Problem {
             key: None,
             help: None,
             labels: Vec::new(),
+            order: (SourceKind::Override, usize::MAX),
         }
     }
 
@@ -167,24 +173,24 @@ impl Problem {
     /// Adds a place and what to say of it.
     #[must_use]
     pub fn at(mut self, origin: &Origin, message: impl Into<String>) -> Self {
+        if self.labels.is_empty() {
+            self.order = (origin.source.kind, origin.span.start);
+        }
         self.labels.push(Label::new(origin, message));
         self
     }
 }
 
-/// Problems found so far, with their place in the order of the texts.
+/// Problems found so far.
 #[derive(Debug, Default)]
 pub struct Problems {
-    found: Vec<((SourceKind, usize), Problem)>,
+    found: Vec<Problem>,
 }
 
 impl Problems {
-    /// Adds a problem at a place that orders it among the others.
-    pub fn push(&mut self, place: Option<&Origin>, problem: Problem) {
-        let order = place.map_or((SourceKind::Override, usize::MAX), |origin| {
-            (origin.source.kind, origin.span.start)
-        });
-        self.found.push((order, problem));
+    /// Adds a problem.
+    pub fn push(&mut self, problem: Problem) {
+        self.found.push(problem);
     }
 
     /// `Ok` without problems, else all of them as one error.
@@ -192,13 +198,7 @@ impl Problems {
     /// # Errors
     /// All problems, in the order of the texts.
     pub fn check(&mut self) -> Result<(), ConfigurationError> {
-        if self.found.is_empty() {
-            return Ok(());
-        }
-        let mut found = std::mem::take(&mut self.found);
-        found.sort_by_key(|(order, _)| *order);
-        Err(ConfigurationError::new(
-            found.into_iter().map(|(_, problem)| problem).collect(),
-        ))
+        self.found.sort_by_key(|problem| problem.order);
+        ConfigurationError::all(std::mem::take(&mut self.found))
     }
 }

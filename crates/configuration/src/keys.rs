@@ -10,21 +10,23 @@ use serde::{Deserialize, Serialize};
 
 use crate::configuration::{Drive, Grains, Initial, Observe, Run, Tube, Wall};
 
-/// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
-pub(crate) const ALTERNATIVES: [&[&str]; 4] = [
-    &[
-        "grains.number",
-        "grains.volume_fraction",
-        "grains.number_density",
-    ],
-    &["drive.width", "drive.amplitude"],
-    &[
-        "drive.strain_rate",
-        "drive.wave_speed",
-        "units.wave_frequency",
-    ],
-    &["run.periods", "run.duration"],
+/// Keys that give the number of grains.
+pub(crate) const NUMBERS: &[&str] = &[
+    "grains.number",
+    "grains.volume_fraction",
+    "grains.number_density",
 ];
+/// Keys that give the speed of the wave.
+pub(crate) const RATES: &[&str] = &[
+    "drive.strain_rate",
+    "drive.wave_speed",
+    "units.wave_frequency",
+];
+/// Keys that give the length of the run.
+pub(crate) const LENGTHS: &[&str] = &["run.periods", "run.duration"];
+/// Keys of which exactly one is given; a choice in a higher layer replaces the one below.
+pub(crate) const ALTERNATIVES: [&[&str]; 4] =
+    [NUMBERS, &["drive.width", "drive.amplitude"], RATES, LENGTHS];
 
 /// Configuration of one simulation of grains in a peristaltic tube.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]

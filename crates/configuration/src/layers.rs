@@ -86,11 +86,7 @@ fn switch_of(choice: &Choice) -> Switch {
             "contact.law" => switch.owns(&value.name, unit_of_elasticity(&value.name)),
             "drive.control" if value.name == "stress" => {
                 let network = schema::of::<ElasticNetwork>();
-                for name in network["properties"]
-                    .as_object()
-                    .into_iter()
-                    .flat_map(|it| it.keys())
-                {
+                for (name, _) in network["properties"].as_object().into_iter().flatten() {
                     switch.owns(&value.name, format!("wall.{name}"));
                 }
             }
@@ -160,7 +156,7 @@ fn refuse_two(layer: &Table, given: &[&str], group: &[&str], problems: &mut Prob
     for (key, entry) in &entries {
         problem = problem.at(&entry.key, format!("{key} is given here"));
     }
-    problems.push(Some(&entries[0].1.key), problem);
+    problems.push(problem);
 }
 
 /// Takes out of `base` what a choice in `layer` leaves without meaning.
@@ -225,7 +221,7 @@ pub(crate) fn check_switches(table: &Table, problems: &mut Problems) {
                 .at(&entry.key, format!("has no meaning under this {name}"))
                 .at(&choice.item.origin, format!("{name} is chosen here"))
                 .help(format!("remove {key}, or set {owner}"));
-            problems.push(Some(&entry.key), problem);
+            problems.push(problem);
         }
     }
 }

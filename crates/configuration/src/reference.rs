@@ -1,10 +1,9 @@
 //! The reference of keys, made from their schema, for people.
 
-use std::fmt::Write as _;
-
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 use crate::presets::PRESETS;
+use crate::schema::joined;
 
 /// All keys of a [schema](crate::schema) as Markdown: a section a table, a row a key, with what it means, what is
 /// allowed, and its default.
@@ -27,54 +26,45 @@ fn section(pages: &mut String, path: &str, table: &Value, leave_out: &[&str]) {
         .filter(|(name, _)| !leave_out.contains(&name.as_str()))
         .partition(|(_, key)| key.get("properties").is_some());
     if !path.is_empty() {
-        line(pages, &format!("## [{path}]\n"));
+        *pages += &format!("## [{path}]\n\n");
     }
-    line(pages, &format!("{}\n", description(table)));
+    *pages += &format!("{}\n\n", description(table));
     if !keys.is_empty() {
-        line(pages, "| key | meaning | allowed | default |");
-        line(pages, "|---|---|---|---|");
-        for (name, key) in &keys {
-            row(pages, path, name, key);
-        }
-        line(pages, "");
+        *pages += "| key | meaning | allowed | default |\n|---|---|---|---|\n";
+        keys.iter()
+            .for_each(|(name, key)| *pages += &row(path, name, key));
+        *pages += "\n";
     }
     for (name, key) in &keys {
         for inner in inner_tables(key) {
-            line(pages, &format!("### Tables of {}\n", dotted(path, name)));
+            *pages += &format!("### Tables of {}\n\n", joined(path, name));
             section(pages, "", inner, &[]);
         }
     }
     for (name, inner) in tables {
-        section(pages, &dotted(path, name), inner, &[]);
+        section(pages, &joined(path, name), inner, &[]);
     }
 }
 
-fn row(pages: &mut String, path: &str, name: &str, key: &Value) {
+fn row(path: &str, name: &str, key: &Value) -> String {
     let mut meaning = description(key);
     for choice in choices(key) {
         if let (Some(word), Some(text)) = (choice["const"].as_str(), choice["description"].as_str())
         {
-            let _ = write!(meaning, "<br>`{word}`: {text}");
+            meaning += &format!("<br>`{word}`: {text}");
         }
     }
-    let cells = [
-        format!("`{name}`"),
-        meaning,
-        allowed(key),
-        default(&dotted(path, name), key),
-    ];
-    let cells = cells.map(|cell| cell.replace('|', "\\|"));
-    line(pages, &format!("| {} |", cells.join(" | ")));
+    let (name, default) = (format!("`{name}`"), default(&joined(path, name), key));
+    let cells = [name, meaning, allowed(key), default].map(|cell| cell.replace('|', "\\|"));
+    format!("| {} |\n", cells.join(" | "))
 }
 
 /// Tables that a key may hold, alone or in lists.
 fn inner_tables(key: &Value) -> Vec<&Value> {
-    let lists = [&key["items"]];
-    let branches = alternatives(key).into_iter();
-    branches
-        .chain(lists)
-        .filter(|branch| branch.get("properties").is_some())
-        .collect()
+    let mut tables = alternatives(key);
+    tables.push(&key["items"]);
+    tables.retain(|branch| branch.get("properties").is_some());
+    tables
 }
 
 fn alternatives(key: &Value) -> Vec<&Value> {
@@ -103,24 +93,13 @@ fn allowed(key: &Value) -> String {
     if let Some(names) = key["enum"].as_array() {
         return list(names);
     }
-    let words: Vec<Value> = choices(key)
-        .iter()
-        .map(|choice| choice["const"].clone())
-        .collect();
-    let tables = if inner_tables(key).is_empty() {
-        None
-    } else {
-        Some("tables as below".to_owned())
-    };
-    if !words.is_empty() {
-        return [Some(list(&words)), tables]
-            .into_iter()
-            .flatten()
-            .collect::<Vec<_>>()
-            .join(", or ");
-    }
-    if let Some(tables) = tables {
-        return tables;
+    let words = choices(key).into_iter().map(|choice| &choice["const"]);
+    let words = list(words);
+    match (words.as_str(), inner_tables(key).is_empty()) {
+        ("", true) => {}
+        ("", false) => return "tables as below".to_owned(),
+        (_, true) => return words,
+        (_, false) => return format!("{words}, or tables as below"),
     }
     let kinds: Vec<String> = alternatives(key).into_iter().map(allowed).collect();
     if !kinds.is_empty() {
@@ -151,23 +130,19 @@ fn default(path: &str, key: &Value) -> String {
     if let Some(value) = key.get("default") {
         return format!("`{}`", number(value));
     }
-    let given: Vec<String> = PRESETS
-        .iter()
-        .filter_map(|preset| {
-            let table: toml::Table = toml::from_str(preset.text).ok()?;
-            let value = path
-                .split('.')
-                .try_fold(&toml::Value::Table(table), |place, name| place.get(name))
-                .cloned()?;
-            Some(format!("{}: `{value}`", preset.name))
-        })
-        .collect();
-    given.join("<br>")
+    let given = PRESETS.iter().filter_map(|preset| {
+        let table: toml::Value = toml::from_str(preset.text).ok()?;
+        let value = path
+            .split('.')
+            .try_fold(&table, |table, name| table.get(name))?;
+        Some(format!("{}: `{value}`", preset.name))
+    });
+    given.collect::<Vec<_>>().join("<br>")
 }
 
-fn list(words: &[Value]) -> String {
-    let words: Vec<String> = words.iter().map(|word| format!("`{word}`")).collect();
-    words.join(", ")
+fn list<'a>(words: impl IntoIterator<Item = &'a Value>) -> String {
+    let words = words.into_iter().map(|word| format!("`{word}`"));
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// A value as TOML has it, large numbers in powers of ten.
@@ -180,24 +155,8 @@ fn number(value: &Value) -> String {
 }
 
 fn description(value: &Value) -> String {
-    let object: Option<&Map<String, Value>> = value.as_object();
-    let text = object.and_then(|object| object.get("description")?.as_str());
-    text.unwrap_or_default()
-        .replace('\n', " ")
-        .replace('<', "&lt;")
-}
-
-fn dotted(path: &str, name: &str) -> String {
-    if path.is_empty() {
-        name.to_owned()
-    } else {
-        format!("{path}.{name}")
-    }
-}
-
-fn line(pages: &mut String, text: &str) {
-    pages.push_str(text);
-    pages.push('\n');
+    let text = value["description"].as_str().unwrap_or_default();
+    text.replace('\n', " ").replace('<', "&lt;")
 }
 
 #[cfg(test)]

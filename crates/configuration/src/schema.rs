@@ -8,8 +8,7 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::configuration::Control;
-use crate::keys::ALTERNATIVES;
-use crate::keys::Keys;
+use crate::keys::{ALTERNATIVES, Keys};
 use crate::presets::PRESETS;
 
 /// JSON schema (draft 2020-12) of a configuration file.
@@ -83,7 +82,7 @@ fn choice(table: &'static str, schema: &Value) -> Choice {
                 None => drop(value.keys.insert(name.clone(), property.clone())),
             }
         }
-        value.required = names(&branch["required"])
+        value.required = texts(&branch["required"])
             .filter(|name| *name != key)
             .map(str::to_owned)
             .collect();
@@ -98,8 +97,8 @@ fn choice(table: &'static str, schema: &Value) -> Choice {
     }
 }
 
-/// The names in a list.
-fn names(list: &Value) -> impl Iterator<Item = &str> {
+/// The texts in a list.
+pub(crate) fn texts(list: &Value) -> impl Iterator<Item = &str> {
     list.as_array()
         .into_iter()
         .flatten()
@@ -114,10 +113,10 @@ pub(crate) fn required() -> &'static [String] {
 
 fn required_of(keys: &Value) -> Vec<String> {
     let mut required = Vec::new();
-    for table in names(&keys["required"]) {
+    for table in texts(&keys["required"]) {
         let chosen = choices().iter().find(|choice| choice.table == table);
         required.extend(chosen.map(|choice| format!("{table}.{}", choice.key)));
-        let plain = names(&keys["properties"][table]["required"]);
+        let plain = texts(&keys["properties"][table]["required"]);
         required.extend(plain.map(|key| format!("{table}.{key}")));
     }
     required
@@ -186,23 +185,16 @@ fn tidy(schema: &mut Value) {
         Value::Object(object) => {
             remove_null(object);
             object.remove("format");
-            let unit = object
-                .get("x-unit")
-                .and_then(Value::as_str)
-                .map(str::to_owned);
+            let unit = match object.get("x-unit").and_then(Value::as_str) {
+                None => String::new(),
+                Some("1") => " (A pure number.)".to_owned(),
+                Some(unit) => format!(" (Unit: {unit}.)"),
+            };
             if let Some(Value::String(description)) = object.get_mut("description") {
-                *description = description.replace('\n', " ");
-                match unit.as_deref() {
-                    None => {}
-                    Some("1") => description.push_str(" (A pure number.)"),
-                    Some(unit) => description.push_str(&format!(" (Unit: {unit}.)")),
-                }
+                *description = description.replace('\n', " ") + &unit;
             }
             // The default of a whole table follows from its keys; a key may have none.
-            if object
-                .get("default")
-                .is_some_and(|value| value.is_object() || value.is_null())
-            {
+            if matches!(object.get("default"), Some(Value::Object(_) | Value::Null)) {
                 object.remove("default");
             }
             object.values_mut().for_each(tidy);
@@ -287,24 +279,22 @@ pub(crate) fn keys_of(schema: &Value) -> Vec<String> {
 }
 
 fn collect_keys(schema: &Value, path: &str, keys: &mut Vec<String>) {
-    if let Some(Value::Object(properties)) = schema.get("properties") {
-        for (name, inner) in properties {
-            let full = if path.is_empty() {
-                name.clone()
-            } else {
-                format!("{path}.{name}")
-            };
-            collect_keys(inner, &full, keys);
-            keys.push(full);
-        }
+    for (name, inner) in schema["properties"].as_object().into_iter().flatten() {
+        let full = joined(path, name);
+        collect_keys(inner, &full, keys);
+        keys.push(full);
     }
-    if let Some(items) = schema.get("items") {
-        collect_keys(items, path, keys);
+    let branches = schema["anyOf"].as_array().into_iter().flatten();
+    for inner in schema.get("items").into_iter().chain(branches) {
+        collect_keys(inner, path, keys);
     }
-    if let Some(Value::Array(branches)) = schema.get("anyOf") {
-        branches
-            .iter()
-            .for_each(|branch| collect_keys(branch, path, keys));
+}
+
+/// Full name of a key in a table, which has no name if it is the document.
+pub(crate) fn joined(table: &str, key: &str) -> String {
+    match table {
+        "" => key.to_owned(),
+        table => format!("{table}.{key}"),
     }
 }
 

@@ -77,11 +77,7 @@ impl Origin {
 
 /// Line and column of a byte, both from 1, columns in characters.
 pub(crate) fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
-    let mut byte = byte.min(text.len());
-    while !text.is_char_boundary(byte) {
-        byte -= 1;
-    }
-    let before = &text[..byte];
+    let before = &text[..text.floor_char_boundary(byte)];
     let line = before.matches('\n').count() + 1;
     let start = before.rfind('\n').map_or(0, |newline| newline + 1);
     (line, before[start..].chars().count() + 1)

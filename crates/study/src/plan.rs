@@ -219,7 +219,7 @@ impl Plan {
                 )
                 .key("axes")
                 .help("an axis names a value once, and a key that changes something");
-                problems.push(None, problem);
+                problems.push(problem);
                 break;
             }
         }

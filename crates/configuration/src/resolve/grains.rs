@@ -5,8 +5,7 @@ use std::f64::consts::PI;
 use super::Context;
 use crate::configuration::{Grains, Tube};
 use crate::error::ProblemKind;
-use crate::keys::ALTERNATIVES;
-use crate::keys::GrainsKeys;
+use crate::keys::{GrainsKeys, NUMBERS};
 use crate::limits;
 
 /// The grains in a given tube.
@@ -42,7 +41,7 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     // Also refuses values that are infinite or NaN because a diameter cubed is 0.
     let within = number <= limits::MOST_GRAINS as f64;
     if !within {
-        let key = context.written(ALTERNATIVES[0]);
+        let key = context.written(NUMBERS);
         context.refuse(
             ProblemKind::OutOfRange,
             &[key],

@@ -13,10 +13,9 @@ use crate::configuration::{Configuration, Control, Wall};
 use crate::contract;
 use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
-use crate::keys::ALTERNATIVES;
-use crate::keys::{ContactKeys, Keys};
+use crate::keys::{ALTERNATIVES, ContactKeys, Keys};
 use crate::layers::{self, list};
-use crate::presets::{PRESETS, preset};
+use crate::presets::{PRESETS, Preset, preset};
 use crate::schema;
 use crate::source::{Origin, Source, SourceFile, SourceKind, Sources};
 use crate::suggestion;
@@ -50,9 +49,7 @@ impl Configuration {
         layers::check_switches(&table, &mut problems);
         check_given(&table, sources, &mut problems);
         problems.check()?;
-        let keys = deserialised(&table, &mut problems);
-        problems.check()?;
-        let keys = keys.expect("without problems the keys have been read");
+        let keys = deserialised(&table)?;
         let mut context = Context {
             table: &table,
             problems: &mut problems,
@@ -79,36 +76,27 @@ impl Configuration {
 
 /// All layers, checked one by one and laid over one another.
 fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> Table {
-    let file = sources.file.map(|file| {
-        let source = Source::new(SourceKind::File, file.name, file.text);
-        checked(document::parse(&source, problems), problems)
-    });
-    let overrides = sources
-        .overrides
-        .iter()
-        .map(|text| document::parse_override(text, problems));
+    let file = sources
+        .file
+        .map(|file| checked(document::parse_file(file, problems), problems));
+    let overrides = sources.overrides.iter();
+    let overrides = overrides.map(|text| document::parse_override(text, problems));
     let overrides = layers::join(overrides.collect());
     if let Some(entry) = overrides.get("preset") {
-        let problem = Problem::new(
-            ProblemKind::Preset,
-            "a preset cannot be chosen by an override",
-        )
-        .key("preset")
-        .at(&entry.key, "here")
-        .help("name it with --preset, or in the file as preset = \"...\"");
-        problems.push(Some(&entry.key), problem);
+        let message = "a preset cannot be chosen by an override";
+        let problem = Problem::new(ProblemKind::Preset, message)
+            .key("preset")
+            .at(&entry.key, "here")
+            .help("name it with --preset, or in the file as preset = \"...\"");
+        problems.push(problem);
     }
     refuse_derived(&overrides, problems);
     let overrides = checked(overrides, problems);
     let mut table = Table::new();
     if let Some(name) = preset_name(sources.preset, file.as_ref(), problems)
-        && let Some(preset) = preset(&name)
+        && let Some(Preset { name, text, .. }) = preset(&name)
     {
-        let source = Source::new(
-            SourceKind::Preset,
-            format!("preset {}", preset.name),
-            preset.text,
-        );
+        let source = Source::new(SourceKind::Preset, format!("preset {name}"), text);
         table = checked(document::parse(&source, problems), problems);
     }
     let above = above.iter().map(|layer| {
@@ -128,14 +116,12 @@ fn layered(sources: &Sources<'_>, above: &[Table], problems: &mut Problems) -> T
 /// Derived values are read with the record of a run that states them; to set one has no effect, and must not seem to.
 fn refuse_derived(layer: &Table, problems: &mut Problems) {
     if let Some(entry) = layer.get("resolved") {
-        let problem = Problem::new(
-            ProblemKind::UnknownKey,
-            "the values below `resolved` follow from the other keys and cannot be set",
-        )
-        .key("resolved")
-        .at(&entry.key, "has no effect")
-        .help("set the keys that they follow from; `peristalsis schema` lists them");
-        problems.push(Some(&entry.key), problem);
+        let message = "the values below `resolved` follow from the other keys and cannot be set";
+        let problem = Problem::new(ProblemKind::UnknownKey, message)
+            .key("resolved")
+            .at(&entry.key, "has no effect")
+            .help("set the keys that they follow from; `peristalsis schema` lists them");
+        problems.push(problem);
     }
 }
 
@@ -150,61 +136,49 @@ fn preset_name(
     file: Option<&Table>,
     problems: &mut Problems,
 ) -> Option<String> {
-    let written = file.and_then(|file| {
-        Some((
-            document::text(file, "preset")?,
-            &document::entry(file, "preset")?.item.origin,
-        ))
-    });
-    match (asked, written) {
-        (None, None) => None,
-        (None, Some((name, _))) => Some(name.to_owned()),
-        (Some(name), written) => {
-            if preset(name).is_none() {
-                problems.push(None, unknown_preset(name));
-            } else if let Some((other, origin)) = written
-                && other != name
-            {
-                let message = format!("the file builds on preset {other:?}, --preset is {name:?}");
-                let problem = Problem::new(ProblemKind::Preset, message)
-                    .key("preset")
-                    .at(origin, "the file's preset")
-                    .help("leave out --preset, or the file's `preset`");
-                problems.push(Some(origin), problem);
-            }
-            Some(name.to_owned())
-        }
+    let entry = file.and_then(|file| document::entry(file, "preset"));
+    let written = file.and_then(|file| document::text(file, "preset"));
+    let Some(name) = asked else {
+        return written.map(str::to_owned);
+    };
+    if preset(name).is_none() {
+        problems.push(unknown_preset(name));
+    } else if let (Some(other), Some(entry)) = (written, entry)
+        && other != name
+    {
+        let message = format!("the file builds on preset {other:?}, --preset is {name:?}");
+        let problem = Problem::new(ProblemKind::Preset, message)
+            .key("preset")
+            .at(&entry.item.origin, "the file's preset")
+            .help("leave out --preset, or the file's `preset`");
+        problems.push(problem);
     }
+    Some(name.to_owned())
 }
 
 fn unknown_preset(name: &str) -> Problem {
     let names = preset_names();
-    let near = suggestion::nearest(name, names.iter().copied());
-    let guess = near
-        .map(|near| format!("did you mean {near}? "))
-        .unwrap_or_default();
+    let guess = match suggestion::nearest(name, names.iter().copied()) {
+        Some(near) => format!("did you mean {near}? "),
+        None => String::new(),
+    };
     Problem::new(ProblemKind::Preset, format!("there is no preset {name:?}"))
         .key("preset")
         .help(format!("{guess}presets: {}", names.join(", ")))
 }
 
-/// The keys by serde. The contract has refused what it cannot read, so a problem here is a gap in the contract; it is
+/// The keys by serde. The contract has refused what it cannot read, so an error here is a gap in the contract; it is
 /// reported with its place all the same.
-fn deserialised(table: &Table, problems: &mut Problems) -> Option<Keys> {
-    match serde_path_to_error::deserialize(document::to_toml(table)) {
-        Ok(keys) => Some(keys),
-        Err(error) => {
-            let path = error.path().to_string();
-            let origin = document::entry(table, &path).map(|entry| entry.item.origin.clone());
-            let message = format!("{path}: {}", error.inner().message());
-            let mut problem = Problem::new(ProblemKind::WrongType, message).key(path);
-            if let Some(origin) = &origin {
-                problem = problem.at(origin, "this value");
-            }
-            problems.push(origin.as_ref(), problem);
-            None
+fn deserialised(table: &Table) -> Result<Keys, Problem> {
+    serde_path_to_error::deserialize(document::to_toml(table)).map_err(|error| {
+        let path = error.path().to_string();
+        let message = format!("{path}: {}", error.inner().message());
+        let mut problem = Problem::new(ProblemKind::WrongType, message);
+        if let (_, Some(origin)) = document::written(table, &path) {
+            problem = problem.at(origin, "this value");
         }
-    }
+        problem.key(path)
+    })
 }
 
 /// Names every key that is needed and not given, in one problem.
@@ -244,7 +218,7 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
     if let Some(place) = place {
         problem = problem.at(place, "would stand in this table");
     }
-    problems.push(place, problem);
+    problems.push(problem);
 }
 
 /// The keys that are needed and not given, alternatives as one.
@@ -313,8 +287,7 @@ impl Context<'_> {
         for (key, origin) in &places {
             problem = problem.at(origin, format!("{key} = {}", shown(origin)));
         }
-        self.problems
-            .push(places.first().map(|(_, origin)| origin), problem);
+        self.problems.push(problem);
     }
 }
 

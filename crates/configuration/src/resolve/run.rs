@@ -3,6 +3,7 @@
 use super::Context;
 use crate::configuration::{Drive, Grains, Observe, Run};
 use crate::error::ProblemKind;
+use crate::keys::{LENGTHS, RATES};
 use crate::limits;
 
 /// Samples in a run without a period (a static wave).
@@ -41,7 +42,7 @@ pub(super) fn run(
     // Also false where a quotient of extreme values is not a number.
     let within = samples * steps_per_sample <= limits::MOST_STEPS as f64;
     if !within {
-        let length = context.written(&["run.periods", "run.duration"]);
+        let length = context.written(LENGTHS);
         context.refuse(
             ProblemKind::OutOfRange,
             &[length, "run.time_step"],
@@ -88,11 +89,7 @@ fn timing(
 ) -> Option<Timing> {
     let Some(period) = drive.period() else {
         if !context.given("run.duration") {
-            let rate = context.written(&[
-                "drive.strain_rate",
-                "drive.wave_speed",
-                "units.wave_frequency",
-            ]);
+            let rate = context.written(RATES);
             context.refuse(
                 ProblemKind::Inconsistent,
                 &["run.periods", rate],
@@ -114,7 +111,7 @@ fn timing(
     let per_period = f64::from(observe.samples_per_period);
     let samples = rounded_up(given * per_period).max(1.0);
     if !(samples <= limits::MOST_SAMPLES as f64 && period.is_finite()) {
-        let length = context.written(&["run.periods", "run.duration"]);
+        let length = context.written(LENGTHS);
         context.refuse(
             ProblemKind::OutOfRange,
             &[length, "observe.samples_per_period"],

@@ -3,14 +3,13 @@
 use super::Context;
 use crate::canonical::name;
 use crate::configuration::{Control, Drive, Tube};
-use crate::document::{self, Item, Node};
+use crate::document;
 use crate::error::{Problem, ProblemKind};
 use crate::keys::{
     DriveKeys, ScheduleFormName, ScheduleKeys, ScheduleName, ScheduleTableKeys,
     ScheduledParameterName,
 };
 use crate::schedule::{Schedule, ScheduleForm, ScheduledParameter};
-use crate::source::Origin;
 
 const KEY: &str = "drive.schedule";
 
@@ -39,101 +38,36 @@ pub(super) fn schedules(
         Some(ScheduleKeys::One(table)) => vec![table.clone()],
         Some(ScheduleKeys::Several(tables)) => tables.clone(),
     };
-    let whole = Written {
-        item: document::entry(context.table, KEY).map(|entry| &entry.item),
-        index: None,
+    let is_list = matches!(keys.schedule, Some(ScheduleKeys::Several(_)));
+    let place = |index: usize, part: &str| match is_list {
+        true => format!("{KEY}[{index}]{part}"),
+        false => format!("{KEY}{part}"),
     };
     if tables.is_empty() {
-        let message = "the list is empty".to_owned();
-        return refuse(context, drive, &[(whole, Part::Whole)], message);
+        return refuse(context, drive, &[KEY.into()], "the list is empty");
     }
     if drive.strain_rate == 0.0 {
-        let message = "a schedule counts in wave periods, and a static wave has none".to_owned();
-        return refuse(context, drive, &[(whole, Part::Whole)], message);
+        let message = "a schedule counts in wave periods, and a static wave has none";
+        return refuse(context, drive, &[KEY.into()], message);
     }
-    let schedules: Option<Vec<(Schedule, Written<'_>)>> = tables
-        .iter()
-        .enumerate()
-        .map(|(index, keys)| {
-            let scope = Scope {
-                drive,
-                tube,
-                written: whole.nth(index),
-            };
-            Some((scope.schedule(keys, context)?, scope.written))
-        })
-        .collect();
-    let mut schedules = schedules?;
-    schedules.sort_by_key(|(schedule, _)| schedule.parameter);
-    let twice = schedules
-        .windows(2)
-        .find(|pair| pair[0].0.parameter == pair[1].0.parameter);
-    if let Some([(_, first), (_, second)]) = twice {
-        let message = "two schedules for one parameter".to_owned();
-        let places = [(*second, Part::Whole), (*first, Part::Whole)];
-        return refuse(context, drive, &places, message);
-    }
-    Some(
-        schedules
-            .into_iter()
-            .map(|(schedule, _)| schedule)
-            .collect(),
-    )
-}
-
-/// A schedule as it is written: by name, as a table, or as one of a list.
-#[derive(Clone, Copy)]
-struct Written<'a> {
-    item: Option<&'a Item>,
-    index: Option<usize>,
-}
-
-/// A part of a schedule as it is written.
-#[derive(Clone, Copy)]
-enum Part {
-    Whole,
-    Key(&'static str),
-    /// One of the values of a key, from 0 on.
-    Of(&'static str, usize),
-}
-
-impl<'a> Written<'a> {
-    /// The schedule of that number in a list; a single table is the whole list.
-    fn nth(self, index: usize) -> Self {
-        match self.item.map(|item| &item.node) {
-            Some(Node::Array(items)) => Self {
-                item: items.get(index).or(self.item),
-                index: Some(index),
-            },
-            _ => self,
-        }
-    }
-
-    /// Full name of a part, and where it stands; that of the whole where the part is not written.
-    fn place(self, part: Part) -> (String, Option<&'a Origin>) {
-        let path = match self.index {
-            Some(index) => format!("{KEY}[{index}]"),
-            None => KEY.to_owned(),
-        };
-        let (key, index) = match part {
-            Part::Whole => ("", None),
-            Part::Key(key) => (key, None),
-            Part::Of(key, index) => (key, Some(index)),
-        };
-        let value = match self.item.map(|item| &item.node) {
-            Some(Node::Table(table)) => table.get(key).map(|entry| &entry.item),
-            _ => None,
-        };
-        let Some(value) = value else {
-            return (path, self.item.map(|item| &item.origin));
-        };
-        match (&value.node, index) {
-            (Node::Array(items), Some(index)) if index < items.len() => {
-                (format!("{path}.{key}[{index}]"), Some(&items[index].origin))
+    let mut schedules = Vec::with_capacity(tables.len());
+    for (index, table) in tables.iter().enumerate() {
+        match (Scope { drive, tube }).schedule(table) {
+            Ok(schedule) => schedules.push((schedule, index)),
+            Err(Refusal { part, message }) => {
+                return refuse(context, drive, &[place(index, &part)], &message);
             }
-            _ => (format!("{path}.{key}"), Some(&value.origin)),
         }
     }
+    schedules.sort_by_key(|(schedule, _)| schedule.parameter);
+    for pair in schedules.windows(2) {
+        if pair[0].0.parameter == pair[1].0.parameter {
+            let places = [place(pair[1].1, ""), place(pair[0].1, "")];
+            return refuse(context, drive, &places, "two schedules for one parameter");
+        }
+    }
+    let schedules = schedules.into_iter().map(|(schedule, _)| schedule);
+    Some(schedules.collect())
 }
 
 fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTableKeys> {
@@ -157,47 +91,51 @@ fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTab
     })
 }
 
-/// Reports a problem with parts of schedules, the first being to blame; always `None`.
+/// Reports a problem with parts of schedules, by their full names, the first being to blame; always `None`.
 fn refuse<T>(
     context: &mut Context<'_>,
     drive: &Drive,
-    parts: &[(Written<'_>, Part)],
-    message: String,
+    parts: &[String],
+    message: &str,
 ) -> Option<T> {
-    let example = match drive.control {
-        Control::Strain { .. } => {
-            "for example drive.schedule = { form = \"ramp\", parameter = \"width\", from = 3.0, to = 2.6, start = 0, end = 100 } \
-             or { form = \"steps\", parameter = \"width\", at = [0, 100], values = [2.9, 2.7] }; drive.schedule = \"sudden\" \
-             keeps the drive constant"
-        }
-        Control::Stress { .. } => {
-            "for example drive.schedule = { form = \"ramp\", parameter = \"force_amplitude\", from = 0.003, to = 0.006, start = \
-             0, end = 20 } or { form = \"steps\", parameter = \"force_amplitude\", at = [0, 20], values = [0.003, 0.006] }; \
-             drive.schedule = \"sudden\" keeps the drive constant"
-        }
+    let (parameter, from, to, end, values) = match drive.control {
+        Control::Strain { .. } => ("width", "3.0", "2.6", 100, "2.9, 2.7"),
+        Control::Stress { .. } => ("force_amplitude", "0.003", "0.006", 20, "0.003, 0.006"),
     };
-    let places: Vec<(String, Option<&Origin>)> = parts
-        .iter()
-        .map(|(written, part)| written.place(*part))
-        .collect();
-    let key = &places[0].0;
+    let example = format!(
+        "for example drive.schedule = {{ form = \"ramp\", parameter = \"{parameter}\", from = {from}, to = {to}, start = 0, \
+         end = {end} }} or {{ form = \"steps\", parameter = \"{parameter}\", at = [0, {end}], values = [{values}] }}; \
+         drive.schedule = \"sudden\" keeps the drive constant"
+    );
+    let table = context.table;
+    let (key, _) = document::written(table, &parts[0]);
     let mut problem = Problem::new(ProblemKind::Inconsistent, format!("{key}: {message}"))
         .key(key)
         .help(example);
-    for (key, origin) in &places {
-        if let Some(origin) = origin {
+    for part in parts {
+        if let (key, Some(origin)) = document::written(table, part) {
             problem = problem.at(origin, key);
         }
     }
-    context.problems.push(places[0].1, problem);
+    context.problems.push(problem);
     None
+}
+
+/// Why a schedule cannot be: the part of it that is to blame, such as `.values[1]`, and what is wrong with it.
+struct Refusal {
+    part: String,
+    message: String,
+}
+
+fn refusal<T>(part: impl Into<String>, message: impl Into<String>) -> Result<T, Refusal> {
+    let (part, message) = (part.into(), message.into());
+    Err(Refusal { part, message })
 }
 
 /// What a schedule is resolved against.
 struct Scope<'a> {
     drive: &'a Drive,
     tube: &'a Tube,
-    written: Written<'a>,
 }
 
 /// A scheduled parameter as it is written, and what it resolves to.
@@ -213,76 +151,47 @@ struct Target {
 }
 
 impl Scope<'_> {
-    /// Reports a problem with a part of this schedule; always `None`.
-    fn refuse<T>(
-        &self,
-        context: &mut Context<'_>,
-        part: Part,
-        message: impl Into<String>,
-    ) -> Option<T> {
-        refuse(context, self.drive, &[(self.written, part)], message.into())
-    }
-
-    fn schedule(&self, keys: &ScheduleTableKeys, context: &mut Context<'_>) -> Option<Schedule> {
-        let target = self.target(keys, context)?;
+    fn schedule(&self, keys: &ScheduleTableKeys) -> Result<Schedule, Refusal> {
+        let target = self.target(keys)?;
+        check_keys(keys)?;
         let form = match keys.form {
-            ScheduleFormName::Ramp => self.ramp(keys, &target, context)?,
+            ScheduleFormName::Ramp => self.ramp(keys, &target)?,
             ScheduleFormName::Steps => ScheduleForm::Steps {
-                steps: self.points(keys, &target, context)?,
+                steps: self.points(keys, &target)?,
             },
             ScheduleFormName::Course => ScheduleForm::Course {
-                knots: self.points(keys, &target, context)?,
+                knots: self.points(keys, &target)?,
             },
         };
-        Some(Schedule {
+        Ok(Schedule {
             parameter: target.resolved,
             form,
             before: target.own,
         })
     }
 
-    fn target(&self, keys: &ScheduleTableKeys, context: &mut Context<'_>) -> Option<Target> {
+    fn target(&self, keys: &ScheduleTableKeys) -> Result<Target, Refusal> {
         use ScheduledParameterName as Name;
         let of_the_control = match self.drive.control {
             Control::Strain { .. } => Name::Width,
             Control::Stress { .. } => Name::ForceAmplitude,
         };
         let written = keys.parameter.unwrap_or(of_the_control);
-        let diameter = 2.0 * self.tube.radius;
-        let (resolved, nothing, own, most) = match (written, self.drive.control) {
-            (Name::StrainRate | Name::WaveSpeed, _) => (
-                ScheduledParameter::StrainRate,
-                0.0,
-                self.drive.strain_rate,
-                LARGEST,
-            ),
-            (Name::Width, Control::Strain { width }) => {
-                (ScheduledParameter::Width, diameter, width, diameter)
-            }
-            (Name::Amplitude, Control::Strain { width }) => {
-                (ScheduledParameter::Width, diameter, width, self.tube.radius)
-            }
-            (
-                Name::ForceAmplitude,
-                Control::Stress {
-                    force_amplitude, ..
-                },
-            ) => (
-                ScheduledParameter::ForceAmplitude,
-                0.0,
-                force_amplitude,
-                LARGEST,
-            ),
-            (Name::ForceAmplitude, Control::Strain { .. }) => {
-                let message = "force_amplitude belongs to drive.control = \"stress\"";
-                return self.refuse(context, Part::Key("parameter"), message);
-            }
-            (Name::Width | Name::Amplitude, Control::Stress { .. }) => {
-                let message = "the width belongs to drive.control = \"strain\"";
-                return self.refuse(context, Part::Key("parameter"), message);
-            }
+        let (radius, diameter) = (self.tube.radius, 2.0 * self.tube.radius);
+        let (resolved, nothing, most) = match written {
+            Name::StrainRate | Name::WaveSpeed => (ScheduledParameter::StrainRate, 0.0, LARGEST),
+            Name::ForceAmplitude => (ScheduledParameter::ForceAmplitude, 0.0, LARGEST),
+            Name::Width => (ScheduledParameter::Width, diameter, diameter),
+            Name::Amplitude => (ScheduledParameter::Width, diameter, radius),
         };
-        Some(Target {
+        let Some(own) = self.drive.own(resolved) else {
+            let message = match resolved {
+                ScheduledParameter::Width => "the width belongs to drive.control = \"strain\"",
+                _ => "force_amplitude belongs to drive.control = \"stress\"",
+            };
+            return refusal(".parameter", message);
+        };
+        Ok(Target {
             written,
             resolved,
             nothing,
@@ -292,18 +201,12 @@ impl Scope<'_> {
     }
 
     /// A value as written, in the unit of the resolved parameter.
-    fn resolved(
-        &self,
-        value: f64,
-        part: Part,
-        target: &Target,
-        context: &mut Context<'_>,
-    ) -> Option<f64> {
+    fn resolved(&self, value: f64, part: &str, target: &Target) -> Result<f64, Refusal> {
         if value > target.most {
             let (name, most) = (name(target.written), target.most);
-            return self.refuse(context, part, format!("{name} = {value} is above {most}"));
+            return refusal(part, format!("{name} = {value} is above {most}"));
         }
-        Some(match target.written {
+        Ok(match target.written {
             ScheduledParameterName::Amplitude => 2.0 * (self.tube.radius - value),
             ScheduledParameterName::WaveSpeed => value / self.tube.wavelength,
             // One zero, not two.
@@ -311,37 +214,22 @@ impl Scope<'_> {
         })
     }
 
-    fn ramp(
-        &self,
-        keys: &ScheduleTableKeys,
-        target: &Target,
-        context: &mut Context<'_>,
-    ) -> Option<ScheduleForm> {
-        let of_points = [("at", &keys.at), ("values", &keys.values)];
-        if let Some((key, _)) = of_points.iter().find(|(_, given)| given.is_some()) {
-            let message = "a ramp takes from, to, start and end, not at and values";
-            return self.refuse(context, Part::Key(key), message);
-        }
+    fn ramp(&self, keys: &ScheduleTableKeys, target: &Target) -> Result<ScheduleForm, Refusal> {
         let Some(end) = keys.end else {
-            let message = "a ramp needs its end, in wave periods";
-            return self.refuse(context, Part::Whole, message);
+            return refusal("", "a ramp needs its end, in wave periods");
         };
         let start = keys.start.unwrap_or(0.0) + 0.0;
         if end <= start {
             let message = format!("the ramp ends at {end}, not after its start at {start}");
-            return self.refuse(context, Part::Key("end"), message);
+            return refusal(".end", message);
         }
-        let from = match keys.from {
-            Some(value) => self.resolved(value, Part::Key("from"), target, context)?,
-            None => target.nothing,
+        let value = |part: &str, written: Option<f64>, otherwise: f64| match written {
+            Some(value) => self.resolved(value, part, target),
+            None => Ok(otherwise),
         };
-        let to = match keys.to {
-            Some(value) => self.resolved(value, Part::Key("to"), target, context)?,
-            None => target.own,
-        };
-        Some(ScheduleForm::Ramp {
-            from,
-            to,
+        Ok(ScheduleForm::Ramp {
+            from: value(".from", keys.from, target.nothing)?,
+            to: value(".to", keys.to, target.own)?,
             start,
             end,
         })
@@ -352,46 +240,64 @@ impl Scope<'_> {
         &self,
         keys: &ScheduleTableKeys,
         target: &Target,
-        context: &mut Context<'_>,
-    ) -> Option<Vec<(f64, f64)>> {
+    ) -> Result<Vec<(f64, f64)>, Refusal> {
         // A course jumps where it has two values at one time.
-        let (takes, needs, most, but) = match keys.form {
-            ScheduleFormName::Course => {
-                ("a course takes", "a course needs", 2, " (two may be equal)")
-            }
-            _ => ("steps take", "steps need", 1, ""),
+        let (needs, most, but) = match keys.form {
+            ScheduleFormName::Course => ("a course needs", 2, " (two may be equal)"),
+            _ => ("steps need", 1, ""),
         };
-        let of_a_ramp = [
-            ("from", keys.from),
-            ("to", keys.to),
-            ("start", keys.start),
-            ("end", keys.end),
-        ];
-        if let Some((key, _)) = of_a_ramp.iter().find(|(_, given)| given.is_some()) {
-            let message = format!("{takes} at and values, not from, to, start or end");
-            return self.refuse(context, Part::Key(key), message);
-        }
         let (Some(at), Some(values)) = (&keys.at, &keys.values) else {
-            let message = format!("{needs} both at and values");
-            return self.refuse(context, Part::Whole, message);
+            return refusal("", format!("{needs} both at and values"));
         };
         if at.len() != values.len() {
             let message = format!("{} times in at, but {} values", at.len(), values.len());
-            return self.refuse(context, Part::Key("values"), message);
+            return refusal(".values", message);
         }
-        // Behind the one before, or behind as many equal ones as there may be.
-        let behind = |index: usize| {
-            at[index] < at[index - 1] || index >= most && at[index - most] == at[index]
-        };
-        if let Some(index) = (1..at.len()).find(|&index| behind(index)) {
-            let message = format!("the times in at do not ascend{but}");
-            return self.refuse(context, Part::Of("at", index), message);
+        let mut points = Vec::with_capacity(at.len());
+        for index in 1..at.len() {
+            // Behind the one before, or behind as many equal ones as there may be.
+            let is_equal = index >= most && at[index - most] == at[index];
+            if at[index] < at[index - 1] || is_equal {
+                let message = format!("the times in at do not ascend{but}");
+                return refusal(format!(".at[{index}]"), message);
+            }
         }
-        let values: Option<Vec<f64>> = values
-            .iter()
-            .enumerate()
-            .map(|(index, value)| self.resolved(*value, Part::Of("values", index), target, context))
-            .collect();
-        Some(at.iter().map(|time| time + 0.0).zip(values?).collect())
+        for (index, (time, value)) in at.iter().zip(values).enumerate() {
+            let value = self.resolved(*value, &format!(".values[{index}]"), target)?;
+            points.push((time + 0.0, value));
+        }
+        Ok(points)
+    }
+}
+
+/// Refuses keys that belong to another form.
+fn check_keys(keys: &ScheduleTableKeys) -> Result<(), Refusal> {
+    let of_points = [
+        (".at", keys.at.is_some()),
+        (".values", keys.values.is_some()),
+    ];
+    let of_a_ramp = [
+        (".from", keys.from.is_some()),
+        (".to", keys.to.is_some()),
+        (".start", keys.start.is_some()),
+        (".end", keys.end.is_some()),
+    ];
+    let (foreign, takes) = match keys.form {
+        ScheduleFormName::Ramp => (
+            &of_points[..],
+            "a ramp takes from, to, start and end, not at and values",
+        ),
+        ScheduleFormName::Steps => (
+            &of_a_ramp[..],
+            "steps take at and values, not from, to, start or end",
+        ),
+        ScheduleFormName::Course => (
+            &of_a_ramp[..],
+            "a course takes at and values, not from, to, start or end",
+        ),
+    };
+    match foreign.iter().find(|(_, is_given)| *is_given) {
+        Some((part, _)) => refusal(*part, takes),
+        None => Ok(()),
     }
 }

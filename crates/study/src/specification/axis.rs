@@ -54,7 +54,7 @@ impl Axis {
                 .key("axes")
                 .at(&entry.origin, "this axis")
                 .help("give key and values; or key, from, to and one of step and count; or keys and rows");
-                problems.push(Some(&entry.origin), problem);
+                problems.push(problem);
                 return None;
             }
         };
@@ -65,7 +65,7 @@ impl Axis {
                         .key(key)
                         .at(origin, "here")
                         .help(*instead);
-                problems.push(Some(origin), problem);
+                problems.push(problem);
                 return None;
             }
         }
@@ -102,7 +102,7 @@ impl Axis {
             .key("axes.step")
             .at(origin, "this step")
             .help("the step divides the range into at most 100000 whole steps; or give count");
-            problems.push(Some(origin), problem);
+            problems.push(problem);
             return None;
         }
         Some(Self::of_range(table, whole as u64))
@@ -141,7 +141,7 @@ impl Axis {
                 .key("axes.rows")
                 .at(&place.origin, "this row")
                 .help("one value for each of keys");
-                problems.push(Some(&place.origin), problem);
+                problems.push(problem);
                 return None;
             }
         }

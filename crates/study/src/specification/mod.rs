@@ -267,7 +267,7 @@ impl Specification {
             problem = problem.at(&entry.key, "these axes");
         }
         let mut problems = Problems::default();
-        problems.push(None, problem);
+        problems.push(problem);
         Ok(problems.check()?)
     }
 }
@@ -289,7 +289,7 @@ fn check_keys(table: &Table, problems: &mut Problems) {
         .key("name")
         .at(&entry.item.origin, "this name")
         .help("one to a hundred letters, digits, - and _: exported files are called by it");
-        problems.push(Some(&entry.item.origin), problem);
+        problems.push(problem);
     }
     let conflicts = [
         (
@@ -325,7 +325,7 @@ fn check_keys(table: &Table, problems: &mut Problems) {
             };
             problem = problem.at(&other.key, "and here");
         }
-        problems.push(Some(&entry.key), problem);
+        problems.push(problem);
     }
 }
 
@@ -345,7 +345,7 @@ fn axes(table: &Table, problems: &mut Problems) -> Vec<Axis> {
                 .at(origin, "here")
                 .at(first, "and here")
                 .help("one axis a key: join the values");
-            problems.push(Some(origin), problem);
+            problems.push(problem);
         }
         seen.push((key, origin));
     }
@@ -382,7 +382,7 @@ fn refinement(table: &Table, axes: &[Axis], problems: &mut Problems) -> Option<R
         [] => "give it an axis with at least the two values to bisect between".to_owned(),
         candidates => format!("axes that can be: {}", candidates.join(", ")),
     });
-    problems.push(Some(origin), problem);
+    problems.push(problem);
     None
 }
 
@@ -445,12 +445,10 @@ fn texts(table: &Table, path: &str) -> Option<Vec<String>> {
 /// One error of all that was found at the points, each problem once.
 pub(crate) fn joined(errors: Vec<ConfigurationError>) -> Result<(), ConfigurationError> {
     let mut seen: Vec<Problem> = Vec::new();
-    let mut problems = Problems::default();
     for problem in errors.iter().flat_map(ConfigurationError::problems) {
         if seen.len() < MOST_PROBLEMS && !seen.contains(problem) {
             seen.push(problem.clone());
-            problems.push(None, problem.clone());
         }
     }
-    problems.check()
+    ConfigurationError::all(seen)
 }
