@@ -30,6 +30,16 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
+    /// From its left to its right end, and from its top to its bottom.
+    pub(crate) fn between((left, right): (f64, f64), (top, bottom): (f64, f64)) -> Self {
+        Self {
+            left,
+            top,
+            width: right - left,
+            height: bottom - top,
+        }
+    }
+
     pub(crate) fn right(&self) -> f64 {
         self.left + self.width
     }

@@ -1,7 +1,6 @@
 //! Whether the layers of a panel can be drawn, and what they span.
 
-use super::layer::{ChartLayer, Kind, error_ends};
-use super::look::Tint;
+use super::layer::{Bars, ChartLayer, Field, Kind, Points, error_ends};
 use super::panel::{ChartPanel, MARGIN};
 use crate::axis::{Scale, extent};
 use crate::error::{FigureError, finite, positive};
@@ -18,39 +17,46 @@ pub(super) struct Checked {
     pub(super) has_limits: bool,
 }
 
-/// Collects the values of a panel's layers as it checks them.
-struct Check<'a> {
-    panel: &'a ChartPanel,
-    x: Vec<f64>,
-    y: Vec<f64>,
+/// The values on one axis, which layers are checked against.
+struct Values {
+    axis: &'static str,
+    scale: Scale,
+    found: Vec<f64>,
 }
-
-/// A layer under check, by its name.
-struct Named(String);
 
 impl Checked {
     /// Checks a panel of a chart, which may have a scale of colours.
     pub(super) fn new(panel: &ChartPanel, coloured: bool) -> Result<Self, FigureError> {
+        let values = |axis, scale| Values {
+            axis,
+            scale,
+            found: Vec::new(),
+        };
         let mut check = Check {
-            panel,
-            x: Vec::new(),
-            y: Vec::new(),
+            series: String::new(),
+            x: values("x", panel.x.scale),
+            y: values("y", panel.y.scale),
         };
         for layer in &panel.layers {
-            if layer.needs_scale() && !coloured {
-                let series = layer.name();
+            let value = layer.value_of_colour();
+            check.series = layer.name();
+            if !coloured && (layer.is_coloured_area() || value.is_some()) {
+                let series = check.series;
                 return Err(FigureError::NoColourScale { series });
+            }
+            if let Some(value) = value {
+                finite("value of a colour", value)?;
             }
             check.layer(layer)?;
         }
         let has = |is: fn(&Kind) -> bool| panel.layers.iter().any(|layer| is(&layer.0));
-        let y = extent(check.y);
+        let y = extent(check.y.found);
         // Bars stand on the axis, and cells fill it; curves alone may run from side to side.
         let stands = has(|kind| matches!(kind, Kind::Bars(_))) && y.0 == 0.0;
         let fills = has(|kind| matches!(kind, Kind::Field(_)));
         let free = if fills { 0.0 } else { MARGIN };
         Ok(Self {
-            x: extent(check.x),
+            x: extent(check.x.found),
             y,
             x_free: free,
             y_free: (if stands { 0.0 } else { free }, free),
@@ -61,144 +67,126 @@ impl Checked {
     }
 }
 
-impl Check<'_> {
+/// Collects the values of layers as it checks them.
+struct Check {
+    /// Name of the layer.
+    series: String,
+    x: Values,
+    y: Values,
+}
+
+impl Check {
     fn layer(&mut self, layer: &ChartLayer) -> Result<(), FigureError> {
-        let named = Named(layer.name());
-        if let Some(Tint::Value(value)) = layer.look().and_then(|look| look.tint) {
-            finite("value of a colour", value)?;
-        }
         match &layer.0 {
-            Kind::Points(points) => {
-                let length = points.x.len();
-                for (column, found) in [
-                    ("errors of x", points.x_errors.len()),
-                    ("errors of y", points.y_errors.len()),
-                    ("lower limits", points.lower_limits.len()),
-                ] {
-                    if found > 0 {
-                        named.length(column, length, found)?;
-                    }
-                }
-                self.rows(&named, ("y", &points.x, &points.y))?;
-                for row in points.rows() {
-                    self.extend(
-                        error_ends(&points.x_errors, row, points.x[row]),
-                        error_ends(&points.y_errors, row, points.y[row]),
-                    );
-                }
-                Ok(())
-            }
+            Kind::Points(points) => self.points(points),
             Kind::Line(line) => {
                 positive("weight of a line", line.weight)?;
-                self.rows(&named, ("y", &line.x, &line.y))
+                self.rows("y", &line.x, &line.y)
             }
             Kind::Band(band) => {
-                named.length("lower curve", band.x.len(), band.lower.len())?;
+                self.length("lower curve", band.x.len(), band.lower.len())?;
                 let upper = band.upper_of_pairs();
-                self.rows(&named, ("upper curve", &band.x, &upper))?;
+                self.rows("upper curve", &band.x, &upper)?;
                 let rows = band.x.iter().zip(&upper).zip(&band.lower);
-                for (_, &lower) in rows.filter(|((x, upper), _)| x.is_finite() && upper.is_finite())
-                {
-                    self.extend([], [lower]);
-                }
+                let rows = rows.filter(|((x, upper), _)| x.is_finite() && upper.is_finite());
+                self.y.extend(rows.map(|(_, &lower)| lower));
                 Ok(())
             }
-            Kind::Bars(bars) => {
-                named.length("edges", bars.heights.len() + 1, bars.edges.len())?;
-                for (row, &edge) in bars.edges.iter().enumerate() {
-                    self.push_x(&named, row, finite("edge of a bar", edge)?)?;
-                }
-                let finite = |(_, height): &(usize, &f64)| height.is_finite();
-                let heights = || bars.heights.iter().enumerate().filter(finite);
-                for (row, &height) in heights() {
-                    // An empty bar of a histogram has no height to draw, on either scale.
-                    if height != 0.0 || self.panel.y.scale == Scale::Linear {
-                        self.push_y(&named, row, height)?;
-                    }
-                }
-                self.extend([], [0.0]);
-                named.some(heights().count(), bars.heights.len())
-            }
-            Kind::Field(field) => {
-                let columns = field.columns();
-                if field.values.is_empty() || columns * field.rows != field.values.len() {
-                    return Err(FigureError::GridSize {
-                        rows: field.rows,
-                        columns,
-                        found: field.values.len(),
-                    });
-                }
-                for (axis, (least, largest)) in [("x", field.x), ("y", field.y)] {
-                    if !(least.is_finite() && largest.is_finite() && least < largest) {
-                        return Err(FigureError::AxisRange {
-                            axis,
-                            least,
-                            largest,
-                        });
-                    }
-                }
-                self.extend([field.x.0, field.x.1], [field.y.0, field.y.1]);
-                let finite = field.values.iter().filter(|value| value.is_finite());
-                named.some(finite.count(), field.values.len())
-            }
+            Kind::Bars(bars) => self.bars(bars),
+            Kind::Field(field) => self.field(field),
             // What sets them upon its axes has checked them.
             Kind::Spheres(_) => Ok(()),
             Kind::Reference(reference) => {
                 let value = finite("value of a reference line", reference.value)?;
-                if reference.vertical {
-                    self.push_x(&named, 0, value)
-                } else {
-                    self.push_y(&named, 0, value)
-                }
+                let axis = match reference.vertical {
+                    true => &mut self.x,
+                    false => &mut self.y,
+                };
+                axis.push(&self.series, 0, value)
             }
-            Kind::Window(window) => [window.from, window.to]
-                .into_iter()
-                .try_for_each(|end| self.push_x(&named, 0, finite("end of a window", end)?)),
+            Kind::Window(window) => [window.from, window.to].into_iter().try_for_each(|end| {
+                let end = finite("end of a window", end)?;
+                self.x.push(&self.series, 0, end)
+            }),
             Kind::Note(_) => Ok(()),
         }
     }
 
+    fn points(&mut self, points: &Points) -> Result<(), FigureError> {
+        for (column, found) in [
+            ("errors of x", points.x_errors.len()),
+            ("errors of y", points.y_errors.len()),
+            ("lower limits", points.lower_limits.len()),
+        ] {
+            if found > 0 {
+                self.length(column, points.x.len(), found)?;
+            }
+        }
+        self.rows("y", &points.x, &points.y)?;
+        for row in points.rows() {
+            let (x, y) = (points.x[row], points.y[row]);
+            self.x.extend(error_ends(&points.x_errors, row, x));
+            self.y.extend(error_ends(&points.y_errors, row, y));
+        }
+        Ok(())
+    }
+
+    fn bars(&mut self, bars: &Bars) -> Result<(), FigureError> {
+        self.length("edges", bars.heights.len() + 1, bars.edges.len())?;
+        for (row, &edge) in bars.edges.iter().enumerate() {
+            let edge = finite("edge of a bar", edge)?;
+            self.x.push(&self.series, row, edge)?;
+        }
+        let finite = |(_, height): &(usize, &f64)| height.is_finite();
+        let heights = || bars.heights.iter().enumerate().filter(finite);
+        for (row, &height) in heights() {
+            // An empty bar of a histogram has no height to draw, on either scale.
+            if height != 0.0 || self.y.scale == Scale::Linear {
+                self.y.push(&self.series, row, height)?;
+            }
+        }
+        self.y.extend([0.0]);
+        self.some(heights().count(), bars.heights.len())
+    }
+
+    fn field(&mut self, field: &Field) -> Result<(), FigureError> {
+        let (columns, found) = (field.columns(), field.values.len());
+        if found == 0 || columns * field.rows != found {
+            let rows = field.rows;
+            return Err(FigureError::GridSize {
+                rows,
+                columns,
+                found,
+            });
+        }
+        for (values, (least, largest)) in [(&mut self.x, field.x), (&mut self.y, field.y)] {
+            if !(least.is_finite() && largest.is_finite() && least < largest) {
+                return Err(FigureError::AxisRange {
+                    axis: values.axis,
+                    least,
+                    largest,
+                });
+            }
+            values.extend([least, largest]);
+        }
+        let finite = field.values.iter().filter(|value| value.is_finite());
+        self.some(finite.count(), found)
+    }
+
     /// Checks the rows of a curve whose second column has a name; at least one must have a place.
-    fn rows(
-        &mut self,
-        named: &Named,
-        (column, x, y): (&'static str, &[f64], &[f64]),
-    ) -> Result<(), FigureError> {
-        named.length(column, x.len(), y.len())?;
+    fn rows(&mut self, column: &'static str, x: &[f64], y: &[f64]) -> Result<(), FigureError> {
+        self.length(column, x.len(), y.len())?;
         let mut found = 0;
         for (row, (&x, &y)) in x.iter().zip(y).enumerate() {
             if x.is_finite() && y.is_finite() {
-                self.push_x(named, row, x)?;
-                self.push_y(named, row, y)?;
+                self.x.push(&self.series, row, x)?;
+                self.y.push(&self.series, row, y)?;
                 found += 1;
             }
         }
-        named.some(found, x.len())
+        self.some(found, x.len())
     }
 
-    fn push_x(&mut self, named: &Named, row: usize, value: f64) -> Result<(), FigureError> {
-        named.placed("x", self.panel.x.scale, row, value)?;
-        self.x.push(value);
-        Ok(())
-    }
-
-    fn push_y(&mut self, named: &Named, row: usize, value: f64) -> Result<(), FigureError> {
-        named.placed("y", self.panel.y.scale, row, value)?;
-        self.y.push(value);
-        Ok(())
-    }
-
-    /// Values that the axes span as well where they have a place on them.
-    fn extend<const X: usize, const Y: usize>(&mut self, x: [f64; X], y: [f64; Y]) {
-        let seen = |scale| move |value: &f64| scale == Scale::Linear || *value > 0.0;
-        self.x
-            .extend(x.into_iter().filter(seen(self.panel.x.scale)));
-        self.y
-            .extend(y.into_iter().filter(seen(self.panel.y.scale)));
-    }
-}
-
-impl Named {
     fn length(
         &self,
         column: &'static str,
@@ -208,8 +196,9 @@ impl Named {
         if expected == found {
             return Ok(());
         }
+        let series = self.series.clone();
         Err(FigureError::ColumnLengths {
-            series: self.0.clone(),
+            series,
             column,
             expected,
             found,
@@ -220,27 +209,36 @@ impl Named {
         if found > 0 {
             return Ok(());
         }
-        Err(FigureError::EmptySeries {
-            series: self.0.clone(),
-            length,
-        })
+        let series = self.series.clone();
+        Err(FigureError::EmptySeries { series, length })
+    }
+}
+
+impl Values {
+    /// A value of a row, which must have a place on the axis.
+    fn push(&mut self, series: &str, row: usize, value: f64) -> Result<(), FigureError> {
+        if !self.has_place(value) {
+            return Err(FigureError::NotPositiveOnLogarithm {
+                series: series.to_owned(),
+                row,
+                axis: self.axis,
+                value,
+            });
+        }
+        self.found.push(value);
+        Ok(())
     }
 
-    fn placed(
-        &self,
-        axis: &'static str,
-        scale: Scale,
-        row: usize,
-        value: f64,
-    ) -> Result<(), FigureError> {
-        if scale == Scale::Linear || value > 0.0 {
-            return Ok(());
+    /// Values that the axis spans as well where they have a place on it.
+    fn extend(&mut self, values: impl IntoIterator<Item = f64>) {
+        for value in values {
+            if self.has_place(value) {
+                self.found.push(value);
+            }
         }
-        Err(FigureError::NotPositiveOnLogarithm {
-            series: self.0.clone(),
-            row,
-            axis,
-            value,
-        })
+    }
+
+    fn has_place(&self, value: f64) -> bool {
+        self.scale == Scale::Linear || value > 0.0
     }
 }

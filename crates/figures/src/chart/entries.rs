@@ -29,10 +29,14 @@ impl Painter<'_> {
     }
 
     fn entries_of(&self, number: usize, layer: &ChartLayer) -> Vec<Entry> {
-        let colour = self.colour(number, layer.look().unwrap_or_default());
+        let colour = self.colour(number, layer.facts().look.unwrap_or_default());
         let named = |meaning: &str| Entry {
             meaning: meaning.to_owned(),
             ..Entry::default()
+        };
+        let area = |meaning: &str, opacity: f64| Entry {
+            band: Some(colour.faint(opacity)),
+            ..named(meaning)
         };
         match &layer.0 {
             Kind::Points(points) => {
@@ -62,18 +66,9 @@ impl Painter<'_> {
                 line: Some(line.stroke(colour)),
                 ..named(&line.name)
             }],
-            Kind::Band(band) => vec![Entry {
-                band: Some(colour.faint(BAND_OPACITY)),
-                ..named(&band.name)
-            }],
-            Kind::Bars(bars) => vec![Entry {
-                band: Some(colour.faint(BAR_OPACITY)),
-                ..named(&bars.name)
-            }],
-            Kind::Window(window) => vec![Entry {
-                band: Some(colour.faint(WINDOW_OPACITY * 1.4)),
-                ..named(&window.name)
-            }],
+            Kind::Band(band) => vec![area(&band.name, BAND_OPACITY)],
+            Kind::Bars(bars) => vec![area(&bars.name, BAR_OPACITY)],
+            Kind::Window(window) => vec![area(&window.name, WINDOW_OPACITY * 1.4)],
             Kind::Field(_) | Kind::Spheres(_) | Kind::Reference(_) | Kind::Note(_) => Vec::new(),
         }
     }

@@ -7,7 +7,7 @@ use crate::drawing::Pattern;
 ///
 /// A row with a coordinate that is not finite is left out; an error that is not finite is unknown and has no bar. Each
 /// point takes some 60 bytes of an SVG, with its error bar 140: ten thousand are a file of a megabyte.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Points {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
@@ -25,7 +25,7 @@ pub struct Points {
 /// A curve; rows that are not finite leave gaps.
 ///
 /// It is thinned to what can be seen, so that a curve of any length takes a few dozen kilobytes of an SVG.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Line {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
@@ -146,13 +146,7 @@ impl Points {
             name: name.to_owned(),
             x: x.to_vec(),
             y: y.to_vec(),
-            x_errors: Vec::new(),
-            y_errors: Vec::new(),
-            lower_limits: Vec::new(),
-            limit_name: String::new(),
-            look: Look::default(),
-            open: false,
-            joined: false,
+            ..Self::default()
         }
     }
 
@@ -222,10 +216,8 @@ impl Line {
             name: name.to_owned(),
             x: x.to_vec(),
             y: y.to_vec(),
-            look: Look::default(),
-            pattern: Pattern::Solid,
             weight: 1.0,
-            stepped: false,
+            ..Self::default()
         }
     }
 
@@ -389,26 +381,38 @@ macro_rules! layers {
     };
 }
 
-layers!(Points, Line, Band, Bars, Field, Reference, Window, Note);
+layers!(
+    Points, Line, Band, Bars, Field, Spheres, Reference, Window, Note
+);
 
-impl From<Spheres> for ChartLayer {
-    fn from(layer: Spheres) -> Self {
-        Self(Kind::Spheres(layer))
-    }
+/// What a chart asks of every layer.
+pub(super) struct Facts<'a> {
+    /// Which of the layers that are drawn upon each other comes first.
+    pub(super) depth: usize,
+    kind: &'static str,
+    name: &'a str,
+    /// What decides the layer's colour, where it has one.
+    pub(super) look: Option<Look>,
 }
 
 impl ChartLayer {
-    /// What decides the layer's colour, where it has one.
-    pub(super) fn look(&self) -> Option<Look> {
-        match &self.0 {
-            Kind::Points(Points { look, .. })
-            | Kind::Line(Line { look, .. })
-            | Kind::Band(Band { look, .. })
-            | Kind::Bars(Bars { look, .. })
-            | Kind::Reference(Reference { look, .. })
-            | Kind::Window(Window { look, .. })
-            | Kind::Note(Note { look, .. }) => Some(*look),
-            Kind::Field(_) | Kind::Spheres(_) => None,
+    pub(super) fn facts(&self) -> Facts<'_> {
+        let (depth, kind, name, look) = match &self.0 {
+            Kind::Field(_) => (0, "field", "", None),
+            Kind::Window(it) => (1, "window", &*it.name, Some(it.look)),
+            Kind::Band(it) => (2, "band", &*it.name, Some(it.look)),
+            Kind::Bars(it) => (3, "bars", &*it.name, Some(it.look)),
+            Kind::Spheres(_) => (4, "spheres", "", None),
+            Kind::Reference(it) => (5, "reference line", &*it.label, Some(it.look)),
+            Kind::Line(it) => (6, "line", &*it.name, Some(it.look)),
+            Kind::Points(it) => (7, "points", &*it.name, Some(it.look)),
+            Kind::Note(it) => (8, "note", &*it.text, Some(it.look)),
+        };
+        Facts {
+            depth,
+            kind,
+            name,
+            look,
         }
     }
 
@@ -429,25 +433,17 @@ impl ChartLayer {
         }
     }
 
-    /// Whether the chart's scale of colours must say what its colours mean.
-    pub(super) fn needs_scale(&self) -> bool {
-        let tint = self.look().and_then(|look| look.tint);
-        self.is_coloured_area() || matches!(tint, Some(Tint::Value(_)))
+    /// The value that decides the layer's colour on the chart's scale, where one does.
+    pub(super) fn value_of_colour(&self) -> Option<f64> {
+        match self.facts().look?.tint? {
+            Tint::Value(value) => Some(value),
+            _ => None,
+        }
     }
 
     /// The name without markup, or what the layer is where it has none.
     pub(super) fn name(&self) -> String {
-        let (name, kind) = match &self.0 {
-            Kind::Points(points) => (points.name.as_str(), "points"),
-            Kind::Line(line) => (line.name.as_str(), "line"),
-            Kind::Band(band) => (band.name.as_str(), "band"),
-            Kind::Bars(bars) => (bars.name.as_str(), "bars"),
-            Kind::Field(_) => ("", "field"),
-            Kind::Spheres(_) => ("", "spheres"),
-            Kind::Reference(reference) => (reference.label.as_str(), "reference line"),
-            Kind::Window(window) => (window.name.as_str(), "window"),
-            Kind::Note(note) => (note.text.as_str(), "note"),
-        };
+        let Facts { kind, name, .. } = self.facts();
         crate::text::plain(if name.is_empty() { kind } else { name })
     }
 }

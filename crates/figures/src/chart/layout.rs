@@ -5,7 +5,7 @@ use super::frame::{Frame, Surround};
 use super::paint::ARROW;
 use super::panel::AxisWish;
 use super::{ChartFigure, HEADER_SPACE};
-use crate::axis::{Axis, Tick, widest};
+use crate::axis::{Axis, Tick, extent, widest};
 use crate::error::FigureError;
 use crate::geometry::Rectangle;
 use crate::style::{
@@ -118,18 +118,9 @@ impl Layout {
     /// The smallest rectangle around all frames.
     pub(super) fn span(&self) -> Rectangle {
         let areas = || self.seats.iter().map(|seat| seat.frame.area);
-        let (left, top) = areas().fold((f64::MAX, f64::MAX), |least, area| {
-            (least.0.min(area.left), least.1.min(area.top))
-        });
-        let (right, bottom) = areas().fold((f64::MIN, f64::MIN), |most, area| {
-            (most.0.max(area.right()), most.1.max(area.bottom()))
-        });
-        Rectangle {
-            left,
-            top,
-            width: right - left,
-            height: bottom - top,
-        }
+        let across = extent(areas().flat_map(|area| [area.left, area.right()]));
+        let down = extent(areas().flat_map(|area| [area.top, area.bottom()]));
+        Rectangle::between(across, down)
     }
 }
 
@@ -207,13 +198,10 @@ fn bears_y(figure: &ChartFigure, index: usize) -> bool {
 
 /// Space below a panel for numbers and name of its horizontal axis.
 fn space_below(figure: &ChartFigure, index: usize) -> f64 {
-    match (
-        bears_x(figure, index),
-        figure.panels[index].x.label.as_str(),
-    ) {
-        (false, _) => 0.0,
-        (true, "") => TICK_SPACE,
-        (true, _) => TICK_SPACE + LABEL_SPACE,
+    match &*figure.panels[index].x.label {
+        _ if !bears_x(figure, index) => 0.0,
+        "" => TICK_SPACE,
+        _ => TICK_SPACE + LABEL_SPACE,
     }
 }
 
@@ -269,20 +257,15 @@ fn shared<'a>(
 ) -> Result<(AxisWish, (f64, f64)), FigureError> {
     let (wish, mut data) = of(panels[0]);
     let mut wish = wish.clone();
-    let both = |one: Option<f64>, other: Option<f64>, of: fn(f64, f64) -> f64| {
-        one.zip(other)
-            .map(|(one, other)| of(one, other))
-            .or(one)
-            .or(other)
-    };
     for &panel in &panels[1..] {
         let (other, range) = of(panel);
         if other.scale != wish.scale {
             return Err(FigureError::SharedScale { axis: name });
         }
         data = (data.0.min(range.0), data.1.max(range.1));
-        wish.least = both(wish.least, other.least, f64::min);
-        wish.largest = both(wish.largest, other.largest, f64::max);
+        let [least, largest] = [[wish.least, other.least], [wish.largest, other.largest]];
+        wish.least = least.into_iter().flatten().reduce(f64::min);
+        wish.largest = largest.into_iter().flatten().reduce(f64::max);
     }
     Ok((wish, data))
 }

@@ -234,17 +234,20 @@ impl ChartFigure {
         let mut explained: Vec<Entry> = Vec::new();
         let mut below: Vec<Entry> = Vec::new();
         for (number, (seat, chart)) in layout.seats.iter().zip(&self.panels).enumerate() {
-            let painter = Painter {
+            let mut painter = Painter {
                 frame: seat.frame,
                 chart,
                 scale,
+                drawing: &mut *drawing,
+                obstacles: Obstacles::default(),
             };
-            let mut obstacles = painter.draw_layers(drawing);
+            painter.draw_layers();
             let names = [&*chart.x.label, &*chart.y.label];
-            seat.frame.draw(drawing, &seat.around, names);
-            self.draw_header(drawing, seat, number);
-            painter.draw_texts(drawing, &mut obstacles);
+            seat.frame.draw(painter.drawing, &seat.around, names);
+            self.draw_header(painter.drawing, seat, number);
+            painter.draw_texts();
             let mut entries = painter.entries();
+            let obstacles = painter.obstacles;
             entries.retain(|entry| !explained.contains(entry));
             explained.extend(entries.iter().cloned());
             let placed = match self.legend {

@@ -10,7 +10,7 @@ use super::panel::ChartPanel;
 use super::placement::Obstacles;
 use crate::colour::{BLACK, Colour, GREY, WHITE};
 use crate::colour_scale::ColourScale;
-use crate::drawing::{Drawing, Fill, Image, Stroke};
+use crate::drawing::{Drawing, Fill, Image, Layer, Stroke};
 use crate::geometry::{Path, Point, Rectangle};
 use crate::legend::Mark;
 
@@ -39,29 +39,17 @@ pub(super) struct Painter<'a> {
     pub(super) frame: Frame,
     pub(super) chart: &'a ChartPanel,
     pub(super) scale: Option<&'a ColourScale>,
+    pub(super) drawing: &'a mut Drawing,
+    /// What must not be covered.
+    pub(super) obstacles: Obstacles,
 }
 
-/// Which of the layers that are drawn upon each other comes first.
-fn depth(layer: &ChartLayer) -> usize {
-    match layer.0 {
-        Kind::Field(_) => 0,
-        Kind::Window(_) => 1,
-        Kind::Band(_) => 2,
-        Kind::Bars(_) => 3,
-        Kind::Spheres(_) => 4,
-        Kind::Reference(_) => 5,
-        Kind::Line(_) => 6,
-        Kind::Points(_) => 7,
-        Kind::Note(_) => 8,
-    }
-}
-
-impl Painter<'_> {
+impl<'a> Painter<'a> {
     /// The layers, each with its number among those that have no series of their own.
-    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &ChartLayer)> {
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (usize, &'a ChartLayer)> + use<'a> {
         self.chart.layers.iter().scan(0, |next, layer| {
             let number = *next;
-            let has_series = layer.look().is_some_and(|look| look.series.is_some());
+            let has_series = layer.facts().look.is_some_and(|look| look.series.is_some());
             *next += usize::from(layer.is_series() && !has_series);
             Some((number, layer))
         })
@@ -71,33 +59,35 @@ impl Painter<'_> {
         look.colour(number, self.scale)
     }
 
-    /// Everything but frame and texts; returns what must not be covered.
-    pub(super) fn draw_layers(&self, drawing: &mut Drawing) -> Obstacles {
-        let mut obstacles = Obstacles::default();
+    /// A new layer of the page that nothing leaves the frame on.
+    fn layer(&mut self, name: &'static str) -> &mut Layer {
+        self.drawing.layer(name, Some(self.frame.area))
+    }
+
+    /// Everything but frame and texts.
+    pub(super) fn draw_layers(&mut self) {
         let mut layers: Vec<(usize, &ChartLayer)> = self.numbered().collect();
-        layers.sort_by_key(|(_, layer)| depth(layer));
+        layers.sort_by_key(|(_, layer)| layer.facts().depth);
         for (number, layer) in layers {
-            let look = layer.look().unwrap_or_default();
-            let colour = self.colour(number, look);
+            let colour = self.colour(number, layer.facts().look.unwrap_or_default());
             match &layer.0 {
-                Kind::Field(field) => self.draw_field(drawing, &mut obstacles, field),
-                Kind::Window(window) => self.draw_window(drawing, window, colour),
-                Kind::Band(band) => self.draw_band(drawing, &mut obstacles, band, colour),
-                Kind::Bars(bars) => self.draw_bars(drawing, &mut obstacles, bars, colour),
-                Kind::Spheres(spheres) => self.draw_spheres(drawing, &mut obstacles, spheres),
-                Kind::Reference(it) => self.draw_reference(drawing, &mut obstacles, it, colour),
-                Kind::Line(line) => self.draw_line(drawing, &mut obstacles, line, colour),
+                Kind::Field(field) => self.draw_field(field),
+                Kind::Window(window) => self.draw_window(window, colour),
+                Kind::Band(band) => self.draw_band(band, colour),
+                Kind::Bars(bars) => self.draw_bars(bars, colour),
+                Kind::Spheres(spheres) => self.draw_spheres(spheres),
+                Kind::Reference(reference) => self.draw_reference(reference, colour),
+                Kind::Line(line) => self.draw_line(line, colour),
                 Kind::Points(points) => {
-                    self.draw_points(drawing, &mut obstacles, points, colour);
-                    self.draw_marks(drawing, &mut obstacles, (number, points));
+                    self.draw_points(points, colour);
+                    self.draw_marks(points, number);
                 }
                 Kind::Note(_) => {}
             }
         }
-        obstacles
     }
 
-    fn draw_field(&self, drawing: &mut Drawing, obstacles: &mut Obstacles, field: &Field) {
+    fn draw_field(&mut self, field: &Field) {
         let Some(scale) = self.scale else { return };
         let (columns, values) = field.shown(&self.frame);
         let colour = |value: f64| {
@@ -109,18 +99,13 @@ impl Painter<'_> {
         };
         let [start, end] =
             [(field.x.0, field.y.1), (field.x.1, field.y.0)].map(|(x, y)| self.frame.place(x, y));
-        let area = Rectangle {
-            left: start.x,
-            top: start.y,
-            width: end.x - start.x,
-            height: end.y - start.y,
-        };
-        obstacles.area(area);
+        let area = Rectangle::between((start.x, end.x), (start.y, end.y));
+        self.obstacles.area(area);
         let image = Image::of_cells(area, columns, values.into_iter().map(colour));
-        drawing.layer("field", Some(self.frame.area)).image(image);
+        self.layer("field").image(image);
     }
 
-    fn draw_window(&self, drawing: &mut Drawing, window: &Window, colour: Colour) {
+    fn draw_window(&mut self, window: &Window, colour: Colour) {
         let [from, to] = [window.from, window.to].map(|x| self.frame.across(x));
         let area = Rectangle {
             left: from.min(to),
@@ -128,49 +113,38 @@ impl Painter<'_> {
             ..self.frame.area
         };
         let path = Path::polygon(area.corners());
-        let layer = drawing.layer("windows", Some(self.frame.area));
-        layer.fill(path, colour.faint(WINDOW_OPACITY));
+        self.layer("windows")
+            .fill(path, colour.faint(WINDOW_OPACITY));
     }
 
-    fn draw_band(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        band: &Band,
-        colour: Colour,
-    ) {
-        let layer = drawing.layer("bands", Some(self.frame.area));
+    fn draw_band(&mut self, band: &Band, colour: Colour) {
+        let layer = self.drawing.layer("bands", Some(self.frame.area));
         let [uppers, lowers] = [band.upper_of_pairs(), band.lower_of_pairs()]
             .map(|bound| pieces(&self.frame, &band.x, &bound));
         for (upper, lower) in uppers.into_iter().zip(lowers) {
             for (above, below) in upper.iter().zip(&lower) {
-                obstacles.line(&[*above, *below]);
+                self.obstacles.line(&[*above, *below]);
             }
             let [upper, lower] = [upper, lower].map(|curve| thinned(&self.frame, curve));
-            obstacles.line(&upper);
-            obstacles.line(&lower);
+            self.obstacles.line(&upper);
+            self.obstacles.line(&lower);
             let path = Path::polygon(upper.into_iter().chain(lower.into_iter().rev()));
             layer.fill(path, colour.faint(BAND_OPACITY));
         }
     }
 
-    fn draw_bars(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        bars: &Bars,
-        colour: Colour,
-    ) {
-        let foot = self.frame.up(0.0).min(self.frame.area.bottom());
-        let end = |edge: f64| Point::new(self.frame.across(edge), foot);
+    fn draw_bars(&mut self, bars: &Bars, colour: Colour) {
+        let frame = self.frame;
+        let foot = frame.up(0.0).min(frame.area.bottom());
+        let end = |edge: f64| Point::new(frame.across(edge), foot);
         let mut outline: Vec<Point> = bars.edges.first().copied().map(end).into_iter().collect();
         for (edges, &height) in bars.edges.windows(2).zip(&bars.heights) {
             let top = if height.is_finite() {
-                self.frame.up(height)
+                frame.up(height)
             } else {
                 foot
             };
-            let [left, right] = [edges[0], edges[1]].map(|edge| self.frame.across(edge));
+            let [left, right] = [edges[0], edges[1]].map(|edge| frame.across(edge));
             let area = Rectangle {
                 left,
                 top: top.min(foot),
@@ -178,21 +152,20 @@ impl Painter<'_> {
                 height: (foot - top).abs(),
             };
             if area.height > 0.0 {
-                obstacles.area(area);
+                self.obstacles.area(area);
             }
             outline.extend([left, right].map(|x| Point::new(x, top)));
         }
         outline.extend(bars.edges.last().copied().map(end));
-        let layer = drawing.layer("bars", Some(self.frame.area));
-        layer.path(
+        self.layer("bars").path(
             Path::line(outline),
             Some(Fill::Flat(colour.faint(BAR_OPACITY))),
             Some(Stroke::solid(colour, BAR_WEIGHT)),
         );
     }
 
-    fn draw_spheres(&self, drawing: &mut Drawing, obstacles: &mut Obstacles, spheres: &Spheres) {
-        let layer = drawing.layer("spheres", Some(self.frame.area));
+    fn draw_spheres(&mut self, spheres: &Spheres) {
+        let layer = self.drawing.layer("spheres", Some(self.frame.area));
         let (from, to) = self.frame.x.range();
         let scale = self.frame.area.width / (to - from);
         let places = spheres.x.iter().zip(&spheres.y).zip(&spheres.diameter);
@@ -203,7 +176,7 @@ impl Painter<'_> {
                 Some((value, scale)) => (Fill::Sphere(scale.colour(*value)), SPHERE_EDGE),
                 None => (Fill::Flat(FAINT_SPHERE), FAINT_EDGE),
             };
-            obstacles.line(&[centre]);
+            self.obstacles.line(&[centre]);
             let path = Path::circle(centre, scale * diameter / 2.0);
             layer.path(path, Some(fill), Some(edge));
         }
@@ -221,15 +194,9 @@ impl Painter<'_> {
         }
     }
 
-    fn draw_reference(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        reference: &Reference,
-        colour: Colour,
-    ) {
+    fn draw_reference(&mut self, reference: &Reference, colour: Colour) {
         let line = self.reference_line(reference);
-        obstacles.line(&line);
+        self.obstacles.line(&line);
         let is_guide = reference.look.tint == Some(Tint::Grey);
         let stroke = Stroke {
             colour,
@@ -240,22 +207,15 @@ impl Painter<'_> {
             },
             pattern: reference.pattern,
         };
-        let layer = drawing.layer("references", Some(self.frame.area));
-        layer.stroke(Path::line(line), stroke);
+        self.layer("references").stroke(Path::line(line), stroke);
     }
 
-    fn draw_line(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        line: &Line,
-        colour: Colour,
-    ) {
-        let layer = drawing.layer("lines", Some(self.frame.area));
+    fn draw_line(&mut self, line: &Line, colour: Colour) {
+        let layer = self.drawing.layer("lines", Some(self.frame.area));
         for piece in pieces(&self.frame, &line.x, &line.y) {
             let piece = if line.stepped { steps(&piece) } else { piece };
             let piece = thinned(&self.frame, piece);
-            obstacles.line(&piece);
+            self.obstacles.line(&piece);
             match piece.as_slice() {
                 // A lone point has no line, but it must be seen.
                 [lone] => layer.fill(Path::circle(*lone, 0.7 * line.weight), colour),
@@ -265,80 +225,45 @@ impl Painter<'_> {
     }
 
     /// The line that joins points, and their error bars.
-    fn draw_points(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        points: &Points,
-        colour: Colour,
-    ) {
-        let area = self.frame.area;
-        let place = |row: usize| self.frame.place(points.x[row], points.y[row]);
+    fn draw_points(&mut self, points: &Points, colour: Colour) {
+        let frame = self.frame;
+        let place = |row: usize| frame.place(points.x[row], points.y[row]);
         if points.joined {
             let line: Vec<Point> = points.rows().map(place).collect();
-            obstacles.line(&line);
-            let layer = drawing.layer("joins", Some(area));
-            layer.stroke(Path::line(line), join_stroke(colour));
+            self.obstacles.line(&line);
+            self.layer("joins")
+                .stroke(Path::line(line), join_stroke(colour));
         }
         let mut bars = Vec::new();
         for row in points.rows() {
-            bars.extend(self.error_bars(points, row));
+            bars.extend(error_bars(&frame, points, row));
             if points.is_limit(row) {
                 bars.extend(arrow(place(row)));
             }
         }
-        for bar in &bars {
-            obstacles.line(bar);
-        }
-        let layer = drawing.layer("error bars", Some(area));
-        layer.stroke(Path::segments(bars), Stroke::solid(colour, BAR_WEIGHT));
+        bars.iter().for_each(|bar| self.obstacles.line(bar));
+        let pen = Stroke::solid(colour, BAR_WEIGHT);
+        self.layer("error bars").stroke(Path::segments(bars), pen);
     }
 
     /// The marks of points.
-    fn draw_marks(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        (number, points): (usize, &Points),
-    ) {
-        let place = |row: usize| self.frame.place(points.x[row], points.y[row]);
+    fn draw_marks(&mut self, points: &Points, number: usize) {
+        let frame = self.frame;
+        let place = |row: usize| frame.place(points.x[row], points.y[row]);
+        let [filled, open] = [points.open, true].map(|open| self.mark(number, points, open));
         // A mark on the frame is whole; one beyond it would stand on the labels.
-        let rows = points.rows();
-        let shown = rows.filter(|&row| self.frame.area.holds(place(row)));
+        let shown = points.rows().filter(|&row| frame.area.holds(place(row)));
         let (limits, measured): (Vec<usize>, Vec<usize>) =
             shown.partition(|&row| points.is_limit(row));
-        let layer = drawing.layer("points", None);
-        for (rows, open) in [(measured, points.open), (limits, true)] {
-            let mark = self.mark(number, points, open);
+        let layer = self.drawing.layer("points", None);
+        for (rows, mark) in [(measured, filled), (limits, open)] {
             let places: Vec<Point> = rows.into_iter().map(place).collect();
-            for place in &places {
-                obstacles.line(&[*place]);
-            }
-            layer.path(
-                mark.outline.at(places),
-                Some(Fill::Flat(mark.fill)),
-                Some(mark.stroke),
-            );
+            places
+                .iter()
+                .for_each(|place| self.obstacles.line(&[*place]));
+            let (fill, stroke) = (Some(Fill::Flat(mark.fill)), Some(mark.stroke));
+            layer.path(mark.outline.at(places), fill, stroke);
         }
-    }
-
-    /// Bars with caps of the errors of a row.
-    fn error_bars(&self, points: &Points, row: usize) -> Vec<[Point; 2]> {
-        let (x, y) = (points.x[row], points.y[row]);
-        let centre = self.frame.place(x, y);
-        // An end that has no place on a logarithmic axis lies at the frame, where the window cuts its cap.
-        let up = error_ends(&points.y_errors, row, y).map(|end| self.frame.up(end));
-        let across = error_ends(&points.x_errors, row, x).map(|end| self.frame.across(end));
-        let mut bars = Vec::new();
-        if up[0] != up[1] {
-            bars.push(up.map(|end| Point::new(centre.x, end)));
-            bars.extend(up.map(|end| [-CAP, CAP].map(|side| Point::new(centre.x + side, end))));
-        }
-        if across[0] != across[1] {
-            bars.push(across.map(|end| Point::new(end, centre.y)));
-            bars.extend(across.map(|end| [-CAP, CAP].map(|side| Point::new(end, centre.y + side))));
-        }
-        bars
     }
 
     pub(super) fn mark(&self, number: usize, points: &Points, open: bool) -> Mark {
@@ -371,6 +296,25 @@ impl Line {
             pattern: self.pattern,
         }
     }
+}
+
+/// Bars with caps of the errors of a row.
+fn error_bars(frame: &Frame, points: &Points, row: usize) -> Vec<[Point; 2]> {
+    let (x, y) = (points.x[row], points.y[row]);
+    let centre = frame.place(x, y);
+    // An end that has no place on a logarithmic axis lies at the frame, where the window cuts its cap.
+    let up = error_ends(&points.y_errors, row, y).map(|end| frame.up(end));
+    let across = error_ends(&points.x_errors, row, x).map(|end| frame.across(end));
+    let mut bars = Vec::new();
+    if up[0] != up[1] {
+        bars.push(up.map(|end| Point::new(centre.x, end)));
+        bars.extend(up.map(|end| [-CAP, CAP].map(|side| Point::new(centre.x + side, end))));
+    }
+    if across[0] != across[1] {
+        bars.push(across.map(|end| Point::new(end, centre.y)));
+        bars.extend(across.map(|end| [-CAP, CAP].map(|side| Point::new(end, centre.y + side))));
+    }
+    bars
 }
 
 /// The line from point to point.

@@ -2,8 +2,8 @@
 
 use super::layer::{ChartLayer, Corner, Kind, Note, Reference};
 use super::paint::Painter;
-use super::placement::{INSET, Obstacles};
-use crate::drawing::{Anchor, Drawing};
+use super::placement::INSET;
+use crate::drawing::Anchor;
 use crate::geometry::Rectangle;
 use crate::style::LEGEND_SIZE;
 use crate::text::{DIGIT_HEIGHT, Text};
@@ -17,29 +17,23 @@ const ABOVE_BASELINE: f64 = 0.86;
 
 impl Painter<'_> {
     /// Notes where they were put, then labels of reference lines where they cover least.
-    pub(super) fn draw_texts(&self, drawing: &mut Drawing, obstacles: &mut Obstacles) {
-        let layers = || self.chart.layers.iter();
-        for layer in layers() {
+    pub(super) fn draw_texts(&mut self) {
+        let chart = self.chart;
+        for layer in &chart.layers {
             if let ChartLayer(Kind::Note(note)) = layer {
-                self.draw_note(drawing, obstacles, note);
+                self.draw_note(note);
             }
         }
-        for layer in layers() {
-            if let ChartLayer(Kind::Reference(reference)) = layer {
-                self.draw_reference_label(drawing, obstacles, reference);
+        for layer in &chart.layers {
+            if let ChartLayer(Kind::Reference(reference)) = layer
+                && !reference.label.is_empty()
+            {
+                self.draw_reference_label(reference);
             }
         }
     }
 
-    fn draw_reference_label(
-        &self,
-        drawing: &mut Drawing,
-        obstacles: &mut Obstacles,
-        reference: &Reference,
-    ) {
-        if reference.label.is_empty() {
-            return;
-        }
+    fn draw_reference_label(&mut self, reference: &Reference) {
         let frame = self.frame.area;
         let [start, _] = self.reference_line(reference);
         let length = if reference.vertical {
@@ -53,31 +47,28 @@ impl Painter<'_> {
             let share = 1.0 - trial as f64 / LABEL_TRIALS as f64;
             let along = INSET + share * (length - 2.0 * INSET - long);
             [-LABEL_GAP - thick, LABEL_GAP].map(|beside| {
-                if reference.vertical {
-                    Rectangle {
-                        left: start.x + beside,
-                        top: frame.bottom() - along - long,
-                        width: thick,
-                        height: long,
-                    }
+                let (left, top, width, height) = if reference.vertical {
+                    let top = frame.bottom() - along - long;
+                    (start.x + beside, top, thick, long)
                 } else {
-                    Rectangle {
-                        left: frame.left + along,
-                        top: start.y + beside,
-                        width: long,
-                        height: thick,
-                    }
+                    (frame.left + along, start.y + beside, long, thick)
+                };
+                Rectangle {
+                    left,
+                    top,
+                    width,
+                    height,
                 }
             })
         });
         let is_inside = |place: &Rectangle| place.corners().iter().all(|it| frame.holds(*it));
         // Only a frame smaller than its type leaves no place.
-        let Some((place, _)) = obstacles.freest(places.filter(is_inside)) else {
+        let Some((place, _)) = self.obstacles.freest(places.filter(is_inside)) else {
             return;
         };
-        obstacles.area(place);
+        self.obstacles.area(place);
         let colour = self.colour(0, reference.look);
-        let layer = drawing.layer("reference labels", None);
+        let layer = self.drawing.layer("reference labels", None);
         if reference.vertical {
             let baseline = place.left + ABOVE_BASELINE * LEGEND_SIZE;
             layer.upward_text((baseline, place.bottom()), Anchor::Start, text, colour);
@@ -87,7 +78,7 @@ impl Painter<'_> {
         }
     }
 
-    fn draw_note(&self, drawing: &mut Drawing, obstacles: &mut Obstacles, note: &Note) {
+    fn draw_note(&mut self, note: &Note) {
         let frame = self.frame.area;
         let text = Text::fitted(&note.text, LEGEND_SIZE, frame.width - 2.0 * INSET);
         let left = match note.corner {
@@ -98,7 +89,7 @@ impl Painter<'_> {
             Corner::TopLeft | Corner::TopRight => frame.top + INSET,
             Corner::BottomLeft | Corner::BottomRight => frame.bottom() - INSET - LEGEND_SIZE,
         };
-        obstacles.area(Rectangle {
+        self.obstacles.area(Rectangle {
             left,
             top,
             width: text.width,
@@ -106,7 +97,7 @@ impl Painter<'_> {
         });
         let baseline = top + (LEGEND_SIZE + DIGIT_HEIGHT * LEGEND_SIZE) / 2.0;
         let colour = self.colour(0, note.look);
-        let layer = drawing.layer("notes", None);
+        let layer = self.drawing.layer("notes", None);
         layer.text((left, baseline), Anchor::Start, text, colour);
     }
 }
