@@ -32,9 +32,7 @@ pub fn write_with(
     path: &Path,
     produce: impl FnOnce(&mut File) -> io::Result<()>,
 ) -> Result<(), FormatError> {
-    let mut pending = Pending::create(path)?;
-    produce(pending.partial.as_file_mut()).map_err(FormatError::io("write", path))?;
-    pending.commit()
+    Pending::with(path, produce)?.commit()
 }
 
 /// A file that is being made under another name, by this program or by one that is given that name.
@@ -61,6 +59,16 @@ impl Pending {
         })
     }
 
+    /// A file beside `path` with its content.
+    fn with(
+        path: &Path,
+        produce: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> Result<Self, FormatError> {
+        let mut pending = Self::create(path)?;
+        produce(pending.partial.as_file_mut()).map_err(FormatError::io("write", path))?;
+        Ok(pending)
+    }
+
     /// Where it is meanwhile.
     #[must_use]
     pub fn partial_path(&self) -> &Path {
@@ -72,16 +80,20 @@ impl Pending {
     /// # Errors
     /// As [`write`](fn@write).
     pub fn commit(self) -> Result<(), FormatError> {
-        let path = &self.path;
-        let folder = folder_of(path).map_err(FormatError::io("write", path))?;
-        self.partial
-            .as_file()
-            .sync_all()
-            .map_err(FormatError::io("synchronize", path))?;
-        self.partial
-            .persist(path)
-            .map_err(|refused| FormatError::io("replace", path)(refused.error))?;
-        synchronize_folder(folder).map_err(FormatError::io("synchronize the folder of", path))
+        let file = self.partial.as_file();
+        file.sync_all()
+            .map_err(FormatError::io("synchronize", &self.path))?;
+        let path = self.rename()?;
+        folder_of(&path)
+            .and_then(synchronize_folder)
+            .map_err(FormatError::io("synchronize the folder of", &path))
+    }
+
+    fn rename(self) -> Result<PathBuf, FormatError> {
+        match self.partial.persist(&self.path) {
+            Ok(_) => Ok(self.path),
+            Err(refused) => Err(FormatError::io("replace", &self.path)(refused.error)),
+        }
     }
 }
 
@@ -91,24 +103,9 @@ impl Pending {
 /// # Errors
 /// As [`write`](fn@write).
 pub fn replace(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
-    let folder = folder_of(path).map_err(FormatError::io("write", path))?;
-    partial_with(folder, path, |file| file.write_all(bytes))?
-        .persist(path)
+    Pending::with(path, |file| file.write_all(bytes))?
+        .rename()
         .map(drop)
-        .map_err(|refused| FormatError::io("replace", path)(refused.error))
-}
-
-/// A temporary file beside `path` with its content. It is deleted when it is dropped, so that a failure leaves nothing
-/// behind.
-fn partial_with(
-    folder: &Path,
-    path: &Path,
-    produce: impl FnOnce(&mut File) -> io::Result<()>,
-) -> Result<NamedTempFile, FormatError> {
-    let mut partial =
-        create_partial(folder).map_err(FormatError::io("create a file beside", path))?;
-    produce(partial.as_file_mut()).map_err(FormatError::io("write", path))?;
-    Ok(partial)
 }
 
 /// Makes the names in a folder durable: of a folder just made in it, or of a file just moved there.

@@ -90,7 +90,7 @@ pub fn encode<State: Serialize>(
 ) -> Result<Vec<u8>, FormatError> {
     let mut bytes = Cursor::new(Vec::new());
     stream::write(identity, state, &mut bytes)
-        .map_err(|error| error.into_format(FormatError::io("write", Path::new("memory"))))?;
+        .map_err(FormatError::io("write", Path::new("memory")))?;
     Ok(bytes.into_inner())
 }
 
@@ -129,11 +129,7 @@ pub fn write<State: Serialize>(
     identity: &CheckpointIdentity,
     state: &State,
 ) -> Result<(), FormatError> {
-    let mut refused = None;
-    let written = atomic::write_with(path, |file| {
-        stream::write(identity, state, file).map_err(|error| error.into_io(&mut refused))
-    });
-    refused.map_or(written, Err)
+    atomic::write_with(path, |file| stream::write(identity, state, file))
 }
 
 /// Reads the state from a checkpoint file.

@@ -201,11 +201,29 @@ pub enum FormatError {
 }
 
 impl FormatError {
+    /// What went wrong with a file; an error of ours that came by way of `io` is that error again.
     pub(crate) fn io(operation: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
-        move |source| Self::Io {
-            operation,
+        move |source| match source.downcast() {
+            Ok(ours) => ours,
+            Err(source) => Self::Io {
+                operation,
+                path: path.to_owned(),
+                source,
+            },
+        }
+    }
+
+    pub(crate) fn not_a_trajectory(path: &Path, reason: impl Into<String>) -> Self {
+        Self::NotATrajectory {
             path: path.to_owned(),
-            source,
+            reason: reason.into(),
+        }
+    }
+
+    pub(crate) fn unreadable_trajectory(path: &Path, reason: impl Into<String>) -> Self {
+        Self::UnreadableTrajectory {
+            path: path.to_owned(),
+            reason: reason.into(),
         }
     }
 

@@ -8,35 +8,6 @@ use serde::Serialize;
 use super::{CheckpointIdentity, HEADER_BYTES, Header, MAXIMUM_STATE_BYTES};
 use crate::error::FormatError;
 
-/// Why a checkpoint could not be written.
-#[derive(Debug)]
-pub(super) enum StreamError {
-    /// The target refuses.
-    Io(io::Error),
-    /// The state cannot be written, wherever to.
-    State(FormatError),
-}
-
-impl StreamError {
-    pub(super) fn into_format(self, io: impl FnOnce(io::Error) -> FormatError) -> FormatError {
-        match self {
-            Self::Io(error) => io(error),
-            Self::State(error) => error,
-        }
-    }
-
-    /// An error for those who know of files only; what they cannot know goes to `refused`.
-    pub(super) fn into_io(self, refused: &mut Option<FormatError>) -> io::Error {
-        match self {
-            Self::Io(error) => error,
-            Self::State(error) => {
-                *refused = Some(error);
-                io::ErrorKind::InvalidData.into()
-            }
-        }
-    }
-}
-
 /// Passes bytes on; counts them, adds them up, and remembers why it stopped.
 struct Meter<W> {
     target: W,
@@ -83,17 +54,16 @@ impl<W: Write> Write for Meter<W> {
     }
 }
 
-/// Writes a checkpoint from the beginning of an empty target.
+/// Writes a checkpoint from the beginning of an empty target; a state that cannot be written, wherever to, is a
+/// [`FormatError`] inside of the error.
 pub(super) fn write<State: Serialize>(
     identity: &CheckpointIdentity,
     state: &State,
     target: &mut (impl Write + Seek),
-) -> Result<(), StreamError> {
+) -> io::Result<()> {
     let mut target = BufWriter::new(target);
     // The header's place: what it says is known at the end.
-    target
-        .write_all(&[0; HEADER_BYTES])
-        .map_err(StreamError::Io)?;
+    target.write_all(&[0; HEADER_BYTES])?;
 
     // LZ4 leaves a real state a tenth larger than stronger methods do: most of the rest are mantissas, which none
     // compresses.
@@ -110,17 +80,17 @@ pub(super) fn write<State: Serialize>(
     };
     let payload = payload.get_mut();
     if state_bytes.max(payload.bytes) > MAXIMUM_STATE_BYTES {
-        return Err(StreamError::State(FormatError::StateTooLarge {
+        return Err(io::Error::other(FormatError::StateTooLarge {
             bytes: state_bytes.max(payload.bytes),
             limit: MAXIMUM_STATE_BYTES,
         }));
     }
     // What the target said comes first: all other errors follow from it.
     if let Some(error) = payload.failure.take().or(failure) {
-        return Err(StreamError::Io(error));
+        return Err(error);
     }
-    serialized.map_err(|error| StreamError::State(FormatError::Serialize(error)))?;
-    finished.map_err(|error| StreamError::Io(io::Error::other(error)))?;
+    serialized.map_err(|error| io::Error::other(FormatError::Serialize(error)))?;
+    finished.map_err(io::Error::other)?;
 
     let header = Header {
         identity: *identity,
@@ -128,10 +98,7 @@ pub(super) fn write<State: Serialize>(
         state_bytes,
         payload_checksum: payload.checksum.clone().finalize(),
     };
-    let rewritten = |target: &mut BufWriter<_>| {
-        target.seek(SeekFrom::Start(0))?;
-        target.write_all(&header.to_bytes())?;
-        target.flush()
-    };
-    rewritten(&mut target).map_err(StreamError::Io)
+    target.seek(SeekFrom::Start(0))?;
+    target.write_all(&header.to_bytes())?;
+    target.flush()
 }

@@ -311,7 +311,7 @@ fn a_full_disk_is_called_so() {
     let length = encode(&IDENTITY, &noise).unwrap().len();
     for room in [0, 50, 79, 10_000, 1 << 20, length - 1, length + 83] {
         match stream::write(&IDENTITY, &noise, &mut Disk { room }) {
-            Err(stream::StreamError::Io(error)) => {
+            Err(error) => {
                 assert_eq!(error.kind(), io::ErrorKind::StorageFull, "{room}");
             }
             other => panic!("with room for {room} of {length} bytes: {other:?}"),

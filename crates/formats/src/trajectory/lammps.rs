@@ -54,10 +54,8 @@ impl LammpsTrajectory {
         }
         drop(reader);
         if frames == 0 && file.end() > 0 && !begins_as_ours(&mut file).map_err(failed)? {
-            return Err(FormatError::NotATrajectory {
-                path: path.to_owned(),
-                reason: "it does not begin like a LAMMPS dump with units".to_owned(),
-            });
+            let reason = "it does not begin like a LAMMPS dump with units";
+            return Err(FormatError::not_a_trajectory(path, reason));
         }
         file.set_end(end)?;
         Ok(Self { file, frames })

@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use super::{Frame, TrajectoryFile};
+use super::{Frame, FrameContact, TrajectoryFile};
 use crate::atomic;
 use crate::error::FormatError;
 
@@ -101,18 +101,16 @@ impl VtpTrajectory {
         let path = folder.join(SPHERES);
         let text = fs::read_to_string(&path).map_err(FormatError::io("read", &path))?;
         if !text.starts_with(BEGINNING) {
-            return Err(FormatError::NotATrajectory {
-                path,
-                reason: "it does not begin like an index of this program".to_owned(),
-            });
+            let reason = "it does not begin like an index of this program";
+            return Err(FormatError::not_a_trajectory(&path, reason));
         }
         let listed = text
             .lines()
             .filter(|line| line.trim_start().starts_with("<DataSet "))
             .map(|line| {
-                listed(line).ok_or_else(|| FormatError::NotATrajectory {
-                    path: path.clone(),
-                    reason: format!("its line `{}` is none of this program's", line.trim()),
+                listed(line).ok_or_else(|| {
+                    let reason = format!("its line `{}` is none of this program's", line.trim());
+                    FormatError::not_a_trajectory(&path, reason)
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -277,12 +275,12 @@ fn contacts(frame: &Frame) -> Vec<u8> {
     let mut file = Polydata::new(frame);
     file.begin_piece([("Points", 2 * number), ("Verts", 0), ("Lines", number)]);
     file.open("CellData Scalars=\"normal_force\"");
-    file.reals("normal_force", contacts.iter().map(|it| [it.normal_force]));
-    file.reals(
-        "tangential_force",
-        contacts.iter().map(|it| [it.tangential_force]),
-    );
-    file.reals("overlap", contacts.iter().map(|it| [it.overlap]));
+    let mut reals = |name, value: fn(&FrameContact) -> f64| {
+        file.reals(name, contacts.iter().map(|contact| [value(contact)]));
+    };
+    reals("normal_force", |it| it.normal_force);
+    reals("tangential_force", |it| it.tangential_force);
+    reals("overlap", |it| it.overlap);
     file.whole("first", contacts.iter().map(|it| it.spheres[0]));
     file.whole("second", contacts.iter().map(|it| it.spheres[1]));
     let sliding = contacts.iter().map(|it| u8::from(it.sliding));

@@ -33,34 +33,66 @@ pub(super) const NAME_UNIT: u64 = 64;
 const ENTRIES_A_READ: u64 = 4096;
 const NAMES_BYTES: u64 = 16 * NAME_UNIT;
 
-/// Types of numbers by their number in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Kind {
-    U32 = 3,
-    U64 = 4,
-    I8 = 5,
-    I32 = 7,
-    F32 = 9,
-    F64 = 10,
+/// A number as it stands in a file.
+pub(super) trait Number: Copy {
+    /// Number of its type.
+    const KIND: u8;
+
+    /// The number that the bytes begin with.
+    fn at_start(bytes: &[u8]) -> Self;
+
+    fn to_bytes(self) -> impl Iterator<Item = u8>;
 }
 
-impl Kind {
-    fn bytes(self) -> usize {
-        match self {
-            Self::I8 => 1,
-            Self::U32 | Self::I32 | Self::F32 => 4,
-            Self::U64 | Self::F64 => 8,
+macro_rules! numbers {
+    ($($number:ty: $kind:literal),*) => {
+        $(impl Number for $number {
+            const KIND: u8 = $kind;
+
+            fn at_start(bytes: &[u8]) -> Self {
+                let mut own = [0; size_of::<Self>()];
+                own.copy_from_slice(&bytes[..size_of::<Self>()]);
+                Self::from_le_bytes(own)
+            }
+
+            fn to_bytes(self) -> impl Iterator<Item = u8> {
+                self.to_le_bytes().into_iter()
+            }
+        })*
+
+        /// Bytes of a number of a type; 0 for a type that is never written.
+        pub(super) fn kind_bytes(kind: u8) -> u64 {
+            match kind {
+                $($kind => size_of::<$number>() as u64,)*
+                _ => 0,
+            }
         }
-    }
+    };
 }
+
+numbers!(u32: 3, u64: 4, i8: 5, i32: 7, f32: 9, f64: 10);
 
 /// A named array of a frame, row by row.
 #[derive(Clone, Debug)]
 pub(super) struct Chunk {
-    pub(super) name: String,
-    pub(super) kind: Kind,
-    pub(super) columns: u32,
+    name: String,
+    kind: u8,
+    columns: u32,
     pub(super) bytes: Vec<u8>,
+}
+
+impl Chunk {
+    pub(super) fn new<T: Number, const N: usize>(
+        name: &str,
+        rows: impl IntoIterator<Item = [T; N]>,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            kind: T::KIND,
+            columns: N as u32,
+            bytes: rows.into_iter().flatten().flat_map(T::to_bytes).collect(),
+        }
+    }
 }
 
 /// Where an array is.
@@ -87,12 +119,11 @@ impl Entry {
     }
 
     fn decode(bytes: &[u8]) -> Self {
-        let long = |at: usize| u64_at(bytes, at);
         Self {
-            frame: long(0),
-            rows: long(8),
-            location: long(16),
-            columns: u32::from_le_bytes([bytes[24], bytes[25], bytes[26], bytes[27]]),
+            frame: u64::at_start(bytes),
+            rows: u64::at_start(&bytes[8..]),
+            location: u64::at_start(&bytes[16..]),
+            columns: u32::at_start(&bytes[24..]),
             name: u16::from_le_bytes([bytes[28], bytes[29]]),
             kind: bytes[30],
         }
@@ -105,12 +136,6 @@ impl Entry {
             .and_then(|numbers| numbers.checked_mul(kind_bytes(self.kind).max(1)))
             .and_then(|bytes| bytes.checked_add(self.location))
     }
-}
-
-pub(super) fn u64_at(bytes: &[u8], at: usize) -> u64 {
-    let mut eight = [0; 8];
-    eight.copy_from_slice(&bytes[at..at + 8]);
-    u64::from_le_bytes(eight)
 }
 
 /// A GSD file that is being written.
@@ -160,17 +185,13 @@ impl Container {
         keep: impl Fn(u64) -> bool,
     ) -> Result<Self, FormatError> {
         let mut file = Growing::open(path)?;
-        let damaged = |reason: &str| FormatError::NotATrajectory {
-            path: path.to_owned(),
-            reason: reason.to_owned(),
-        };
+        let damaged = |reason: &str| FormatError::not_a_trajectory(path, reason);
         let length = file.end();
         let header = read(file.file(), path, 0, HEADER_BYTES.min(length))?;
-        if header.len() < HEADER_BYTES as usize || u64_at(&header, 0) != MAGIC {
+        if header.len() < HEADER_BYTES as usize || u64::at_start(&header) != MAGIC {
             return Err(damaged("it does not begin like a GSD file"));
         }
-        let (index_at, capacity) = (u64_at(&header, 8), u64_at(&header, 16));
-        let names_at = u64_at(&header, 24);
+        let [index_at, capacity, names_at] = [8, 16, 24].map(|at| u64::at_start(&header[at..]));
         let first_array = capacity
             .checked_mul(ENTRY_BYTES)
             .and_then(|bytes| bytes.checked_add(HEADER_BYTES + NAMES_BYTES));
@@ -180,11 +201,7 @@ impl Container {
         let (true, Some(first_array)) = (of_ours, first_array) else {
             return Err(damaged("it is another program's GSD file, or cut short"));
         };
-        let names = read(file.file(), path, names_at, NAMES_BYTES)?
-            .split(|&byte| byte == 0)
-            .take_while(|name| !name.is_empty())
-            .map(|name| String::from_utf8_lossy(name).into_owned())
-            .collect::<Vec<_>>();
+        let names = read_names(file.file(), path, names_at, NAMES_BYTES)?;
         let wanted = names.iter().position(|known| known == name);
 
         let written = read_entries(file.file(), path, HEADER_BYTES, capacity)?;
@@ -218,7 +235,7 @@ impl Container {
                 }
                 break;
             };
-            if !keep(u64_at(&read(file.file(), path, marker.location, 8)?, 0)) {
+            if !keep(u64::at_start(&read(file.file(), path, marker.location, 8)?)) {
                 break;
             }
             (entries, frames, end) = (entries + frame.len() as u64, frames + 1, frame_end);
@@ -239,10 +256,8 @@ impl Container {
     /// Writes the arrays of one frame more: arrays, names, and last the entries by which they are found.
     pub(super) fn append(&mut self, chunks: &[Chunk]) -> Result<(), FormatError> {
         if self.entries + chunks.len() as u64 > self.capacity {
-            return Err(FormatError::NotATrajectory {
-                path: self.file.path().to_owned(),
-                reason: format!("it has room for {} arrays only", self.capacity),
-            });
+            let reason = format!("it has room for {} arrays only", self.capacity);
+            return Err(FormatError::not_a_trajectory(self.file.path(), reason));
         }
         let mut names = self.names.clone();
         let mut data = Vec::with_capacity(chunks.iter().map(|chunk| chunk.bytes.len()).sum());
@@ -255,11 +270,11 @@ impl Container {
             });
             entries.push(Entry {
                 frame: self.frames,
-                rows: (chunk.bytes.len() / chunk.kind.bytes()) as u64 / u64::from(chunk.columns),
+                rows: chunk.bytes.len() as u64 / kind_bytes(chunk.kind) / u64::from(chunk.columns),
                 location: self.file.end() + data.len() as u64,
                 columns: chunk.columns,
                 name: name as u16,
-                kind: chunk.kind as u8,
+                kind: chunk.kind,
             });
             data.extend_from_slice(&chunk.bytes);
         }
@@ -290,10 +305,8 @@ impl Container {
         let text = text.collect::<Vec<_>>();
         // Ours fit; a damaged file's need not.
         if text.len() as u64 >= NAMES_BYTES {
-            return Err(FormatError::NotATrajectory {
-                path: self.file.path().to_owned(),
-                reason: "its list of names is damaged".to_owned(),
-            });
+            let reason = "its list of names is damaged";
+            return Err(FormatError::not_a_trajectory(self.file.path(), reason));
         }
         let at = HEADER_BYTES + self.capacity * ENTRY_BYTES;
         self.file.write_at(at, &text)
@@ -321,19 +334,19 @@ impl Container {
     }
 }
 
-/// Bytes of a number of a type; 0 for a type that is never written.
-pub(super) fn kind_bytes(kind: u8) -> u64 {
-    [
-        Kind::U32,
-        Kind::U64,
-        Kind::I8,
-        Kind::I32,
-        Kind::F32,
-        Kind::F64,
-    ]
-    .into_iter()
-    .find(|known| *known as u8 == kind)
-    .map_or(0, |known| known.bytes() as u64)
+/// The names of the arrays.
+pub(super) fn read_names(
+    file: &mut File,
+    path: &Path,
+    offset: u64,
+    bytes: u64,
+) -> Result<Vec<String>, FormatError> {
+    let names = read(file, path, offset, bytes)?;
+    let names = names.split(|&byte| byte == 0);
+    Ok(names
+        .take_while(|name| !name.is_empty())
+        .map(|name| String::from_utf8_lossy(name).into_owned())
+        .collect())
 }
 
 /// The entries that have been written; the rest of the index, which may be long, is not looked at.

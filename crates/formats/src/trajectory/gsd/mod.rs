@@ -16,7 +16,7 @@ mod reader;
 
 use std::path::Path;
 
-use self::container::{Chunk, Container, ENTRY_BYTES, Kind};
+use self::container::{Chunk, Container, ENTRY_BYTES};
 use super::{Frame, TrajectoryFile};
 use crate::error::FormatError;
 
@@ -105,74 +105,44 @@ pub(super) fn frame_bytes(frame: &Frame) -> u64 {
 /// What changes from frame to frame.
 fn every_frame(frame: &Frame) -> Vec<Chunk> {
     let half = 0.5 * frame.length;
+    let sides = [frame.width, frame.width, frame.length, 0.0, 0.0, 0.0];
     let position = frame.position.iter().map(|&[x, y, z]| [x, y, z - half]);
-    let image = frame.turns.iter().map(|&turns| [0, 0, turns]);
     let mut chunks = vec![
-        chunk(STEP, Kind::U64, 1, frame.step.to_le_bytes()),
-        chunk(
-            BOX,
-            Kind::F32,
-            1,
-            singles([[frame.width, frame.width, frame.length, 0.0, 0.0, 0.0]]),
-        ),
-        chunk(NUMBER, Kind::U32, 1, (frame.spheres() as u32).to_le_bytes()),
-        chunk(POSITION, Kind::F32, 3, singles(position)),
-        chunk(
-            VELOCITY,
-            Kind::F32,
-            3,
-            singles(frame.velocity.iter().copied()),
-        ),
-        chunk(
-            IMAGE,
-            Kind::I32,
-            3,
-            image.flatten().flat_map(i32::to_le_bytes),
-        ),
+        Chunk::new(STEP, [[frame.step]]),
+        Chunk::new(BOX, singles(sides.map(|side| [side]))),
+        Chunk::new(NUMBER, [[frame.spheres() as u32]]),
+        Chunk::new(POSITION, singles(position)),
+        Chunk::new(VELOCITY, singles(frame.velocity.iter().copied())),
+        Chunk::new(IMAGE, frame.turns.iter().map(|&turns| [0, 0, turns])),
     ];
     if let Some(rotation) = &frame.rotation {
         let orientation = frame.for_spheres(&rotation.orientation, [1.0, 0.0, 0.0, 0.0]);
         let angular_velocity = frame.for_spheres(&rotation.angular_velocity, [0.0; 3]);
         chunks.extend([
-            chunk(ORIENTATION, Kind::F32, 4, singles(orientation)),
-            chunk(ANGULAR_VELOCITY, Kind::F32, 3, singles(angular_velocity)),
+            Chunk::new(ORIENTATION, singles(orientation)),
+            Chunk::new(ANGULAR_VELOCITY, singles(angular_velocity)),
         ]);
     }
     let values = frame.values.iter().map(|(name, value)| (&**name, *value));
     let logged = [(TIME, frame.time)].into_iter().chain(values);
-    chunks
-        .extend(logged.map(|(name, value)| {
-            chunk(&format!("{LOG}{name}"), Kind::F64, 1, value.to_le_bytes())
-        }));
+    chunks.extend(logged.map(|(name, value)| Chunk::new(&format!("{LOG}{name}"), [[value]])));
     chunks
 }
 
 /// What holds for every frame.
 fn first_frame(frame: &Frame) -> [Chunk; 3] {
-    let kinds = (0..frame.spheres()).map(|sphere| u32::from(sphere >= frame.grains));
+    let types = [*b"grain\0", *b"wall\0\0"].map(|name| name.map(|letter| letter as i8));
+    let kinds = (0..frame.spheres()).map(|sphere| [u32::from(sphere >= frame.grains)]);
+    let diameter = frame.diameter.iter().map(|&diameter| [diameter]);
     [
-        chunk(TYPES, Kind::I8, 6, *b"grain\0wall\0\0"),
-        chunk(TYPE_NUMBERS, Kind::U32, 1, kinds.flat_map(u32::to_le_bytes)),
-        chunk(
-            DIAMETER,
-            Kind::F32,
-            1,
-            singles(frame.diameter.iter().map(|&diameter| [diameter])),
-        ),
+        Chunk::new(TYPES, types),
+        Chunk::new(TYPE_NUMBERS, kinds),
+        Chunk::new(DIAMETER, singles(diameter)),
     ]
 }
 
-fn chunk(name: &str, kind: Kind, columns: u32, bytes: impl IntoIterator<Item = u8>) -> Chunk {
-    Chunk {
-        name: name.to_owned(),
-        kind,
-        columns,
-        bytes: bytes.into_iter().collect(),
-    }
-}
-
-fn singles<const N: usize>(rows: impl IntoIterator<Item = [f64; N]>) -> impl Iterator<Item = u8> {
-    rows.into_iter()
-        .flatten()
-        .flat_map(|value| (value as f32).to_le_bytes())
+fn singles<const N: usize>(
+    rows: impl IntoIterator<Item = [f64; N]>,
+) -> impl Iterator<Item = [f32; N]> {
+    rows.into_iter().map(|row| row.map(|value| value as f32))
 }

@@ -5,8 +5,8 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use super::container::{
-    ENTRY_BYTES, Entry, HEADER_BYTES, Kind, MAGIC, NAME_UNIT, kind_bytes, read, read_entries,
-    u64_at,
+    ENTRY_BYTES, Entry, HEADER_BYTES, MAGIC, NAME_UNIT, Number, kind_bytes, read, read_entries,
+    read_names,
 };
 use super::{
     ANGULAR_VELOCITY, BOX, DIAMETER, GRAIN, IMAGE, LOG, NUMBER, ORIENTATION, POSITION, STEP, TIME,
@@ -46,12 +46,9 @@ impl GsdReader {
             .metadata()
             .map_err(FormatError::io("read", path))?
             .len();
-        let refused = |reason: String| FormatError::UnreadableTrajectory {
-            path: path.to_owned(),
-            reason,
-        };
+        let refused = |reason: String| FormatError::unreadable_trajectory(path, reason);
         let header = read(&mut file, path, 0, HEADER_BYTES.min(length))?;
-        if header.len() < 8 || u64_at(&header, 0) != MAGIC {
+        if header.len() < 8 || u64::at_start(&header) != MAGIC {
             return Err(refused("it does not begin like a GSD file".to_owned()));
         }
         let cut_short = || refused(format!("it is cut short after {length} bytes"));
@@ -66,14 +63,11 @@ impl GsdReader {
         }
         let schema = &header[112..176];
         if !schema.starts_with(b"hoomd\0") {
-            let name = schema.split(|&byte| byte == 0).next().unwrap_or_default();
-            return Err(refused(format!(
-                "its schema is `{}`, not `hoomd`",
-                name.escape_ascii()
-            )));
+            let name = before_zero(schema);
+            return Err(refused(format!("its schema is `{name}`, not `hoomd`")));
         }
-        let (index_at, capacity) = (u64_at(&header, 8), u64_at(&header, 16));
-        let (names_at, name_units) = (u64_at(&header, 24), u64_at(&header, 32));
+        let [index_at, capacity, names_at, name_units] =
+            [8, 16, 24, 32].map(|at| u64::at_start(&header[at..]));
         let holds = |at: u64, number: u64, each: u64| {
             let end = number.checked_mul(each).and_then(|it| it.checked_add(at));
             end.is_some_and(|end| end <= length)
@@ -82,11 +76,7 @@ impl GsdReader {
             return Err(cut_short());
         }
         let name_bytes = (name_units * NAME_UNIT).min(MOST_NAME_BYTES);
-        let names = read(&mut file, path, names_at, name_bytes)?
-            .split(|&byte| byte == 0)
-            .take_while(|name| !name.is_empty())
-            .map(|name| String::from_utf8_lossy(name).into_owned())
-            .collect();
+        let names = read_names(&mut file, path, names_at, name_bytes)?;
         let entries = read_entries(&mut file, path, index_at, capacity)?;
         let (frames, lost) = whole_frames(&entries, length);
         if frames.is_empty() {
@@ -121,9 +111,7 @@ impl GsdReader {
     /// # Errors
     /// As [`GsdReader::frame`].
     pub fn value(&mut self, frame: usize, name: &str) -> Result<Option<f64>, FormatError> {
-        let values: Option<Vec<[f64; 1]>> =
-            self.array(frame, &format!("{LOG}{name}"), Kind::F64)?;
-        Ok(values.and_then(|values| values.first().map(|[value]| *value)))
+        self.number(frame, &format!("{LOG}{name}"))
     }
 
     /// A frame, counted from 0.
@@ -138,19 +126,20 @@ impl GsdReader {
                 self.frames.len()
             )));
         }
-        let step = self.bytes(frame, STEP, Kind::U64, 1)?;
-        let step = step.map_or(0, |bytes| u64_at(&bytes, 0));
-        let number = match self.bytes(frame, NUMBER, Kind::U32, 1)? {
-            Some(bytes) => u32::from_le_bytes([bytes[0], bytes[1], bytes[2], bytes[3]]) as usize,
-            None => 0,
-        };
-        let sides: Vec<[f64; 1]> = self.array(frame, BOX, Kind::F32)?.unwrap_or_default();
+        let step = self.number(frame, STEP)?.unwrap_or(0);
+        let number = self.number::<u32>(frame, NUMBER)?.unwrap_or(0) as usize;
+        let sides: Vec<[f32; 1]> = self.array(frame, BOX)?.unwrap_or_default();
         let [[width], _, [length], ..] = sides[..] else {
             return Err(self.refused(format!("frame {frame} has no box")));
         };
+        let (width, length) = (f64::from(width), f64::from(length));
         let grains = self.grains(frame, number)?;
-        let mut position: Vec<[f64; 3]> = self.rows(frame, POSITION, number)?;
-        let mut turns: Vec<i32> = self.turns(frame, number)?;
+        let mut position: Vec<[f64; 3]> = self.reals(frame, POSITION, number)?;
+        let turns: Option<Vec<[i32; 3]>> = self.rows(frame, IMAGE, number)?;
+        let mut turns = match turns {
+            Some(turns) => turns.into_iter().map(|[_, _, turns]| turns).collect(),
+            None => vec![0; number],
+        };
         for ([_, _, z], turns) in position.iter_mut().zip(&mut turns) {
             *z += 0.5 * length;
             // Rounding to 32 bits may lift a place next to the end of the tube beyond it.
@@ -158,13 +147,12 @@ impl GsdReader {
                 (*z, *turns) = (*z - length, turns.saturating_add(1));
             }
         }
-        let diameter: Vec<[f64; 1]> = self.rows(frame, DIAMETER, number)?;
-        let rotation = match self.array(frame, ORIENTATION, Kind::F32)? {
+        let diameter: Vec<[f64; 1]> = self.reals(frame, DIAMETER, number)?;
+        let rotation = match self.entry(frame, ORIENTATION) {
             None => None,
-            Some(orientation) => Some(Rotation {
-                orientation: self.fitting(frame, ORIENTATION, orientation, number)?[..grains]
-                    .to_vec(),
-                angular_velocity: self.rows(frame, ANGULAR_VELOCITY, number)?[..grains].to_vec(),
+            Some(_) => Some(Rotation {
+                orientation: self.reals(frame, ORIENTATION, number)?[..grains].to_vec(),
+                angular_velocity: self.reals(frame, ANGULAR_VELOCITY, number)?[..grains].to_vec(),
             }),
         };
         Ok(Frame {
@@ -175,7 +163,7 @@ impl GsdReader {
             grains,
             position,
             turns,
-            velocity: self.rows(frame, VELOCITY, number)?,
+            velocity: self.reals(frame, VELOCITY, number)?,
             diameter: diameter.into_iter().flatten().collect(),
             rotation,
             contacts: Vec::new(),
@@ -192,18 +180,15 @@ impl GsdReader {
                 types.join(", ")
             )));
         }
-        let numbers = self.bytes(frame, TYPE_NUMBERS, Kind::U32, 1)?;
+        let numbers: Option<Vec<[u32; 1]>> = self.array(frame, TYPE_NUMBERS)?;
         let numbers = numbers.unwrap_or_default();
-        let is_wall = |four: &[u8]| four != [0; 4];
-        if numbers.len() != 4 * number || !numbers.chunks_exact(4).is_sorted_by_key(is_wall) {
+        let is_wall = |number: &[u32; 1]| *number != [0];
+        if numbers.len() != number || !numbers.is_sorted_by_key(is_wall) {
             return Err(self.refused(format!(
                 "frame {frame} does not have its grains first and then the wall"
             )));
         }
-        Ok(numbers
-            .chunks_exact(4)
-            .filter(|four| !is_wall(four))
-            .count())
+        Ok(numbers.partition_point(|number| !is_wall(number)))
     }
 
     fn types(&mut self, frame: usize) -> Result<Vec<String>, FormatError> {
@@ -211,22 +196,8 @@ impl GsdReader {
             return Ok(vec!["not named".to_owned()]);
         };
         let bytes = self.of_entry(&entry)?;
-        let names = bytes.chunks(entry.columns.max(1) as usize).map(|name| {
-            let letters = name.split(|&byte| byte == 0).next().unwrap_or_default();
-            letters.escape_ascii().to_string()
-        });
-        Ok(names.collect())
-    }
-
-    fn turns(&mut self, frame: usize, number: usize) -> Result<Vec<i32>, FormatError> {
-        let Some(bytes) = self.bytes(frame, IMAGE, Kind::I32, 3)? else {
-            return Ok(vec![0; number]);
-        };
-        let turns = bytes
-            .chunks_exact(12)
-            .map(|row| i32::from_le_bytes([row[8], row[9], row[10], row[11]]))
-            .collect();
-        self.fitting(frame, IMAGE, turns, number)
+        let names = bytes.chunks(entry.columns.max(1) as usize);
+        Ok(names.map(before_zero).collect())
     }
 
     /// What was logged but time and what belongs to the particles.
@@ -251,80 +222,62 @@ impl GsdReader {
     }
 
     /// An array of reals that has a row a particle.
-    fn rows<const N: usize>(
+    fn reals<const N: usize>(
         &mut self,
         frame: usize,
         name: &str,
         number: usize,
     ) -> Result<Vec<[f64; N]>, FormatError> {
-        match self.array(frame, name, Kind::F32)? {
-            Some(rows) => self.fitting(frame, name, rows, number),
+        match self.rows(frame, name, number)? {
+            Some(rows) => Ok(rows.into_iter().map(|row| row.map(f32::into)).collect()),
             None => Err(self.refused(format!("frame {frame} has no {name}"))),
         }
     }
 
-    fn fitting<T>(
-        &self,
+    /// An array, if there is one, that must have a row a particle.
+    fn rows<T: Number, const N: usize>(
+        &mut self,
         frame: usize,
         name: &str,
-        rows: Vec<T>,
         number: usize,
-    ) -> Result<Vec<T>, FormatError> {
-        if rows.len() == number {
-            return Ok(rows);
+    ) -> Result<Option<Vec<[T; N]>>, FormatError> {
+        match self.array(frame, name)? {
+            Some(rows) if rows.len() != number => Err(self.refused(format!(
+                "frame {frame} has {number} particles, and {} rows of {name}",
+                rows.len()
+            ))),
+            rows => Ok(rows),
         }
-        Err(self.refused(format!(
-            "frame {frame} has {number} particles, and {} rows of {name}",
-            rows.len()
-        )))
     }
 
-    /// An array of reals, row by row.
-    fn array<const N: usize>(
+    /// The first number of an array, if there is one.
+    fn number<T: Number>(&mut self, frame: usize, name: &str) -> Result<Option<T>, FormatError> {
+        let numbers = self.array(frame, name)?;
+        Ok(numbers.map(|numbers| {
+            let [number] = numbers[0];
+            number
+        }))
+    }
+
+    /// An array row by row, if there is one; it must be of the type and so many columns, and not empty.
+    fn array<T: Number, const N: usize>(
         &mut self,
         frame: usize,
         name: &str,
-        kind: Kind,
-    ) -> Result<Option<Vec<[f64; N]>>, FormatError> {
-        let Some(bytes) = self.bytes(frame, name, kind, N as u32)? else {
-            return Ok(None);
-        };
-        let mut reals = match kind {
-            Kind::F64 => bytes
-                .chunks_exact(8)
-                .map(|eight| f64::from_bits(u64_at(eight, 0)))
-                .collect::<Vec<_>>(),
-            _ => bytes
-                .chunks_exact(4)
-                .map(|four| f64::from(f32::from_le_bytes([four[0], four[1], four[2], four[3]])))
-                .collect(),
-        }
-        .into_iter();
-        let rows = reals.len() / N;
-        Ok(Some(
-            (0..rows)
-                .map(|_| std::array::from_fn(|_| reals.next().unwrap_or(f64::NAN)))
-                .collect(),
-        ))
-    }
-
-    /// The bytes of an array, which must be of a type and so many columns; not empty.
-    fn bytes(
-        &mut self,
-        frame: usize,
-        name: &str,
-        kind: Kind,
-        columns: u32,
-    ) -> Result<Option<Vec<u8>>, FormatError> {
+    ) -> Result<Option<Vec<[T; N]>>, FormatError> {
         let Some(entry) = self.entry(frame, name) else {
             return Ok(None);
         };
-        if entry.kind != kind as u8 || entry.columns != columns || entry.rows == 0 {
+        if entry.kind != T::KIND || entry.columns != N as u32 || entry.rows == 0 {
             return Err(self.refused(format!(
                 "{name} of frame {frame} is not of the type that the schema asks for"
             )));
         }
-        self.of_entry(&entry).map(Some)
+        let bytes = self.of_entry(&entry)?;
+        let rows = bytes.chunks_exact(N * size_of::<T>());
+        let row =
+            |row: &[u8]| std::array::from_fn(|column| T::at_start(&row[column * size_of::<T>()..]));
+        Ok(Some(rows.map(row).collect()))
     }
 
     /// Where an array of a frame is; what a frame lacks is as in the first.
@@ -341,10 +294,7 @@ impl GsdReader {
     }
 
     fn refused(&self, reason: String) -> FormatError {
-        FormatError::UnreadableTrajectory {
-            path: self.path.clone(),
-            reason,
-        }
+        FormatError::unreadable_trajectory(&self.path, reason)
     }
 }
 
@@ -370,4 +320,10 @@ fn whole_frames(entries: &[Entry], length: u64) -> (Vec<HashMap<u16, Entry>>, u6
         .collect();
     let lost = (groups.len() - whole.len()) as u64;
     (whole, lost)
+}
+
+/// Text up to its first zero byte.
+fn before_zero(text: &[u8]) -> String {
+    let letters = text.split(|&byte| byte == 0).next().unwrap_or_default();
+    letters.escape_ascii().to_string()
 }
