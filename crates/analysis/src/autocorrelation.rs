@@ -63,7 +63,7 @@ pub fn autocorrelation_time(series: &[f64]) -> Result<AutocorrelationTime, Error
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{autoregressive, white_noise};
+    use crate::tests::{autoregressive, white_noise};
 
     #[test]
     fn an_autoregressive_series_has_its_known_time_within_the_error() {

@@ -139,7 +139,7 @@ pub fn mean_with_error(series: &[f64]) -> Result<Estimate, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{autoregressive, white_noise};
+    use crate::tests::{autoregressive, white_noise};
 
     /// Share of series whose true mean, 0, lies within one error.
     fn coverage(memory: f64, samples: usize) -> f64 {

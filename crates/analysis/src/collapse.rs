@@ -177,7 +177,7 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::white_noise;
+    use crate::tests::white_noise;
     use proptest::prelude::*;
 
     /// Curves on y = 2 - x with unequal grids and errors of 0.1.

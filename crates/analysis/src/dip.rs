@@ -162,7 +162,7 @@ fn widest_gap(places: &[Place], minorant: &[usize], majorant: &[usize]) -> (f64,
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::{assert_coverage, white_noise};
+    use crate::tests::{assert_coverage, white_noise};
     use proptest::prelude::*;
 
     fn of(values: &[f64]) -> f64 {

@@ -87,7 +87,7 @@ pub fn compare_laws(
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::watched;
+    use crate::tests::watched;
 
     const POWER: Law = Law::Power;
     const BARRIER: Law = Law::Barrier { power: 1.0 };

@@ -97,7 +97,7 @@ pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>,
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::white_noise;
+    use crate::tests::white_noise;
     use proptest::prelude::*;
 
     #[test]

@@ -84,7 +84,7 @@ pub fn ensembles_by_width(
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::watched;
+    use crate::tests::watched;
 
     #[test]
     fn the_bias_of_dropping_censored_runs_grows_toward_the_critical_width() {

@@ -87,7 +87,7 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::{Coverage, assert_coverage};
+    use crate::tests::{Coverage, assert_coverage};
 
     fn runs(randomness: &mut Randomness, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {
         let mut rows = (Vec::new(), Vec::new());

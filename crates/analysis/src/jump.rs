@@ -80,7 +80,7 @@ fn branch([width, ratio, error]: [&[f64]; 3], at: f64) -> Result<(Uncertain, f64
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{Coverage, white_noise};
+    use crate::tests::{Coverage, white_noise};
 
     #[test]
     fn intervals_of_the_height_cover_with_an_uncertain_critical_width() {

@@ -57,7 +57,7 @@ mod truncation;
 mod uncertain;
 
 #[cfg(test)]
-mod synthetic;
+mod tests;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{Estimate, mean_with_error};

@@ -191,7 +191,7 @@ fn solved<const N: usize>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{assert_coverage, white_noise};
+    use crate::tests::{assert_coverage, white_noise};
 
     const RATES: [f64; 6] = [0.03, 0.05, 0.08, 0.1, 0.15, 0.2];
     const ERRORS: [f64; 6] = [0.01, 0.02, 0.01, 0.03, 0.02, 0.01];

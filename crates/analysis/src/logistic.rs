@@ -203,7 +203,7 @@ pub fn fraction_crossing(width: &[f64], jammed: &[bool]) -> Result<FractionCross
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::Coverage;
+    use crate::tests::Coverage;
     use proptest::prelude::*;
 
     fn runs(seed: u64, replicas: usize, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {

@@ -224,7 +224,7 @@ fn maximise(values: &[f64], split: f64, narrowest: f64) -> (f64, Peak, Peak) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{assert_coverage, white_noise};
+    use crate::tests::{assert_coverage, white_noise};
     use proptest::prelude::*;
 
     /// A third of the values about 0.2, the others about 0.95.

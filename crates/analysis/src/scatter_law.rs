@@ -221,7 +221,7 @@ mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
     use crate::fit_law_to_runs;
-    use crate::synthetic::{Coverage, assert_coverage, watched};
+    use crate::tests::{Coverage, assert_coverage, watched};
     use proptest::prelude::*;
 
     /// tau = 10/(2.8 - w) with chi_tau/tau^2 = C (2.8 - w)^-q, 20 runs at ten widths, watched for 500.

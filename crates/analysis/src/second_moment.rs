@@ -170,7 +170,7 @@ fn highest(moments: &[SecondMoment]) -> Option<(usize, f64)> {
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::{Coverage, white_noise};
+    use crate::tests::{Coverage, white_noise};
     use crate::{Law, fit_law};
     use proptest::prelude::*;
 

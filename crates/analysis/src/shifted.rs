@@ -119,7 +119,7 @@ fn waiting_time(theta: f64, free: f64) -> Uncertain {
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::synthetic::{Coverage, exponential, watched};
+    use crate::tests::{Coverage, exponential, watched};
     use crate::{Family, fit_lifetime};
 
     fn sample(seed: u64, runs: usize, until: f64) -> Vec<Transition> {

@@ -59,7 +59,7 @@ pub fn stationarity(series: &[f64]) -> Result<Stationarity, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::autoregressive;
+    use crate::tests::autoregressive;
 
     fn share_in_agreement(drift: f64) -> f64 {
         let (seeds, samples) = (500, 4000);

@@ -115,7 +115,7 @@ pub fn stationary_mean(series: &[f64]) -> Result<StationaryMean, Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::{assert_coverage, autoregressive};
+    use crate::tests::{assert_coverage, autoregressive};
     use proptest::prelude::*;
 
     /// Noise about 0.9 after a start near 0 that dies out with a time of 60 samples.

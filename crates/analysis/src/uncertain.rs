@@ -180,7 +180,7 @@ pub(crate) fn quantile(sorted: &[f64], probability: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::synthetic::white_noise;
+    use crate::tests::white_noise;
 
     #[test]
     fn intervals_of_the_normal_approximation() {

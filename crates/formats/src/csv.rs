@@ -6,56 +6,41 @@
 //! metadata are not in the file.
 
 use std::borrow::Cow;
-use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
 use crate::atomic;
 use crate::error::FormatError;
-use crate::table::{Table, Values};
+use crate::table::{Column, Table, Values};
 
 /// The values of a table as CSV text.
 pub fn encode(table: &Table) -> String {
     let mut text = String::new();
-    for (index, column) in table.columns().iter().enumerate() {
-        if index > 0 {
-            text.push(',');
+    let mut push_row = |field: &dyn Fn(&Column) -> String| {
+        let fields: Vec<String> = table.columns().iter().map(field).collect();
+        text.push_str(&fields.join(","));
+        text.push('\n');
+    };
+    push_row(&|column| {
+        let is_plain = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
+        match column.name.chars().all(is_plain) {
+            true => column.name.clone(),
+            false => quoted(&column.name),
         }
-        if column
-            .name
-            .chars()
-            .all(|character| character.is_ascii_alphanumeric() || character == '_')
-        {
-            text.push_str(&column.name);
-        } else {
-            push_quoted(&mut text, &column.name);
-        }
-    }
-    text.push('\n');
+    });
     // Most readers skip an empty line, so a lone missing value cannot be an empty field.
-    let missing = if table.columns().len() == 1 {
-        "NaN"
-    } else {
-        ""
+    let missing = match table.columns().len() {
+        1 => "NaN",
+        _ => "",
     };
     for row in 0..table.rows() {
-        for (index, column) in table.columns().iter().enumerate() {
-            if index > 0 {
-                text.push(',');
-            }
-            let written = match &column.values {
-                Values::Real(values) if values[row].is_nan() => text.write_str(missing),
-                Values::Real(values) => write!(text, "{:?}", values[row]),
-                Values::Integer(values) => write!(text, "{}", values[row]),
-                Values::Boolean(values) => write!(text, "{}", values[row]),
-                Values::Text(values) => {
-                    push_quoted(&mut text, &values[row]);
-                    Ok(())
-                }
-            };
-            written.expect("writing to a String cannot fail");
-        }
-        text.push('\n');
+        push_row(&|column| match &column.values {
+            Values::Real(values) if values[row].is_nan() => missing.to_owned(),
+            Values::Real(values) => format!("{:?}", values[row]),
+            Values::Integer(values) => values[row].to_string(),
+            Values::Boolean(values) => values[row].to_string(),
+            Values::Text(values) => quoted(&values[row]),
+        });
     }
     text
 }
@@ -116,10 +101,8 @@ pub fn read(path: &Path) -> Result<Table, FormatError> {
     decode(&fs::read_to_string(path).map_err(FormatError::io("read", path))?)
 }
 
-fn push_quoted(text: &mut String, value: &str) {
-    text.push('"');
-    text.push_str(&value.replace('"', "\"\""));
-    text.push('"');
+fn quoted(value: &str) -> String {
+    format!("\"{}\"", value.replace('"', "\"\""))
 }
 
 fn values_of(fields: Vec<Field<'_>>) -> Values {
@@ -156,12 +139,6 @@ struct Field<'text> {
     quoted: bool,
 }
 
-#[derive(PartialEq)]
-enum End {
-    Field,
-    Record,
-}
-
 struct Scanner<'text> {
     rest: &'text str,
     /// Line on which `rest` begins, counted from 1.
@@ -176,45 +153,34 @@ impl<'text> Scanner<'text> {
         }
         let mut fields = Vec::new();
         loop {
-            let (field, end) = if self.rest.starts_with('"') {
-                self.quoted()?
-            } else {
-                self.plain()?
+            let quoted = self.rest.starts_with('"');
+            let text = match quoted {
+                true => self.quoted()?,
+                false => self.plain()?.into(),
             };
-            fields.push(field);
-            if end == End::Record {
+            let is_last = self.separator()?;
+            self.line += text.matches('\n').count() + usize::from(is_last);
+            fields.push(Field { text, quoted });
+            if is_last {
                 return Ok(Some(fields));
             }
         }
     }
 
-    fn plain(&mut self) -> Result<(Field<'text>, End), FormatError> {
+    fn plain(&mut self) -> Result<&'text str, FormatError> {
         let length = self.rest.find([',', '\n']).unwrap_or(self.rest.len());
         let (text, rest) = self.rest.split_at(length);
         if text.contains('"') {
             return Err(self.error("a quotation mark inside a field that is not quoted"));
         }
-        let (text, end) = match rest.strip_prefix(',') {
-            Some(rest) => {
-                self.rest = rest;
-                (text, End::Field)
-            }
-            None => {
-                self.rest = rest.strip_prefix('\n').unwrap_or(rest);
-                self.line += 1;
-                (text.strip_suffix('\r').unwrap_or(text), End::Record)
-            }
-        };
-        Ok((
-            Field {
-                text: text.into(),
-                quoted: false,
-            },
-            end,
-        ))
+        self.rest = rest;
+        Ok(match rest.starts_with(',') {
+            true => text,
+            false => text.strip_suffix('\r').unwrap_or(text),
+        })
     }
 
-    fn quoted(&mut self) -> Result<(Field<'text>, End), FormatError> {
+    fn quoted(&mut self) -> Result<Cow<'text, str>, FormatError> {
         let mut text = Cow::Borrowed("");
         let mut rest = &self.rest[1..];
         loop {
@@ -228,24 +194,27 @@ impl<'text> Scanner<'text> {
                     text += "\"";
                     rest = after;
                 }
-                None => break,
+                None => {
+                    self.rest = rest;
+                    return Ok(text);
+                }
             }
         }
-        let (after, end) = if let Some(after) = rest.strip_prefix(',') {
-            (after, End::Field)
-        } else if rest.is_empty() {
-            (rest, End::Record)
-        } else if let Some(after) = rest
-            .strip_prefix("\r\n")
-            .or_else(|| rest.strip_prefix('\n'))
-        {
-            (after, End::Record)
-        } else {
-            return Err(self.error("text follows the closing quotation mark"));
-        };
-        self.rest = after;
-        self.line += text.matches('\n').count() + usize::from(end == End::Record);
-        Ok((Field { text, quoted: true }, end))
+    }
+
+    /// Passes over what stands behind a field; answers whether the record ends there.
+    fn separator(&mut self) -> Result<bool, FormatError> {
+        if let Some(rest) = self.rest.strip_prefix(',') {
+            self.rest = rest;
+            return Ok(false);
+        }
+        let rest = self.rest.strip_prefix('\r').unwrap_or(self.rest);
+        match rest.strip_prefix('\n') {
+            Some(rest) => self.rest = rest,
+            None if self.rest.is_empty() => {}
+            None => return Err(self.error("text follows the closing quotation mark")),
+        }
+        Ok(true)
     }
 
     fn error(&self, reason: &str) -> FormatError {

@@ -71,25 +71,18 @@ impl Values {
     }
 }
 
-/// A real as equality sees it: its bits, with one pattern for every NaN.
-fn canonical_bits(value: f64) -> u64 {
-    if value.is_nan() {
-        f64::NAN.to_bits()
-    } else {
-        value.to_bits()
-    }
+/// Reals as equality sees them: their bits, with one pattern for every NaN.
+fn canonical_bits(values: &[f64]) -> impl Iterator<Item = u64> {
+    values.iter().map(|value| match value.is_nan() {
+        true => f64::NAN.to_bits(),
+        false => value.to_bits(),
+    })
 }
 
 impl PartialEq for Values {
     fn eq(&self, other: &Self) -> bool {
         match (self, other) {
-            (Self::Real(left), Self::Real(right)) => {
-                left.len() == right.len()
-                    && left
-                        .iter()
-                        .zip(right)
-                        .all(|(&a, &b)| canonical_bits(a) == canonical_bits(b))
-            }
+            (Self::Real(left), Self::Real(right)) => canonical_bits(left).eq(canonical_bits(right)),
             (Self::Integer(left), Self::Integer(right)) => left == right,
             (Self::Text(left), Self::Text(right)) => left == right,
             (Self::Boolean(left), Self::Boolean(right)) => left == right,

@@ -105,9 +105,7 @@ impl Newtonian {
         py: Python<'py>,
         phase: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let phase = phase.as_slice()?;
-        let radius = phase.iter().map(|&phase| self.flow.wall_radius(phase));
-        Ok(PyArray1::from_iter(py, radius))
+        along(py, &phase, |phase| self.flow.wall_radius(phase))
     }
 
     fn pressure_along_wave<'py>(
@@ -115,11 +113,7 @@ impl Newtonian {
         py: Python<'py>,
         phase: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let phase = phase.as_slice()?;
-        let pressure = phase
-            .iter()
-            .map(|&phase| self.flow.pressure_along_wave(phase));
-        Ok(PyArray1::from_iter(py, pressure))
+        along(py, &phase, |phase| self.flow.pressure_along_wave(phase))
     }
 
     /// Axial and radial velocity and stream function at (radius, phase), which have the same length.
@@ -140,6 +134,16 @@ impl Newtonian {
             each(&|r, x| self.flow.stream_function(r, x)),
         ])
     }
+}
+
+/// A quantity at each phase.
+fn along<'py>(
+    py: Python<'py>,
+    phase: &PyReadonlyArray1<'py, f64>,
+    quantity: impl Fn(f64) -> f64,
+) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    let phase = phase.as_slice()?;
+    Ok(PyArray1::from_iter(py, phase.iter().copied().map(quantity)))
 }
 
 /// Amplitude ratio from which on a bolus is trapped at a pressure rise.

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use parking_lot::Mutex;
-use peristalsis_engine::Instructions;
+use peristalsis_engine::{Bodies, Instructions};
 use peristalsis_run::{Status, Summary, profile_table, timeseries_table, waves_table};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -38,23 +38,29 @@ impl Run {
         py.detach(|| look(&mut self.run.lock()))
     }
 
-    /// A vector of each grain, shape (N, 3).
-    fn vectors<'py>(
+    /// A quantity of each grain.
+    fn of_grains<T: Clone + Send>(
         &self,
-        py: Python<'py>,
-        vectors: impl FnOnce(&peristalsis_run::Run) -> Vec<DVec3> + Send,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let flat: Vec<f64> = self.look(py, |run| {
-            vectors(run)
-                .into_iter()
-                .flat_map(|vector| vector.to_array())
-                .collect()
-        });
-        let number = flat.len() / 3;
-        let array = PyArray1::from_vec(py, flat).reshape([number, 3])?;
-        array.readwrite().make_nonwriteable();
-        Ok(array)
+        py: Python<'_>,
+        quantity: impl FnOnce(&Bodies) -> &[T] + Send,
+    ) -> Vec<T> {
+        self.look(py, |run| {
+            let bodies = run.simulation().bodies();
+            quantity(bodies)[..bodies.grains].to_vec()
+        })
     }
+}
+
+/// Vectors as an array of shape (N, 3).
+fn vectors<'py>(
+    py: Python<'py>,
+    vectors: impl IntoIterator<Item = DVec3>,
+) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    let flat: Vec<f64> = vectors.into_iter().flat_map(|it| it.to_array()).collect();
+    let number = flat.len() / 3;
+    let array = PyArray1::from_vec(py, flat).reshape([number, 3])?;
+    array.readwrite().make_nonwriteable();
+    Ok(array)
 }
 
 #[pymethods]
@@ -136,63 +142,45 @@ impl Run {
     /// Centres of the grains.
     #[getter]
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.vectors(py, |run| {
-            let bodies = run.simulation().bodies();
-            bodies.position[..bodies.grains].to_vec()
-        })
+        vectors(py, self.of_grains(py, |bodies| &bodies.position))
     }
 
     /// Velocities of the grains.
     #[getter]
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.vectors(py, |run| {
-            let bodies = run.simulation().bodies();
-            bodies.velocity[..bodies.grains].to_vec()
-        })
+        vectors(py, self.of_grains(py, |bodies| &bodies.velocity))
     }
 
     /// Angular velocities of the grains.
     #[getter]
     fn angular_velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.vectors(py, |run| {
-            let bodies = run.simulation().bodies();
-            bodies.angular_velocity[..bodies.grains].to_vec()
-        })
+        vectors(py, self.of_grains(py, |bodies| &bodies.angular_velocity))
     }
 
     /// Centres of the wall's spheres.
     #[getter]
     fn wall_positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        self.vectors(py, |run| {
+        let positions: Vec<DVec3> = self.look(py, |run| {
             let bodies = run.simulation().bodies();
             let prescribed = run.simulation().wall().prescribed_spheres();
             let mobile = bodies.position[bodies.grains..].iter().copied();
             mobile
                 .chain(prescribed.map(|sphere| sphere.position))
                 .collect()
-        })
+        });
+        vectors(py, positions)
     }
 
     /// Diameters of the grains.
     #[getter]
     fn diameters<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        let diameters = self.look(py, |run| {
-            let bodies = run.simulation().bodies();
-            bodies.diameter[..bodies.grains].to_vec()
-        });
-        read_only(py, diameters)
+        read_only(py, self.of_grains(py, |bodies| &bodies.diameter))
     }
 
     /// Turns of the grains round the tube.
     #[getter]
     fn turns<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i32>> {
-        let turns = self.look(py, |run| {
-            let bodies = run.simulation().bodies();
-            bodies.turns[..bodies.grains].to_vec()
-        });
-        let array = PyArray1::from_vec(py, turns);
-        array.readwrite().make_nonwriteable();
-        array
+        read_only(py, self.of_grains(py, |bodies| &bodies.turns))
     }
 
     /// Steps done.

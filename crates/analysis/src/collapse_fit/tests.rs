@@ -1,6 +1,6 @@
 use super::*;
 use crate::Scaling;
-use crate::synthetic::{Coverage, white_noise};
+use crate::tests::{Coverage, white_noise};
 use proptest::prelude::*;
 
 const RATES: [f64; 5] = [0.03, 0.05, 0.08, 0.12, 0.2];

@@ -1,5 +1,5 @@
 use super::*;
-use crate::synthetic::{Coverage, assert_coverage, white_noise};
+use crate::tests::{Coverage, assert_coverage, white_noise};
 use proptest::prelude::*;
 
 const WIDTHS: [f64; 10] = [2.3, 2.4, 2.5, 2.55, 2.6, 2.65, 2.7, 2.73, 2.76, 2.78];

@@ -1,6 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::synthetic::{Coverage, assert_coverage, exponential, watched};
+use crate::tests::{Coverage, assert_coverage, exponential, watched};
 use proptest::prelude::*;
 
 const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];

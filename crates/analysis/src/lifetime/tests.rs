@@ -1,6 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::synthetic::{Coverage, exponential as unit_exponential, remission, watched};
+use crate::tests::{Coverage, exponential as unit_exponential, remission, watched};
 use proptest::prelude::*;
 
 fn weibull(randomness: &mut Randomness, mean: f64, shape: f64) -> f64 {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::bootstrap::Randomness;
 use crate::columns::mean_of;
-use crate::synthetic::{Coverage, exponential, remission, watched};
+use crate::tests::{Coverage, exponential, remission, watched};
 use proptest::prelude::*;
 
 #[test]

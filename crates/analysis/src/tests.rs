@@ -1,4 +1,4 @@
-//! Data with known statistics, the same at every test run.
+//! What the tests of the estimators share: data with known statistics, the same at every test run, and coverage.
 
 use crate::bootstrap::Randomness;
 use crate::family::Family;
