@@ -111,10 +111,7 @@ mod tests {
 
     #[test]
     fn bad_series_are_refused() {
-        assert!(matches!(
-            autocorrelation_time(&[]),
-            Err(Error::TooFew { .. })
-        ));
+        assert_refused!(autocorrelation_time(&[]) => TooFew { .. });
         let mut series = [0.0; 30];
         series[3] = f64::NEG_INFINITY;
         let refused = autocorrelation_time(&series);

@@ -222,17 +222,11 @@ mod tests {
         assert!(found.overlap > 0.9 && !found.is_connected);
         let found = collapse_quality(&straight(1, &[0.0, 1.8])).unwrap();
         assert!(found.is_connected && (found.overlap - 0.1).abs() < 0.03);
-        assert_eq!(
-            collapse_quality(&straight(1, &[0.0, 50.0])),
-            Err(Error::NoOverlap {
-                needed: 0.0,
-                found: 0.0
-            })
+        assert_refused!(
+            collapse_quality(&straight(1, &[0.0, 50.0])) =>
+            NoOverlap { needed: 0.0, found: 0.0 }
         );
-        assert!(matches!(
-            collapse_quality(&straight(1, &[0.0])),
-            Err(Error::TooFew { needed: 2, .. })
-        ));
+        assert_refused!(collapse_quality(&straight(1, &[0.0])) => TooFew { needed: 2, .. });
     }
 
     #[test]

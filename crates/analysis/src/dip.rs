@@ -243,10 +243,7 @@ mod tests {
             resamples: 50,
             seed: 0,
         };
-        assert!(matches!(
-            dip_test(&[1.0, 2.0, 3.0], simulations),
-            Err(Error::TooFew { needed: 4, .. })
-        ));
+        assert_refused!(dip_test(&[1.0, 2.0, 3.0], simulations) => TooFew { needed: 4, .. });
     }
 
     proptest! {

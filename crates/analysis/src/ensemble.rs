@@ -169,22 +169,9 @@ mod tests {
         let no_times = ensemble_moments(&[[0.0; 0]; 3]);
         assert!(matches!(no_times, Err(Error::TooFew { needed: 1, .. })));
         let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
-        assert_eq!(
-            uneven,
-            Err(Error::LengthMismatch {
-                expected: 3,
-                found: 2
-            })
-        );
+        assert_refused!(uneven => LengthMismatch { expected: 3, found: 2 });
         let hole = ensemble_moments(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);
-        assert!(matches!(
-            hole,
-            Err(Error::NonFiniteReplica {
-                replica: 1,
-                index: 1,
-                ..
-            })
-        ));
+        assert_refused!(hole => NonFiniteReplica { replica: 1, index: 1, .. });
     }
 
     proptest! {

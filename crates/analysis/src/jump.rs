@@ -111,15 +111,9 @@ mod tests {
         let one: [&[f64]; 3] = [&[2.7], &[0.9], &[0.1]];
         let none: [&[f64]; 3] = [&[], &[], &[]];
         let critical = Uncertain::normal(2.8, 0.01);
-        assert!(matches!(
-            jump_height(one, none, critical),
-            Err(Error::TooFew { needed: 1, .. })
-        ));
+        assert_refused!(jump_height(one, none, critical) => TooFew { needed: 1, .. });
         let uneven: [&[f64]; 3] = [&[2.7], &[0.9, 0.8], &[0.1]];
-        assert!(matches!(
-            jump_height(uneven, one, critical),
-            Err(Error::LengthMismatch { .. })
-        ));
+        assert_refused!(jump_height(uneven, one, critical) => LengthMismatch { .. });
         assert!(jump_height(one, one, Uncertain::normal(f64::NAN, 0.1)).is_err());
     }
 }

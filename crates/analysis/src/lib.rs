@@ -21,6 +21,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+#[macro_use]
+mod tests;
+
 mod autocorrelation;
 mod blocks;
 mod bootstrap;
@@ -55,9 +59,6 @@ mod survival;
 mod transition;
 mod truncation;
 mod uncertain;
-
-#[cfg(test)]
-mod tests;
 
 pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{Estimate, mean_with_error};

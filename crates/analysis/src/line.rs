@@ -263,28 +263,19 @@ mod tests {
 
     #[test]
     fn too_few_places_and_bad_columns_are_refused() {
-        assert_eq!(
-            fit_line(&[2.0; 5], &[1.0; 5], &[0.1; 5]),
-            Err(Error::TooFewPlaces {
-                needed: 2,
-                found: 1
-            })
+        assert_refused!(
+            fit_line(&[2.0; 5], &[1.0; 5], &[0.1; 5]) =>
+            TooFewPlaces { needed: 2, found: 1 }
         );
         assert!(matches!(
             fit_parabola(&[1.0, 1.0, 2.0], &[1.0; 3], &[0.1; 3]),
             Err(Error::TooFewPlaces { needed: 3, .. })
         ));
-        assert!(matches!(
-            fit_line(&[], &[], &[]),
-            Err(Error::TooFewPlaces { found: 0, .. })
-        ));
+        assert_refused!(fit_line(&[], &[], &[]) => TooFewPlaces { found: 0, .. });
         assert!(matches!(
             fit_line(&[1.0, 2.0], &[1.0, 2.0], &[0.1, 0.0]),
             Err(Error::NotPositive { index: 1, .. })
         ));
-        assert!(matches!(
-            fit_line(&[1.0, 2.0], &[1.0], &[0.1, 0.1]),
-            Err(Error::LengthMismatch { .. })
-        ));
+        assert_refused!(fit_line(&[1.0, 2.0], &[1.0], &[0.1, 0.1]) => LengthMismatch { .. });
     }
 }

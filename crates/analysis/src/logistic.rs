@@ -258,14 +258,8 @@ mod tests {
     #[test]
     fn a_fraction_that_does_not_fall_is_refused() {
         let width = [2.6, 2.7, 2.8];
-        assert_eq!(
-            fraction_crossing(&width, &[true; 3]),
-            Err(Error::OneOutcome { runs: 3 })
-        );
-        assert!(matches!(
-            fraction_crossing(&width, &[false, false, true]),
-            Err(Error::Undetermined { .. })
-        ));
+        assert_refused!(fraction_crossing(&width, &[true; 3]) => OneOutcome { runs: 3 });
+        assert_refused!(fraction_crossing(&width, &[false, false, true]) => Undetermined { .. });
         assert!(matches!(
             fraction_crossing(&[2.6; 3], &[false, false, true]),
             Err(Error::TooFewPlaces { found: 1, .. })

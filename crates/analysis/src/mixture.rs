@@ -277,23 +277,14 @@ mod tests {
         assert!(found.is_double());
         assert!((found.distance().0 - 0.798).abs() < 1e-9);
         assert!((found.lower.weight - 10.0 / 22.0).abs() < 1e-9);
-        assert_eq!(
-            two_peaks(&[0.3; 20]),
-            Err(Error::NoScatter { observed: 20 })
-        );
-        assert!(matches!(
-            two_peaks(&[0.3; 7]),
-            Err(Error::TooFew { needed: 8, .. })
-        ));
+        assert_refused!(two_peaks(&[0.3; 20]) => NoScatter { observed: 20 });
+        assert_refused!(two_peaks(&[0.3; 7]) => TooFew { needed: 8, .. });
     }
 
     #[test]
     fn bad_bins_are_refused() {
         assert!(histogram(&[0.5], 0.0, 1.0, 0).is_err());
-        assert!(matches!(
-            histogram(&[0.5], 1.0, 1.0, 3),
-            Err(Error::NotPositive { .. })
-        ));
+        assert_refused!(histogram(&[0.5], 1.0, 1.0, 3) => NotPositive { .. });
         assert!(histogram(&[f64::NAN], 0.0, 1.0, 3).is_err());
         let found = histogram(&[], 0.0, 1.5, 3).unwrap();
         assert_eq!(

@@ -171,10 +171,7 @@ mod tests {
             }
         }
         let at = |time| Transition::At { time, period: 0 };
-        assert_eq!(
-            fit_shifted_exponential(&[at(2.0); 4]),
-            Err(Error::NoScatter { observed: 4 })
-        );
+        assert_refused!(fit_shifted_exponential(&[at(2.0); 4]) => NoScatter { observed: 4 });
         assert!(matches!(
             fit_shifted_exponential(&[at(2.0), at(3.0)]),
             Err(Error::TooFewObserved { observed: 2, .. })

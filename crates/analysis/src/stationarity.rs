@@ -103,10 +103,7 @@ mod tests {
         let mut step = [0.0; 32];
         step[16..].fill(1.0);
         assert_eq!(stationarity(&step).unwrap().score, f64::INFINITY);
-        assert!(matches!(
-            stationarity(&[0.0; 15]),
-            Err(Error::TooFew { .. })
-        ));
+        assert_refused!(stationarity(&[0.0; 15]) => TooFew { .. });
         let mut series = [0.0; 32];
         series[20] = f64::NAN;
         let refused = stationarity(&series);

@@ -6,6 +6,14 @@ use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
 
+/// Asserts that an estimator answers with an error of this pattern.
+macro_rules! assert_refused {
+    ($outcome:expr => $($error:tt)+) => {
+        let outcome = $outcome;
+        assert!(matches!(outcome, Err(crate::Error::$($error)+)), "{outcome:?}");
+    };
+}
+
 /// Independent normal numbers of mean 0 and variance 1.
 pub(crate) fn white_noise(seed: u64, samples: usize) -> Vec<f64> {
     let mut randomness = Randomness::new(seed, 0);

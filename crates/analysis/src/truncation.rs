@@ -173,25 +173,16 @@ mod tests {
             .enumerate()
             .map(|(k, noise)| 0.002 * k as f64 + 0.2 * noise)
             .collect();
-        assert!(matches!(
-            stationary_mean(&drift),
-            Err(Error::NotStationary { samples: 1000, .. })
-        ));
+        assert_refused!(stationary_mean(&drift) => NotStationary { samples: 1000, .. });
         // A run that jams near its end.
         let mut late = autoregressive(0.5, 4, 1000);
         for value in &mut late[800..] {
             *value += 40.0;
         }
         let refused = stationary_mean(&late);
-        assert!(
-            matches!(refused, Err(Error::NotStationary { .. })),
-            "{refused:?}"
-        );
+        assert_refused!(refused => NotStationary { .. });
         assert!(!truncation(&late).unwrap().is_settled);
-        assert!(matches!(
-            stationary_mean(&[0.0; 31]),
-            Err(Error::TooFew { needed: 32, .. })
-        ));
+        assert_refused!(stationary_mean(&[0.0; 31]) => TooFew { needed: 32, .. });
     }
 
     #[test]

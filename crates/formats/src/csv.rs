@@ -326,14 +326,8 @@ mod tests {
                 other => panic!("{text:?}: {other:?}"),
             }
         }
-        assert!(matches!(
-            decode("a,a\n1,2\n"),
-            Err(FormatError::DuplicateColumn { .. })
-        ));
-        assert!(matches!(
-            decode("a,\n1,2\n"),
-            Err(FormatError::UnnamedColumn { index: 1 })
-        ));
+        assert_refused!(decode("a,a\n1,2\n") => DuplicateColumn { .. });
+        assert_refused!(decode("a,\n1,2\n") => UnnamedColumn { index: 1 });
     }
 
     #[test]

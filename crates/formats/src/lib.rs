@@ -13,6 +13,10 @@
 
 #![forbid(unsafe_code)]
 
+#[cfg(test)]
+#[macro_use]
+mod tests;
+
 pub mod atomic;
 pub mod checkpoint;
 pub mod csv;

@@ -196,27 +196,15 @@ fn overlap_that_cannot_be_had_is_refused() {
         curves: &curves[..1],
         ..collapse
     };
-    assert!(matches!(
-        one.fit(&[0.0], &[1.0], 1, 0),
-        Err(Error::TooFew {
-            needed: 2,
-            found: 1
-        })
-    ));
-    assert!(matches!(
-        one.leave_one_out(&[0.0], &[1.0], 1, 0),
-        Err(Error::TooFew { needed: 3, .. })
-    ));
+    assert_refused!(one.fit(&[0.0], &[1.0], 1, 0) => TooFew { needed: 2, found: 1 });
+    assert_refused!(one.leave_one_out(&[0.0], &[1.0], 1, 0) => TooFew { needed: 3, .. });
     assert!(collapse.fit(&[0.0], &[0.0], 1, 0).is_err());
     assert!(collapse.fit(&[0.0], &[1.0], 0, 0).is_err());
     let beyond = Collapse {
         least_overlap: 1.5,
         ..collapse
     };
-    assert_eq!(
-        beyond.fit(&[0.0], &[1.0], 1, 0),
-        Err(Error::Fraction { value: 1.5 })
-    );
+    assert_refused!(beyond.fit(&[0.0], &[1.0], 1, 0) => Fraction { value: 1.5 });
 }
 
 proptest! {

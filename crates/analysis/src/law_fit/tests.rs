@@ -66,32 +66,20 @@ fn barrier_and_exponential_laws_are_found_exactly() {
     assert!((fit.exponent.value - 4.0).abs() < 1e-10);
     assert_eq!((fit.critical_width, fit.degrees_of_freedom), (None, 8));
     // Its critical width lies at infinity.
-    assert_eq!(
-        fit_law(Law::Power, &WIDTHS, &value, &error, None),
-        Err(Error::Undetermined {
-            points: 10,
-            parameters: 3
-        })
+    assert_refused!(
+        fit_law(Law::Power, &WIDTHS, &value, &error, None) =>
+        Undetermined { points: 10, parameters: 3 }
     );
 }
 
 #[test]
 fn what_does_not_determine_a_law_is_refused() {
     let few = fit_law(Law::Power, &[2.0, 2.1, 2.1], &[1.0; 3], &[0.1; 3], None);
-    assert_eq!(
-        few,
-        Err(Error::TooFewPlaces {
-            needed: 3,
-            found: 2
-        })
-    );
+    assert_refused!(few => TooFewPlaces { needed: 3, found: 2 });
     let known = Some(Uncertain::normal(2.05, 0.0));
-    assert_eq!(
-        fit_law(Law::Power, &[2.0, 2.1], &[1.0, 2.0], &[0.1; 2], known),
-        Err(Error::BeyondCritical {
-            width: 2.1,
-            critical: 2.05
-        })
+    assert_refused!(
+        fit_law(Law::Power, &[2.0, 2.1], &[1.0, 2.0], &[0.1; 2], known) =>
+        BeyondCritical { width: 2.1, critical: 2.05 }
     );
     let barrier = Law::Barrier { power: -1.0 };
     assert!(fit_law(barrier, &WIDTHS, &[1.0; 10], &[0.1; 10], None).is_err());

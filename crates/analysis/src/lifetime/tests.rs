@@ -150,14 +150,7 @@ fn what_cannot_be_fitted_is_refused() {
     let censored = Transition::Censored { time: 3.0 };
     for family in [Family::Exponential, Family::Gamma, Family::Weibull] {
         let refused = fit_lifetime(family, &[censored; 5]);
-        assert!(matches!(
-            refused,
-            Err(Error::TooFewObserved {
-                observed: 0,
-                runs: 5,
-                ..
-            })
-        ));
+        assert_refused!(refused => TooFewObserved { observed: 0, runs: 5, .. });
         assert!(fit_lifetime(family, &[]).is_err());
         assert!(matches!(
             fit_lifetime(family, &[at(0.0), at(1.0), at(2.0)]),
@@ -165,10 +158,7 @@ fn what_cannot_be_fitted_is_refused() {
         ));
     }
     for family in [Family::Gamma, Family::Weibull] {
-        assert_eq!(
-            fit_lifetime(family, &[at(2.0); 6]),
-            Err(Error::NoScatter { observed: 6 })
-        );
+        assert_refused!(fit_lifetime(family, &[at(2.0); 6]) => NoScatter { observed: 6 });
     }
 }
 

@@ -104,37 +104,19 @@ fn dropping_censored_runs_biases_the_mean_and_the_curve_does_not() {
 
 #[test]
 fn bad_runs_and_horizons_are_refused() {
-    assert!(matches!(
-        Survival::new(&[]),
-        Err(Error::TooFew { needed: 1, .. })
-    ));
+    assert_refused!(Survival::new(&[]) => TooFew { needed: 1, .. });
     let censored = |time| Transition::Censored { time };
-    assert!(matches!(
-        Survival::new(&[censored(-1.0)]),
-        Err(Error::Negative { index: 0, .. })
-    ));
+    assert_refused!(Survival::new(&[censored(-1.0)]) => Negative { index: 0, .. });
     assert!(matches!(
         Survival::new(&[censored(1.0), censored(f64::NAN)]),
         Err(Error::NonFinite { index: 1, .. })
     ));
     let all_censored = Survival::new(&[censored(1.0); 4]).unwrap();
-    assert_eq!(
-        all_censored.median(),
-        Err(Error::LevelNotReached {
-            level: 0.5,
-            survival: 1.0
-        })
-    );
-    assert!(matches!(
-        all_censored.restricted_mean(1.0),
-        Err(Error::TooFewObserved { observed: 0, .. })
-    ));
+    assert_refused!(all_censored.median() => LevelNotReached { level: 0.5, survival: 1.0 });
+    assert_refused!(all_censored.restricted_mean(1.0) => TooFewObserved { observed: 0, .. });
     let found = Survival::new(&remission()).unwrap();
     for horizon in [35.5, 0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert!(matches!(
-            found.restricted_mean(horizon),
-            Err(Error::Horizon { .. })
-        ));
+        assert_refused!(found.restricted_mean(horizon) => Horizon { .. });
     }
 }
 

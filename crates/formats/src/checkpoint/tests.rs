@@ -116,10 +116,7 @@ fn every_shortened_length_is_told_as_truncation() {
 fn appended_bytes_are_detected() {
     let mut bytes = encode(&IDENTITY, &state()).unwrap();
     bytes.push(0);
-    assert!(matches!(
-        decoded(&bytes),
-        Err(FormatError::CorruptCheckpoint { .. })
-    ));
+    assert_refused!(decoded(&bytes) => CorruptCheckpoint { .. });
 }
 
 #[test]
@@ -175,13 +172,7 @@ fn a_future_version_is_refused_even_with_another_header() {
     let mut bytes = encode(&IDENTITY, &state()).unwrap();
     bytes[8..12].copy_from_slice(&2_u32.to_le_bytes());
     bytes.truncate(40);
-    assert!(matches!(
-        decoded(&bytes),
-        Err(FormatError::CheckpointVersion {
-            found: 2,
-            readable: 1
-        })
-    ));
+    assert_refused!(decoded(&bytes) => CheckpointVersion { found: 2, readable: 1 });
 }
 
 #[test]
@@ -203,10 +194,7 @@ fn forged_lengths_are_refused() {
         );
     }
     let more = forged(bytes.clone(), 56, &MAXIMUM_STATE_BYTES.to_le_bytes());
-    assert!(matches!(
-        decoded(&more),
-        Err(FormatError::TruncatedCheckpoint { .. })
-    ));
+    assert_refused!(decoded(&more) => TruncatedCheckpoint { .. });
 }
 
 #[test]
@@ -227,20 +215,11 @@ fn a_payload_that_unpacks_to_more_than_claimed_is_stopped() {
 #[test]
 fn a_state_of_another_type_is_an_error() {
     let shorter = encode(&IDENTITY, &1_u8).unwrap();
-    assert!(matches!(
-        decoded(&shorter),
-        Err(FormatError::CorruptCheckpoint { .. })
-    ));
+    assert_refused!(decoded(&shorter) => CorruptCheckpoint { .. });
     let longer = encode(&IDENTITY, &[1_u8, 2, 3]).unwrap();
-    assert!(matches!(
-        decode::<u8>(&IDENTITY, &longer),
-        Err(FormatError::CorruptCheckpoint { .. })
-    ));
+    assert_refused!(decode::<u8>(&IDENTITY, &longer) => CorruptCheckpoint { .. });
     let endless = encode(&IDENTITY, &(u64::MAX, 0_u8)).unwrap();
-    assert!(matches!(
-        decode::<Vec<[f64; 3]>>(&IDENTITY, &endless),
-        Err(FormatError::CorruptCheckpoint { .. })
-    ));
+    assert_refused!(decode::<Vec<[f64; 3]>>(&IDENTITY, &endless) => CorruptCheckpoint { .. });
 }
 
 #[test]
@@ -261,15 +240,9 @@ fn a_file_is_read_as_its_bytes_are() {
     let mut bytes = std::fs::read(&path).unwrap();
     bytes.push(0);
     std::fs::write(&path, &bytes).unwrap();
-    assert!(matches!(
-        read::<State>(&path, &IDENTITY),
-        Err(FormatError::CorruptCheckpoint { .. })
-    ));
+    assert_refused!(read::<State>(&path, &IDENTITY) => CorruptCheckpoint { .. });
     std::fs::write(&path, &bytes[..100]).unwrap();
-    assert!(matches!(
-        read::<State>(&path, &IDENTITY),
-        Err(FormatError::TruncatedCheckpoint { found: 100, .. })
-    ));
+    assert_refused!(read::<State>(&path, &IDENTITY) => TruncatedCheckpoint { found: 100, .. });
     std::fs::write(&path, "time,flow_rate\n").unwrap();
     assert!(matches!(
         read::<State>(&path, &IDENTITY),

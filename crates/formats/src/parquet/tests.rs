@@ -302,10 +302,7 @@ fn a_file_is_written_and_read() {
     let path = folder.path().join("series.parquet");
     write(&path, &table()).unwrap();
     assert_eq!(read(&path).unwrap(), table());
-    assert!(matches!(
-        read(&folder.path().join("none")),
-        Err(FormatError::Io { .. })
-    ));
+    assert_refused!(read(&folder.path().join("none")) => Io { .. });
     std::fs::write(&path, "not Parquet at all").unwrap();
     assert!(matches!(read(&path), Err(FormatError::Parquet(_))));
 }

@@ -13,10 +13,7 @@ fn reals(name: &str, values: &[f64]) -> Column {
 fn the_builder_refuses_what_is_not_a_table() {
     let build = |columns: Vec<Column>| Table::builder().columns(columns).build();
     assert!(matches!(build(vec![]), Err(FormatError::NoColumns)));
-    assert!(matches!(
-        build(vec![reals("a", &[]), reals("", &[])]),
-        Err(FormatError::UnnamedColumn { index: 1 })
-    ));
+    assert_refused!(build(vec![reals("a", &[]), reals("", &[])]) => UnnamedColumn { index: 1 });
     assert!(matches!(
         build(vec![reals("a", &[1.0]), reals("b", &[1.0]), reals("a", &[1.0])]),
         Err(FormatError::DuplicateColumn { name }) if name == "a"
@@ -48,14 +45,10 @@ fn columns_are_found_by_name_and_kind() {
     assert_eq!(table.texts("c").unwrap(), ["x"]);
     assert_eq!(table.booleans("d").unwrap(), [true]);
     assert!(matches!(table.reals("z"), Err(FormatError::MissingColumn { name }) if name == "z"));
-    assert!(matches!(
-        table.reals("b"),
-        Err(FormatError::OtherKind {
-            expected: ValueKind::Real,
-            found: ValueKind::Integer,
-            ..
-        })
-    ));
+    assert_refused!(
+        table.reals("b") =>
+        OtherKind { expected: ValueKind::Real, found: ValueKind::Integer, .. }
+    );
 }
 
 #[test]
