@@ -178,7 +178,6 @@ impl Line {
 mod tests {
     use super::*;
     use crate::tests::white_noise;
-    use proptest::prelude::*;
 
     /// Curves on y = 2 - x with unequal grids and errors of 0.1.
     fn straight(seed: u64, offsets: &[f64]) -> Vec<Vec<CurvePoint>> {
@@ -247,23 +246,5 @@ mod tests {
             point.y += 0.5;
         }
         assert!(collapse_quality(&curves).unwrap().quality > 5.0);
-    }
-
-    proptest! {
-        #[test]
-        fn any_curves_have_a_quality_or_an_error(
-            curves in prop::collection::vec(
-                prop::collection::vec((any::<f64>(), -1.0..1.0_f64, any::<f64>()), 0..6), 0..5),
-        ) {
-            let curves: Vec<Vec<CurvePoint>> = curves
-                .iter()
-                .map(|curve| {
-                    curve.iter().map(|&(x, y, error)| CurvePoint { x, y, error }).collect()
-                })
-                .collect();
-            if let Ok(found) = collapse_quality(&curves) {
-                prop_assert!(found.overlap > 0.0 && found.overlap <= 1.0);
-            }
-        }
     }
 }

@@ -87,64 +87,31 @@ pub fn compare_laws(
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::tests::watched;
-
-    const POWER: Law = Law::Power;
-    const BARRIER: Law = Law::Barrier { power: 1.0 };
-
-    /// Runs at ten widths up to 2.79 with a mean that depends on the width.
-    fn runs(
-        seed: u64,
-        replicas: usize,
-        until: f64,
-        family: Family,
-        mean_and_shape: impl Fn(f64) -> (f64, f64),
-    ) -> (Vec<f64>, Vec<Transition>) {
-        let mut randomness = Randomness::new(seed, 8);
-        let (mut width, mut runs) = (Vec::new(), Vec::new());
-        for k in 0..10 {
-            let place = 2.43 + 0.04 * f64::from(k);
-            let (mean, shape) = mean_and_shape(place);
-            for _ in 0..replicas {
-                width.push(place);
-                runs.push(watched(mean * family.draw(shape, &mut randomness), until));
-            }
-        }
-        (width, runs)
-    }
-
-    fn power(place: f64) -> (f64, f64) {
-        (10.0 / (2.8 - place), 1.0)
-    }
-
-    fn barrier(place: f64) -> (f64, f64) {
-        (libm::exp(1.0 / (3.05 - place)), 1.0)
-    }
-
-    fn exponential(place: f64) -> (f64, f64) {
-        (20.0 * libm::exp(8.0 * (place - 2.43)), 1.0)
-    }
+    use crate::tests::{exponential, runs_at};
 
     #[test]
     fn the_law_that_made_the_runs_has_the_least_criterion() {
-        let laws = [POWER, BARRIER, Law::Exponential];
-        let family = Family::Exponential;
-        let best = |truth: &dyn Fn(f64) -> (f64, f64)| {
-            let (width, runs) = runs(3, 400, 2000.0, family, truth);
-            let evidence = compare_laws(&laws, family, &width, &runs).unwrap();
+        let laws = [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential];
+        let places = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(|k| 2.43 + 0.04 * f64::from(k));
+        // Runs at ten widths up to 2.79 with a mean that depends on the width.
+        let best = |mean: fn(f64) -> f64| {
+            let mut randomness = Randomness::new(3, 8);
+            let time = |place| mean(place) * exponential(&mut randomness);
+            let (width, runs) = runs_at(&places, 400, 2000.0, time);
+            let evidence = compare_laws(&laws, Family::Exponential, &width, &runs).unwrap();
             let total: f64 = evidence.iter().map(|evidence| evidence.weight).sum();
             assert!((total - 1.0).abs() < 1e-12);
             evidence
         };
-        let found = best(&power);
+        let found = best(|place| 10.0 / (2.8 - place));
         assert_eq!(found[0].excess, 0.0, "{found:?}");
         assert!(found[2].excess > 10.0 && found[0].weight > 0.9);
         assert!((found[0].critical_width.unwrap() - 2.8).abs() < 0.01);
-        let found = best(&exponential);
+        let found = best(|place| 20.0 * libm::exp(8.0 * (place - 2.43)));
         // The others do as well only by moving w_c far away, and pay for it.
         assert!(found[2].excess < 2.0, "{found:?}");
         assert_eq!(found[2].critical_width, None);
-        assert!(best(&barrier)[1].excess < 4.0);
+        assert!(best(|place| libm::exp(1.0 / (3.05 - place)))[1].excess < 4.0);
     }
 
     #[test]
@@ -152,7 +119,7 @@ mod tests {
         let censored = [Transition::Censored { time: 1.0 }; 5];
         let width = [2.0, 2.1, 2.2, 2.3, 2.4];
         assert!(matches!(
-            compare_laws(&[POWER], Family::Exponential, &width, &censored),
+            compare_laws(&[Law::Power], Family::Exponential, &width, &censored),
             Err(Error::TooFewPlaces { found: 0, .. })
         ));
         assert!(

@@ -56,12 +56,7 @@ pub fn ensembles_by_width(
     let (_, transitions) = by_width(width, transitions);
     let ensemble = |(width, runs): (f64, Vec<Transition>)| {
         let times: Vec<f64> = runs.iter().filter_map(|run| run.observed()).collect();
-        let watched = runs
-            .iter()
-            .map(|run| match *run {
-                Transition::At { time, .. } | Transition::Censored { time } => time,
-            })
-            .fold(0.0, f64::max);
+        let watched = runs.iter().map(|run| run.time().0).fold(0.0, f64::max);
         WidthEnsemble {
             width,
             observed: times.len(),

@@ -87,25 +87,12 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::tests::{Coverage, assert_coverage};
-
-    fn runs(randomness: &mut Randomness, half: f64, spread: f64) -> (Vec<f64>, Vec<bool>) {
-        let mut rows = (Vec::new(), Vec::new());
-        for k in 0..11 {
-            let width = 2.6 + 0.05 * f64::from(k);
-            for _ in 0..8 {
-                rows.0.push(width);
-                let fraction = 1.0 / (1.0 + libm::exp((width - half) / spread));
-                rows.1.push(randomness.uniform() < fraction);
-            }
-        }
-        rows
-    }
+    use crate::tests::{Coverage, assert_coverage, jams_at};
 
     fn found(seed: u64, halves: (f64, f64), spread: f64) -> Hysteresis {
         let mut randomness = Randomness::new(seed, 7);
-        let rest = runs(&mut randomness, halves.0, spread);
-        let jammed = runs(&mut randomness, halves.1, spread);
+        let rest = jams_at(&mut randomness, [11, 8], halves.0, spread);
+        let jammed = jams_at(&mut randomness, [11, 8], halves.1, spread);
         hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)).unwrap()
     }
 

@@ -221,27 +221,20 @@ mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
     use crate::fit_law_to_runs;
-    use crate::tests::{Coverage, assert_coverage, watched};
-    use proptest::prelude::*;
+    use crate::tests::{Coverage, assert_coverage, runs_at};
 
     /// tau = 10/(2.8 - w) with chi_tau/tau^2 = C (2.8 - w)^-q, 20 runs at ten widths, watched for 500.
     fn runs(seed: u64, constant: f64, q: f64) -> (Vec<f64>, Vec<Transition>) {
         let mut randomness = Randomness::new(seed, 11);
-        let (mut width, mut runs) = (Vec::new(), Vec::new());
-        for place in [2.3, 2.4, 2.5, 2.6, 2.65, 2.7, 2.74, 2.77, 2.79, 2.83] {
-            let distance: f64 = 2.8 - place;
-            for _ in 0..20 {
-                width.push(place);
-                let time = if distance > 0.0 {
-                    let shape = libm::pow(distance, q) / constant;
-                    10.0 / distance * Family::Gamma.draw(shape, &mut randomness)
-                } else {
-                    f64::INFINITY
-                };
-                runs.push(watched(time, 500.0));
+        let places = [2.3, 2.4, 2.5, 2.6, 2.65, 2.7, 2.74, 2.77, 2.79, 2.83];
+        runs_at(&places, 20, 500.0, |place| {
+            let distance = 2.8 - place;
+            if distance <= 0.0 {
+                return f64::INFINITY;
             }
-        }
-        (width, runs)
+            let shape = libm::pow(distance, q) / constant;
+            10.0 / distance * Family::Gamma.draw(shape, &mut randomness)
+        })
     }
 
     #[test]
@@ -320,26 +313,5 @@ mod tests {
             fit_law_with_scatter(&[2.0, 2.1, 2.2], &single),
             Err(Error::NoScatter { observed: 3 })
         );
-    }
-
-    proptest! {
-        #![proptest_config(ProptestConfig::with_cases(12))]
-        #[test]
-        fn any_runs_give_a_fit_or_an_error(
-            rows in prop::collection::vec((0_u8..5, -3.0..5.0_f64, any::<bool>()), 0..30),
-        ) {
-            let width: Vec<f64> = rows.iter().map(|row| 2.0 + 0.1 * f64::from(row.0)).collect();
-            let runs: Vec<Transition> = rows
-                .iter()
-                .map(|&(_, log, observed)| {
-                    let time = libm::exp(log);
-                    if observed { Transition::At { time, period: 0 } } else { Transition::Censored { time } }
-                })
-                .collect();
-            if let Ok(fit) = fit_law_with_scatter(&width, &runs) {
-                prop_assert!(fit.exponent.error.is_finite() && fit.log_likelihood.is_finite());
-                prop_assert!(fit.critical_width.interval_95.contains(fit.critical_width.value));
-            }
-        }
     }
 }

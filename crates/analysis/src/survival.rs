@@ -60,10 +60,7 @@ pub(crate) fn times(transitions: &[Transition]) -> Result<Vec<(f64, bool)>, Erro
         .iter()
         .enumerate()
         .map(|(index, &transition)| {
-            let (value, observed) = match transition {
-                Transition::At { time, .. } => (time, true),
-                Transition::Censored { time } => (time, false),
-            };
+            let (value, observed) = transition.time();
             if !value.is_finite() {
                 Err(Error::NonFinite { index, value })
             } else if value < 0.0 {

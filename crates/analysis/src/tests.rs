@@ -90,11 +90,34 @@ pub(crate) fn exponential(randomness: &mut Randomness) -> f64 {
 
 /// A transition at a time, unless the run is watched for less.
 pub(crate) fn watched(time: f64, until: f64) -> Transition {
-    if time < until {
-        Transition::At { time, period: 0 }
-    } else {
-        Transition::Censored { time: until }
-    }
+    Transition::new(time.min(until), time < until)
+}
+
+/// Width and outcome of runs, so many at each of the places, that have their transition at a time unless they are
+/// watched for less.
+pub(crate) fn runs_at(
+    places: &[f64],
+    replicas: usize,
+    until: f64,
+    mut time: impl FnMut(f64) -> f64,
+) -> (Vec<f64>, Vec<Transition>) {
+    let replicate = |&place: &f64| std::iter::repeat_n(place, replicas);
+    let width: Vec<f64> = places.iter().flat_map(replicate).collect();
+    let runs = width.iter().map(|&place| watched(time(place), until));
+    (width.clone(), runs.collect())
+}
+
+/// Width and outcome of so many runs at each of so many places from 2.6 on, that jam with a probability which falls
+/// through a half at a width.
+pub(crate) fn jams_at(
+    randomness: &mut Randomness,
+    [places, replicas]: [usize; 2],
+    half: f64,
+    spread: f64,
+) -> (Vec<f64>, Vec<bool>) {
+    let width = (0..places * replicas).map(|k| 2.6 + 0.05 * (k / replicas) as f64);
+    let jams = |width: f64| randomness.uniform() < 1.0 / (1.0 + libm::exp((width - half) / spread));
+    (width.clone().collect(), width.map(jams).collect())
 }
 
 /// How many of the intervals of N estimates cover the truth.
@@ -153,7 +176,7 @@ pub(crate) fn remission() -> Vec<Transition> {
     let censored = [
         6.0, 9.0, 10.0, 11.0, 17.0, 19.0, 20.0, 25.0, 32.0, 32.0, 34.0, 35.0,
     ];
-    let relapsed = relapsed.map(|time| Transition::At { time, period: 0 });
-    let censored = censored.map(|time| Transition::Censored { time });
+    let relapsed = relapsed.map(|time| Transition::new(time, true));
+    let censored = censored.map(|time| Transition::new(time, false));
     relapsed.into_iter().chain(censored).collect()
 }

@@ -52,12 +52,26 @@ pub enum Transition {
 }
 
 impl Transition {
+    /// Outcome of a run of whose period nothing is known: the time of its transition, or of its end without one.
+    pub fn new(time: f64, observed: bool) -> Self {
+        match observed {
+            true => Self::At { time, period: 0 },
+            false => Self::Censored { time },
+        }
+    }
+
+    /// Time of the transition or, where none was observed, of the end; and whether one was.
+    pub fn time(self) -> (f64, bool) {
+        match self {
+            Self::At { time, .. } => (time, true),
+            Self::Censored { time } => (time, false),
+        }
+    }
+
     /// Transition time tau, or `None` for a censored run.
     pub fn observed(self) -> Option<f64> {
-        match self {
-            Self::At { time, .. } => Some(time),
-            Self::Censored { .. } => None,
-        }
+        let (time, observed) = self.time();
+        observed.then_some(time)
     }
 }
 

@@ -34,6 +34,33 @@ fn table() -> impl Strategy<Value = Vec<(f64, f64, f64, bool)>> {
     ]
 }
 
+/// Runs at up to six widths, at times of all orders of magnitude, one of them odd at times.
+fn runs() -> impl Strategy<Value = (Vec<f64>, Vec<Transition>)> {
+    let rows = prop::collection::vec((0_u8..6, -4.0..6.0_f64, any::<bool>()), 0..25);
+    let spacing = prop_oneof![1 => Just(0.0), 3 => Just(0.1), 1 => Just(1e-9), 1 => Just(1e8)];
+    let odd = prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1.0), Just(0.0)];
+    (rows, spacing, prop::option::weighted(0.3, odd)).prop_map(|(rows, spacing, odd)| {
+        let width = rows
+            .iter()
+            .map(|row| 2.0 + spacing * f64::from(row.0))
+            .collect();
+        let runs = rows.iter().map(|row| Transition::new(row.1.exp(), row.2));
+        let mut runs: Vec<Transition> = runs.collect();
+        if let (Some(time), Some(last)) = (odd, runs.last_mut()) {
+            *last = Transition::new(time, time == 0.0);
+        }
+        (width, runs)
+    })
+}
+
+/// Whether numbers are finite and lie in their own intervals.
+fn is_whole(numbers: &[Uncertain]) -> bool {
+    numbers.iter().all(|number| {
+        let inside = number.interval_68.contains(number.value);
+        number.value.is_finite() && inside && number.interval_95.contains(number.value)
+    })
+}
+
 const FEW: Bootstrap = Bootstrap {
     resamples: 20,
     seed: 1,
@@ -43,15 +70,82 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
     #[test]
+    fn fits_to_runs_are_finite((width, runs) in runs()) {
+        let is_odd = |run: &Transition| {
+            let (time, observed) = run.time();
+            !time.is_finite() || time < 0.0 || (observed && time == 0.0)
+        };
+        for family in [Family::Exponential, Family::Gamma, Family::Weibull] {
+            if let Ok(fit) = fit_lifetime(family, &runs) {
+                prop_assert!(!runs.iter().any(is_odd));
+                let numbers = [fit.mean, fit.variance, fit.shape.unwrap_or(fit.mean)];
+                prop_assert!(is_whole(&numbers), "{:?}", fit);
+                for number in numbers {
+                    prop_assert!(number.value > 0.0 && number.error > 0.0 && number.error.is_finite());
+                    prop_assert!(number.interval_95.lower <= number.interval_68.lower * 1.001);
+                }
+            }
+        }
+        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
+            for family in [Family::Exponential, Family::Weibull] {
+                if let Ok(fit) = fit_law_to_runs(law, family, &width, &runs) {
+                    prop_assert!(fit.log_likelihood.is_finite() && fit.exponent.value.is_finite());
+                    let intervals = [Some(fit.exponent), fit.critical_width].into_iter().flatten();
+                    for number in intervals {
+                        prop_assert!(number.interval_95.contains(number.value), "{:?}", fit);
+                    }
+                }
+            }
+        }
+        if let Ok(fit) = fit_law_with_scatter(&width, &runs) {
+            prop_assert!(fit.exponent.error.is_finite() && fit.log_likelihood.is_finite());
+            prop_assert!(fit.critical_width.interval_95.contains(fit.critical_width.value));
+        }
+    }
+
+    #[test]
+    fn fits_to_points_are_finite(
+        points in prop::collection::vec((2.0..3.0_f64, -3.0..6.0_f64, -4.0..2.0_f64), 0..9),
+        known in prop::option::of((1.5..3.5_f64, prop_oneof![Just(0.0), 0.001..0.5_f64])),
+        equal in any::<bool>(),
+        odd in prop::option::of(any::<f64>()),
+    ) {
+        let width: Vec<f64> = points.iter().map(|p| if equal { 2.5 } else { p.0 }).collect();
+        let mut value: Vec<f64> = points.iter().map(|p| p.1.exp()).collect();
+        let error: Vec<f64> = points.iter().map(|p| (p.1 + p.2).exp()).collect();
+        if let (Some(odd), Some(last)) = (odd, value.last_mut()) {
+            *last = odd;
+        }
+        let known = known.map(|(value, error)| Uncertain::normal(value, error));
+        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
+            if let Ok(fit) = fit_law(law, &width, &value, &error, known) {
+                prop_assert!(fit.exponent.value.is_finite() && fit.exponent.error >= 0.0);
+                prop_assert!(fit.exponent.interval_68.contains(fit.exponent.value));
+                if let Some(critical) = fit.critical_width {
+                    prop_assert!(critical.interval_95.contains(critical.value));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_fraction_crosses_within_its_interval(
+        rows in prop::collection::vec((0_u8..6, any::<bool>()), 0..30),
+        spacing in prop_oneof![Just(0.1), Just(1e-7), Just(1e9)],
+    ) {
+        let width: Vec<f64> = rows.iter().map(|row| spacing * f64::from(row.0)).collect();
+        let jammed: Vec<bool> = rows.iter().map(|row| row.1).collect();
+        if let Ok(found) = fraction_crossing(&width, &jammed) {
+            prop_assert!(found.width.interval_95.contains(found.width.value));
+            prop_assert!(found.log_likelihood <= 1e-12);
+        }
+    }
+
+    #[test]
     fn estimators_of_transition_times(rows in table(), horizon in number()) {
         let width: Vec<f64> = rows.iter().map(|row| row.0).collect();
-        let runs: Vec<Transition> = rows
-            .iter()
-            .map(|&(_, time, _, observed)| match observed {
-                true => Transition::At { time, period: 0 },
-                false => Transition::Censored { time },
-            })
-            .collect();
+        let runs = rows.iter().map(|row| Transition::new(row.1, row.3));
+        let runs: Vec<Transition> = runs.collect();
         if let Ok(survival) = Survival::new(&runs) {
             let _ = survival.median();
             let _ = survival.restricted_mean(horizon);
@@ -107,8 +201,12 @@ proptest! {
         let outcomes: Vec<bool> = rows.iter().map(|row| row.3).collect();
         let others: Vec<bool> = outcomes.iter().map(|outcome| !outcome).collect();
         let _ = dip_test(&values, FEW);
-        let _ = two_peaks(&values);
-        let _ = histogram(&values, at, 3.0, 5);
+        if let Ok(found) = two_peaks(&values) {
+            prop_assert!(found.lower.mean <= found.upper.mean);
+        }
+        if let Ok(found) = histogram(&values, at, 3.0, 5) {
+            prop_assert_eq!(found.counts.iter().sum::<usize>() + found.outside, values.len());
+        }
         let _ = fraction_crossing(&values, &outcomes);
         let _ = hysteresis((&values, &outcomes), (&values, &others));
         let series: Vec<f64> = rows.iter().flat_map(|row| [row.0, row.1, row.2]).collect();
@@ -128,6 +226,10 @@ proptest! {
             .chunks(4)
             .map(|points| Curve { parameter: points[0].error, points: points.to_vec() })
             .collect();
+        let scaled: Vec<Vec<CurvePoint>> = points.chunks(4).map(<[_]>::to_vec).collect();
+        if let Ok(found) = collapse_quality(&scaled) {
+            prop_assert!(found.overlap > 0.0 && found.overlap <= 1.0);
+        }
         for scaling in [Scaling::CriticalLine, Scaling::CriticalEach, Scaling::FiniteSize] {
             let transform = |p: &[f64], k: usize, parameter: f64, point| {
                 scaling.apply(p, k, parameter, point)
@@ -136,6 +238,7 @@ proptest! {
             let count = scaling.parameters(curves.len());
             let (start, steps) = (vec![start; count], vec![step; count]);
             if let Ok(fit) = collapse.fit(&start, &steps, 1, 0) {
+                prop_assert!(fit.quality.overlap >= 0.2 && fit.quality.overlap <= 1.0);
                 let _ = collapse.contour(&fit, &steps);
                 let _ = collapse.bootstrap(&fit, &steps, FEW);
             }

@@ -52,12 +52,11 @@ impl FromPyObject<'_, '_> for Runs {
 
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let (Column(time), observed): (Column, Vec<bool>) = object.extract()?;
-        let outcome = |(time, observed)| match observed {
-            // No estimator of these asks for the period.
-            true => Transition::At { time, period: 0 },
-            false => Transition::Censored { time },
-        };
-        Ok(Self(time.into_iter().zip(observed).map(outcome).collect()))
+        let runs = time.into_iter().zip(observed);
+        Ok(Self(
+            runs.map(|(time, observed)| Transition::new(time, observed))
+                .collect(),
+        ))
     }
 }
 
@@ -125,10 +124,7 @@ pub(crate) fn transition_time(
     period_duration: f64,
 ) -> PyResult<(f64, bool)> {
     let found = analysis::transition_time(&averages, direction.0, threshold, period_duration);
-    Ok(match found.map_err(of_analysis)? {
-        Transition::At { time, .. } => (time, true),
-        Transition::Censored { time } => (time, false),
-    })
+    found.map(Transition::time).map_err(of_analysis)
 }
 
 #[pyfunction]

@@ -1,7 +1,6 @@
 use super::*;
 use crate::Scaling;
 use crate::tests::{Coverage, white_noise};
-use proptest::prelude::*;
 
 const RATES: [f64; 5] = [0.03, 0.05, 0.08, 0.12, 0.2];
 
@@ -205,31 +204,4 @@ fn overlap_that_cannot_be_had_is_refused() {
         ..collapse
     };
     assert_refused!(beyond.fit(&[0.0], &[1.0], 1, 0) => Fraction { value: 1.5 });
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-    #[test]
-    fn any_curves_give_a_fit_or_an_error(
-        curves in prop::collection::vec(
-            (0.01..1.0_f64, prop::collection::vec((2.0..3.0_f64, -1.0..9.0_f64), 0..6)), 0..4),
-    ) {
-        let curves: Vec<Curve> = curves
-            .iter()
-            .map(|(parameter, points)| Curve {
-                parameter: *parameter,
-                points: points.iter().map(|&(x, y)| CurvePoint { x, y, error: 0.2 }).collect(),
-            })
-            .collect();
-        let transform = |p: &[f64], k: usize, rate: f64, point| {
-            Scaling::CriticalLine.apply(p, k, rate, point)
-        };
-        let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.3 };
-        let steps = [0.3, 0.3, 0.3, 0.1];
-        if let Ok(fit) = collapse.fit(&[1.0, 1.0, 0.0, 3.1], &steps, 1, 0) {
-            prop_assert!(fit.quality.overlap >= 0.3);
-            let bootstrap = Bootstrap { resamples: 20, seed: 0 };
-            let _ = collapse.bootstrap(&fit, &steps, bootstrap);
-        }
-    }
 }

@@ -1,6 +1,5 @@
 use super::*;
 use crate::tests::{Coverage, assert_coverage, white_noise};
-use proptest::prelude::*;
 
 const WIDTHS: [f64; 10] = [2.3, 2.4, 2.5, 2.55, 2.6, 2.65, 2.7, 2.73, 2.76, 2.78];
 
@@ -87,32 +86,4 @@ fn what_does_not_determine_a_law_is_refused() {
         fit_law(Law::Power, &WIDTHS, &[0.0; 10], &[0.1; 10], None),
         Err(Error::NotPositive { index: 0, .. })
     ));
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
-    #[test]
-    fn any_points_give_a_fit_or_an_error(
-        points in prop::collection::vec((2.0..3.0_f64, -3.0..6.0_f64, -4.0..2.0_f64), 0..9),
-        known in prop::option::of((1.5..3.5_f64, prop_oneof![Just(0.0), 0.001..0.5_f64])),
-        equal in any::<bool>(),
-        odd in prop::option::of(any::<f64>()),
-    ) {
-        let width: Vec<f64> = points.iter().map(|p| if equal { 2.5 } else { p.0 }).collect();
-        let mut value: Vec<f64> = points.iter().map(|p| libm::exp(p.1)).collect();
-        let error: Vec<f64> = points.iter().map(|p| libm::exp(p.1 + p.2)).collect();
-        if let (Some(odd), Some(last)) = (odd, value.last_mut()) {
-            *last = odd;
-        }
-        let known = known.map(|(value, error)| Uncertain::normal(value, error));
-        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
-            if let Ok(fit) = fit_law(law, &width, &value, &error, known) {
-                prop_assert!(fit.exponent.value.is_finite() && fit.exponent.error >= 0.0);
-                prop_assert!(fit.exponent.interval_68.contains(fit.exponent.value));
-                if let Some(critical) = fit.critical_width {
-                    prop_assert!(critical.interval_95.contains(critical.value));
-                }
-            }
-        }
-    }
 }

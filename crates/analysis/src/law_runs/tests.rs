@@ -1,7 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::tests::{Coverage, assert_coverage, exponential, watched};
-use proptest::prelude::*;
+use crate::tests::{Coverage, assert_coverage, exponential, runs_at};
 
 const WIDTHS: [f64; 9] = [2.4, 2.5, 2.6, 2.65, 2.7, 2.75, 2.78, 2.81, 2.85];
 
@@ -14,20 +13,10 @@ fn runs(
     draw: impl Fn(&mut Randomness) -> f64,
 ) -> (Vec<f64>, Vec<Transition>) {
     let mut randomness = Randomness::new(seed, 3);
-    let mut width = Vec::new();
-    let mut transitions = Vec::new();
-    for place in WIDTHS {
-        for _ in 0..replicas {
-            let mean = if place < 2.8 {
-                10.0 / (2.8 - place)
-            } else {
-                f64::INFINITY
-            };
-            width.push(place);
-            transitions.push(watched(mean * draw(&mut randomness), until));
-        }
-    }
-    (width, transitions)
+    runs_at(&WIDTHS, replicas, until, |place| match place < 2.8 {
+        true => 10.0 / (2.8 - place) * draw(&mut randomness),
+        false => f64::INFINITY * draw(&mut randomness),
+    })
 }
 
 #[test]
@@ -135,37 +124,4 @@ fn what_does_not_determine_a_law_is_refused() {
         &[at(1.0), at(2.0), at(4.0)],
     );
     assert_eq!(equal, Err(Error::NoScatter { observed: 3 }));
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(24))]
-    #[test]
-    fn any_runs_give_a_fit_or_an_error(
-        rows in prop::collection::vec((0_u8..6, -3.0..6.0_f64, any::<bool>()), 0..25),
-        odd in prop::option::of(prop_oneof![Just(f64::NAN), Just(-1.0), Just(0.0)]),
-        spread in prop_oneof![Just(0.0), Just(0.1), Just(1e-9), Just(1e8)],
-    ) {
-        let width: Vec<f64> = rows.iter().map(|row| 2.0 + spread * f64::from(row.0)).collect();
-        let mut transitions: Vec<Transition> = rows
-            .iter()
-            .map(|&(_, log, observed)| {
-                let time = libm::exp(log);
-                if observed { Transition::At { time, period: 0 } } else { Transition::Censored { time } }
-            })
-            .collect();
-        if let (Some(time), Some(last)) = (odd, transitions.last_mut()) {
-            *last = Transition::At { time, period: 0 };
-        }
-        for law in [Law::Power, Law::Barrier { power: 1.0 }, Law::Exponential] {
-            for family in [Family::Exponential, Family::Weibull] {
-                if let Ok(fit) = fit_law_to_runs(law, family, &width, &transitions) {
-                    prop_assert!(fit.log_likelihood.is_finite() && fit.exponent.value.is_finite());
-                    prop_assert!(fit.exponent.interval_95.contains(fit.exponent.value));
-                    if let Some(critical) = fit.critical_width {
-                        prop_assert!(critical.interval_95.contains(critical.value));
-                    }
-                }
-            }
-        }
-    }
 }

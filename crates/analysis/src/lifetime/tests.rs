@@ -1,7 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
 use crate::tests::{Coverage, exponential as unit_exponential, remission, watched};
-use proptest::prelude::*;
 
 fn weibull(randomness: &mut Randomness, mean: f64, shape: f64) -> f64 {
     let scale = mean / libm::tgamma(1.0 + 1.0 / shape);
@@ -159,40 +158,5 @@ fn what_cannot_be_fitted_is_refused() {
     }
     for family in [Family::Gamma, Family::Weibull] {
         assert_refused!(fit_lifetime(family, &[at(2.0); 6]) => NoScatter { observed: 6 });
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
-    #[test]
-    fn any_runs_give_finite_estimates_or_an_error(
-        times in prop::collection::vec((-4.0..4.0_f64, any::<bool>()), 0..20),
-        odd in prop::option::of(prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1.0)]),
-    ) {
-        let mut runs: Vec<Transition> = times
-            .iter()
-            .map(|&(log, observed)| {
-                let time = libm::exp(2.0 * log);
-                if observed {
-                    Transition::At { time, period: 0 }
-                } else {
-                    Transition::Censored { time }
-                }
-            })
-            .collect();
-        if let Some(time) = odd {
-            runs.push(Transition::Censored { time });
-        }
-        for family in [Family::Exponential, Family::Gamma, Family::Weibull] {
-            if let Ok(fit) = fit_lifetime(family, &runs) {
-                prop_assert!(odd.is_none());
-                for number in [Some(fit.mean), Some(fit.variance), fit.shape].into_iter().flatten() {
-                    prop_assert!(number.value > 0.0 && number.value.is_finite());
-                    prop_assert!(number.error > 0.0 && number.error.is_finite());
-                    prop_assert!(number.interval_68.contains(number.value));
-                    prop_assert!(number.interval_95.lower <= number.interval_68.lower * 1.001);
-                }
-            }
-        }
     }
 }
