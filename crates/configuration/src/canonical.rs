@@ -106,21 +106,27 @@ impl Configuration {
         if self.drive.schedules.is_empty() {
             set(&mut tables, "drive", "schedule", "sudden".into());
         }
+        let holds = |path: &&str| {
+            let (table, key) = path.split_once('.').unwrap_or_default();
+            tables
+                .get(table)
+                .is_some_and(|keys| keys.get(key).is_some())
+        };
+        let mut absent: Vec<&str> = Vec::new();
+        for group in ALTERNATIVES {
+            absent.extend(group.iter().copied().filter(holds).skip(1));
+        }
         let mut entries = Vec::new();
         for (table, keys) in &tables {
             if let Value::Table(keys) = keys {
                 list(table, keys, &mut entries);
             }
         }
-        let paths: Vec<String> = entries.iter().map(Entry::path).collect();
         let natural = self.natural_axial_velocity();
         entries.retain(|entry| match entry.path().as_str() {
             "drive.body_force" => self.drive.body_force != 0.0,
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
-            path => !ALTERNATIVES.iter().any(|group| {
-                let first = group.iter().find(|key| paths.iter().any(|it| it == *key));
-                group.contains(&path) && first.is_some_and(|first| *first != path)
-            }),
+            path => !absent.contains(&path),
         });
         entries
     }

@@ -4,13 +4,13 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use peristalsis_study::{Effort, Ending, Plan, SettingValue, Specification, Store, work_on};
+use peristalsis_study::{Effort, Ending, SettingValue, Specification, Store, work_on};
 use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 
 use crate::configuration::Configuration;
-use crate::error::{of_configuration, of_study};
+use crate::error::of_study;
 use crate::table::Table;
 
 /// Time between two checkpoints of a run.
@@ -63,7 +63,7 @@ impl Study {
         &self,
         py: Python<'py>,
     ) -> PyResult<Vec<(String, u32, Bound<'py, PyDict>, Configuration)>> {
-        let plan = Plan::of(&self.specification).map_err(of_configuration)?;
+        let plan = self.specification.plan();
         plan.sorted_runs()
             .iter()
             .map(|run| {

@@ -539,7 +539,7 @@ fn full(name: &str) -> (Specification, Plan) {
     let file = STUDIES.iter().find(|study| study.name == name).unwrap();
     let text = file.text(Size::Full);
     let specification = Specification::from_toml(file.path, text, |_| unreachable!()).unwrap();
-    let plan = Plan::of(&specification).unwrap();
+    let plan = specification.plan().clone();
     (specification, plan)
 }
 

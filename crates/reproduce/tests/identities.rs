@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 use peristalsis_reproduce::{STUDIES, Size};
-use peristalsis_study::{Plan, Specification, StudyError, seed};
+use peristalsis_study::{Specification, StudyError};
 use sha2::{Digest, Sha256};
 
 #[test]
@@ -27,10 +27,11 @@ fn runs_are_who_they_were() {
                     source: std::io::Error::other("builds on a preset"),
                 })
             });
-            let plan = Plan::of(&specification.unwrap()).unwrap();
+            let specification = specification.unwrap();
+            let plan = specification.plan();
             let mut digest = Sha256::new();
             for run in plan.runs() {
-                let seed = seed(&plan.configuration(run), run.replicate);
+                let seed = plan.configuration(run).run.seed;
                 digest.update(format!("{} {seed}\n", run.identity));
             }
             let digest = &digest.finalize()[..8];

@@ -10,7 +10,7 @@ use peristalsis_run::Stopping;
 use sha2::{Digest, Sha256};
 
 /// The tables of a run that are kept besides its row of numbers.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Record {
     /// Columns of the time series; `None`: all.
     pub columns: Option<Vec<String>>,
@@ -31,58 +31,53 @@ pub struct Record {
 pub struct Identity([u8; 16]);
 
 impl Identity {
-    /// The identity of one replicate of a point.
-    #[must_use]
-    pub fn of(
+    /// Identity and seed of each replicate of a point.
+    ///
+    /// The seed is a hash of the physics of the configuration and the number of the replicate. Neither the run's length nor
+    /// its observables count: a longer study of the same point follows the same trajectories.
+    pub(crate) fn of(
         configuration: &Configuration,
         stopping: Option<Stopping>,
         record: &Record,
-        replicate: u32,
-    ) -> Self {
-        let mut text = format!(
+        replicates: u32,
+    ) -> Vec<(Self, u64)> {
+        let mut configuration = configuration.clone();
+        configuration.run.seed = 0;
+        let mut run = format!(
             "peristalsis run of a study 1\nphysics {PHYSICS_VERSION}\nconfiguration {}\n",
-            hexadecimal(&without_seed(configuration).run_hash())
+            hexadecimal(&configuration.run_hash())
         );
         match stopping {
-            None => text.push_str("to its end\n"),
+            None => run.push_str("to its end\n"),
             Some(Stopping { settled_periods }) => {
-                text.push_str(&format!("settled {settled_periods}\n"));
+                run.push_str(&format!("settled {settled_periods}\n"));
             }
         }
         match &record.columns {
-            None => text.push_str("all columns\n"),
-            Some(columns) => text.push_str(&format!("columns {}\n", columns.join(" "))),
+            None => run.push_str("all columns\n"),
+            Some(columns) => run.push_str(&format!("columns {}\n", columns.join(" "))),
         }
-        text.push_str(&format!("profile {}\n", record.profile));
+        run.push_str(&format!("profile {}\n", record.profile));
         // An option that is absent is not written.
         if record.waves {
-            text.push_str("waves\n");
+            run.push_str("waves\n");
         }
         if record.snapshot {
-            text.push_str("snapshot\n");
+            run.push_str("snapshot\n");
         }
-        text.push_str(&format!("replicate {replicate}\n"));
-        Self(leading(&Sha256::digest(text.as_bytes())))
+        let physics = hexadecimal(&configuration.physics_hash());
+        let physics = format!("peristalsis seed 1\nphysics {physics}\n");
+        let digest =
+            |text: &str, replicate: u32| Sha256::digest(format!("{text}replicate {replicate}\n"));
+        (0..replicates)
+            .map(|replicate| {
+                let identity = Self(leading(&digest(&run, replicate)));
+                // TOML has whole numbers of 63 bits.
+                let seed = u64::from_le_bytes(leading(&digest(&physics, replicate))) >> 1;
+                (identity, seed)
+            })
+            .collect()
     }
-}
-
-/// The seed of one replicate: a hash of the physics of its configuration and its number.
-///
-/// Neither the run's length nor its observables count: a longer study of the same point follows the same trajectories.
-#[must_use]
-pub fn seed(configuration: &Configuration, replicate: u32) -> u64 {
-    let text = format!(
-        "peristalsis seed 1\nphysics {}\nreplicate {replicate}\n",
-        hexadecimal(&without_seed(configuration).physics_hash())
-    );
-    // TOML has whole numbers of 63 bits.
-    u64::from_le_bytes(leading(&Sha256::digest(text.as_bytes()))) >> 1
-}
-
-fn without_seed(configuration: &Configuration) -> Configuration {
-    let mut configuration = configuration.clone();
-    configuration.run.seed = 0;
-    configuration
 }
 
 fn leading<const N: usize>(digest: &[u8]) -> [u8; N] {

@@ -7,7 +7,7 @@
 //! the tables that [`Store::export`] writes in the end are the same bytes. Nothing here prints or exits.
 //!
 //! ```
-//! use peristalsis_study::{Plan, Specification};
+//! use peristalsis_study::Specification;
 //!
 //! let study = Specification::from_toml(
 //!     "study.toml",
@@ -23,7 +23,7 @@
 //!     "#,
 //!     |_| unreachable!("it builds on a preset"),
 //! )?;
-//! assert_eq!(Plan::of(&study)?.runs().len(), 12);
+//! assert_eq!(study.plan().runs().len(), 12);
 //! # Ok::<(), peristalsis_study::StudyError>(())
 //! ```
 
@@ -41,7 +41,7 @@ mod store;
 
 pub use error::StudyError;
 pub use estimate::{StudyEstimate, StudyWarning, study_estimate};
-pub use identity::{Identity, NotAnIdentity, PHYSICS_VERSION, Record, seed};
+pub use identity::{Identity, NotAnIdentity, PHYSICS_VERSION, Record};
 pub use plan::{Plan, PlannedRun, Point, Setting, SettingValue};
 pub use refinement::{Bracket, Finding, brackets, refine};
 pub use row::Row;

@@ -9,7 +9,7 @@ use peristalsis_configuration::{
 };
 use peristalsis_run::Stopping;
 
-use crate::identity::{Identity, Record, seed};
+use crate::identity::{Identity, Record};
 use crate::specification::{Choice, Specification, joined};
 
 /// The value of a key of an axis.
@@ -141,10 +141,12 @@ pub struct PlannedRun {
     pub point: usize,
     /// Number of the replicate, from 0.
     pub replicate: u32,
+    /// Seed of its random numbers.
+    pub seed: u64,
 }
 
 /// The runs of a study, the first replicate of every point before the second of any.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Plan {
     points: Vec<Point>,
     runs: Vec<PlannedRun>,
@@ -160,7 +162,7 @@ impl Plan {
     ///
     /// # Errors
     /// Faults of the configurations of its points, and points that are the same.
-    pub fn of(study: &Specification) -> Result<Self, ConfigurationError> {
+    pub(crate) fn of(study: &Specification) -> Result<Self, ConfigurationError> {
         let states: Vec<Option<InitialState>> = match &study.states {
             None => vec![None],
             Some(states) => states.iter().copied().map(Some).collect(),
@@ -193,15 +195,17 @@ impl Plan {
     pub(crate) fn add(&mut self, points: Vec<Point>) {
         for point in points {
             let index = self.points.len();
-            for replicate in 0..self.replicates {
-                let identity =
-                    Identity::of(&point.configuration, self.stopping, &self.record, replicate);
-                self.runs.push(PlannedRun {
+            let configuration = &point.configuration;
+            let runs = Identity::of(configuration, self.stopping, &self.record, self.replicates);
+            let planned = (0..)
+                .zip(runs)
+                .map(|(replicate, (identity, seed))| PlannedRun {
                     identity,
                     point: index,
                     replicate,
+                    seed,
                 });
-            }
+            self.runs.extend(planned);
             self.points.push(point);
         }
         self.runs.sort_by_key(|run| (run.replicate, run.point));
@@ -260,7 +264,7 @@ impl Plan {
     #[must_use]
     pub fn configuration(&self, run: &PlannedRun) -> Configuration {
         let mut configuration = self.points[run.point].configuration.clone();
-        configuration.run.seed = seed(&configuration, run.replicate);
+        configuration.run.seed = run.seed;
         configuration
     }
 }

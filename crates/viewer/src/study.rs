@@ -309,7 +309,7 @@ fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
             (identity, finding)
         })
         .collect();
-    let mut plan = Plan::of(design).map_err(peristalsis_study::StudyError::from)?;
+    let mut plan = design.plan().clone();
     refine(design, &mut plan, &|identity| {
         findings.get(identity).copied()
     })

@@ -184,7 +184,7 @@ pub fn work_on(
     watch: &mut dyn FnMut(&Board),
 ) -> Result<Ending, StudyError> {
     let mut index = store.index()?;
-    let plan = Plan::of(study)?;
+    let plan = study.plan().clone();
     let news = store.check_changed(&mut index, LEASE_TIMEOUT)?;
     let workers = effort.workers.max(1);
     let mut common = Common {

@@ -3,6 +3,7 @@
 mod axis;
 mod schema;
 
+use std::fs;
 use std::path::Path;
 
 use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
@@ -15,7 +16,7 @@ use peristalsis_run::Stopping;
 
 use crate::error::StudyError;
 use crate::identity::Record;
-use crate::plan::state_name;
+use crate::plan::{Plan, state_name};
 use axis::Axis;
 pub(crate) use axis::{neat, number};
 pub use schema::schema;
@@ -25,7 +26,7 @@ const MOST_RUNS: u64 = 1_000_000;
 /// Problems that are reported at once: one wrong axis is wrong at each of its points.
 const MOST_PROBLEMS: usize = 20;
 
-/// A study file that has been read and checked; its points are those of [`Plan`](crate::Plan).
+/// A study file that has been read and checked, with its runs.
 #[derive(Clone, Debug)]
 pub struct Specification {
     /// Short name.
@@ -42,6 +43,7 @@ pub struct Specification {
     pub(crate) axes: Vec<Axis>,
     /// Initial states; `None`: the one of the base configuration.
     pub(crate) states: Option<Vec<InitialState>>,
+    plan: Plan,
     base: Base,
     text: String,
     /// Where `file` names the base in `text`, quotes included.
@@ -82,7 +84,7 @@ impl Specification {
     /// it.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let read = |path: &Path| {
-            std::fs::read_to_string(path).map_err(|source| StudyError::Read {
+            fs::read_to_string(path).map_err(|source| StudyError::Read {
                 path: path.to_owned(),
                 source,
             })
@@ -132,7 +134,7 @@ impl Specification {
                 _ => Table::new(),
             },
         };
-        let study = Self {
+        let mut study = Self {
             name: text_of(&table, "name").expect("the schema requires a name"),
             title: text_of(&table, "title").unwrap_or_default(),
             replicates: whole(&table, "replicates").unwrap_or(1),
@@ -147,14 +149,21 @@ impl Specification {
             refinement,
             axes,
             states: states(&table),
+            plan: Plan::default(),
             base,
             text: text.to_owned(),
             file_span: span_of("file"),
             replicates_span: span_of("replicates"),
         };
         study.check_size(&table)?;
-        crate::plan::Plan::of(&study)?;
+        study.plan = Plan::of(&study)?;
         Ok(study)
+    }
+
+    /// The runs of the study before refinement.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// The same study with so many replicates of each point.
@@ -189,6 +198,13 @@ impl Specification {
             ),
             None => self.text.clone(),
         }
+    }
+
+    /// Whether this is what a study file and the file of its base say now.
+    pub(crate) fn is_still(&self, study: &Path, base: &Path) -> bool {
+        let says =
+            |path: &Path, text: &str| fs::read_to_string(path).is_ok_and(|found| found == text);
+        says(study, &self.text) && self.base_text().is_none_or(|text| says(base, text))
     }
 
     /// The text of the configuration file that it builds on.

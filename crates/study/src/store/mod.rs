@@ -24,6 +24,7 @@ mod survey;
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use peristalsis_formats::atomic;
@@ -58,6 +59,8 @@ pub(crate) const LEASE_TIMEOUT: Duration = Duration::from_secs(180);
 #[derive(Clone, Debug)]
 pub struct Store {
     path: PathBuf,
+    /// The study as it was read last: its runs are found once while its file stays as it is.
+    study: Arc<Mutex<Option<Specification>>>,
 }
 
 impl Store {
@@ -67,9 +70,7 @@ impl Store {
     /// # Errors
     /// [`StudyError::OtherStudy`], [`StudyError::NoStore`] where the folder holds other files, errors of writing.
     pub fn create(path: &Path, study: &Specification) -> Result<Self, StudyError> {
-        let store = Self {
-            path: path.to_owned(),
-        };
+        let store = Self::at(path);
         if store.file(STUDY).exists() {
             match store.name() {
                 Some(found) if found != study.name => {
@@ -102,7 +103,20 @@ impl Store {
                 atomic::write(&path, text.as_bytes())?;
             }
         }
+        *store.study() = Some(study.clone());
         Ok(store)
+    }
+
+    fn at(path: &Path) -> Self {
+        Self {
+            path: path.to_owned(),
+            study: Arc::default(),
+        }
+    }
+
+    fn study(&self) -> MutexGuard<'_, Option<Specification>> {
+        // Each change is one assignment: the study is whole even after a panic.
+        self.study.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Name of the study that the copy of the study file gives, whatever else may be wrong with it.
@@ -131,9 +145,7 @@ impl Store {
     /// # Errors
     /// [`StudyError::NoStore`].
     pub fn open(path: &Path) -> Result<Self, StudyError> {
-        let store = Self {
-            path: path.to_owned(),
-        };
+        let store = Self::at(path);
         if !store.file(STUDY).is_file() {
             return Err(StudyError::NoStore {
                 path: path.to_owned(),
@@ -174,7 +186,14 @@ impl Store {
     /// # Errors
     /// As [`Specification::read`].
     pub fn specification(&self) -> Result<Specification, StudyError> {
-        Specification::read(&self.file(STUDY))
+        let (path, base) = (self.file(STUDY), self.file(BASE));
+        let mut last = self.study();
+        if let Some(study) = last.as_ref().filter(|study| study.is_still(&path, &base)) {
+            return Ok(study.clone());
+        }
+        let study = Specification::read(&path)?;
+        *last = Some(study.clone());
+        Ok(study)
     }
 
     /// The index, made from the files where there was none.

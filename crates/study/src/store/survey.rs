@@ -124,7 +124,7 @@ impl Store {
             .into_iter()
             .map(|(identity, lease)| (identity, lease.in_words()))
             .collect();
-        let mut plan = Plan::of(&study)?;
+        let mut plan = study.plan().clone();
         refine(&study, &mut plan, &|identity| finding(&entries, identity))?;
         Ok(Survey {
             study,

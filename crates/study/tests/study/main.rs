@@ -57,7 +57,7 @@ fn study(text: &str) -> Specification {
 }
 
 fn plan(text: &str) -> Plan {
-    Plan::of(&study(text)).unwrap()
+    study(text).plan().clone()
 }
 
 /// A store of a study in a folder of its own.

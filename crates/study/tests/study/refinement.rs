@@ -57,7 +57,7 @@ fn truth(plan: &Plan, identity: &Identity) -> Finding {
 /// Runs the plan in the order that `next` chooses among what has not ended, refining after each.
 fn grown(next: impl Fn(usize) -> usize) -> Plan {
     let study = study(STUDY);
-    let mut plan = Plan::of(&study).unwrap();
+    let mut plan = study.plan().clone();
     let mut ended: Vec<(Identity, Finding)> = Vec::new();
     loop {
         let open: Vec<Identity> = plan
@@ -107,7 +107,7 @@ fn bisection_ends_within_the_tolerance_of_each_line() {
 #[test]
 fn where_some_runs_jam_the_points_are_dense_between_all_and_none() {
     let study = study(&STUDY.replace(r#"["rest", "jammed"]"#, r#"["rest"]"#));
-    let mut plan = Plan::of(&study).unwrap();
+    let mut plan = study.plan().clone();
     loop {
         // Each replicate jams up to a width of its own: 2.64, 2.67, 2.70.
         let known: Vec<(Identity, Finding)> = plan
@@ -165,7 +165,7 @@ fn the_points_added_do_not_depend_on_the_order_in_which_runs_end() {
 #[test]
 fn nothing_is_added_before_a_line_has_ended_nor_where_nothing_changes() {
     let study = study(STUDY);
-    let mut plan = Plan::of(&study).unwrap();
+    let mut plan = study.plan().clone();
     let runs = plan.runs().len();
     let last = plan.runs().last().unwrap().identity;
     let reference = plan.clone();
@@ -187,7 +187,7 @@ fn nothing_is_added_before_a_line_has_ended_nor_where_nothing_changes() {
 #[test]
 fn the_estimate_runs_along_before_everything_has_ended() {
     let study = study(&STUDY.replace("[refine]\nkey = \"drive.width\"\ntolerance = 0.01\n", ""));
-    let plan = Plan::of(&study).unwrap();
+    let plan = study.plan();
     // Only the first replicates have ended; no refinement is asked for, widths are watched all the same.
     let first: Vec<Identity> = plan
         .runs()

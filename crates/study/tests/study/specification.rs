@@ -1,6 +1,6 @@
 //! The study file: valid and invalid ones; errors with place and help.
 
-use peristalsis_study::{Plan, SettingValue, Specification, schema};
+use peristalsis_study::{SettingValue, Specification, schema};
 
 use crate::{SMALL, plan, read};
 
@@ -92,7 +92,7 @@ fn a_configuration_file_can_be_the_base() {
     );
     write("study.toml", "name = \"of-file\"\nfile = \"tube.toml\"\n");
     let study = Specification::read(&folder.path().join("study.toml")).unwrap();
-    let plan = Plan::of(&study).unwrap();
+    let plan = study.plan();
     let configuration = plan.configuration(&plan.runs()[0]);
     assert_eq!(configuration.run.periods, Some(5.0));
     assert_ne!(configuration.run.seed, 7);
@@ -100,10 +100,7 @@ fn a_configuration_file_can_be_the_base() {
     let store = peristalsis_study::Store::create(&folder.path().join("store"), &study).unwrap();
     write("tube.toml", "not toml");
     let copy = store.specification().unwrap();
-    assert_eq!(
-        Plan::of(&copy).unwrap().runs(),
-        Plan::of(&study).unwrap().runs()
-    );
+    assert_eq!(copy.plan().runs(), study.plan().runs());
     // What is wrong in the base is found in the base.
     write(
         "tube.toml",

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use peristalsis_study::{Plan, Specification, State, Store, StudyEstimate, study_estimate};
+use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estimate};
 
 use super::{PlanArguments, usual_store};
 use crate::commands::{print, print_json};
@@ -12,8 +12,8 @@ use crate::progress::seconds;
 /// Says what a study would run.
 pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let study = Specification::read(&arguments.file)?;
-    let plan = Plan::of(&study)?;
-    let estimate = study_estimate(&study, &plan)?;
+    let plan = study.plan();
+    let estimate = study_estimate(&study, plan)?;
     let store = arguments
         .store
         .clone()
