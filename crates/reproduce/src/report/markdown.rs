@@ -1,8 +1,8 @@
 //! Findings as Markdown, and their places in a document.
 
-use crate::check::{Check, Convergence};
-use crate::contents::ReportTable;
-use crate::finding::Finding;
+use std::path::Path;
+
+use crate::{Check, ClaimError, Convergence, Finding, ReportTable};
 
 /// A finding: its paragraphs, checks, errors and figures; `figures` is the folder of the pictures as the document sees it.
 pub(crate) fn finding(finding: &Finding, figures: &str) -> String {
@@ -37,13 +37,22 @@ pub(crate) fn table(table: &ReportTable) -> String {
     row(&table.head) + &rule + &rows
 }
 
-/// The document with the block `name` in place of the text between its markers.
+/// The text of the document `path` with the block `name` in place of the text between its markers.
 ///
 /// # Errors
-/// Name of the block and the line that is missing: its first marker, or the next end of a block.
-pub(crate) fn replaced(text: &str, name: &str, block: &str) -> Result<String, (String, String)> {
+/// [`ClaimError::NoPlace`] with the line that is missing: its first marker, or the next end of a block.
+pub(crate) fn replaced(
+    path: &Path,
+    text: &str,
+    name: &str,
+    block: &str,
+) -> Result<String, ClaimError> {
     let (first, last) = (format!("<!-- validate {name} -->"), "<!-- /validate -->");
-    let missing = |line: &str| (name.to_owned(), line.to_owned());
+    let missing = |line: &str| ClaimError::NoPlace {
+        path: path.to_owned(),
+        block: name.to_owned(),
+        line: line.to_owned(),
+    };
     let start = text.find(&first).ok_or_else(|| missing(&first))? + first.len();
     let rest = &text[start..];
     let end = rest.find(last).ok_or_else(|| missing(last))?;
@@ -64,14 +73,10 @@ mod tests {
             let other = "<!-- validate y -->\n<!-- /validate -->\n";
             format!("a\n<!-- validate x -->\n{block}<!-- /validate -->\nb\n{other}")
         };
-        assert_eq!(
-            replaced(&text("old\n"), "x", "new\n").unwrap(),
-            text("new\n")
-        );
-        assert_eq!(
-            replaced(&text("new\n"), "x", "new\n").unwrap(),
-            text("new\n")
-        );
+        for before in ["old\n", "new\n"] {
+            let found = replaced(Path::new(""), &text(before), "x", "new\n");
+            assert_eq!(found.unwrap(), text("new\n"));
+        }
     }
 
     #[test]
@@ -81,7 +86,9 @@ mod tests {
             ("text", "<!-- validate x -->"),
             (open, "<!-- /validate -->"),
         ] {
-            assert_eq!(replaced(text, "x", "").unwrap_err().1, line);
+            let error = replaced(Path::new("a.md"), text, "x", "").unwrap_err();
+            let expected = format!("a.md has no place for \"x\": the line {line:?} is missing");
+            assert_eq!(error.to_string(), expected);
         }
     }
 }

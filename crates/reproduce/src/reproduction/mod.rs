@@ -4,7 +4,6 @@
 mod import;
 mod order;
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -67,27 +66,6 @@ impl Work {
         let study = self.study.with_replicates(replicates)?;
         let store = Store::create(&stores.join(format!("{}{AGAIN}", self.file.name)), &study)?;
         Ok(Some((study, store)))
-    }
-}
-
-/// One go at a study: all of it, or the part that is computed again.
-struct Pass<'a> {
-    study: &'a Specification,
-    store: &'a Store,
-    load: Load,
-}
-
-impl<'a> Pass<'a> {
-    fn of(study: &'a Specification, store: &'a Store) -> Self {
-        // A study that cannot be read takes no time.
-        let load = store.survey().map_or_else(
-            |_| Load::default(),
-            |survey| Load {
-                all: survey.work(),
-                left: survey.work_left(),
-            },
-        );
-        Self { study, store, load }
     }
 }
 
@@ -231,108 +209,144 @@ impl Reproduction {
         stop: &dyn Fn() -> bool,
         watch: &mut dyn FnMut(Event<'_>),
     ) -> Outcome {
-        let mut course = Course::of(self);
-        let ending = course.work(effort, stop, watch);
-        course.finish(ending, watch)
+        let mut course = Course::of(self, watch);
+        let ending = course.work(effort, stop);
+        course.finish(ending)
     }
 }
 
 /// A reproduction on its way.
 struct Course<'a> {
-    reproduction: &'a Reproduction,
-    /// Stores of what is computed again, by the name of the study.
-    again: BTreeMap<&'static str, Store>,
-    /// Why a study could not be worked on or read, by name.
-    failures: BTreeMap<&'static str, String>,
-    /// Studies whose results are in the evidence, or cannot be.
-    ended: Vec<&'static str>,
+    claims: &'a [Claim],
+    studies: Vec<StudyCourse<'a>>,
     evidence: Evidence,
-    examinations: BTreeMap<&'static str, Examination>,
+    /// Those of the claims that have been examined, each at the place of its claim.
+    examinations: Vec<Option<Examination>>,
+    watch: &'a mut dyn FnMut(Event<'_>),
 }
 
-/// Work and the part of it that is left, in grains times steps.
+/// A study on its way.
+struct StudyCourse<'a> {
+    work: &'a Work,
+    /// The part of it that is computed again.
+    again: Option<(Specification, Store)>,
+    /// Why it could not be worked on or read.
+    failure: Option<String>,
+    /// Whether its results are in the evidence, or cannot be.
+    has_ended: bool,
+}
+
+/// The work of a store and the part of it that is left, in grains times steps.
 #[derive(Clone, Copy, Debug, Default)]
 struct Load {
     all: f64,
     left: f64,
 }
 
-impl<'a> Course<'a> {
-    fn of(reproduction: &'a Reproduction) -> Self {
-        Self {
-            reproduction,
-            again: BTreeMap::new(),
-            failures: BTreeMap::new(),
-            ended: Vec::new(),
-            evidence: Evidence::default(),
-            examinations: BTreeMap::new(),
+impl Load {
+    fn of(store: &Store) -> Self {
+        // A study that cannot be read takes no time.
+        store.survey().map_or_else(
+            |_| Self::default(),
+            |survey| Self {
+                all: survey.work(),
+                left: survey.work_left(),
+            },
+        )
+    }
+}
+
+impl StudyCourse<'_> {
+    fn name(&self) -> &'static str {
+        self.work.file.name
+    }
+
+    /// All of the study, then the part that is computed again.
+    fn passes(&self) -> impl Iterator<Item = (&Specification, &Store)> {
+        let Work { study, store, .. } = self.work;
+        let again = self.again.iter().map(|(study, store)| (study, store));
+        store.iter().map(move |store| (study, store)).chain(again)
+    }
+
+    fn fail(&mut self, reason: String, watch: &mut dyn FnMut(Event<'_>)) {
+        // The first reason is the cause of those that follow.
+        if self.failure.is_none() {
+            let study = self.name();
+            let reason = &*self.failure.insert(reason);
+            watch(Event::Trouble { study, reason });
         }
     }
 
-    /// Finds which studies are computed again in part.
-    fn look_for_bare_rows(
-        &mut self,
-        watch: &mut dyn FnMut(Event<'_>),
-    ) -> Vec<Option<(Specification, Store)>> {
-        let reproduction = self.reproduction;
-        let mut found = Vec::new();
-        for work in &reproduction.works {
-            let again = work.again(&reproduction.stores).unwrap_or_else(|error| {
-                self.fail(work.file.name, error.to_string(), watch);
-                None
-            });
-            if let Some((_, store)) = &again {
-                self.again.insert(work.file.name, store.clone());
-            }
-            found.push(again);
+    fn outcome(self) -> StudyOutcome {
+        let mut outcome = StudyOutcome {
+            file: self.work.file,
+            title: self.work.study.title.clone(),
+            runs: 0,
+            done: 0,
+            failed: 0,
+            failure: self.failure,
+        };
+        if let Ok(store) = &self.work.store
+            && let Ok(survey) = store.survey()
+        {
+            let counts = survey.counts();
+            let count = |state: &str| counts.get(state).copied().unwrap_or(0);
+            outcome.runs = survey.plan.runs().len();
+            (outcome.done, outcome.failed) = (count("done"), count("failed"));
         }
-        found
+        outcome
+    }
+}
+
+impl<'a> Course<'a> {
+    fn of(reproduction: &'a Reproduction, watch: &'a mut dyn FnMut(Event<'_>)) -> Self {
+        let course = |work: &'a Work| {
+            let again = work.again(&reproduction.stores);
+            let mut course = StudyCourse {
+                work,
+                again: None,
+                failure: None,
+                has_ended: false,
+            };
+            match again {
+                Ok(again) => course.again = again,
+                Err(error) => course.fail(error.to_string(), watch),
+            }
+            course
+        };
+        Self {
+            claims: &reproduction.claims,
+            studies: reproduction.works.iter().map(course).collect(),
+            evidence: Evidence::default(),
+            examinations: vec![None; reproduction.claims.len()],
+            watch,
+        }
     }
 
     /// Works on the studies until all have ended or it is time to stop.
-    fn work(
-        &mut self,
-        effort: Effort,
-        stop: &dyn Fn() -> bool,
-        watch: &mut dyn FnMut(Event<'_>),
-    ) -> Ending {
+    fn work(&mut self, effort: Effort, stop: &dyn Fn() -> bool) -> Ending {
         let begin = Instant::now();
-        let works = &self.reproduction.works;
-        let again = self.look_for_bare_rows(watch);
-        let passes: Vec<Vec<Pass<'_>>> = works
-            .iter()
-            .zip(&again)
-            .map(|(work, again)| {
-                let whole = work.store.as_ref().ok().map(|store| (&work.study, store));
-                let part = again.as_ref().map(|(study, store)| (study, store));
-                let both = whole.into_iter().chain(part);
-                both.map(|(study, store)| Pass::of(study, store)).collect()
-            })
-            .collect();
-        let sum = |of: fn(&Load) -> f64, passes: &[Pass<'_>]| -> f64 {
-            passes.iter().map(|pass| of(&pass.load)).sum()
-        };
-        let left = |passes: &[Pass<'_>]| sum(|load| load.left, passes);
-        let costs: Vec<f64> = passes.iter().map(|passes| left(passes)).collect();
-        let names: Vec<&str> = works.iter().map(|work| work.file.name).collect();
-        let order = order::cheapest_claims_first(&self.reproduction.claims, &names, &costs);
-        let total: f64 = passes
-            .iter()
-            .map(|passes| sum(|load| load.all, passes))
-            .sum();
+        let loads_of =
+            |study: &StudyCourse<'_>| study.passes().map(|pass| Load::of(pass.1)).collect();
+        let loads: Vec<Vec<Load>> = self.studies.iter().map(loads_of).collect();
+        let left_of = |loads: &Vec<Load>| loads.iter().map(|load| load.left).sum();
+        let costs: Vec<f64> = loads.iter().map(left_of).collect();
+        let names: Vec<&str> = self.studies.iter().map(StudyCourse::name).collect();
+        let order = order::cheapest_claims_first(self.claims, &names, &costs);
+        let total: f64 = loads.iter().flatten().map(|load| load.all).sum();
         let left_before: f64 = costs.iter().sum();
+        let mut left_later = left_before;
         for (turn, &place) in order.iter().enumerate() {
-            let work = &works[place];
-            let others_left: f64 = order[turn + 1..].iter().map(|place| costs[*place]).sum();
-            let mut ending = match &work.store {
+            let study = &self.studies[place];
+            let mut ending = match &study.work.store {
                 Ok(_) => Ok(Ending::Complete),
                 Err(error) => Err(error.to_string()),
             };
-            for (number, pass) in passes[place].iter().enumerate() {
+            for ((specification, store), load) in study.passes().zip(&loads[place]) {
                 let limit = effort
                     .limit
                     .map(|limit| limit.saturating_sub(begin.elapsed()));
-                if pass.load.left > 0.0 {
+                if load.left > 0.0 {
                     if stop() {
                         return Ending::Stopped;
                     }
@@ -340,12 +354,12 @@ impl<'a> Course<'a> {
                         return Ending::TimeUp;
                     }
                 }
-                let later_left = others_left + left(&passes[place][number + 1..]);
+                left_later = (left_later - load.left).max(0.0);
                 let mut show = |board: &Board| {
-                    let left = later_left + pass.load.all * (1.0 - board.fraction);
+                    let left = left_later + load.all * (1.0 - board.fraction);
                     let gained = left_before - left;
-                    watch(Event::Progress(Stage {
-                        study: work.file.name,
+                    (self.watch)(Event::Progress(Stage {
+                        study: study.name(),
                         number: turn + 1,
                         of: order.len(),
                         board,
@@ -355,7 +369,7 @@ impl<'a> Course<'a> {
                     }));
                 };
                 let effort = Effort { limit, ..effort };
-                ending = work_on(pass.store, pass.study, effort, stop, &mut show)
+                ending = work_on(store, specification, effort, stop, &mut show)
                     .map_err(|error| error.to_string());
                 if ending != Ok(Ending::Complete) {
                     break;
@@ -364,111 +378,80 @@ impl<'a> Course<'a> {
             match ending {
                 Ok(Ending::Complete) => {}
                 Ok(ending) => return ending,
-                Err(reason) => self.fail(work.file.name, reason, watch),
+                Err(reason) => self.studies[place].fail(reason, self.watch),
             }
-            self.end(place, watch);
-            self.examine_what_has_ended(watch);
+            self.end(place);
+            self.examine_what_has_ended();
         }
         Ending::Complete
     }
 
     /// Takes the results of all studies that have not ended into the evidence, and examines the rest of the claims.
-    fn finish(mut self, ending: Ending, watch: &mut dyn FnMut(Event<'_>)) -> Outcome {
-        for place in 0..self.reproduction.works.len() {
-            if !self
-                .ended
-                .contains(&self.reproduction.works[place].file.name)
-            {
-                self.end(place, watch);
-            }
+    fn finish(mut self, ending: Ending) -> Outcome {
+        for place in 0..self.studies.len() {
+            self.end(place);
         }
-        self.examine_what_has_ended(watch);
+        self.examine_what_has_ended();
         Outcome {
             ending,
-            studies: self
-                .reproduction
-                .works
-                .iter()
-                .map(|work| self.outcome_of(work))
-                .collect(),
-            examinations: self
-                .reproduction
-                .claims
-                .iter()
-                .filter_map(|claim| self.examinations.remove(claim.id))
-                .collect(),
+            studies: self.studies.into_iter().map(StudyCourse::outcome).collect(),
+            examinations: self.examinations.into_iter().flatten().collect(),
         }
     }
 
     /// Takes the results of a study into the evidence.
-    fn end(&mut self, place: usize, watch: &mut dyn FnMut(Event<'_>)) {
-        let work = &self.reproduction.works[place];
-        self.ended.push(work.file.name);
-        let outcome = match &work.store {
-            Ok(store) => self
-                .evidence
-                .add(store.clone(), self.again.get(work.file.name).cloned())
-                .map_err(|error| error.to_string()),
+    fn end(&mut self, place: usize) {
+        let study = &mut self.studies[place];
+        if std::mem::replace(&mut study.has_ended, true) {
+            return;
+        }
+        let outcome = match &study.work.store {
+            Ok(store) => {
+                let again = study.again.as_ref().map(|(_, store)| store.clone());
+                let outcome = self.evidence.add(store.clone(), again);
+                outcome.map_err(|error| error.to_string())
+            }
             Err(error) => Err(error.to_string()),
         };
         if let Err(reason) = outcome {
-            self.fail(work.file.name, reason, watch);
-        }
-    }
-
-    fn fail(&mut self, study: &'static str, reason: String, watch: &mut dyn FnMut(Event<'_>)) {
-        // The first reason is the cause of those that follow.
-        if !self.failures.contains_key(study) {
-            let reason = &*self.failures.entry(study).or_insert(reason);
-            watch(Event::Trouble { study, reason });
+            study.fail(reason, self.watch);
         }
     }
 
     /// Examines the claims whose studies have all ended.
-    fn examine_what_has_ended(&mut self, watch: &mut dyn FnMut(Event<'_>)) {
-        for claim in &self.reproduction.claims {
-            let is_ready = claim.studies.iter().all(|name| self.ended.contains(name));
-            if is_ready && !self.examinations.contains_key(claim.id) {
+    fn examine_what_has_ended(&mut self) {
+        for (place, claim) in self.claims.iter().enumerate() {
+            let mut studies = claim.studies.iter();
+            let is_ready =
+                studies.all(|name| self.study(name).is_some_and(|study| study.has_ended));
+            if is_ready && self.examinations[place].is_none() {
                 let examination = self.examine(claim);
-                watch(Event::Examined(&examination));
-                self.examinations.insert(claim.id, examination);
+                (self.watch)(Event::Examined(&examination));
+                self.examinations[place] = Some(examination);
             }
         }
+    }
+
+    fn study(&self, name: &str) -> Option<&StudyCourse<'a>> {
+        self.studies.iter().find(|study| study.name() == name)
     }
 
     fn examine(&self, claim: &Claim) -> Examination {
         let outcome = without_panic(|| (claim.examine)(&self.evidence));
         // An error of a claim follows from the failure of one of its studies, if one failed.
-        let failed_study = || {
-            let failure = |name| Some(format!("study {name}: {}", self.failures.get(name)?));
-            claim.studies.iter().copied().find_map(failure)
+        let failure = |name| {
+            Some(format!(
+                "study {name}: {}",
+                self.study(name)?.failure.as_ref()?
+            ))
         };
         let outcome = outcome.map_err(|error| match error {
             ClaimError::Panicked => error.to_string(),
-            error => failed_study().unwrap_or_else(|| error.to_string()),
+            error => {
+                let failed_study = claim.studies.iter().copied().find_map(failure);
+                failed_study.unwrap_or_else(|| error.to_string())
+            }
         });
         Examination::new(*claim, outcome)
-    }
-
-    fn outcome_of(&self, work: &Work) -> StudyOutcome {
-        let survey = work
-            .store
-            .as_ref()
-            .ok()
-            .and_then(|store| store.survey().ok());
-        let (mut runs, mut done, mut failed) = (0, 0, 0);
-        if let Some(survey) = survey {
-            let counts = survey.counts();
-            let count = |state: &str| counts.get(state).copied().unwrap_or(0);
-            (runs, done, failed) = (survey.plan.runs().len(), count("done"), count("failed"));
-        }
-        StudyOutcome {
-            file: work.file,
-            title: work.study.title.clone(),
-            runs,
-            done,
-            failed,
-            failure: self.failures.get(work.file.name).cloned(),
-        }
     }
 }

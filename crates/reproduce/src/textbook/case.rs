@@ -36,3 +36,18 @@ pub struct Case {
     /// Examines it.
     pub examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
 }
+
+impl Case {
+    /// A case with its name, its text and its examination.
+    pub(crate) const fn new(
+        name: &'static str,
+        prose: Prose,
+        examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
+    ) -> Self {
+        Self {
+            name,
+            prose,
+            examine,
+        }
+    }
+}

@@ -6,13 +6,12 @@ use std::path::Path;
 use peristalsis_formats::{atomic, csv};
 use serde::Serialize;
 
-use crate::check::{Check, Convergence, verdict};
-use crate::contents::ReportTable;
-use crate::error::{ClaimError, make_folder};
-use crate::examination::{Examination, without_panic};
+use crate::check::verdict;
+use crate::error::make_folder;
+use crate::examination::without_panic;
 use crate::report::{json_text, markdown, write_drawing};
-use crate::studies::Size;
 use crate::textbook::case::{Case, Circumstances};
+use crate::{Check, ClaimError, Convergence, Examination, ReportTable, Size};
 
 /// Version of the layout of `validation.json`.
 const FORMAT: u32 = 1;
@@ -100,10 +99,11 @@ impl Validation {
     /// # Errors
     /// [`ClaimError::Read`] and [`ClaimError::NoPlace`].
     pub fn check_places(path: &Path, cases: &[Case]) -> Result<(), ClaimError> {
-        let mut document = MarkdownFile::read(path)?;
-        cases
-            .iter()
-            .try_for_each(|case| document.replace(case.name, ""))
+        let document = document(path)?;
+        for case in cases {
+            markdown::replaced(path, &document, case.name, "")?;
+        }
+        Ok(())
     }
 
     /// Replaces in a Markdown document the text between `<!-- validate NAME -->` and `<!-- /validate -->` for each case,
@@ -112,16 +112,18 @@ impl Validation {
     /// # Errors
     /// [`ClaimError::Read`], and [`ClaimError::NoPlace`] where a marker is missing; nothing is changed then.
     pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<(), ClaimError> {
-        let mut document = MarkdownFile::read(path)?;
+        let mut document = document(path)?;
         for examination in &self.examinations {
-            document.replace(examination.experiment.name, &block(examination, FIGURES))?;
+            let (name, block) = (examination.experiment.name, block(examination, FIGURES));
+            document = markdown::replaced(path, &document, name, &block)?;
         }
         let was_examined = |case: &Case| {
             let mut examined = self.examinations.iter().map(|one| one.experiment.name);
             examined.any(|name| name == case.name)
         };
         if all_cases.iter().all(was_examined) {
-            document.replace("summary", &markdown::table(&self.summary()))?;
+            let summary = markdown::table(&self.summary());
+            document = markdown::replaced(path, &document, "summary", &summary)?;
         }
         let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
         make_folder(&figures)?;
@@ -133,7 +135,7 @@ impl Validation {
             let file = figures.join(&figure.name).with_extension("svg");
             atomic::write(&file, figure.drawing.svg().as_bytes())?;
         }
-        atomic::write(path, document.text.as_bytes())?;
+        atomic::write(path, document.as_bytes())?;
         Ok(())
     }
 
@@ -145,30 +147,23 @@ impl Validation {
                 .checks
                 .iter()
                 .map(|check| check.deviation / check.tolerance);
-            let orders = finding.convergences.iter().filter_map(|one| one.order);
-            let [least, largest] = orders
-                .fold([f64::INFINITY, f64::NEG_INFINITY], |ends, order| {
-                    [ends[0].min(order), ends[1].max(order)]
-                });
+            let orders = || finding.convergences.iter().filter_map(|one| one.order);
+            let least = orders().fold(f64::INFINITY, f64::min);
+            let largest = orders().fold(f64::NEG_INFINITY, f64::max);
+            let orders = if least > largest {
+                "–".to_owned()
+            } else {
+                format!("{least:.2} – {largest:.2}")
+            };
             vec![
                 examination.experiment.name.to_owned(),
                 finding.checks.len().to_string(),
                 format!("{:.2}", used.fold(0.0, f64::max)),
-                if least > largest {
-                    "–".to_owned()
-                } else {
-                    format!("{least:.2} – {largest:.2}")
-                },
+                orders,
                 verdict(examination.passed()).to_owned(),
             ]
         };
-        let head = [
-            "case",
-            "checks",
-            "largest deviation over what is allowed",
-            "orders",
-            "",
-        ];
+        let head = "case, checks, largest deviation over what is allowed, orders, ".split(", ");
         ReportTable::new("", head, self.examinations.iter().map(row))
     }
 }
@@ -186,31 +181,12 @@ fn block(examination: &Examination<Case>, figures: &str) -> String {
     text + &markdown::finding(&examination.finding, figures)
 }
 
-/// A document with places for findings.
-struct MarkdownFile<'a> {
-    path: &'a Path,
-    text: String,
-}
-
-impl<'a> MarkdownFile<'a> {
-    fn read(path: &'a Path) -> Result<Self, ClaimError> {
-        let text = fs::read_to_string(path).map_err(|source| ClaimError::Read {
-            path: path.to_owned(),
-            source,
-        })?;
-        Ok(Self { path, text })
-    }
-
-    fn replace(&mut self, name: &str, block: &str) -> Result<(), ClaimError> {
-        self.text = markdown::replaced(&self.text, name, block).map_err(|(block, line)| {
-            ClaimError::NoPlace {
-                path: self.path.to_owned(),
-                block,
-                line,
-            }
-        })?;
-        Ok(())
-    }
+/// The text of a document with places for findings.
+fn document(path: &Path) -> Result<String, ClaimError> {
+    fs::read_to_string(path).map_err(|source| ClaimError::Read {
+        path: path.to_owned(),
+        source,
+    })
 }
 
 #[derive(Serialize)]

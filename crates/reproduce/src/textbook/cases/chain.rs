@@ -4,35 +4,21 @@ use core::f64::consts::PI;
 
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Tint};
 use peristalsis_figures::{Drawing, FigureError, Width};
-use peristalsis_physics::contact::{
-    DissipationForm, LinearSpringDashpot, Normal, ViscoelasticHertz,
-};
+use peristalsis_physics::contact::{DissipationForm, Normal, ViscoelasticHertz};
 
 use super::errors::{Steps, convergences, error_drawing};
-use super::plot::{curve, points};
-use crate::check::Check;
+use super::plot::{curve, open_if, points};
+use super::restitution::spring;
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
+use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::chain::Chain;
 use crate::textbook::reference::hertz;
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("chain.md"));
+pub(super) const PROSE: Prose = Prose::new(include_str!("chain.md"));
 
-pub(super) const CASE: Case = Case {
-    name: "chain",
-    prose: PROSE,
-    examine,
-};
-
-const LINEAR: Normal = Normal::Linear(LinearSpringDashpot {
-    normal_stiffness: 1.0,
-    normal_damping: 0.0,
-});
 const HERTZ: ViscoelasticHertz = ViscoelasticHertz {
     young_modulus: 1.0,
     poisson_ratio: 0.5,
@@ -58,25 +44,22 @@ struct Experiment {
 }
 
 fn experiments(grains: usize) -> [Experiment; 2] {
-    let chain = |normal: Normal| Chain {
-        normal,
-        grains,
-        overlap: OVERLAP,
-        amplitude: 1e-4,
-    };
+    // (3/2) kappa sqrt(xi_0); the reduced radius of two equal grains is d/4.
+    let hertz = 1.5 * hertz::stiffness(&HERTZ, 0.25) * OVERLAP.sqrt();
     [
-        Experiment {
-            name: "linear law",
-            chain: chain(LINEAR),
-            stiffness: 1.0,
-        },
-        Experiment {
-            name: "Hertz law",
-            chain: chain(Normal::Hertz(HERTZ)),
-            // (3/2) kappa sqrt(xi_0); the reduced radius of two equal grains is d/4.
-            stiffness: 1.5 * hertz::stiffness(&HERTZ, 0.25) * OVERLAP.sqrt(),
-        },
+        ("linear law", Normal::Linear(spring(0.0)), 1.0),
+        ("Hertz law", Normal::Hertz(HERTZ), hertz),
     ]
+    .map(|(name, normal, stiffness)| Experiment {
+        name,
+        stiffness,
+        chain: Chain {
+            normal,
+            grains,
+            overlap: OVERLAP,
+            amplitude: 1e-4,
+        },
+    })
 }
 
 impl Experiment {
@@ -109,25 +92,36 @@ struct Row {
     scaled: f64,
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let half_periods = circumstances.size.choose(4, 10);
     let mut finding = Finding::described(&PROSE, &[]);
     let mut rows: Vec<Row> = Vec::new();
     for experiment in experiments(GRAINS) {
         for mode in [1, 2, 4, 8, 12, 16] {
             circumstances.go_on()?;
-            let row = Row::measure(&experiment, mode, half_periods)?;
+            let expected = experiment.expected(mode);
+            let found = experiment.frequency(mode, half_periods, Means::USUAL, STEPS.lengths[3])?;
+            let wavenumber = experiment.chain.wavenumber(mode) * experiment.chain.spacing();
             if [1, 8, 16].contains(&mode) {
-                let setting = format!("{}, k a = {:.3} pi", row.law, row.wavenumber / PI);
-                let check = Check::relative("frequency", &setting, row.expected, row.found, 1e-4);
+                let setting = format!("{}, k a = {:.3} pi", experiment.name, wavenumber / PI);
+                let check = Check::relative("frequency", &setting, expected, found, 1e-4);
                 finding.checks.push(check.by("2 sqrt(k/m) sin(k a/2)"));
             }
-            rows.push(row);
+            rows.push(Row {
+                law: experiment.name,
+                wavenumber,
+                expected,
+                found,
+                scaled: found / experiment.stiffness.sqrt(),
+            });
         }
         for means in Means::INTEGRATORS {
-            finding
-                .checks
-                .push(kernels_agree(&experiment, half_periods, means)?);
+            let with = |means| experiment.frequency(8, half_periods, means, STEPS.lengths[3]);
+            let (plain, fast) = (with(means.plainly())?, with(means)?);
+            let quantity = "frequency, fast kernel against plain";
+            let setting = format!("{}, {}", experiment.name, means.name());
+            let check = Check::relative(quantity, &setting, plain, fast, 1e-9);
+            finding.checks.push(check.by("the plain kernel"));
         }
         let setting = format!("{}, k a = pi/2", experiment.name);
         let error = |means, step| {
@@ -147,17 +141,14 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
         let check = Check::relative("speed of sound", experiment.name, expected, found, 3e-4);
         finding.checks.push(check.by("a sqrt(k/m)"));
     }
+    let errors = error_drawing(
+        "Errors of the frequency fall with the square of the time step.",
+        &STEPS,
+        &[("", &finding.convergences[..2])],
+    );
     finding.figures = vec![
         PROSE.figure("chain", &[], dispersion(&rows)?),
-        PROSE.figure(
-            "chain-errors",
-            &[],
-            error_drawing(
-                "Errors of the frequency fall with the square of the time step.",
-                &STEPS,
-                &[("", &finding.convergences[..2])],
-            )?,
-        ),
+        PROSE.figure("chain-errors", &[], errors?),
     ];
     finding.data = Some(
         Columns::of(&rows)
@@ -168,36 +159,6 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
             .table()?,
     );
     Ok(finding)
-}
-
-impl Row {
-    fn measure(
-        experiment: &Experiment,
-        mode: usize,
-        half_periods: usize,
-    ) -> Result<Self, ClaimError> {
-        let found = experiment.frequency(mode, half_periods, Means::USUAL, STEPS.lengths[3])?;
-        Ok(Self {
-            law: experiment.name,
-            wavenumber: experiment.chain.wavenumber(mode) * experiment.chain.spacing(),
-            expected: experiment.expected(mode),
-            found,
-            scaled: found / experiment.stiffness.sqrt(),
-        })
-    }
-}
-
-/// The fast kernels against the plain one.
-fn kernels_agree(
-    experiment: &Experiment,
-    half_periods: usize,
-    means: Means,
-) -> Result<Check, ClaimError> {
-    let frequency = |means| experiment.frequency(8, half_periods, means, STEPS.lengths[3]);
-    let (plain, fast) = (frequency(means.plainly())?, frequency(means)?);
-    let quantity = "frequency, fast kernel against plain";
-    let setting = format!("{}, {}", experiment.name, means.name());
-    Ok(Check::relative(quantity, &setting, plain, fast, 1e-9).by("the plain kernel"))
 }
 
 fn dispersion(rows: &[Row]) -> Result<Drawing, FigureError> {
@@ -214,11 +175,9 @@ fn dispersion(rows: &[Row]) -> Result<Drawing, FigureError> {
         .with(
             curve("2 sin(*ka*/2)", &over_pi, |k| 2.0 * libm::sin(0.5 * PI * k)).tint(Tint::Black),
         );
-    for (series, experiment) in experiments(GRAINS).iter().enumerate() {
-        let mine = rows.iter().filter(|row| row.law == experiment.name);
-        let coordinates = |row: &Row| (row.wavenumber / PI, row.scaled);
-        let points = points(experiment.name, mine, coordinates).series(series);
-        panel = panel.with(if series == 0 { points } else { points.open() });
+    for (series, rows) in rows.chunk_by(|one, other| one.law == other.law).enumerate() {
+        let found = points(rows[0].law, rows, |row| (row.wavenumber / PI, row.scaled));
+        panel = panel.with(open_if(series > 0, found.series(series)));
     }
     ChartFigure::new(panel)
         .description("Frequencies of both laws lie on 2 sin(ka/2), which leaves the line of sound as waves become short.")

@@ -3,28 +3,18 @@
 use peristalsis_analysis::mean_and_error;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Tint};
 use peristalsis_figures::{Drawing, FigureError, Scale};
-use peristalsis_physics::contact::LinearSpringDashpot;
 
-use super::plot::curve;
-use super::restitution::{linear_damping, measured_with};
-use crate::check::Check;
+use super::plot::{curve, open_if};
+use super::restitution::{linear_damping, measured_with, spring};
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
+use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::gas::Gas;
 use crate::textbook::reference::kinetic::CoolingGas;
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("haff.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "haff",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("haff.md"));
 
 /// Restitutions of the gases.
 const RESTITUTIONS: [f64; 2] = [0.8, 0.6];
@@ -49,10 +39,7 @@ struct Experiment {
 
 impl Experiment {
     fn new(restitution: f64) -> Result<Self, ClaimError> {
-        let law = LinearSpringDashpot {
-            normal_stiffness: 1.0,
-            normal_damping: linear_damping(restitution),
-        };
+        let law = spring(linear_damping(restitution));
         let contact_time = law.contact_time(0.5);
         let time_step = contact_time / STEPS_PER_CONTACT;
         let mut gas = Gas {
@@ -113,7 +100,7 @@ struct Row {
     temperature: f64,
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let replicates = circumstances.size.choose(4, 28);
     let mut finding = Finding::described(
         &PROSE,
@@ -188,7 +175,7 @@ fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
             .unzip();
         let name = format!("*e* = {restitution}");
         let points = Points::new(&name, &time, &temperature).series(series);
-        panel = panel.with(if series == 0 { points } else { points.open() });
+        panel = panel.with(open_if(series > 0, points));
     }
     ChartFigure::new(panel)
         .description("Both gases cool along Haff's law.")

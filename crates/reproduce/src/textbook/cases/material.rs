@@ -2,7 +2,13 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_physics::contact::{CundallStrack, DissipationForm, Sliding, ViscoelasticHertz};
+use glam::DVec3;
+use peristalsis_physics::contact::{
+    CundallStrack, DissipationForm, Normal, Sliding, ViscoelasticHertz,
+};
+
+use crate::textbook::experiment::impact::Impact;
+use crate::textbook::experiment::smooth;
 
 /// An elastic material.
 #[derive(Clone, Copy, Debug)]
@@ -17,8 +23,13 @@ pub(super) struct Material {
 
 /// The material of the impacts of Chung & Ooi 2011, tests 3 and 4.
 pub(super) const ALUMINIUM_OXIDE: Material = Material::new("aluminium oxide", 3.8e11, 0.23, 4000.0);
-/// The speed of those impacts \[m/s\].
-pub(super) const ALUMINIUM_OXIDE_SPEED: f64 = 3.9;
+
+/// A head-on impact of those tests, of a sphere on a plane at 3.9 m/s.
+pub(super) fn aluminium_oxide_impact(dissipation_time: f64) -> Impact {
+    let speed = 3.9 / ALUMINIUM_OXIDE.speed();
+    let law = ALUMINIUM_OXIDE.against_rigid(dissipation_time);
+    Impact::on_plane(smooth(Normal::Hertz(law)), DVec3::new(-speed, 0.0, 0.0))
+}
 
 impl Material {
     pub(super) const fn new(

@@ -10,6 +10,7 @@ mod plot;
 mod restitution;
 mod roll;
 mod spin;
+mod trial;
 mod viscoelastic;
 
 use crate::error::ClaimError;
@@ -18,14 +19,14 @@ use crate::textbook::case::Case;
 
 /// All cases, in the order of the document.
 pub const CASES: &[Case] = &[
-    normal::CASE,
-    restitution::CASE,
-    viscoelastic::CASE,
-    oblique::CASE,
-    spin::CASE,
-    roll::CASE,
-    chain::CASE,
-    haff::CASE,
+    Case::new("normal-impact", normal::PROSE, normal::examine),
+    Case::new("restitution", restitution::PROSE, restitution::examine),
+    Case::new("viscoelastic", viscoelastic::PROSE, viscoelastic::examine),
+    Case::new("oblique-impact", oblique::PROSE, oblique::examine),
+    Case::new("spin", spin::PROSE, spin::examine),
+    Case::new("slip-to-roll", roll::PROSE, roll::examine),
+    Case::new("chain", chain::PROSE, chain::examine),
+    Case::new("haff", haff::PROSE, haff::examine),
 ];
 
 /// The cases of these names, in the order of the table; all where none is named.

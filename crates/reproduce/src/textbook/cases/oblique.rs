@@ -1,175 +1,111 @@
 //! Oblique impact of a sphere on a plane with a constant resultant velocity.
 
 use glam::DVec3;
-use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Points, Tint,
-};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
 use peristalsis_figures::{Drawing, FigureError, Width};
-use peristalsis_physics::contact::{ContactModel, CundallStrack, Normal};
 
-use super::errors::{FINE, PER_CONTACT, error_drawing, impact_convergences, kernels_agree};
-use super::material::{ALUMINIUM_OXIDE, ALUMINIUM_OXIDE_SPEED};
-use super::restitution::dissipation_time;
-use crate::check::Check;
+use super::errors::error_drawing;
+use super::material::{ALUMINIUM_OXIDE, aluminium_oxide_impact};
+use super::plot::points;
+use super::trial::{PER_CONTACT, Sweep, Trial, dissipation_time};
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::experiment::impact::Impact;
-use crate::textbook::experiment::{Means, smooth};
-use crate::textbook::reference::hertz::HertzImpact;
+use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::impact::Rebound;
 use crate::textbook::reference::impact::outcome;
 use crate::textbook::reference::maw::MindlinImpact;
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("oblique.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "oblique-impact",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("oblique.md"));
 
 const FRICTION: f64 = 0.092;
 const RESTITUTION: f64 = 0.98;
-
-/// The motion after an impact, in units of the motion before it.
-#[derive(Clone, Copy, Debug)]
-struct Rebound {
-    /// v_t'/v_t
-    tangential_restitution: f64,
-    /// r omega'/v
-    spin: f64,
-    /// Angle between the normal and the velocity of the surface where it touched \[degrees\].
-    angle: f64,
-}
 
 /// A quantity of a rebound.
 struct Quantity {
     column: &'static str,
     name: &'static str,
     label: &'static str,
-    of: fn(&Rebound) -> f64,
 }
 
+/// In units of the motion before the impact; the angle is that between the normal and the velocity of the surface where it
+/// touched.
 const QUANTITIES: [Quantity; 3] = [
     Quantity {
         column: "tangential_restitution",
         name: "v_t'/v_t",
         label: "tangential restitution *v*_{t}′/*v*_{t}",
-        of: |rebound| rebound.tangential_restitution,
     },
     Quantity {
         column: "spin",
         name: "r omega'/v",
         label: "spin *rω*′/*v*",
-        of: |rebound| rebound.spin,
     },
     Quantity {
         column: "rebound_angle",
         name: "angle of rebound (degrees)",
         label: "angle of rebound (degrees)",
-        of: |rebound| rebound.angle,
     },
 ];
 
-/// The rebounds at one angle of incidence.
+/// The quantities at one angle of incidence by each of [`METHODS`].
 struct Row {
     /// \[degrees\]
     angle: f64,
-    engine: Rebound,
-    equation_of_motion: Rebound,
-    mindlin: Rebound,
-    sliding: Rebound,
+    by: [[f64; 3]; 4],
 }
 
-/// A method that gives a rebound.
-type Method = fn(&Row) -> &Rebound;
-
-/// The methods by the ends of the names of their columns.
-const METHODS: [(&str, Method); 4] = [
-    ("", |row| &row.engine),
-    ("_expected", |row| &row.equation_of_motion),
-    ("_mindlin", |row| &row.mindlin),
-    ("_sliding", |row| &row.sliding),
-];
+/// Engine, equation of motion, Mindlin's contact and sliding throughout, by the ends of the names of their columns.
+const METHODS: [&str; 4] = ["", "_expected", "_mindlin", "_sliding"];
 
 /// The experiment with its constants.
 struct Experiment {
     speed: f64,
-    contact_time: f64,
-    dissipation_time: f64,
-    friction: CundallStrack,
+    head_on: Trial,
+}
+
+impl Sweep<3> for Experiment {
+    /// The impact at an angle of incidence.
+    fn trial(&self, degrees: f64) -> Trial {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let mut trial = self.head_on;
+        trial.impact.sphere.velocity = self.speed * DVec3::new(-cos, sin, 0.0);
+        trial
+    }
+
+    fn read(&self, degrees: f64, velocity: DVec3, spin: f64) -> [f64; 3] {
+        let lateral = self.speed * libm::sin(degrees.to_radians());
+        // The surface moves with v_t - r omega against a normal along x, tangent along y, spin about z.
+        let surface = velocity.y - 0.5 * spin;
+        let angle = libm::atan2(surface, velocity.x).to_degrees();
+        [velocity.y / lateral, 0.5 * spin / self.speed, angle]
+    }
 }
 
 impl Experiment {
     fn new() -> Self {
-        let speed = ALUMINIUM_OXIDE_SPEED / ALUMINIUM_OXIDE.speed();
-        let head_on = |dissipation_time: f64| {
-            let law = ALUMINIUM_OXIDE.against_rigid(dissipation_time);
-            Impact::on_plane(smooth(Normal::Hertz(law)), DVec3::new(-speed, 0.0, 0.0))
-        };
-        let elastic = HertzImpact::of(&ALUMINIUM_OXIDE.against_rigid(0.0), &head_on(0.0));
-        let contact_time = elastic.contact_time();
+        let time = dissipation_time(RESTITUTION, aluminium_oxide_impact);
+        let smooth = Trial::of(aluminium_oxide_impact(time));
         Self {
-            speed,
-            contact_time,
-            dissipation_time: dissipation_time(RESTITUTION, contact_time, head_on),
-            friction: ALUMINIUM_OXIDE.friction(FRICTION, 1.0, contact_time),
+            speed: -smooth.impact.sphere.velocity.x,
+            head_on: smooth.with_friction(&ALUMINIUM_OXIDE, FRICTION),
         }
-    }
-
-    fn impact(&self, degrees: f64) -> Impact {
-        let (sin, cos) = libm::sincos(degrees.to_radians());
-        let contact = ContactModel {
-            normal: Normal::Hertz(ALUMINIUM_OXIDE.against_rigid(self.dissipation_time)),
-            friction: Some(self.friction),
-        };
-        Impact::on_plane(contact, self.speed * DVec3::new(-cos, sin, 0.0))
-    }
-
-    /// The rebound from velocity and spin after an impact.
-    fn rebound(&self, degrees: f64, velocity: DVec3, spin: f64) -> Rebound {
-        let lateral = self.speed * libm::sin(degrees.to_radians());
-        // The surface moves with v_t - r omega against a normal along x, tangent along y, spin about z.
-        let surface = velocity.y - 0.5 * spin;
-        Rebound {
-            tangential_restitution: velocity.y / lateral,
-            spin: 0.5 * spin / self.speed,
-            angle: libm::atan2(surface, velocity.x).to_degrees(),
-        }
-    }
-
-    /// By the engine.
-    fn simulated(&self, degrees: f64) -> Result<Rebound, ClaimError> {
-        let time_step = self.contact_time / FINE;
-        let found = self
-            .impact(degrees)
-            .simulate(Means::USUAL, time_step, 0.5)?;
-        Ok(self.rebound(degrees, found.velocity[0], found.spin[0]))
-    }
-
-    /// By the equation of motion.
-    fn integrated(&self, degrees: f64) -> Rebound {
-        let found = outcome(&self.impact(degrees));
-        self.rebound(degrees, found.velocity[0], found.spin[0])
     }
 
     /// From a tangential impulse, as a part of mu times the normal one, and a restitution, for a rigid sphere.
-    fn after_impulse(&self, degrees: f64, part: f64, restitution: f64) -> Rebound {
+    fn after_impulse(&self, degrees: f64, part: f64, restitution: f64) -> [f64; 3] {
         let (sin, cos) = libm::sincos(degrees.to_radians());
         let (lateral, normal) = (self.speed * sin, self.speed * cos);
         let impulse = part * FRICTION * (1.0 + restitution) * normal;
         // I = 2 m r^2/5, r = 1/2.
         let velocity = DVec3::new(restitution * normal, lateral - impulse, 0.0);
-        self.rebound(degrees, velocity, 5.0 * impulse)
+        self.read(degrees, velocity, 5.0 * impulse)
     }
 
     /// Gross sliding: the tangential impulse is mu times the normal one, at the restitution of the normal speed.
-    fn sliding(&self, degrees: f64) -> Rebound {
+    fn sliding(&self, degrees: f64) -> [f64; 3] {
         let normal = self.speed * libm::cos(degrees.to_radians());
-        let mut head_on = self.impact(0.0);
+        let mut head_on = self.head_on.impact;
         head_on.contact.friction = None;
         head_on.sphere.velocity = DVec3::new(-normal, 0.0, 0.0);
         let restitution = outcome(&head_on).velocity[0].x / normal;
@@ -177,7 +113,7 @@ impl Experiment {
     }
 
     /// Mindlin's contact without dissipation.
-    fn mindlin(&self, degrees: f64) -> Rebound {
+    fn mindlin(&self, degrees: f64) -> [f64; 3] {
         let impact = MindlinImpact {
             poisson_ratio: ALUMINIUM_OXIDE.poisson_ratio,
             friction: FRICTION,
@@ -187,15 +123,10 @@ impl Experiment {
         self.after_impulse(degrees, impact.impulse_ratio(), 1.0)
     }
 
-    /// By all methods.
-    fn row(&self, angle: f64) -> Result<Row, ClaimError> {
-        Ok(Row {
-            angle,
-            engine: self.simulated(angle)?,
-            equation_of_motion: self.integrated(angle),
-            mindlin: self.mindlin(angle),
-            sliding: self.sliding(angle),
-        })
+    /// The references.
+    fn expected(&self, angle: f64) -> [[f64; 3]; 3] {
+        let (integrated, mindlin) = (self.integrated(angle), self.mindlin(angle));
+        [integrated, mindlin, self.sliding(angle)]
     }
 
     /// The engine beside the equation of motion, and at large angles beside sliding throughout.
@@ -203,17 +134,17 @@ impl Experiment {
         let mut checks = Vec::new();
         for angle in [5.0, 15.0, 25.0, 60.0] {
             let (found, expected) = (self.simulated(angle)?, self.integrated(angle));
-            for Quantity { name, of, .. } in &QUANTITIES[..2] {
+            for (place, Quantity { name, .. }) in QUANTITIES[..2].iter().enumerate() {
                 let setting = format!("{angle} degrees");
-                let check = Check::absolute(name, &setting, of(&expected), of(&found), 1e-3);
+                let check = Check::absolute(name, &setting, expected[place], found[place], 1e-3);
                 checks.push(check.by("equation of motion"));
             }
         }
         for angle in [45.0, 60.0, 80.0] {
             let (found, expected) = (self.simulated(angle)?, self.sliding(angle));
-            for Quantity { name, of, .. } in &QUANTITIES {
+            for (place, Quantity { name, .. }) in QUANTITIES.iter().enumerate() {
                 let setting = format!("{angle} degrees");
-                let check = Check::relative(name, &setting, of(&expected), of(&found), 2e-3);
+                let check = Check::relative(name, &setting, expected[place], found[place], 2e-3);
                 checks.push(check.by("sliding throughout"));
             }
         }
@@ -222,15 +153,15 @@ impl Experiment {
 }
 
 /// The largest difference of the engine from Mindlin's contact.
-fn beside_mindlin(quantity: &Quantity, rows: &[Row], tolerance: f64) -> Check {
-    let largest = rows.iter().fold(0.0_f64, |largest, row| {
-        largest.max(((quantity.of)(&row.engine) - (quantity.of)(&row.mindlin)).abs())
+fn beside_mindlin(place: usize, rows: &[Row], tolerance: f64) -> Check {
+    let largest = rows.iter().fold(0.0_f64, |largest, Row { by, .. }| {
+        largest.max((by[0][place] - by[2][place]).abs())
     });
-    let name = format!("{}, largest difference", quantity.name);
+    let name = format!("{}, largest difference", QUANTITIES[place].name);
     Check::absolute(&name, "all angles", 0.0, largest, tolerance).by("Maw et al. 1976")
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let experiment = Experiment::new();
     let angles = circumstances.size.choose(
         vec![2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 60.0, 80.0],
@@ -239,51 +170,44 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let mut rows = Vec::new();
     for angle in angles {
         circumstances.go_on()?;
-        rows.push(experiment.row(angle)?);
+        let [integrated, mindlin, sliding] = experiment.expected(angle);
+        let by = [experiment.simulated(angle)?, integrated, mindlin, sliding];
+        rows.push(Row { angle, by });
     }
     let mut finding = Finding::described(&PROSE, &[]);
     finding.checks = experiment.checks()?;
-    let [restitution, spin, _] = &QUANTITIES;
-    let sticking = experiment.impact(15.0);
-    let time_step = experiment.contact_time / FINE;
     finding.checks.extend([
-        beside_mindlin(spin, &rows, 0.05),
-        beside_mindlin(restitution, &rows, 0.1),
-        kernels_agree("15 degrees", &sticking, time_step)?,
+        beside_mindlin(1, &rows, 0.05),
+        beside_mindlin(0, &rows, 0.1),
+        experiment.trial(15.0).kernels_agree("15 degrees")?,
     ]);
     for (angle, order) in [(15.0, [0.8, 3.0]), (60.0, [1.5, 4.0])] {
-        let impact = experiment.impact(angle);
-        let expected = outcome(&impact).spin[0];
-        finding.convergences.extend(impact_convergences(
-            ("spin", &format!("{angle} degrees")),
-            &impact,
-            experiment.contact_time,
-            order,
-            |rebound| rebound.spin[0] / expected - 1.0,
-        )?);
+        let trial = experiment.trial(angle);
+        let expected = outcome(&trial.impact).spin[0];
+        let error = |rebound: &Rebound| rebound.spin[0] / expected - 1.0;
+        let setting = format!("{angle} degrees");
+        let errors = trial.convergences(("spin", &setting), order, error)?;
+        finding.convergences.extend(errors);
     }
     let (sticks, slides) = finding.convergences.split_at(2);
+    let errors = error_drawing(
+        "Errors of the spin fall with the time step.",
+        &PER_CONTACT,
+        &[
+            ("15 degrees, sticks and slides", sticks),
+            ("60 degrees, slides", slides),
+        ],
+    );
     finding.figures = vec![
         PROSE.figure("oblique-impact", &[], drawing(&experiment, &rows)?),
-        PROSE.figure(
-            "oblique-impact-errors",
-            &[],
-            error_drawing(
-                "Errors of the spin fall with the time step.",
-                &PER_CONTACT,
-                &[
-                    ("15 degrees, sticks and slides", sticks),
-                    ("60 degrees, slides", slides),
-                ],
-            )?,
-        ),
+        PROSE.figure("oblique-impact-errors", &[], errors?),
     ];
     let incidence = "angle of incidence";
     let mut data = Columns::of(&rows).number("angle", "degrees", incidence, |row| row.angle);
-    for quantity in &QUANTITIES {
-        for (method, rebound) in METHODS {
-            let name = format!("{}{method}", quantity.column);
-            data = data.number(&name, "", "", |row| (quantity.of)(rebound(row)));
+    for (place, Quantity { column, .. }) in QUANTITIES.iter().enumerate() {
+        for (method, ending) in METHODS.into_iter().enumerate() {
+            let name = format!("{column}{ending}");
+            data = data.number(&name, "", "", |row| row.by[method][place]);
         }
     }
     finding.data = Some(data.table()?);
@@ -291,37 +215,34 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
 }
 
 fn drawing(experiment: &Experiment, rows: &[Row]) -> Result<Drawing, FigureError> {
-    let angles: Vec<f64> = rows.iter().map(|row| row.angle).collect();
     let dense = spaced(1.0, 89.0, 89);
-    let over = |method: fn(&Experiment, f64) -> Rebound| -> Vec<Rebound> {
-        dense
-            .iter()
-            .map(|angle| method(experiment, *angle))
-            .collect()
-    };
-    let equation_of_motion = over(Experiment::integrated);
-    let mindlin = over(Experiment::mindlin);
-    let sliding = over(Experiment::sliding);
-    let panels = QUANTITIES.iter().map(|Quantity { label, of, .. }| {
-        let line = |name: &str, rebounds: &[Rebound]| {
-            let values: Vec<f64> = rebounds.iter().map(of).collect();
-            Line::new(name, &dense, &values)
-        };
-        // Sliding throughout makes sense only where the slip that is left is not far below zero.
-        let slides = |rebound: &Rebound| rebound.angle > -10.0;
-        let slid = sliding
-            .iter()
-            .map(|one| if slides(one) { of(one) } else { f64::NAN });
-        let sliding = Line::new("sliding throughout", &dense, &slid.collect::<Vec<f64>>());
-        let found: Vec<f64> = rows.iter().map(|row| of(&row.engine)).collect();
-        let mindlin = line("Mindlin (Maw et al. 1976)", &mindlin).pattern(Pattern::Dashed);
-        ChartPanel::new("angle of incidence (degrees)", label)
-            .x_range(0.0..=90.0)
-            .with(sliding.tint(Tint::Grey).weight(2.4))
-            .with(mindlin.tint(Tint::Vermillion))
-            .with(line("equation of motion", &equation_of_motion).tint(Tint::Black))
-            .with(Points::new("engine", &angles, &found).series(0))
-    });
+    let expected: Vec<[[f64; 3]; 3]> = dense.iter().map(|x| experiment.expected(*x)).collect();
+    let panels = QUANTITIES
+        .iter()
+        .enumerate()
+        .map(|(place, Quantity { label, .. })| {
+            let line = |name: &str, of: &dyn Fn(&[[f64; 3]; 3]) -> f64| {
+                Line::new(name, &dense, &expected.iter().map(of).collect::<Vec<f64>>())
+            };
+            // Sliding throughout makes sense only where the slip that is left is not far below zero.
+            let sliding = line("sliding throughout", &|[.., slid]| {
+                if slid[2] > -10.0 {
+                    slid[place]
+                } else {
+                    f64::NAN
+                }
+            });
+            let mindlin = line("Mindlin (Maw et al. 1976)", &|[_, mindlin, _]| {
+                mindlin[place]
+            });
+            let integrated = line("equation of motion", &|[integrated, ..]| integrated[place]);
+            ChartPanel::new("angle of incidence (degrees)", label)
+                .x_range(0.0..=90.0)
+                .with(sliding.tint(Tint::Grey).weight(2.4))
+                .with(mindlin.pattern(Pattern::Dashed).tint(Tint::Vermillion))
+                .with(integrated.tint(Tint::Black))
+                .with(points("engine", rows, |row| (row.angle, row.by[0][place])).series(0))
+        });
     ChartFigure::grid(3, panels)
         .description("Steep impacts stick, turn back and spin; grazing ones slide. The engine lies on the equation of motion of its own law, and near Mindlin's contact.")
         .width(Width::DoubleColumn)

@@ -22,3 +22,8 @@ pub(super) fn curve(name: &str, x: &[f64], function: impl Fn(f64) -> f64) -> Lin
 pub(super) fn named_once(name: &str, panel: usize) -> &str {
     if panel == 0 { name } else { "" }
 }
+
+/// Points as rings, to be told from others that may cover them.
+pub(super) fn open_if(is_open: bool, points: Points) -> Points {
+    if is_open { points.open() } else { points }
+}

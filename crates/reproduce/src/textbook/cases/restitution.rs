@@ -2,46 +2,38 @@
 
 use core::f64::consts::PI;
 
-use glam::DVec3;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line};
 use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
 
-use super::errors::{FINE, impact_convergences, kernels_agree, measured_restitution};
-use super::material::{ALUMINIUM_OXIDE, ALUMINIUM_OXIDE_SPEED};
-use super::plot::{curve, points};
-use crate::check::Check;
+use super::material::aluminium_oxide_impact;
+use super::plot::points;
+use super::trial::{FINE, Trial, dissipation_time, expected_restitution};
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
+use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::Impact;
 use crate::textbook::experiment::{Means, smooth};
-use crate::textbook::reference::hertz::HertzImpact;
-use crate::textbook::reference::impact::outcome;
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("restitution.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "restitution",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("restitution.md"));
 
 /// Restitutions of the impacts.
 const WANTED: [f64; 5] = [0.2, 0.4, 0.6, 0.8, 1.0];
 /// The one of them at which kernels and steps are compared.
 const EXAMPLE: f64 = 0.6;
 
-/// Two grains of mass 1 under the linear law, k = 1.
-fn linear(damping: f64) -> (LinearSpringDashpot, Impact) {
-    let law = LinearSpringDashpot {
+/// The linear law of grains of mass 1, k = 1.
+pub(super) const fn spring(damping: f64) -> LinearSpringDashpot {
+    LinearSpringDashpot {
         normal_stiffness: 1.0,
         normal_damping: damping,
-    };
-    (law, Impact::of_twins(smooth(Normal::Linear(law)), 0.05))
+    }
+}
+
+/// Two grains under that law.
+fn linear(damping: f64) -> Impact {
+    Impact::of_twins(smooth(Normal::Linear(spring(damping))), 0.05)
 }
 
 /// The damping of that law for a restitution: e = exp(-pi eta/sqrt(2 - eta^2)).
@@ -50,45 +42,12 @@ pub(super) fn linear_damping(restitution: f64) -> f64 {
     (2.0 * ratio * ratio / (1.0 + ratio * ratio)).sqrt()
 }
 
-/// A sphere of aluminium oxide on a plane.
-fn viscoelastic(dissipation_time: f64) -> Impact {
-    let speed = ALUMINIUM_OXIDE_SPEED / ALUMINIUM_OXIDE.speed();
-    let law = ALUMINIUM_OXIDE.against_rigid(dissipation_time);
-    Impact::on_plane(smooth(Normal::Hertz(law)), DVec3::new(-speed, 0.0, 0.0))
-}
-
-/// e by the equation of motion.
-pub(super) fn integrated(impact: &Impact) -> f64 {
-    impact.restitution(outcome(impact).velocity)
-}
-
-/// The dissipation time with which an impact, made by `impact`, has this restitution: bisection of the reference.
-pub(super) fn dissipation_time(
-    wanted: f64,
-    time_scale: f64,
-    impact: impl Fn(f64) -> Impact,
-) -> f64 {
-    if wanted >= 1.0 {
-        return 0.0;
-    }
-    let (mut low, mut high) = (0.0, 50.0 * time_scale);
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if integrated(&impact(middle)) > wanted {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    0.5 * (low + high)
-}
-
 /// Root mean square restitution of two grains under the linear law with exactly so many steps in a contact, over places of
 /// the onset within a step: the restitution of a gas of them.
 pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64, ClaimError> {
     const PLACES: usize = 16;
-    let (law, impact) = linear(damping);
-    let time_step = law.contact_time(0.5) / steps;
+    let impact = linear(damping);
+    let time_step = spring(damping).contact_time(0.5) / steps;
     let mut sum = 0.0;
     for place in 0..PLACES {
         let phase = (place as f64 + 0.5) / PLACES as f64;
@@ -98,108 +57,95 @@ pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64, ClaimError>
     Ok((sum / PLACES as f64).sqrt())
 }
 
-/// An impact with its reference.
-struct Row {
-    law: &'static str,
-    damping: f64,
-    impact: Impact,
-    /// Duration of the undamped contact, which sets the step.
-    contact_time: f64,
-    expected: f64,
-    found: f64,
-}
-
-impl Row {
-    fn measure(
-        law: &'static str,
-        damping: f64,
-        impact: Impact,
-        contact_time: f64,
-        expected: f64,
-    ) -> Result<Self, ClaimError> {
-        Ok(Self {
-            law,
-            damping,
-            impact,
-            contact_time,
-            expected,
-            found: measured_restitution(&impact, contact_time, FINE)?,
-        })
-    }
-
-    fn of_linear_law(wanted: f64) -> Result<Self, ClaimError> {
-        let (law, impact) = linear(linear_damping(wanted));
-        let contact_time = PI / 2.0_f64.sqrt();
-        let expected = law.restitution(0.5);
-        Self::measure("linear", law.normal_damping, impact, contact_time, expected)
-    }
-
-    fn of_hertz_law(wanted: f64) -> Result<Self, ClaimError> {
-        let elastic = HertzImpact::of(&ALUMINIUM_OXIDE.against_rigid(0.0), &viscoelastic(0.0));
-        let contact_time = elastic.contact_time();
-        let time = dissipation_time(wanted, contact_time, viscoelastic);
-        let impact = viscoelastic(time);
-        Self::measure("hertz", time, impact, contact_time, integrated(&impact))
-    }
-}
-
 /// The experiment under one law.
 struct Series {
+    law: &'static str,
     name: &'static str,
     setting: &'static str,
     reference: &'static str,
     tolerance: f64,
     expected_order: [f64; 2],
-    measure: fn(f64) -> Result<Row, ClaimError>,
+    /// The damping for a restitution.
+    damping: fn(f64) -> f64,
+    /// The impact and its restitution by the reference with a damping.
+    impact: fn(f64) -> Impact,
+    expected: fn(f64) -> f64,
+    /// Damping of the figure and its unit.
+    label: &'static str,
+    unit: fn(&Row) -> f64,
+    /// Places of the curve.
+    places: usize,
 }
 
 const SERIES: [Series; 2] = [
     Series {
+        law: "linear",
         name: "linear law",
         setting: "linear law, two grains",
         reference: "closed form",
         tolerance: 4e-3,
         expected_order: [0.7, 1.4],
-        measure: Row::of_linear_law,
+        damping: linear_damping,
+        impact: linear,
+        expected: |damping| spring(damping).restitution(0.5),
+        label: "damping *η* / √(*mk*)",
+        unit: |_| 1.0,
+        places: 80,
     },
     Series {
+        law: "hertz",
         name: "Hertz law",
         setting: "Hertz law, sphere on a plane",
         reference: "equation of motion",
         tolerance: 2e-3,
         expected_order: [1.3, 2.4],
-        measure: Row::of_hertz_law,
+        damping: |restitution| dissipation_time(restitution, aluminium_oxide_impact),
+        impact: aluminium_oxide_impact,
+        expected: |time| expected_restitution(&aluminium_oxide_impact(time)),
+        label: "dissipation time *A*/*t*_{c}",
+        unit: |row| row.contact_time,
+        places: 40,
     },
 ];
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+/// An impact with its reference.
+struct Row {
+    law: &'static str,
+    damping: f64,
+    /// Duration of the undamped contact.
+    contact_time: f64,
+    expected: f64,
+    found: f64,
+}
+
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let mut finding = Finding::described(&PROSE, &[]);
     let mut rows: Vec<Row> = Vec::new();
     for series in &SERIES {
         for wanted in WANTED {
             circumstances.go_on()?;
-            let row = (series.measure)(wanted)?;
-            let check = Check::absolute(
-                "restitution",
-                series.setting,
-                row.expected,
-                row.found,
-                series.tolerance,
-            );
+            let damping = (series.damping)(wanted);
+            let trial = Trial::of((series.impact)(damping));
+            let (expected, found) = ((series.expected)(damping), trial.restitution(FINE)?);
+            let (setting, tolerance) = (series.setting, series.tolerance);
+            let check = Check::absolute("restitution", setting, expected, found, tolerance);
             finding.checks.push(check.by(series.reference));
             if wanted == EXAMPLE {
-                let setting = format!("{}, e = {wanted}", series.setting);
-                let agree = kernels_agree(&setting, &row.impact, row.contact_time / FINE)?;
+                let agree = trial.kernels_agree(&format!("{setting}, e = {wanted}"))?;
                 finding.checks.push(agree);
-                finding.convergences.extend(impact_convergences(
+                finding.convergences.extend(trial.convergences(
                     ("restitution", &format!("{}, e = {wanted}", series.name)),
-                    &row.impact,
-                    row.contact_time,
                     series.expected_order,
-                    |rebound| row.impact.restitution(rebound.velocity) / row.expected - 1.0,
+                    |rebound| trial.impact.restitution(rebound.velocity) / expected - 1.0,
                 )?);
             }
-            rows.push(row);
+            rows.push(Row {
+                law: series.law,
+                damping,
+                contact_time: trial.contact_time,
+                expected,
+                found,
+            });
         }
     }
     finding.figures = vec![PROSE.figure("restitution", &[], drawing(&rows)?)];
@@ -215,42 +161,27 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
 }
 
 fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
-    let (linear_rows, hertz_rows) = rows.split_at(WANTED.len());
-    let upto = |rows: &[Row], number| {
+    let of_series = |(series, rows): (&Series, &[Row])| {
+        let unit = (series.unit)(&rows[0]);
         let largest = rows.iter().map(|row| row.damping).fold(0.0, f64::max);
-        spaced(0.0, 1.15 * largest, number)
-    };
-    let panel = |damping: &str, title: &str| {
-        ChartPanel::new(damping, "restitution *e*")
-            .title(title)
+        let damping = spaced(0.0, 1.15 * largest, series.places);
+        let scaled: Vec<f64> = damping.iter().map(|damping| damping / unit).collect();
+        let expected: Vec<f64> = damping.iter().map(|it| (series.expected)(*it)).collect();
+        let found = points("engine", rows, |row| (row.damping / unit, row.found));
+        ChartPanel::new(series.label, "restitution *e*")
+            .title(series.name)
             .y_range(0.0..=1.05)
+            .with(Line::new(series.reference, &scaled, &expected).series(0))
+            .with(found.series(1))
     };
-    let closed_form = |eta| linear(eta).0.restitution(0.5);
-    let contact_time = hertz_rows[0].contact_time;
-    let times = upto(hertz_rows, 40);
-    let scaled: Vec<f64> = times.iter().map(|time| time / contact_time).collect();
-    let equation: Vec<f64> = times
-        .iter()
-        .map(|time| integrated(&viscoelastic(*time)))
-        .collect();
-    let panels = [
-        panel("damping *η* / √(*mk*)", "linear law")
-            .with(curve("closed form", &upto(linear_rows, 80), closed_form).series(0))
-            .with(points("engine", linear_rows, |row| (row.damping, row.found)).series(1)),
-        panel("dissipation time *A*/*t*_{c}", "Hertz law")
-            .with(Line::new("equation of motion", &scaled, &equation).series(0))
-            .with(
-                points("engine", hertz_rows, |row| {
-                    (row.damping / contact_time, row.found)
-                })
-                .series(1),
-            ),
-    ];
-    ChartFigure::grid(2, panels)
-        .description(
-            "Restitution falls with damping; the engine's points lie on the curves of the references.",
-        )
-        .width(Width::DoubleColumn)
-        .panel_height(52.0)
-        .draw()
+    ChartFigure::grid(
+        2,
+        SERIES.iter().zip(rows.chunks(WANTED.len())).map(of_series),
+    )
+    .description(
+        "Restitution falls with damping; the engine's points lie on the curves of the references.",
+    )
+    .width(Width::DoubleColumn)
+    .panel_height(52.0)
+    .draw()
 }

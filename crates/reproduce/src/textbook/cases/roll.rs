@@ -2,31 +2,20 @@
 
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
 use peristalsis_figures::{Drawing, FigureError};
-use peristalsis_physics::contact::{CundallStrack, LinearSpringDashpot, Sliding};
+use peristalsis_physics::contact::{CundallStrack, Sliding};
 
 use super::plot::points;
-use crate::check::Check;
+use super::restitution::spring;
 use crate::columns::Columns;
-use crate::error::ClaimError;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
+use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::sliding::{Instant, Throw};
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("roll.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "slip-to-roll",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("roll.md"));
 
 const THROW: Throw = Throw {
-    normal: LinearSpringDashpot {
-        normal_stiffness: 1.0,
-        normal_damping: 0.1,
-    },
+    normal: spring(0.1),
     friction: CundallStrack {
         tangential_stiffness: 1.0,
         tangential_damping: 0.1,
@@ -46,19 +35,14 @@ fn slip_time() -> f64 {
     2.0 * THROW.speed / (7.0 * THROW.friction.kinetic_friction * THROW.gravity)
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let mut finding = Finding::described(&PROSE, &[]);
     let duration = DURATION * slip_time();
     let mut usual = Vec::new();
     for means in Means::INTEGRATORS {
-        for means in [means, means.plainly()] {
+        for (kernel, means) in [("fast", means), ("plain", means.plainly())] {
             circumstances.go_on()?;
             let course = THROW.simulate(means, TIME_STEP, duration)?;
-            let kernel = if means.kernel == peristalsis_engine::Kernel::Fast {
-                "fast"
-            } else {
-                "plain"
-            };
             let setting = format!("{}, {kernel} kernel", means.name());
             finding.checks.extend(checks(&course, &setting));
             if usual.is_empty() {
@@ -88,36 +72,31 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
         .iter()
         .find(|instant| instant.rolling >= instant.velocity)
         .map_or(f64::NAN, |instant| instant.time);
-    let [slows, time] = ["v_0 - mu g t", "2 v_0/(7 mu g)"];
     let over_start = |velocity: f64| velocity / THROW.speed;
-    [
-        (
-            "v at the end, over v_0",
-            "5/7",
-            5.0 / 7.0,
-            over_start(last.velocity),
-            1e-4,
-        ),
-        (
+    let check = |quantity, reference, expected, found, tolerance| {
+        Check::relative(quantity, setting, expected, found, tolerance).by(reference)
+    };
+    let [v, r_omega] = [last.velocity, last.rolling].map(over_start);
+    let (slow, slowed) = (over_start(middle.velocity), 1.0 - over_start(slowed));
+    let half_way = "v half way through the slip, over v_0";
+    vec![
+        check("v at the end, over v_0", "5/7", 5.0 / 7.0, v, 1e-4),
+        check(
             "r omega at the end, over v_0",
             "5/7",
             5.0 / 7.0,
-            over_start(last.rolling),
+            r_omega,
             1e-4,
         ),
-        (
-            "v half way through the slip, over v_0",
-            slows,
-            1.0 - over_start(slowed),
-            over_start(middle.velocity),
-            1e-3,
+        check(half_way, "v_0 - mu g t", slowed, slow, 1e-3),
+        check(
+            "time at which it rolls",
+            "2 v_0/(7 mu g)",
+            slip_time(),
+            rolls,
+            5e-3,
         ),
-        ("time at which it rolls", time, slip_time(), rolls, 5e-3),
     ]
-    .map(|(quantity, reference, expected, found, tolerance)| {
-        Check::relative(quantity, setting, expected, found, tolerance).by(reference)
-    })
-    .to_vec()
 }
 
 fn drawing(course: &[Instant]) -> Result<Drawing, FigureError> {

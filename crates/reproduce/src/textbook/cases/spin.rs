@@ -1,33 +1,22 @@
 //! Impacts with spin: on a plane, of two equal spheres, and of two of different sizes.
 
 use glam::DVec3;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Points, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Tint};
 use peristalsis_figures::{Drawing, FigureError, Width};
-use peristalsis_physics::contact::{CundallStrack, Normal, ViscoelasticHertz};
+use peristalsis_physics::contact::Normal;
 
-use super::errors::{FINE, impact_convergences, kernels_agree};
 use super::material::Material;
-use super::plot::named_once;
-use super::restitution::dissipation_time;
-use crate::check::Check;
+use super::plot::{named_once, points};
+use super::trial::{Sweep, Trial, dissipation_time};
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::experiment::impact::{Impact, Partner, Sphere};
-use crate::textbook::experiment::{Means, smooth};
-use crate::textbook::reference::hertz::HertzImpact;
+use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::impact::{Impact, Partner, Rebound, Sphere};
+use crate::textbook::experiment::smooth;
 use crate::textbook::reference::impact::outcome;
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("spin.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "spin",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("spin.md"));
 
 const ALUMINIUM_ALLOY: Material = Material::new("aluminium alloy", 7.0e10, 0.33, 2700.0);
 /// Of each sphere \[m/s\].
@@ -59,15 +48,10 @@ impl Meets {
         }
     }
 
-    fn law(self, dissipation_time: f64) -> ViscoelasticHertz {
-        match self {
-            Self::Plane => ALUMINIUM_ALLOY.against_rigid(dissipation_time),
-            Self::Twin | Self::Larger => ALUMINIUM_ALLOY.spheres(dissipation_time),
-        }
-    }
-
-    fn partner(self, speed: f64) -> Partner {
-        let sphere = |diameter: f64| {
+    /// The impact without friction or spin.
+    fn smooth_impact(self, dissipation_time: f64) -> Impact {
+        let speed = SPEED / ALUMINIUM_ALLOY.speed();
+        let partner = |diameter: f64| {
             Partner::Grain(Sphere {
                 diameter,
                 mass: diameter.powi(3),
@@ -75,19 +59,19 @@ impl Meets {
                 spin: 0.0,
             })
         };
-        match self {
-            Self::Plane => Partner::Plane,
-            Self::Twin => sphere(1.0),
-            Self::Larger => sphere(RATIO),
-        }
-    }
-
-    /// The impact without friction or spin.
-    fn smooth_impact(self, speed: f64, dissipation_time: f64) -> Impact {
+        let spheres = ALUMINIUM_ALLOY.spheres(dissipation_time);
+        let (law, partner) = match self {
+            Self::Plane => {
+                let law = ALUMINIUM_ALLOY.against_rigid(dissipation_time);
+                (law, Partner::Plane)
+            }
+            Self::Twin => (spheres, partner(1.0)),
+            Self::Larger => (spheres, partner(RATIO)),
+        };
         Impact {
-            contact: smooth(Normal::Hertz(self.law(dissipation_time))),
+            contact: smooth(Normal::Hertz(law)),
             sphere: Sphere::unit(DVec3::new(-speed, 0.0, 0.0), 0.0),
-            partner: self.partner(speed),
+            partner,
         }
     }
 }
@@ -96,62 +80,46 @@ impl Meets {
 struct Experiment {
     meets: Meets,
     speed: f64,
-    dissipation_time: f64,
-    contact_time: f64,
-    friction: CundallStrack,
+    without_spin: Trial,
+}
+
+impl Sweep<2> for Experiment {
+    /// The impact at r omega/v.
+    fn trial(&self, spin: f64) -> Trial {
+        let mut trial = self.without_spin;
+        trial.impact.sphere.spin = 2.0 * spin * self.speed;
+        if let (Meets::Larger, Partner::Grain(other)) = (self.meets, &mut trial.impact.partner) {
+            other.spin = trial.impact.sphere.spin;
+        }
+        trial
+    }
+
+    /// v_t'/v and r omega'/v of the spinning sphere.
+    fn read(&self, _: f64, velocity: DVec3, spin: f64) -> [f64; 2] {
+        [velocity.y / self.speed, 0.5 * spin / self.speed]
+    }
 }
 
 impl Experiment {
     fn new(meets: Meets) -> Self {
-        let speed = SPEED / ALUMINIUM_ALLOY.speed();
-        let impact = |dissipation_time| meets.smooth_impact(speed, dissipation_time);
-        let elastic = HertzImpact::of(&meets.law(0.0), &impact(0.0));
-        let contact_time = elastic.contact_time();
+        let time = dissipation_time(RESTITUTION, |time| meets.smooth_impact(time));
+        let smooth = Trial::of(meets.smooth_impact(time));
         Self {
             meets,
-            speed,
-            dissipation_time: dissipation_time(RESTITUTION, contact_time, impact),
-            contact_time,
-            friction: ALUMINIUM_ALLOY.friction(FRICTION, elastic.reduced_mass, contact_time),
+            speed: -smooth.impact.sphere.velocity.x,
+            without_spin: smooth.with_friction(&ALUMINIUM_ALLOY, FRICTION),
         }
-    }
-
-    /// The impact at r omega/v.
-    fn impact(&self, spin: f64) -> Impact {
-        let mut impact = self.meets.smooth_impact(self.speed, self.dissipation_time);
-        impact.contact.friction = Some(self.friction);
-        impact.sphere.spin = 2.0 * spin * self.speed;
-        if let (Meets::Larger, Partner::Grain(other)) = (self.meets, &mut impact.partner) {
-            other.spin = impact.sphere.spin;
-        }
-        impact
-    }
-
-    /// v_t'/v and r omega'/v of the spinning sphere.
-    fn read(&self, velocity: DVec3, spin: f64) -> [f64; 2] {
-        [velocity.y / self.speed, 0.5 * spin / self.speed]
-    }
-
-    fn simulated(&self, spin: f64) -> Result<[f64; 2], ClaimError> {
-        let time_step = self.contact_time / FINE;
-        let found = self.impact(spin).simulate(Means::USUAL, time_step, 0.5)?;
-        Ok(self.read(found.velocity[0], found.spin[0]))
-    }
-
-    fn integrated(&self, spin: f64) -> [f64; 2] {
-        let found = outcome(&self.impact(spin));
-        self.read(found.velocity[0], found.spin[0])
     }
 
     /// Sliding throughout: the tangential impulse is mu (1 + e) m v_n, m the reduced mass.
     fn sliding(&self, spin: f64) -> [f64; 2] {
-        let impact = self.impact(spin);
+        let impact = self.trial(spin).impact;
         let normal = impact.relative_velocity().length();
         let impulse = FRICTION * (1.0 + RESTITUTION) * impact.reduced_mass() * normal;
         // The surface of the spinning sphere moves towards -y; friction drives it towards +y and slows the spin.
         let velocity = DVec3::new(0.0, impulse, 0.0);
-        let spin = impact.sphere.spin - 0.5 * impulse / impact.sphere.inertia();
-        self.read(velocity, spin)
+        let after = impact.sphere.spin - 0.5 * impulse / impact.sphere.inertia();
+        self.read(spin, velocity, after)
     }
 
     /// Slow spins beside the equation of motion, a fast one beside sliding throughout.
@@ -169,12 +137,7 @@ impl Experiment {
                 checks.push(check.by(reference));
             }
         }
-        let time_step = self.contact_time / FINE;
-        checks.push(kernels_agree(
-            self.meets.name(),
-            &self.impact(1.5),
-            time_step,
-        )?);
+        checks.push(self.trial(1.5).kernels_agree(self.meets.name())?);
         Ok(checks)
     }
 }
@@ -188,7 +151,7 @@ struct Row {
     expected: [f64; 2],
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let mut finding = Finding::described(&PROSE, &[]);
     let experiments = MEETS.map(Experiment::new);
     let mut rows: Vec<Row> = Vec::new();
@@ -204,16 +167,14 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
             });
         }
         finding.checks.extend(experiment.checks()?);
-        let impact = experiment.impact(1.5);
-        let expected = outcome(&impact).spin[0];
-        finding.convergences.extend(impact_convergences(
-            ("spin", &format!("{}, r omega/v = 1.5", meets.name())),
-            &impact,
-            experiment.contact_time,
-            [0.7, 3.0],
-            // Over the spin before: the spin after may be next to nothing.
-            |rebound| (rebound.spin[0] - expected) / impact.sphere.spin,
-        )?);
+        let trial = experiment.trial(1.5);
+        let expected = outcome(&trial.impact).spin[0];
+        // Over the spin before: the spin after may be next to nothing.
+        let before = trial.impact.sphere.spin;
+        let error = |rebound: &Rebound| (rebound.spin[0] - expected) / before;
+        let setting = format!("{}, r omega/v = 1.5", meets.name());
+        let errors = trial.convergences(("spin", &setting), [0.7, 3.0], error)?;
+        finding.convergences.extend(errors);
     }
     finding.figures = vec![PROSE.figure("spin", &[], drawing(&experiments, &rows)?)];
     finding.data = Some(
@@ -232,14 +193,13 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
 fn drawing(experiments: &[Experiment], rows: &[Row]) -> Result<Drawing, FigureError> {
     let dense = spaced(0.0, LARGEST_SPIN, 121);
     let panels = experiments.iter().map(|experiment| {
-        let sliding: Vec<[f64; 2]> = dense.iter().map(|spin| experiment.sliding(*spin)).collect();
+        let over = |of: &dyn Fn(f64) -> [f64; 2]| -> Vec<[f64; 2]> {
+            dense.iter().map(|spin| of(*spin)).collect()
+        };
+        let sliding = over(&|spin| experiment.sliding(spin));
         // A contact without slip at all has no scale of its own.
-        let integrated = dense
-            .iter()
-            .map(|spin| experiment.integrated(spin.max(1e-3)));
-        let integrated: Vec<[f64; 2]> = integrated.collect();
+        let integrated = over(&|spin| experiment.integrated(spin.max(1e-3)));
         let mine = || rows.iter().filter(|row| row.meets == experiment.meets);
-        let spins: Vec<f64> = mine().map(|row| row.spin).collect();
         let mut panel = ChartPanel::new("*rω*/*v* before", "after the impact")
             .title(experiment.meets.name())
             .x_range(0.0..=6.2);
@@ -248,12 +208,12 @@ fn drawing(experiments: &[Experiment], rows: &[Row]) -> Result<Drawing, FigureEr
                 let values: Vec<f64> = values.iter().map(|value| value[place]).collect();
                 Line::new(named_once(name, place), &dense, &values)
             };
-            let found: Vec<f64> = mine().map(|row| row.found[place]).collect();
             let sliding = line("sliding throughout", &sliding).tint(Tint::Grey);
+            let name = format!("{name}, engine");
             panel = panel
                 .with(sliding.weight(2.4))
                 .with(line("equation of motion", &integrated).tint(Tint::Black))
-                .with(Points::new(&format!("{name}, engine"), &spins, &found).series(place));
+                .with(points(&name, mine(), |row| (row.spin, row.found[place])).series(place));
         }
         panel
     });

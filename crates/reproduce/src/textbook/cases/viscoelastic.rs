@@ -1,31 +1,22 @@
 //! Restitution of viscoelastic spheres against the speed of impact.
 
 use glam::DVec3;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Points, Reference, Tint};
+use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Reference, Tint};
 use peristalsis_figures::{Drawing, FigureError, Scale};
 use peristalsis_physics::contact::{DissipationForm, Normal, ViscoelasticHertz};
 
-use super::errors::{FINE, PER_CONTACT, error_drawing, impact_convergences, measured_restitution};
-use super::plot::{curve, named_once};
-use super::restitution;
-use crate::check::Check;
+use super::errors::error_drawing;
+use super::plot::{curve, named_once, points};
+use super::trial::{FINE, PER_CONTACT, Trial, expected_restitution};
 use crate::columns::Columns;
-use crate::error::ClaimError;
 use crate::exhibit::spaced;
-use crate::finding::Finding;
-use crate::prose::Prose;
-use crate::textbook::case::{Case, Circumstances};
-use crate::textbook::experiment::impact::{Impact, Partner, Sphere};
+use crate::textbook::case::Circumstances;
+use crate::textbook::experiment::impact::{Impact, Partner, Rebound, Sphere};
 use crate::textbook::experiment::smooth;
 use crate::textbook::reference::hertz::{HertzImpact, viscoelastic_series};
+use crate::{Check, ClaimError, Finding, Prose};
 
-const PROSE: Prose = Prose::new(include_str!("viscoelastic.md"));
-
-pub(super) const CASE: Case = Case {
-    name: "viscoelastic",
-    prose: PROSE,
-    examine,
-};
+pub(super) const PROSE: Prose = Prose::new(include_str!("viscoelastic.md"));
 
 /// Diameter of the spheres that stand for grains of diameter 1 \[d\].
 ///
@@ -43,54 +34,35 @@ const FORMS: [(&str, &str, DissipationForm); 2] = [
     ("as_printed", "as printed", DissipationForm::Printed),
 ];
 
-/// A head-on impact of the preset's grains.
-struct Experiment {
-    law: ViscoelasticHertz,
-    impact: Impact,
+fn law(dissipation_form: DissipationForm) -> ViscoelasticHertz {
+    ViscoelasticHertz {
+        young_modulus: 1.0 / LARGE.sqrt(),
+        poisson_ratio: 0.5,
+        dissipation_time: 0.1,
+        dissipation_form,
+    }
 }
 
-impl Experiment {
-    fn new(dissipation_form: DissipationForm, speed: f64) -> Self {
-        let law = ViscoelasticHertz {
-            young_modulus: 1.0 / LARGE.sqrt(),
-            poisson_ratio: 0.5,
-            dissipation_time: 0.1,
-            dissipation_form,
-        };
-        let sphere = |velocity: f64| Sphere {
-            diameter: LARGE,
-            mass: 1.0,
-            velocity: DVec3::new(velocity, 0.0, 0.0),
-            spin: 0.0,
-        };
-        let impact = Impact {
-            contact: smooth(Normal::Hertz(law)),
-            sphere: sphere(-0.5 * speed),
-            partner: Partner::Grain(sphere(0.5 * speed)),
-        };
-        Self { law, impact }
+/// A head-on impact of the preset's grains.
+fn impact(form: DissipationForm, speed: f64) -> Impact {
+    let sphere = |velocity: f64| Sphere {
+        diameter: LARGE,
+        mass: 1.0,
+        velocity: DVec3::new(velocity, 0.0, 0.0),
+        spin: 0.0,
+    };
+    Impact {
+        contact: smooth(Normal::Hertz(law(form))),
+        sphere: sphere(-0.5 * speed),
+        partner: Partner::Grain(sphere(0.5 * speed)),
     }
+}
 
-    fn elastic(&self) -> HertzImpact {
-        HertzImpact::of(&self.law, &self.impact)
-    }
-
-    /// s of the series.
-    fn small_parameter(&self) -> f64 {
-        let elastic = self.elastic();
-        let ratio = elastic.stiffness / elastic.reduced_mass;
-        self.law.relaxation_time() * libm::pow(ratio, 0.4) * libm::pow(elastic.speed, 0.2)
-    }
-
-    /// e by the equation of motion.
-    fn integrated(&self) -> f64 {
-        restitution::integrated(&self.impact)
-    }
-
-    /// e that the engine gives with so many steps in a contact.
-    fn measured(&self, steps: f64) -> Result<f64, ClaimError> {
-        measured_restitution(&self.impact, self.elastic().contact_time(), steps)
-    }
+/// s of the series.
+fn small_parameter(form: DissipationForm, speed: f64) -> f64 {
+    let elastic = HertzImpact::of(&law(form), &impact(form, speed));
+    let ratio = elastic.stiffness / elastic.reduced_mass;
+    law(form).relaxation_time() * libm::pow(ratio, 0.4) * libm::pow(elastic.speed, 0.2)
 }
 
 /// Restitutions at one speed, under either form of the dissipation.
@@ -100,8 +72,9 @@ struct Row {
     found: [f64; 2],
 }
 
-fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
-    let preset = |speed: f64| Experiment::new(DissipationForm::Viscoelastic, speed);
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+    const PRESET: DissipationForm = DissipationForm::Viscoelastic;
+    let preset = |speed: f64| Trial::of(impact(PRESET, speed));
     let mut finding = Finding::described(&PROSE, &[]);
     let mut check = |speed: &str, reference: &str, expected, found, tolerance| {
         let setting = format!("v = {speed}");
@@ -110,52 +83,38 @@ fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     };
     for speed in [1e-3, 1e-2, 0.1, 1.0] {
         circumstances.go_on()?;
-        let (expected, found) = (preset(speed).integrated(), preset(speed).measured(FINE)?);
-        check(
-            &speed.to_string(),
-            "equation of motion",
-            expected,
-            found,
-            2e-4,
-        );
+        let expected = expected_restitution(&preset(speed).impact);
+        let (speed, found) = (speed.to_string(), preset(speed).restitution(FINE)?);
+        check(&speed, "equation of motion", expected, found, 2e-4);
     }
     let fast = preset(1.0);
-    check("1", "the source", 0.85, fast.measured(FINE)?, 5e-3);
-    let slow = preset(1e-4);
-    let s = slow.small_parameter();
-    let found = slow.measured(8.0 * FINE)?;
+    check("1", "the source", 0.85, fast.restitution(FINE)?, 5e-3);
+    let s = small_parameter(PRESET, 1e-4);
+    let found = preset(1e-4).restitution(8.0 * FINE)?;
     check("1e-4", "series", viscoelastic_series(s), found, s * s * s);
 
-    let expected = fast.integrated();
-    finding.convergences = impact_convergences(
-        ("restitution", "v = 1"),
-        &fast.impact,
-        fast.elastic().contact_time(),
-        [1.3, 2.4],
-        |rebound| fast.impact.restitution(rebound.velocity) / expected - 1.0,
-    )?;
+    let expected = expected_restitution(&fast.impact);
+    let error = |rebound: &Rebound| fast.impact.restitution(rebound.velocity) / expected - 1.0;
+    finding.convergences = fast.convergences(("restitution", "v = 1"), [1.3, 2.4], error)?;
 
     let mut rows: Vec<Row> = Vec::new();
     for speed in speeds(circumstances.size.choose(9, 25)) {
         circumstances.go_on()?;
-        let [one, other] = FORMS.map(|(.., form)| Experiment::new(form, speed));
+        let [one, other] = FORMS.map(|(.., form)| Trial::of(impact(form, speed)));
         rows.push(Row {
             speed,
-            expected: [one.integrated(), other.integrated()],
-            found: [one.measured(FINE)?, other.measured(FINE)?],
+            expected: [&one, &other].map(|trial| expected_restitution(&trial.impact)),
+            found: [one.restitution(FINE)?, other.restitution(FINE)?],
         });
     }
+    let errors = error_drawing(
+        "Errors of the restitution fall with the power 3/2 to 2 of the time step.",
+        &PER_CONTACT,
+        &[("", &finding.convergences)],
+    );
     finding.figures = vec![
         PROSE.figure("viscoelastic", &[], drawing(&rows)?),
-        PROSE.figure(
-            "viscoelastic-errors",
-            &[],
-            error_drawing(
-                "Errors of the restitution fall with the power 3/2 to 2 of the time step.",
-                &PER_CONTACT,
-                &[("", &finding.convergences)],
-            )?,
-        ),
+        PROSE.figure("viscoelastic-errors", &[], errors?),
     ];
     let mut data = Columns::of(&rows).number("speed", "d/t", "relative speed", |row| row.speed);
     for (place, (name, ..)) in FORMS.into_iter().enumerate() {
@@ -180,21 +139,23 @@ fn speeds(number: usize) -> Vec<f64> {
 }
 
 fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
-    let (speed, dense): (Vec<f64>, _) = (rows.iter().map(|row| row.speed).collect(), speeds(61));
+    let dense = speeds(61);
     let mut panel = ChartPanel::new("speed *v* (*d*/*t*\\*)", "restitution *e*")
         .x_scale(Scale::Logarithmic)
         .y_range(0.84..=1.0);
     for (place, (_, name, form)) in FORMS.into_iter().enumerate() {
-        let found: Vec<f64> = rows.iter().map(|row| row.found[place]).collect();
-        let equation = |speed| Experiment::new(form, speed).integrated();
-        let series = |speed| viscoelastic_series(Experiment::new(form, speed).small_parameter());
-        let [equation_name, series_name] =
-            ["equation of motion", "series"].map(|name| named_once(name, place));
-        let series = curve(series_name, &dense, series).tint(Tint::Green);
+        let equation = |speed| expected_restitution(&impact(form, speed));
+        let series = |speed| viscoelastic_series(small_parameter(form, speed));
+        let curve = |name, of: &dyn Fn(f64) -> f64| curve(named_once(name, place), &dense, of);
+        let found = points(name, rows, |row: &Row| (row.speed, row.found[place]));
         panel = panel
-            .with(curve(equation_name, &dense, equation).tint(Tint::Black))
-            .with(series.pattern(Pattern::Dashed))
-            .with(Points::new(name, &speed, &found).series(place));
+            .with(curve("equation of motion", &equation).tint(Tint::Black))
+            .with(
+                curve("series", &series)
+                    .tint(Tint::Green)
+                    .pattern(Pattern::Dashed),
+            )
+            .with(found.series(place));
     }
     let source = Reference::horizontal(0.85).label("0.85, the source at *v* = 1");
     ChartFigure::new(panel.with(source))

@@ -3,9 +3,8 @@
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::ContactModel;
-use peristalsis_physics::wall::Lattice;
 
-use super::{Means, far_away, straight};
+use super::{Means, far_away, plane};
 use crate::error::ClaimError;
 
 /// Diameter of the wall's sphere that stands for a plane \[d\].
@@ -77,8 +76,8 @@ const MOST_STEPS: u64 = 1 << 22;
 impl Impact {
     /// Two grains of diameter and mass 1 that meet head-on, each with this speed.
     pub(crate) fn of_twins(contact: ContactModel, speed: f64) -> Self {
-        let velocity = |speed: f64| DVec3::new(speed, 0.0, 0.0);
-        Self::between(contact, velocity(-speed), velocity(speed))
+        let [one, other] = [-speed, speed].map(|speed| DVec3::new(speed, 0.0, 0.0));
+        Self::between(contact, one, other)
     }
 
     /// Two grains of diameter and mass 1 with these velocities.
@@ -129,10 +128,7 @@ impl Impact {
 
     /// m_j/(m_i + m_j), the share of the sphere in a change of the relative velocity.
     pub(crate) fn share(&self) -> f64 {
-        match self.partner {
-            Partner::Grain(other) => other.mass / (self.sphere.mass + other.mass),
-            Partner::Plane => 1.0,
-        }
+        self.reduced_mass() / self.sphere.mass
     }
 
     /// m_i m_j/(m_i + m_j).
@@ -230,16 +226,16 @@ impl Experiment {
                 (wall, spheres, None)
             }
             Partner::Plane => {
-                let wall = straight(PLANE_LATTICE, reach);
+                let wall = plane(PLANE_DIAMETER, reach);
                 // The sphere of the second ring stands at the side of negative x.
-                let plane = wall
+                let centre = wall
                     .prescribed_spheres()
                     .nth(1)
                     .expect("a ring of one sphere is followed by another")
                     .position;
                 // The grain is near the axis, where its place has the finest grid of numbers.
-                let place = DVec3::new(plane.x + reach, plane.y, plane.z);
-                (wall, vec![(sphere, place)], Some(plane))
+                let place = DVec3::new(centre.x + reach, centre.y, centre.z);
+                (wall, vec![(sphere, place)], Some(centre))
             }
         };
         for (sphere, place) in &mut spheres {
@@ -293,15 +289,6 @@ impl Experiment {
         )
     }
 }
-
-/// Two rings of one sphere each, too far apart for a grain to meet both.
-const PLANE_LATTICE: Lattice = Lattice {
-    spheres_per_ring: 1,
-    rings_per_wave: 2,
-    waves: 1,
-    wavelength: 4.0 * PLANE_DIAMETER,
-    sphere_diameter: PLANE_DIAMETER,
-};
 
 /// Largest value between two instants, of the cubic through values and rates.
 fn largest_of_cubic(from: Look, to: Look, time_step: f64) -> f64 {

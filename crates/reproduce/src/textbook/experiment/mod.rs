@@ -70,7 +70,7 @@ pub(crate) fn smooth(normal: Normal) -> ContactModel {
 }
 
 /// A wall at rest: a straight tube.
-pub(crate) fn straight(lattice: Lattice, radius: f64) -> Wall {
+fn straight(lattice: Lattice, radius: f64) -> Wall {
     Wall::Prescribed(PrescribedWall::new(
         lattice,
         radius,
@@ -79,6 +79,18 @@ pub(crate) fn straight(lattice: Lattice, radius: f64) -> Wall {
         Schedule::constant(0.0),
         Schedule::constant(0.0),
     ))
+}
+
+/// A wall of two rings of one sphere each, so large that it stands for a plane and too far apart for a grain to meet both.
+pub(crate) fn plane(diameter: f64, radius: f64) -> Wall {
+    let lattice = Lattice {
+        spheres_per_ring: 1,
+        rings_per_wave: 2,
+        waves: 1,
+        wavelength: 4.0 * diameter,
+        sphere_diameter: diameter,
+    };
+    straight(lattice, radius)
 }
 
 /// A periodic tube whose wall is too far away to be touched.

@@ -3,9 +3,8 @@
 use glam::DVec3;
 use peristalsis_engine::{Bodies, Parameters, Simulation};
 use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDashpot, Normal};
-use peristalsis_physics::wall::Lattice;
 
-use super::{Means, straight};
+use super::{Means, plane};
 use crate::error::ClaimError;
 
 /// Diameter of the sphere that stands for the plane \[d\]: a path of a few d inclines it by some 1e-5 only.
@@ -49,13 +48,6 @@ impl Throw {
         duration: f64,
     ) -> Result<Vec<Instant>, ClaimError> {
         // A ring of one sphere (almost) on the axis: its top is a plane across the axis, along which the weight acts.
-        let lattice = Lattice {
-            spheres_per_ring: 1,
-            rings_per_wave: 2,
-            waves: 1,
-            wavelength: 4.0 * PLANE_DIAMETER,
-            sphere_diameter: PLANE_DIAMETER,
-        };
         let off_axis = 1e-3;
         let height = 0.5 * (1.0 + PLANE_DIAMETER) - self.overlap();
         let mut bodies = Bodies::grains_at_rest(vec![DVec3::new(off_axis, 0.0, height)], vec![1.0]);
@@ -68,7 +60,7 @@ impl Throw {
             body_force: -self.gravity,
             ..means.parameters(contact, time_step, 0.3)
         };
-        let mut simulation = Simulation::new(bodies, straight(lattice, off_axis), parameters);
+        let mut simulation = Simulation::new(bodies, plane(PLANE_DIAMETER, off_axis), parameters);
         let arm = 0.5 * (1.0 - self.overlap());
         let steps = (duration / time_step).round() as usize;
         let mut instants = Vec::with_capacity(steps + 1);

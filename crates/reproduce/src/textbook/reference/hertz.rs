@@ -2,7 +2,7 @@
 
 use core::f64::consts::PI;
 
-use peristalsis_physics::contact::ViscoelasticHertz;
+use peristalsis_physics::contact::{Normal, ViscoelasticHertz};
 
 use crate::textbook::experiment::impact::Impact;
 
@@ -51,6 +51,17 @@ impl HertzImpact {
     /// kappa xi_max^(3/2)
     pub(crate) fn peak_force(&self) -> f64 {
         self.stiffness * libm::pow(self.largest_overlap(), 1.5)
+    }
+}
+
+/// Duration of a head-on impact without its dissipation \[t\].
+pub(crate) fn contact_time(impact: &Impact) -> f64 {
+    if let Normal::Hertz(law) = impact.contact.normal {
+        HertzImpact::of(&law, impact).contact_time()
+    } else if let Normal::Linear(law) = impact.contact.normal {
+        PI / (law.normal_stiffness / impact.reduced_mass()).sqrt()
+    } else {
+        unreachable!("the cases have impacts of these two laws")
     }
 }
 
