@@ -3,7 +3,7 @@
 use peristalsis_analysis::{Interval, Jump, Uncertain, jump_height, mean_and_error};
 
 use crate::finding::Statistics;
-use crate::row::{Row, Start, grouped, mean};
+use crate::row::{Row, Start, escaped, grouped, mean};
 use crate::thresholds::{
     CLEAR, CONTINUED, ESCAPED_WITHIN, LEAST_ERROR_AGAINST_FORCE, LEAST_ERROR_AGAINST_WIDTH,
     LEAST_FALL, LEAST_JUMP, SPLIT,
@@ -52,8 +52,7 @@ pub(crate) struct Point<'a> {
 impl Point<'_> {
     /// Fraction of the grains outside, mean.
     pub(crate) fn escaped(&self) -> f64 {
-        let sum: f64 = self.rows.iter().map(Row::escaped_fraction).sum();
-        sum / self.rows.len() as f64
+        escaped(&self.rows)
     }
 
     /// Mean of another column over the same runs.
@@ -85,11 +84,10 @@ pub(crate) struct Step {
 impl Step {
     /// From one point to another.
     pub(crate) fn between(one: &Point<'_>, other: &Point<'_>) -> Self {
-        let error = one.flow.error.max(0.0).hypot(other.flow.error.max(0.0));
         Self {
             controls: [one.control, other.control],
             flows: [one.flow.value, other.flow.value],
-            height: Uncertain::normal(other.flow.value - one.flow.value, error),
+            height: difference(&other.flow, &one.flow),
         }
     }
 
@@ -107,6 +105,26 @@ impl Step {
     pub(crate) fn counts(&self, least: f64) -> bool {
         self.height.value.abs() > least.max(CLEAR * self.height.error)
     }
+}
+
+/// One number less another, of independent errors; an error that is not known counts as none.
+pub(crate) fn difference(one: &Uncertain, other: &Uncertain) -> Uncertain {
+    let error = one.error.max(0.0).hypot(other.error.max(0.0));
+    Uncertain::normal(one.value - other.value, error)
+}
+
+/// Numbers with errors as columns for fits: abscissa, value, and error, which is at least `least`.
+pub(crate) fn columns(
+    numbers: impl IntoIterator<Item = (f64, Uncertain)>,
+    least: f64,
+) -> [Vec<f64>; 3] {
+    let mut columns: [Vec<f64>; 3] = Default::default();
+    for (x, number) in numbers {
+        columns[0].push(x);
+        columns[1].push(number.value);
+        columns[2].push(number.error.max(least));
+    }
+    columns
 }
 
 /// A number known only by two bounds: its error follows from a uniform distribution between them, which is the 68 per
@@ -161,12 +179,8 @@ impl<'a> Branch<'a> {
     /// The stationary branch that some runs of one tube at one strain rate show; those that still drift are left out, and with
     /// them values of the control at which most do. A width at which chance leads some replicates to each of the two flows is
     /// on neither branch, but between them.
-    pub(crate) fn of(
-        rows: impl IntoIterator<Item = Row<'a>>,
-        start: Start,
-        control: Control,
-    ) -> Self {
-        let from = rows.into_iter().filter(|row| row.start() == start);
+    pub(crate) fn of(rows: &[Row<'a>], start: Start, control: Control) -> Self {
+        let from = rows.iter().copied().filter(|row| row.start() == start);
         Self::with(from, control, |all| {
             let (rows, mut flow) = stationary(all)?;
             if control == Control::Width && is_split(&rows) {
@@ -180,8 +194,8 @@ impl<'a> Branch<'a> {
     }
 
     /// The means over all runs at each value of the control.
-    pub(crate) fn of_all(rows: impl IntoIterator<Item = Row<'a>>, control: Control) -> Self {
-        Self::with(rows, control, |all| {
+    pub(crate) fn of_all(rows: &[Row<'a>], control: Control) -> Self {
+        Self::with(rows.iter().copied(), control, |all| {
             Some((all.to_vec(), mean(all, "flow_rate_ratio")?))
         })
     }
@@ -227,10 +241,7 @@ impl<'a> Branch<'a> {
         self.steps()
             .filter(|step| step.height.value < 0.0 && step.counts(LEAST_FALL))
             .max_by(|one, other| steepness(other).total_cmp(&steepness(one)))
-            .or_else(|| {
-                self.steps()
-                    .max_by(|one, other| other.height.value.total_cmp(&one.height.value))
-            })
+            .or_else(|| self.largest_step(|height| -height))
     }
 
     /// Where it rises most from one point to the next; `None` where it rises nowhere by more than the error.
@@ -248,6 +259,13 @@ impl<'a> Branch<'a> {
         }
     }
 
+    /// The difference between neighbours that is largest by this measure of its height.
+    pub(crate) fn largest_step(&self, measure: fn(f64) -> f64) -> Option<Step> {
+        let height = |step: &Step| measure(step.height.value);
+        self.steps()
+            .max_by(|one, other| height(one).total_cmp(&height(other)))
+    }
+
     /// The jump at its step, both sides continued to it as straight lines; `None` where a side is missing.
     pub(crate) fn jump(&self) -> Option<Jump> {
         let step = self.step()?;
@@ -255,16 +273,12 @@ impl<'a> Branch<'a> {
             .points
             .partition_point(|point| point.control <= step.controls[0]);
         let (before, after) = self.points.split_at(split);
-        let columns = |points: &[Point<'_>]| -> [Vec<f64>; 3] {
-            let column = |value: &dyn Fn(&Point<'_>) -> f64| points.iter().map(value).collect();
-            [
-                column(&|point| point.control),
-                column(&|point| point.flow.value),
-                column(&|point| point.flow.error.max(LEAST_ERROR_AGAINST_WIDTH)),
-            ]
+        let known = |points: &[Point<'_>]| {
+            let flows = points.iter().map(|point| (point.control, point.flow));
+            columns(flows, LEAST_ERROR_AGAINST_WIDTH)
         };
-        let before = columns(&before[before.len().saturating_sub(CONTINUED)..]);
-        let after = columns(&after[..after.len().min(CONTINUED)]);
+        let before = known(&before[before.len().saturating_sub(CONTINUED)..]);
+        let after = known(&after[..after.len().min(CONTINUED)]);
         let (upper, lower) = match self.control {
             Control::Force => (after, before),
             Control::Width | Control::BackPressure => (before, after),
@@ -278,14 +292,6 @@ impl<'a> Branch<'a> {
         self.jump().is_some_and(|jump| {
             jump.height.value > LEAST_JUMP && jump.height.value > CLEAR * jump.height.error
         })
-    }
-
-    /// The largest excess of another branch over this one at one value of the control.
-    pub(crate) fn gap(&self, other: &Self) -> Option<Step> {
-        self.points
-            .iter()
-            .filter_map(|point| Some(Step::between(point, other.at(point.control)?)))
-            .max_by(|one, other| one.height.value.total_cmp(&other.height.value))
     }
 
     /// J/Jmax midway between the two flows at the step.
@@ -326,6 +332,52 @@ impl<'a> Branch<'a> {
     /// Control and flow of each point, for figures.
     pub(crate) fn flows(&self) -> impl Iterator<Item = (f64, Uncertain)> {
         self.points.iter().map(|point| (point.control, point.flow))
+    }
+}
+
+/// The branches of one tube from both starts.
+#[derive(Clone, Debug)]
+pub(crate) struct Branches<'a> {
+    pub(crate) rest: Branch<'a>,
+    pub(crate) jammed: Branch<'a>,
+}
+
+impl<'a> Branches<'a> {
+    /// The stationary branches that some runs of one tube at one strain rate show.
+    pub(crate) fn of(rows: &[Row<'a>], control: Control) -> Self {
+        Self {
+            rest: Branch::of(rows, Start::Rest, control),
+            jammed: Branch::of(rows, Start::Jammed, control),
+        }
+    }
+
+    /// Both.
+    pub(crate) fn each(&self) -> [&Branch<'a>; 2] {
+        [&self.rest, &self.jammed]
+    }
+
+    /// The points from rest, then those from jammed.
+    pub(crate) fn points(&self) -> impl Iterator<Item = &Point<'a>> {
+        self.rest.points.iter().chain(&self.jammed.points)
+    }
+
+    /// The point of the smallest flow.
+    pub(crate) fn lowest(&self) -> Option<&Point<'a>> {
+        self.points()
+            .min_by(|one, other| one.flow.value.total_cmp(&other.flow.value))
+    }
+
+    /// The largest excess of the flow from jammed at one value of the control.
+    pub(crate) fn gap(&self) -> Option<Step> {
+        let points = self.rest.points.iter();
+        points
+            .filter_map(|rest| Some(Step::between(rest, self.jammed.at(rest.control)?)))
+            .max_by(|one, other| one.height.value.total_cmp(&other.height.value))
+    }
+
+    /// Largest fraction of grains outside near a step.
+    pub(crate) fn escaped(&self) -> f64 {
+        self.rest.escaped().max(self.jammed.escaped())
     }
 }
 
@@ -378,7 +430,7 @@ mod tests {
     fn a_gap_lies_between_two_branches_at_one_control() {
         let rest = branch(Control::Force, &[(1.0, 0.1), (2.0, 0.2), (3.0, 0.9)]);
         let jammed = branch(Control::Force, &[(2.0, 0.8), (3.0, 0.9), (4.0, 1.0)]);
-        let gap = rest.gap(&jammed).unwrap();
+        let gap = Branches { rest, jammed }.gap().unwrap();
         assert_eq!((gap.controls, gap.flows), ([2.0, 2.0], [0.2, 0.8]));
         assert!(gap.counts(LEAST_JUMP) && !gap.counts(0.7));
     }

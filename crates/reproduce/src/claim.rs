@@ -1,6 +1,6 @@
 //! A claim and how it is examined.
 
-use crate::error::ClaimError;
+use crate::error::Result;
 use crate::evidence::Evidence;
 use crate::finding::Finding;
 use crate::prose::Prose;
@@ -15,5 +15,22 @@ pub struct Claim {
     /// Names of the studies that it needs, all of [`STUDIES`](crate::STUDIES).
     pub studies: &'static [&'static str],
     /// What the evidence says.
-    pub examine: fn(&Evidence) -> Result<Finding, ClaimError>,
+    pub examine: fn(&Evidence) -> Result<Finding>,
+}
+
+impl Claim {
+    /// A claim from what its file says.
+    pub(crate) const fn new(
+        id: &'static str,
+        prose: Prose,
+        studies: &'static [&'static str],
+        examine: fn(&Evidence) -> Result<Finding>,
+    ) -> Self {
+        Self {
+            id,
+            prose,
+            studies,
+            examine,
+        }
+    }
 }

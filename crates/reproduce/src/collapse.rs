@@ -1,17 +1,16 @@
 //! Collapse of the curves of several strain rates, with free exponents.
 
+use peristalsis_analysis::number::decimal as number;
 use peristalsis_analysis::{
     Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, Scaling, Uncertain, WidthEnsemble,
 };
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
-use peristalsis_figures::{Drawing, Scale, Width};
+use peristalsis_figures::{Scale, Width};
 
 use crate::critical::OnLattice;
-use crate::error::ClaimError;
-use crate::exhibit::{cell_of, points, rate_colours};
+use crate::exhibit::{cell_of, coloured, ends, points, rate_colours};
 use crate::finding::{Quantity, ReportTable};
 use crate::judgement::{agrees, all_hold};
-use crate::text::{estimate, number};
 use crate::thresholds::{COLLAPSED, OVERLAP, RESOLVED};
 
 /// Searches for the best collapse, resamples for its errors, and the seed of both.
@@ -53,11 +52,7 @@ pub(crate) fn collapse(
             .iter()
             .filter(|ensemble| ensemble.observed >= 3 * ensemble.censored && ensemble.observed > 2)
             .filter(|ensemble| ensemble.width < fit.critical_width.value)
-            .filter(|ensemble| {
-                ensemble
-                    .naive_mean
-                    .is_some_and(|mean| mean > RESOLVED * line.period())
-            })
+            .filter(|ensemble| line.resolves(ensemble, RESOLVED))
             .filter_map(|ensemble| {
                 let found =
                     quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
@@ -175,15 +170,20 @@ impl Collapsed {
         all_hold(&[0, 1].map(|place| agrees(&self.exponents[place], claimed[place])))
     }
 
-    /// The exponents with the quality of the collapse.
-    pub(crate) fn in_words(&self) -> String {
-        format!(
-            "*a* = {}, *b* = {} with *S* = {} at an overlap of {}",
-            estimate(&self.exponents[0]),
-            estimate(&self.exponents[1]),
+    /// The exponents, S and the overlap as text.
+    fn best(&self) -> [String; 4] {
+        [
+            self.exponents[0].to_string(),
+            self.exponents[1].to_string(),
             number(self.fit.quality.quality, 1),
             number(self.fit.quality.overlap, 2),
-        )
+        ]
+    }
+
+    /// The exponents with the quality of the collapse.
+    pub(crate) fn in_words(&self) -> String {
+        let [a, b, quality, overlap] = self.best();
+        format!("*a* = {a}, *b* = {b} with *S* = {quality} at an overlap of {overlap}")
     }
 
     /// The exponents as quantities.
@@ -206,41 +206,26 @@ impl Collapsed {
 
     /// Quality at the exponents of the source and at the best, and the fits without one curve.
     pub(crate) fn table(&self, of: &str) -> ReportTable {
-        let mut rows = Vec::new();
-        if let Some((claimed, quality)) = self.claimed {
-            rows.push(vec![
-                "source".to_owned(),
-                number(claimed[0], 2),
-                number(claimed[1], 2),
-                cell_of(quality, |found| number(found.0, 1)),
-                cell_of(quality, |found| number(found.1, 2)),
-            ]);
-        }
-        rows.push(vec![
-            "best".to_owned(),
-            estimate(&self.exponents[0]),
-            estimate(&self.exponents[1]),
-            number(self.fit.quality.quality, 1),
-            number(self.fit.quality.overlap, 2),
-        ]);
-        rows.extend(self.left_out.iter().map(|(rate, parameters)| {
-            vec![
-                format!("without *ε̇* = {rate}"),
-                number(parameters[0], 2),
-                number(parameters[1], 2),
-                String::new(),
-                String::new(),
-            ]
-        }));
-        ReportTable {
-            caption: format!(
+        let row = |name: String, cells: [String; 4]| [vec![name], cells.to_vec()].concat();
+        let source = self.claimed.map(|(claimed, quality)| {
+            let [a, b] = claimed.map(|exponent| number(exponent, 2));
+            let overlap = cell_of(quality, |found| number(found.1, 2));
+            let quality = cell_of(quality, |found| number(found.0, 1));
+            row("source".to_owned(), [a, b, quality, overlap])
+        });
+        let left_out = self.left_out.iter().map(|(rate, parameters)| {
+            let [a, b] = [0, 1].map(|place| number(parameters[place], 2));
+            let name = format!("without *ε̇* = {rate}");
+            row(name, [a, b, String::new(), String::new()])
+        });
+        let best = row("best".to_owned(), self.best());
+        ReportTable::new(
+            &format!(
                 "Collapse, {of}: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
             ),
-            head: ["", "*a*", "*b*", "*S*", "overlap"]
-                .map(str::to_owned)
-                .to_vec(),
-            rows,
-        }
+            ["", "*a*", "*b*", "*S*", "overlap"],
+            source.into_iter().chain([best]).chain(left_out),
+        )
     }
 
     /// The scaled points of every curve by its strain rate: abscissa and ordinate.
@@ -260,25 +245,21 @@ impl Collapsed {
 
     /// The curves in a panel, beside a line of the given slope through their middle.
     fn panel(&self, exponents: &[f64], title: &str, labels: [&str; 2], slope: f64) -> ChartPanel {
-        let mut panel = ChartPanel::new(labels[0], labels[1])
+        let panel = ChartPanel::new(labels[0], labels[1])
             .title(title)
             .x_scale(Scale::Logarithmic)
             .y_scale(Scale::Logarithmic);
         let scaled = self.scaled(exponents);
-        for (number, (rate, curve)) in scaled.iter().enumerate() {
-            let points = points("", curve.iter().copied());
-            panel =
-                panel.with_all(points.map(|points| points.series(number).tint(Tint::Value(*rate))));
-        }
+        let curves = scaled.iter();
+        let curves = curves.map(|(rate, curve)| (*rate, points("", curve.iter().copied())));
         let all = || scaled.iter().flat_map(|(_, curve)| curve);
-        let least = all().map(|point| point.0).fold(f64::INFINITY, f64::min);
-        let largest = all().map(|point| point.0).fold(0.0, f64::max);
+        let ends = ends(all().map(|point| point.0)).unwrap_or_default();
         let middle = all()
             .map(|(x, y)| y.value.ln() - slope * x.ln())
             .sum::<f64>()
             / all().count().max(1) as f64;
-        let ends = [least, largest];
-        panel.with(
+        let ends = <[f64; 2]>::from(ends);
+        panel.with_all(coloured(curves)).with(
             Drawn::new("", &ends, &ends.map(|x| (middle + slope * x.ln()).exp()))
                 .tint(Tint::Black)
                 .pattern(Pattern::Dashed)
@@ -289,12 +270,12 @@ impl Collapsed {
 
 /// All curves scaled as the source says, if it does, and as collapses best: `found` with what each belongs to, and the
 /// labels of the axes at the exponents of the source (none where it gives none) and of the ordinate at the best.
-pub(crate) fn drawing(
+pub(crate) fn chart(
     found: &[(String, Collapsed)],
     claimed_labels: [&str; 2],
     best_label: &str,
     slope: f64,
-) -> Result<Drawing, ClaimError> {
+) -> ChartFigure {
     let mut panels = Vec::new();
     for (of, collapsed) in found {
         if let Some((claimed, _)) = collapsed.claimed {
@@ -307,9 +288,7 @@ pub(crate) fn drawing(
         panels.push(collapsed.panel(best, &title, labels, slope));
     }
     let curves = found.iter().flat_map(|(_, collapsed)| &collapsed.curves);
-    Ok(ChartFigure::grid(panels.len().min(2), panels)
+    ChartFigure::grid(panels.len().min(2), panels)
         .colour_scale(rate_colours(curves.map(|curve| curve.parameter)))
         .width(Width::DoubleColumn)
-        .description("Scaled curves of several strain rates.")
-        .draw()?)
 }

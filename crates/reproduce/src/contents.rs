@@ -22,6 +22,14 @@ pub struct Quantity {
     pub method: String,
 }
 
+impl Quantity {
+    /// The same, with the value of the source.
+    pub(crate) fn sourced(self, source: f64) -> Self {
+        let source = Some(source);
+        Self { source, ..self }
+    }
+}
+
 /// A table of the report.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ReportTable {

@@ -1,23 +1,27 @@
 //! Transition times at one strain rate, and the power laws fitted to them.
 
 use peristalsis_analysis::{
-    Family, FractionCrossing, Law, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
+    Family, FractionCrossing, Law, LineFit, ScatterLawFit, Transition, Uncertain, WidthEnsemble,
     ensembles_by_width, fit_law_to_runs, fit_law_with_scatter, fraction_crossing,
 };
 use peristalsis_run::THRESHOLDS;
 
 use crate::branch::{Branch, Control};
-use crate::error::ClaimError;
+use crate::error::Result;
 use crate::evidence::Evidence;
-use crate::finding::Statistics;
-use crate::judgement::Part;
-use crate::row::{Lattice, Row, Start, behind, by_strain_rate, grouped, longest};
+use crate::finding::{Quantity, Statistics};
+use crate::judgement::{Part, agrees};
+use crate::lattices::LATTICES;
+use crate::prose::Prose;
+use crate::row::{Row, Start, behind, by_strain_rate, escaped, grouped, longest};
 use crate::thresholds::{MOST_ESCAPED, RESOLVED, WINDOW};
 
-/// Both lattices with the names of their studies of transition times and of branches.
-pub(crate) const LATTICES: [(Lattice, &str, &str); 2] = [
-    (Lattice::FINE, "divergence-fine", "branches-fine"),
-    (Lattice::COARSE, "divergence-coarse", "branches-coarse"),
+/// The studies that [`OnLattice::all`] reads.
+pub(crate) const DIVERGENCES: &[&str] = &[
+    "divergence-fine",
+    "divergence-coarse",
+    "branches-fine",
+    "branches-coarse",
 ];
 
 /// The transition times on one lattice.
@@ -30,25 +34,25 @@ pub(crate) struct OnLattice<'a> {
 
 impl<'a> OnLattice<'a> {
     /// Both lattices.
-    pub(crate) fn all(evidence: &'a Evidence) -> Result<Vec<Self>, ClaimError> {
-        LATTICES
-            .iter()
-            .map(|(lattice, divergence, branches)| {
-                let of = |study: &str| {
-                    let rows = evidence.study(study)?.rows().into_iter();
-                    Ok::<_, ClaimError>(rows.filter(|row| row.lattice() == *lattice))
-                };
-                let thresholds = Thresholds::of(of(branches)?);
-                let from_rest = of(divergence)?.filter(|row| row.start() == Start::Rest);
-                Ok(Self {
-                    name: lattice.name(),
-                    lines: by_strain_rate(from_rest)
-                        .into_iter()
-                        .map(|(rate, rows)| Line::new(rate, thresholds.at(rate), rows))
-                        .collect(),
-                })
-            })
-            .collect()
+    pub(crate) fn all(evidence: &'a Evidence) -> Result<Vec<Self>> {
+        let mut all = Vec::new();
+        for lattice in LATTICES {
+            let of = |study: String| -> Result<_> {
+                let rows = evidence.study(&study)?.rows().into_iter();
+                Ok(rows.filter(move |row| row.lattice() == lattice))
+            };
+            let name = lattice.name();
+            let thresholds = Thresholds::of(of(format!("branches-{name}"))?);
+            let runs = of(format!("divergence-{name}"))?;
+            let lines = by_strain_rate(runs.filter(|row| row.start() == Start::Rest)).into_iter();
+            all.push(Self {
+                lines: lines
+                    .map(|(rate, rows)| Line::new(rate, thresholds.at(rate), rows))
+                    .collect(),
+                name,
+            });
+        }
+        Ok(all)
     }
 
     /// The lines that hold their grains.
@@ -62,6 +66,12 @@ impl<'a> OnLattice<'a> {
     pub(crate) fn fitted(&self) -> impl Iterator<Item = (&Line<'a>, &Divergence)> {
         self.tight()
             .filter_map(|line| Some((line, line.fit.as_ref()?)))
+    }
+
+    /// Those of which the scatter has a law of its own, with it.
+    pub(crate) fn scattered(&self) -> impl Iterator<Item = (&Line<'a>, ScatterLawFit)> {
+        self.fitted()
+            .filter_map(|(line, fit)| Some((line, fit.scatter?)))
     }
 
     /// How much is behind the fits.
@@ -103,10 +113,11 @@ pub(crate) struct Thresholds {
 impl Thresholds {
     /// The thresholds that the branches from rest of some runs suggest.
     pub(crate) fn of<'a>(rows: impl Iterator<Item = Row<'a>>) -> Self {
-        let threshold = |rows| Branch::of(rows, Start::Rest, Control::Width).threshold();
+        let threshold =
+            |rows: &[Row<'_>]| Branch::of(rows, Start::Rest, Control::Width).threshold();
         let known = by_strain_rate(rows)
             .into_iter()
-            .filter_map(|(rate, rows)| Some((rate, threshold(rows)?)))
+            .filter_map(|(rate, rows)| Some((rate, threshold(&rows)?)))
             .collect();
         Self { known }
     }
@@ -184,9 +195,12 @@ impl<'a> Line<'a> {
         columns(&self.rows, self.threshold)
     }
 
-    /// Period of the wave \[t\].
-    pub(crate) fn period(&self) -> f64 {
-        1.0 / self.strain_rate
+    /// Whether the mean transition time at a width is longer than so many periods.
+    pub(crate) fn resolves(&self, ensemble: &WidthEnsemble, periods: f64) -> bool {
+        let period = 1.0 / self.strain_rate;
+        ensemble
+            .naive_mean
+            .is_some_and(|mean| mean > periods * period)
     }
 
     /// What is behind it.
@@ -200,10 +214,7 @@ impl<'a> Line<'a> {
         grouped(self.rows.iter().copied(), Row::width)
             .into_iter()
             .filter(|(width, _)| *width >= from)
-            .map(|(_, rows)| {
-                let sum: f64 = rows.iter().map(Row::escaped_fraction).sum();
-                sum / rows.len() as f64
-            })
+            .map(|(_, rows)| escaped(&rows))
             .fold(0.0, f64::max)
     }
 
@@ -219,11 +230,7 @@ impl<'a> Line<'a> {
             .ensembles
             .iter()
             .filter(|ensemble| ensemble.observed >= ensemble.censored)
-            .filter(|ensemble| {
-                ensemble
-                    .naive_mean
-                    .is_some_and(|mean| mean > RESOLVED * self.period())
-            })
+            .filter(|ensemble| self.resolves(ensemble, RESOLVED))
             .map(|ensemble| ensemble.width)
             .collect();
         if usable.len() < 3 {
@@ -348,6 +355,57 @@ pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
     let freedom = (usable.len() - 1).max(1) as f64;
     let ratio = (chi_squared / freedom).max(1.0).sqrt();
     Some(Uncertain::normal(mean, ratio / weights.sqrt()))
+}
+
+/// The mean exponent on one lattice beside that of the source.
+pub(crate) struct Exponent {
+    /// Whether it agrees.
+    pub(crate) part: Part,
+    /// It in words, section `mean`.
+    pub(crate) words: Option<String>,
+    /// It as a number, section `quantity: exponent`.
+    pub(crate) quantity: Option<Quantity>,
+}
+
+impl Exponent {
+    /// Of the exponents at each strain rate.
+    pub(crate) fn of(
+        prose: &Prose,
+        lattice: &OnLattice<'_>,
+        source: f64,
+        exponents: &[Uncertain],
+    ) -> Self {
+        let mean = weighted_mean(exponents);
+        let name = &lattice.name;
+        let words = |mean| prose.text("mean", &[("mean", &mean), ("lattice", name)]);
+        let quantity = |mean| {
+            let found = prose.quantity(
+                "exponent",
+                &[
+                    ("lattice", name),
+                    ("rates", &exponents.len()),
+                    ("window", &WINDOW),
+                ],
+                mean,
+            );
+            found.sourced(source)
+        };
+        Self {
+            part: lattice.part(mean.and_then(|mean| agrees(&mean, source))),
+            words: mean.map(words),
+            quantity: mean.map(quantity),
+        }
+    }
+}
+
+/// The slope of a line, its error stretched to the scatter about the line.
+pub(crate) fn slope(line: &LineFit) -> Uncertain {
+    Uncertain::normal(line.slope.value, line.slope.error * line.scale_factor())
+}
+
+/// A critical width with half of its 95 per cent interval as its error, for bars.
+pub(crate) fn bar(width: &Uncertain) -> Uncertain {
+    Uncertain::normal(width.value, width.interval_95.length() / 2.0)
 }
 
 #[cfg(test)]

@@ -82,8 +82,11 @@ pub enum ClaimError {
     Stopped,
 }
 
+/// What may fail here.
+pub(crate) type Result<T> = std::result::Result<T, ClaimError>;
+
 /// Makes a folder for results.
-pub(crate) fn make_folder(path: &Path) -> Result<(), ClaimError> {
+pub(crate) fn make_folder(path: &Path) -> Result<()> {
     std::fs::create_dir_all(path).map_err(|source| ClaimError::Folder {
         path: path.to_owned(),
         source,

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use peristalsis_formats::{Table, parquet};
 use peristalsis_study::Store;
 
-use crate::error::ClaimError;
+use crate::error::{ClaimError, Result};
 use crate::row::{Row, check, rows_of};
 
 /// The results of one study.
@@ -32,7 +32,7 @@ impl Evidence {
     ///
     /// # Errors
     /// Errors of reading the store.
-    pub fn add(&mut self, store: Store, again: Option<Store>) -> Result<(), ClaimError> {
+    pub fn add(&mut self, store: Store, again: Option<Store>) -> Result<()> {
         let survey = store.survey()?;
         let table = store.rows()?;
         check(&table)?;
@@ -51,7 +51,7 @@ impl Evidence {
     ///
     /// # Errors
     /// A column that every row has is missing or of another kind.
-    pub fn add_table(&mut self, name: &str, table: Table) -> Result<(), ClaimError> {
+    pub fn add_table(&mut self, name: &str, table: Table) -> Result<()> {
         check(&table)?;
         let results = StudyResults {
             store: None,
@@ -67,7 +67,7 @@ impl Evidence {
     ///
     /// # Errors
     /// [`ClaimError::NoSuchStudy`].
-    pub fn study(&self, name: &str) -> Result<&StudyResults, ClaimError> {
+    pub fn study(&self, name: &str) -> Result<&StudyResults> {
         self.studies
             .get(name)
             .ok_or_else(|| ClaimError::NoSuchStudy(name.to_owned()))
@@ -77,8 +77,8 @@ impl Evidence {
 /// The first of some runs whose product was kept, with the product; `None` where no run's was.
 pub(crate) fn first_kept<'a>(
     rows: &[Row<'a>],
-    product: impl Fn(&Row<'a>) -> Result<Option<Table>, ClaimError>,
-) -> Result<Option<(Row<'a>, Table)>, ClaimError> {
+    product: impl Fn(&Row<'a>) -> Result<Option<Table>>,
+) -> Result<Option<(Row<'a>, Table)>> {
     for row in rows {
         if let Some(table) = product(row)? {
             return Ok(Some((*row, table)));
@@ -98,35 +98,26 @@ impl StudyResults {
     ///
     /// # Errors
     /// Errors of reading.
-    pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+    pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>> {
         self.product(row, "timeseries.parquet")
     }
 
     /// The flow of each wave over each period of a run; `None` where it was not kept, or only its row was imported.
-    ///
-    /// # Errors
-    /// Errors of reading.
-    pub fn waves(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+    pub(crate) fn waves(&self, row: &Row<'_>) -> Result<Option<Table>> {
         self.product(row, "waves.parquet")
     }
 
     /// The profile in the wave's frame of a run, late means; `None` where it was not kept, or only its row was imported.
-    ///
-    /// # Errors
-    /// Errors of reading.
-    pub fn profile(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+    pub(crate) fn profile(&self, row: &Row<'_>) -> Result<Option<Table>> {
         self.product(row, "profile.parquet")
     }
 
     /// The spheres at the end of a run; `None` where they were not kept, or only its row was imported.
-    ///
-    /// # Errors
-    /// Errors of reading.
-    pub fn snapshot(&self, row: &Row<'_>) -> Result<Option<Table>, ClaimError> {
+    pub(crate) fn snapshot(&self, row: &Row<'_>) -> Result<Option<Table>> {
         self.product(row, "snapshot.parquet")
     }
 
-    fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>, ClaimError> {
+    fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>> {
         let Ok(identity) = row.identity().parse() else {
             return Ok(None);
         };
@@ -138,10 +129,7 @@ impl StudyResults {
     }
 
     /// J/Jmax averaged over each period of a run; `None` where only its row was imported.
-    ///
-    /// # Errors
-    /// Errors of reading.
-    pub fn period_averages(&self, row: &Row<'_>) -> Result<Option<Vec<f64>>, ClaimError> {
+    pub(crate) fn period_averages(&self, row: &Row<'_>) -> Result<Option<Vec<f64>>> {
         let Some(table) = self.series(row)? else {
             return Ok(None);
         };

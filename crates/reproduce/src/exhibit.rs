@@ -1,20 +1,26 @@
 //! Tables and figures that claims draw alike.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{Band, ChartPanel, Line as Curve, Points, Tint};
+use peristalsis_analysis::number::decimal as number;
+use peristalsis_analysis::{Bootstrap, Uncertain, dip_test, histogram, two_peaks};
+use peristalsis_figures::chart::{Band, Bars, ChartPanel, Line as Curve, Pattern, Points, Tint};
 use peristalsis_figures::{ColourScale, Quantity, Units};
 
-use crate::branch::Branch;
+use crate::branch::{Branch, Branches};
 use crate::critical::Line;
-use crate::text::estimate;
 use crate::thresholds::WINDOW;
 
 /// What stands in a cell without a value.
 pub(crate) const NONE: &str = "–";
 
+/// Resamples of the test for a dip.
+const BOOTSTRAP: Bootstrap = Bootstrap {
+    resamples: 500,
+    seed: 7,
+};
+
 /// A cell with a number and its error, or a dash.
 pub(crate) fn cell(number: Option<Uncertain>) -> String {
-    number.map_or(NONE.to_owned(), |number| estimate(&number))
+    cell_of(number, |number| number.to_string())
 }
 
 /// A cell with the text of a value, or a dash.
@@ -22,9 +28,48 @@ pub(crate) fn cell_of<T>(value: Option<T>, text: impl Fn(T) -> String) -> String
     value.map_or(NONE.to_owned(), text)
 }
 
+/// A probability; very small ones come from the tails of approximate distributions, and are called small.
+pub(crate) fn probability(value: f64) -> String {
+    if value < 1e-3 {
+        "< 0.001".to_owned()
+    } else {
+        number(value, 3)
+    }
+}
+
+/// Two cells: the number of peaks of some flows, and the probability of so deep a dip with one peak.
+pub(crate) fn cells_of_peaks(flows: &[f64]) -> [String; 2] {
+    [
+        cell_of(two_peaks(flows).ok(), |peaks| {
+            if peaks.is_double() { "two" } else { "one" }.to_owned()
+        }),
+        cell_of(dip_test(flows, BOOTSTRAP).ok(), |test| {
+            number(test.probability, 3)
+        }),
+    ]
+}
+
+/// The number of runs by their flow, in so many bins between two flows; `None` without any.
+pub(crate) fn flow_histogram(flows: &[f64], from: f64, to: f64, bins: usize) -> Option<Bars> {
+    let counts = histogram(flows, from, to, bins).ok()?;
+    let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
+    let any = heights.iter().any(|height| *height > 0.0);
+    any.then(|| Bars::new("", &counts.edges, &heights))
+}
+
 /// Label of an axis of the prescribed tube.
 pub(crate) fn label(quantity: Quantity) -> String {
     quantity.label(Units::Linear)
+}
+
+/// An empty panel of one quantity of the prescribed tube against another.
+pub(crate) fn panel(x: Quantity, y: Quantity) -> ChartPanel {
+    ChartPanel::new(&label(x), &label(y))
+}
+
+/// A panel of J/Jmax against the width.
+pub(crate) fn flow_panel() -> ChartPanel {
+    panel(Quantity::Width, Quantity::FlowRateRatio).y_range(-0.05..=1.1)
 }
 
 /// Points with error bars; an error that is not known is not drawn. `None` without a point.
@@ -39,12 +84,67 @@ pub(crate) fn points(
     (!x.is_empty()).then(|| Points::new(name, &x, &values).y_errors(&errors))
 }
 
-/// A branch as joined points with error bars.
-pub(crate) fn branch_points(name: &str, branch: &Branch<'_>) -> Option<Points> {
-    points(name, branch.flows()).map(Points::joined)
+/// The same, joined.
+pub(crate) fn joined(
+    name: &str,
+    all: impl IntoIterator<Item = (f64, Uncertain)>,
+) -> Option<Points> {
+    points(name, all).map(Points::joined)
 }
 
-/// The band of one standard error about a curve.
+/// A branch as joined points with error bars.
+pub(crate) fn branch_points(name: &str, branch: &Branch<'_>) -> Option<Points> {
+    joined(name, branch.flows())
+}
+
+/// Both branches, filled from rest and open from jammed.
+pub(crate) fn both_starts(branches: &Branches<'_>) -> [Option<Points>; 2] {
+    let rest = branch_points("from rest", &branches.rest);
+    let jammed = branch_points("from jammed", &branches.jammed);
+    [
+        rest.map(|points| points.series(0)),
+        jammed.map(|points| points.series(1).open()),
+    ]
+}
+
+/// Series, each numbered by its place; a place without points keeps its number.
+pub(crate) fn numbered(
+    all: impl IntoIterator<Item = Option<Points>>,
+) -> impl Iterator<Item = Points> {
+    let all = all.into_iter().enumerate();
+    all.filter_map(|(number, points)| Some(points?.series(number)))
+}
+
+/// Numbered series, each coloured by a value.
+pub(crate) fn coloured(
+    all: impl IntoIterator<Item = (f64, Option<Points>)>,
+) -> impl Iterator<Item = Points> {
+    let tinted = |(value, points): (f64, Option<Points>)| Some(points?.tint(Tint::Value(value)));
+    numbered(all.into_iter().map(tinted))
+}
+
+/// Averages over periods in time, coloured by a value.
+pub(crate) fn course(value: f64, averages: &[f64]) -> Curve {
+    let middles: Vec<f64> = (0..averages.len())
+        .map(|place| place as f64 + 0.5)
+        .collect();
+    Curve::new("", &middles, averages).tint(Tint::Value(value))
+}
+
+/// The curve of a Newtonian fluid; `None` with fewer than two points.
+pub(crate) fn fluid(
+    tint: Tint,
+    points: impl IntoIterator<Item = Option<(f64, f64)>>,
+) -> Option<Curve> {
+    let (x, y): (Vec<f64>, Vec<f64>) = points.into_iter().flatten().unzip();
+    (x.len() > 1).then(|| {
+        Curve::new("Newtonian fluid", &x, &y)
+            .tint(tint)
+            .pattern(Pattern::Dashed)
+    })
+}
+
+/// The band of so many standard errors about a curve.
 pub(crate) fn error_band(x: &[f64], value: &[f64], error: &[f64]) -> Band {
     let end = |sign: f64| -> Vec<f64> {
         let pairs = value.iter().zip(error);
@@ -61,19 +161,19 @@ pub(crate) fn ends(numbers: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     (ends.0 < ends.1).then_some(ends)
 }
 
-/// Colours for strain rates of the prescribed tube.
-pub(crate) fn rate_colours(rates: impl Iterator<Item = f64>) -> ColourScale {
-    rate_colours_in(Units::Linear, rates, (0.02, 0.2))
-}
-
-/// Colours for strain rates; `otherwise` are the ends of the scale where these do not differ.
-pub(crate) fn rate_colours_in(
-    units: Units,
-    rates: impl Iterator<Item = f64>,
+/// Colours for values of the quantity with this label; `otherwise` are the ends of the scale where these do not differ.
+pub(crate) fn colours(
+    label: &str,
+    values: impl Iterator<Item = f64>,
     otherwise: (f64, f64),
 ) -> ColourScale {
-    let (least, largest) = ends(rates).unwrap_or(otherwise);
-    ColourScale::new(&Quantity::StrainRate.label(units), least, largest).logarithmic()
+    let (least, largest) = ends(values).unwrap_or(otherwise);
+    ColourScale::new(label, least, largest)
+}
+
+/// Colours for strain rates of the prescribed tube.
+pub(crate) fn rate_colours(rates: impl Iterator<Item = f64>) -> ColourScale {
+    colours(&label(Quantity::StrainRate), rates, (0.02, 0.2)).logarithmic()
 }
 
 /// Equally spaced numbers from end to end.
@@ -81,16 +181,6 @@ pub(crate) fn spaced(from: f64, to: f64, count: usize) -> Vec<f64> {
     (0..count)
         .map(|place| from + (to - from) * place as f64 / (count.max(2) - 1) as f64)
         .collect()
-}
-
-/// The middles of so many periods, counted from 0.
-pub(crate) fn periods(count: usize) -> Vec<f64> {
-    (0..count).map(|number| number as f64 + 0.5).collect()
-}
-
-/// A panel of J/Jmax against the width.
-pub(crate) fn flow_panel() -> ChartPanel {
-    ChartPanel::new(&label(Quantity::Width), &label(Quantity::FlowRateRatio)).y_range(-0.05..=1.1)
 }
 
 /// A fitted law in the window of its fit, as far as it stays in sight of the points; `None` where nothing of it does.

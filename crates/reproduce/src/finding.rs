@@ -51,12 +51,22 @@ pub struct Statistics {
 
 impl Statistics {
     /// The least for a verdict: 4 strain rates, 8 widths at each, 10 replicates of each point.
-    pub const FOR_A_VERDICT: Self = Self {
-        strain_rates: 4,
-        widths: 8,
-        replicates: 10,
-        runs: 320,
-    };
+    pub const FOR_A_VERDICT: Self = Self::of(4, 8, 10, 320);
+
+    /// So many strain rates, widths, replicates and runs.
+    pub(crate) const fn of(
+        strain_rates: usize,
+        widths: usize,
+        replicates: usize,
+        runs: usize,
+    ) -> Self {
+        Self {
+            strain_rates,
+            widths,
+            replicates,
+            runs,
+        }
+    }
 
     /// Statistics of runs at one strain rate, from the value in each run of the parameter that is varied.
     pub(crate) fn at_one_rate(varied: impl Iterator<Item = f64>) -> Self {
@@ -86,6 +96,14 @@ impl Statistics {
                 runs: one.runs + other.runs,
             })
             .unwrap_or_default()
+    }
+
+    /// Statistics of several parts that are compared at one strain rate.
+    pub(crate) fn weakest_at_one_rate(parts: impl Iterator<Item = Self>) -> Self {
+        Self {
+            strain_rates: 1,
+            ..Self::weakest(parts)
+        }
     }
 
     /// Whether these are at least the needed ones in every respect.
@@ -156,6 +174,11 @@ impl Finding {
     #[must_use]
     pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
         Self::new(Verdict::Open, reason.to_owned(), statistics, needed)
+    }
+
+    /// The same, with the parameter that is varied at each strain rate.
+    pub(crate) fn varying(self, varied: &'static str) -> Self {
+        Self { varied, ..self }
     }
 
     /// A finding of a textbook case that holds its method, as its text describes it, and nothing else yet.

@@ -1,11 +1,11 @@
 //! The stationary flow of the stress-controlled tube against the force amplitude, from both starts.
 
 use peristalsis_analysis::Uncertain;
+use peristalsis_analysis::number::decimal as number;
 
-use crate::branch::{Branch, Control, Point, Step};
+use crate::branch::{Branch, Branches, Control, Point, Step};
 use crate::finding::Statistics;
-use crate::row::{Row, Start, by_strain_rate, grouped};
-use crate::text::number;
+use crate::row::{Row, Start, by_strain_rate, escaped, grouped};
 use crate::thresholds::{
     CLEAR, FINEST, FOR_A_VERDICT_ON_FORCES, LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED, SPAN,
     STATIONARY_PERIODS,
@@ -16,10 +16,8 @@ use crate::thresholds::{
 pub(crate) struct ForceLine<'a> {
     /// epsdot.
     pub(crate) strain_rate: f64,
-    /// From rest.
-    pub(crate) rest: Branch<'a>,
-    /// From jammed.
-    pub(crate) jammed: Branch<'a>,
+    /// From rest and from jammed.
+    pub(crate) flow: Branches<'a>,
     /// Forces left out since from either start more than [`MOST_ESCAPED`] of the grains are outside, ascending.
     pub(crate) leaking: Vec<f64>,
     /// Largest fraction of grains outside at a force, those left out included.
@@ -49,10 +47,7 @@ fn by_start_and_force<'a>(rows: &[Row<'a>]) -> Vec<((Start, f64), Vec<Row<'a>>)>
 fn escaped_at(rows: &[Row<'_>]) -> Vec<(f64, f64)> {
     by_start_and_force(rows)
         .into_iter()
-        .map(|((_, force), rows)| {
-            let sum: f64 = rows.iter().map(Row::escaped_fraction).sum();
-            (force, sum / rows.len() as f64)
-        })
+        .map(|((_, force), rows)| (force, escaped(&rows)))
         .collect()
 }
 
@@ -90,14 +85,6 @@ pub(crate) fn is_below(point: &Point<'_>, bound: f64) -> bool {
     point.flow.value < bound - CLEAR * point.flow.error
 }
 
-/// The point of the smallest flow.
-pub(crate) fn lowest<'a, 'b>(points: impl Iterator<Item = &'b Point<'a>>) -> Option<&'b Point<'a>>
-where
-    'a: 'b,
-{
-    points.min_by(|one, other| one.flow.value.total_cmp(&other.flow.value))
-}
-
 impl<'a> ForceLine<'a> {
     /// The line of some runs of one tube at one strain rate.
     fn of(strain_rate: f64, rows: &[Row<'a>]) -> Self {
@@ -105,11 +92,9 @@ impl<'a> ForceLine<'a> {
         let holds = |row: &&Row<'a>| !leaking.contains(&row.force());
         let tight: Vec<Row<'a>> = rows.iter().filter(holds).copied().collect();
         let escaped = escaped_at(rows);
-        let branch = |start| Branch::of(tight.iter().copied(), start, Control::Force);
         Self {
             strain_rate,
-            rest: branch(Start::Rest),
-            jammed: branch(Start::Jammed),
+            flow: Branches::of(&tight, Control::Force),
             statistics: behind(&tight),
             escaped: escaped.iter().map(|one| one.1).fold(0.0, f64::max),
             leaking,
@@ -124,30 +109,18 @@ impl<'a> ForceLine<'a> {
             .collect()
     }
 
-    /// Both branches.
-    pub(crate) fn branches(&self) -> [&Branch<'a>; 2] {
-        [&self.rest, &self.jammed]
-    }
-
-    /// The points from rest, then those from jammed.
-    pub(crate) fn points(&self) -> impl Iterator<Item = &Point<'a>> {
-        self.rest.points.iter().chain(&self.jammed.points)
-    }
-
     /// Whether no flow on it is stationary.
     pub(crate) fn is_empty(&self) -> bool {
-        self.points().next().is_none()
+        self.flow.points().next().is_none()
     }
 
     /// The points from rest and from jammed at forces with both flows: from jammed faster by more than a jump's least height
     /// and many errors.
     pub(crate) fn both(&self) -> Vec<(&Point<'a>, &Point<'a>)> {
-        let pairs = self
-            .jammed
-            .points
-            .iter()
-            .filter_map(|jammed| Some((self.rest.at(jammed.control)?, jammed)));
+        let Branches { rest, jammed } = &self.flow;
+        let pairs = jammed.points.iter();
         pairs
+            .filter_map(|jammed| Some((rest.at(jammed.control)?, jammed)))
             .filter(|(rest, jammed)| {
                 let step = Step::between(rest, jammed);
                 step.height.value > 0.0 && step.counts(LEAST_JUMP_AGAINST_FORCE)
@@ -165,7 +138,7 @@ impl<'a> ForceLine<'a> {
     /// forces on either side, infinite where there is none; `None` where no force has both.
     pub(crate) fn window(&self) -> Option<(f64, f64)> {
         let (first, last) = self.both_ends()?;
-        let forces = || self.points().map(|point| point.control);
+        let forces = || self.flow.points().map(|point| point.control);
         let before = forces()
             .filter(|force| *force < first)
             .fold(f64::NEG_INFINITY, f64::max);
@@ -180,7 +153,7 @@ impl<'a> ForceLine<'a> {
     pub(crate) fn height(&self) -> Option<Uncertain> {
         let both = self.both();
         if both.is_empty() {
-            let heights = self.branches().map(|branch| Some(branch.jump()?.height));
+            let heights = self.flow.each().map(|branch| Some(branch.jump()?.height));
             return heights
                 .into_iter()
                 .flatten()
@@ -201,7 +174,8 @@ impl<'a> ForceLine<'a> {
 
     /// Distance of the forces of the longer of the largest rises from either start.
     fn bracket(&self) -> f64 {
-        self.branches()
+        self.flow
+            .each()
             .into_iter()
             .filter_map(Branch::rise)
             .map(|rise| rise.controls[1] - rise.controls[0])
@@ -210,7 +184,7 @@ impl<'a> ForceLine<'a> {
 
     /// Whether it reaches from unjammed to jammed flow.
     fn spans(&self) -> bool {
-        let flows = || self.points().map(|point| point.flow.value);
+        let flows = || self.flow.points().map(|point| point.flow.value);
         flows().any(|flow| flow < SPAN.0) && flows().any(|flow| flow > SPAN.1)
     }
 

@@ -21,12 +21,12 @@ mod exhibit;
 mod finding;
 mod forces;
 mod judgement;
+mod lattices;
 mod prose;
 pub mod report;
 mod reproduction;
 mod row;
 mod studies;
-mod text;
 pub mod textbook;
 mod thresholds;
 

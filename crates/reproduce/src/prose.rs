@@ -28,6 +28,8 @@
 //! ## figure: jumps-against-width
 //!
 //! The flow against the width.
+//!
+//! - description: Flow against width at several strain rates.
 //! ```
 //!
 //! Markup is that of figures. A placeholder is a word in braces that follows neither `_` nor `^`, which begin subscripts and
@@ -37,8 +39,10 @@ use std::fmt::Display;
 
 use peristalsis_analysis::Uncertain;
 use peristalsis_figures::Drawing;
+use peristalsis_figures::chart::ChartFigure;
 
-use crate::contents::{Quantity, ReportFigure, ReportTable};
+use crate::error::Result;
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
 
 /// Values for placeholders by name.
 pub(crate) type Values<'a> = [(&'a str, &'a dyn Display)];
@@ -83,6 +87,31 @@ impl Prose {
         )
     }
 
+    /// A finding with the sections `method` and `weaknesses`, as far as these ask for no value.
+    pub(crate) fn finding(
+        &self,
+        verdict: Verdict,
+        summary: String,
+        statistics: Statistics,
+        needed: &Statistics,
+    ) -> Finding {
+        let plain = |name: &str| -> Vec<String> {
+            let found = self.find(name);
+            let plain = found.filter(|text| placeholders(text).is_empty());
+            plain.map_or(Vec::new(), |_| self.paragraphs(name, &[]))
+        };
+        Finding {
+            paragraphs: plain("method"),
+            weaknesses: plain("weaknesses"),
+            ..Finding::new(verdict, summary, statistics, needed)
+        }
+    }
+
+    /// A finding that says no more than the section `nothing`.
+    pub(crate) fn nothing(&self, statistics: Statistics, needed: &Statistics) -> Finding {
+        Finding::nothing(&self.text("nothing", &[]), statistics, needed)
+    }
+
     /// A section as one paragraph.
     pub(crate) fn text(&self, section: &str, values: &Values<'_>) -> String {
         filled(&joined(self.section(section).lines()), values)
@@ -101,7 +130,7 @@ impl Prose {
         &self,
         name: &str,
         values: &Values<'_>,
-        rows: Vec<Vec<String>>,
+        rows: impl IntoIterator<Item = Vec<String>>,
     ) -> ReportTable {
         let section = self.section(&format!("table: {name}"));
         let is_head = |line: &&str| line.starts_with('|');
@@ -116,7 +145,7 @@ impl Prose {
                 .split('|')
                 .map(|cell| cell.trim().to_owned())
                 .collect(),
-            rows,
+            rows: rows.into_iter().collect(),
         }
     }
 
@@ -127,6 +156,25 @@ impl Prose {
             caption: self.text(&format!("figure: {name}"), values),
             drawing,
         }
+    }
+
+    /// The chart of a section `figure: name`, with its caption, and its description for those who cannot see it.
+    pub(crate) fn chart(
+        &self,
+        name: &str,
+        values: &Values<'_>,
+        chart: ChartFigure,
+    ) -> Result<ReportFigure> {
+        let section = filled(self.section(&format!("figure: {name}")), values);
+        let (caption, description) = section
+            .split_once("- description: ")
+            .unwrap_or((&section, ""));
+        let drawing = chart.description(&joined(description.lines())).draw()?;
+        Ok(ReportFigure {
+            name: name.to_owned(),
+            caption: joined(caption.lines()),
+            drawing,
+        })
     }
 
     /// The number of a section `quantity: name`, of which the source gives none: its name, symbol, unit and method are written
@@ -153,16 +201,19 @@ impl Prose {
         &self.markdown[..end]
     }
 
+    /// What stands below a heading, if it is there.
+    fn find(&self, name: &str) -> Option<&'static str> {
+        let sections = self.markdown.split("\n## ").skip(1);
+        let mut parts = sections.filter_map(|section| section.split_once('\n'));
+        let (_, text) = parts.find(|(heading, _)| *heading == name)?;
+        Some(text.trim())
+    }
+
     /// What stands below a heading.
     fn section(&self, name: &str) -> &'static str {
-        let found = self
-            .markdown
-            .split("\n## ")
-            .skip(1)
-            .filter_map(|section| section.split_once('\n'))
-            .find(|(heading, _)| *heading == name);
+        let found = self.find(name);
         debug_assert!(found.is_some(), "no section {name:?} in {:?}", self.title());
-        found.map_or("", |(_, text)| text.trim())
+        found.unwrap_or_default()
     }
 }
 
@@ -248,10 +299,12 @@ mod tests {
         let folder = fs::read_dir(claims.join(id)).into_iter().flatten();
         let mut files: Vec<PathBuf> = folder.map(|entry| entry.unwrap().path()).collect();
         files.push(claims.join(format!("{id}.rs")));
-        files
-            .iter()
-            .map(|file| fs::read_to_string(file).unwrap())
-            .collect()
+        let read = |file: &PathBuf| fs::read_to_string(file).unwrap();
+        let mut code: String = files.iter().map(read).collect();
+        if code.contains("Exponent::of(&PROSE") {
+            code += &read(&claims.join("../critical.rs")).replace("prose.", "PROSE.");
+        }
+        code
     }
 
     /// The names of the values in the code of a call, from its opening bracket on.
@@ -276,12 +329,24 @@ mod tests {
     fn text_and_code_of_each_claim_belong_together() {
         for claim in CLAIMS {
             let code = code(&claim.id.to_lowercase());
-            let mut asked = Vec::new();
+            // These are asked for by `finding` and `nothing`.
+            let is_plain = |name: &&str| {
+                let text = claim.prose.find(name);
+                text.is_some_and(|text| placeholders(text).is_empty())
+            };
+            let mut asked = vec!["nothing".to_owned()];
+            asked.extend(
+                ["method", "weaknesses"]
+                    .iter()
+                    .filter(|name| is_plain(name))
+                    .map(|name| (*name).to_owned()),
+            );
             for (method, kind) in [
                 ("text", ""),
                 ("paragraphs", ""),
                 ("table", "table: "),
                 ("figure", "figure: "),
+                ("chart", "figure: "),
                 ("quantity", "quantity: "),
             ] {
                 for (at, _) in code.match_indices(&format!("PROSE.{method}(")) {
@@ -302,6 +367,7 @@ mod tests {
                     asked.push(section);
                 }
             }
+            assert!(claim.prose.find("nothing").is_some(), "{}", claim.id);
             for section in claim.prose.markdown.split("\n## ").skip(1) {
                 let name = section.lines().next().unwrap_or_default();
                 assert!(asked.iter().any(|one| one == name), "{}: {name}", claim.id);

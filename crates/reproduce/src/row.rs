@@ -112,8 +112,7 @@ fn threshold_column(place: usize) -> String {
 
 impl<'a> Row<'a> {
     /// A number; NaN where the column is missing or holds no numbers.
-    #[must_use]
-    pub fn number(&self, column: &str) -> f64 {
+    pub(crate) fn number(&self, column: &str) -> f64 {
         match self.table.column(column).map(|column| &column.values) {
             Ok(Values::Real(values)) => values[self.row],
             Ok(Values::Integer(values)) => values[self.row] as f64,
@@ -122,8 +121,7 @@ impl<'a> Row<'a> {
     }
 
     /// A text; empty where the column is missing or holds no texts.
-    #[must_use]
-    pub fn text(&self, column: &str) -> &'a str {
+    pub(crate) fn text(&self, column: &str) -> &'a str {
         match self.table.column(column).map(|column| &column.values) {
             Ok(Values::Text(values)) => &values[self.row],
             _ => "",
@@ -145,8 +143,7 @@ impl<'a> Row<'a> {
     }
 
     /// How the grains stood at t = 0.
-    #[must_use]
-    pub fn start(&self) -> Start {
+    pub(crate) fn start(&self) -> Start {
         match self.text("initial_state") {
             "jammed" => Start::Jammed,
             _ => Start::Rest,
@@ -154,8 +151,7 @@ impl<'a> Row<'a> {
     }
 
     /// Arrangement of the wall spheres.
-    #[must_use]
-    pub fn lattice(&self) -> Lattice {
+    pub(crate) fn lattice(&self) -> Lattice {
         Lattice {
             spheres_per_ring: self.number("spheres_per_ring") as i64,
             rings_per_wave: self.number("rings_per_wave") as i64,
@@ -163,95 +159,75 @@ impl<'a> Row<'a> {
     }
 
     /// Number of the replicate.
-    #[must_use]
-    pub fn replicate(&self) -> i64 {
+    pub(crate) fn replicate(&self) -> i64 {
         self.number("replicate") as i64
     }
 
     /// w \[d\]; NaN under stress control.
-    #[must_use]
-    pub fn width(&self) -> f64 {
+    pub(crate) fn width(&self) -> f64 {
         self.number("width")
     }
 
     /// f^P; NaN under strain control.
-    #[must_use]
-    pub fn force(&self) -> f64 {
+    pub(crate) fn force(&self) -> f64 {
         self.number("force_amplitude")
     }
 
     /// epsdot = c/lambda \[1/t\].
-    #[must_use]
-    pub fn strain_rate(&self) -> f64 {
+    pub(crate) fn strain_rate(&self) -> f64 {
         self.number("strain_rate")
     }
 
-    /// Period of the wave \[t\].
-    #[must_use]
-    pub fn period(&self) -> f64 {
-        1.0 / self.strain_rate()
-    }
-
     /// lambda \[d\].
-    #[must_use]
-    pub fn wavelength(&self) -> f64 {
+    pub(crate) fn wavelength(&self) -> f64 {
         self.number("wavelength")
     }
 
     /// c \[d/t\].
-    #[must_use]
-    pub fn wave_speed(&self) -> f64 {
+    pub(crate) fn wave_speed(&self) -> f64 {
         self.strain_rate() * self.wavelength()
     }
 
     /// a \[d\].
-    #[must_use]
-    pub fn radius(&self) -> f64 {
+    pub(crate) fn radius(&self) -> f64 {
         self.number("radius")
     }
 
     /// Time reached \[t\].
-    #[must_use]
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         self.number("time")
     }
 
     /// Late mean of J/Jmax.
-    #[must_use]
-    pub fn flow_rate_ratio(&self) -> f64 {
+    pub(crate) fn flow_rate_ratio(&self) -> f64 {
         self.number("flow_rate_ratio")
     }
 
     /// Periods that its late mean is over; 0 where the table does not say.
-    #[must_use]
-    pub fn late_periods(&self) -> f64 {
+    pub(crate) fn late_periods(&self) -> f64 {
         let periods = self.number("late_periods");
         if periods.is_finite() { periods } else { 0.0 }
     }
 
     /// Whether its late mean belongs to a stationary flow: the halves of the late part differ by at most `MOST_DRIFT`, or
     /// the table does not say.
-    #[must_use]
-    pub fn is_stationary(&self) -> bool {
+    pub(crate) fn is_stationary(&self) -> bool {
         let drift = self.number("flow_rate_ratio_drift");
         drift.is_nan() || drift.abs() <= MOST_DRIFT
     }
 
     /// Fraction of the grains outside the tube at the end.
-    #[must_use]
-    pub fn escaped_fraction(&self) -> f64 {
+    pub(crate) fn escaped_fraction(&self) -> f64 {
         self.number("escaped") / self.number("grains").max(1.0)
     }
 
     /// The transition at the threshold of the study; censored at the end of the run where there was none.
-    #[must_use]
-    pub fn transition(&self) -> Transition {
+    pub(crate) fn transition(&self) -> Transition {
         self.transition_of(self.number("transition_time"))
     }
 
     /// The transition at another threshold, the nearest of [`THRESHOLDS`].
-    #[must_use]
-    pub fn transition_at(&self, threshold: f64) -> Transition {
+    pub(crate) fn transition_at(&self, threshold: f64) -> Transition {
         let place = THRESHOLDS
             .iter()
             .enumerate()
@@ -297,6 +273,12 @@ pub(crate) fn by_strain_rate<'a>(
     rows: impl IntoIterator<Item = Row<'a>>,
 ) -> Vec<(f64, Vec<Row<'a>>)> {
     grouped(rows, Row::strain_rate)
+}
+
+/// Mean fraction of the grains outside the tube.
+pub(crate) fn escaped<'a>(rows: &[Row<'a>]) -> f64 {
+    let sum: f64 = rows.iter().map(Row::escaped_fraction).sum();
+    sum / rows.len() as f64
 }
 
 /// Longest time that a run was given, in whole periods.

@@ -59,12 +59,7 @@ pub(crate) const RESOLVED: f64 = 3.0;
 pub(crate) const STATIONARY_PERIODS: f64 = 50.0;
 /// What a verdict takes there: 3 strain rates, 6 forces at each and 5 replicates from either start, all of them runs with
 /// [`STATIONARY_PERIODS`]. Less than elsewhere, since each of these runs takes minutes, not seconds.
-pub(crate) const FOR_A_VERDICT_ON_FORCES: Statistics = Statistics {
-    strain_rates: 3,
-    widths: 6,
-    replicates: 5,
-    runs: 180,
-};
+pub(crate) const FOR_A_VERDICT_ON_FORCES: Statistics = Statistics::of(3, 6, 5, 180);
 /// Distance of two forces beyond which a rise between them is not judged by its height: a smooth rise may be as high.
 pub(crate) const FINEST: f64 = 6e-4;
 /// J/Jmax below which a line must begin, and which it must reach, to be called smooth: else the transition lies beyond it.
@@ -141,10 +136,7 @@ pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
 // F8: densities.
 
 /// What F8 takes: one strain rate, for it is about densities.
-pub(crate) const F8_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    ..Statistics::FOR_A_VERDICT
-};
+pub(crate) const F8_NEEDED: Statistics = Statistics::of(1, 8, 10, 320);
 /// Densities that a verdict takes.
 pub(crate) const LEAST_DENSITIES: usize = 4;
 /// Change of w_c over the range of densities, as a fraction of w_c, up to which it hardly depends on them: a tenth of the
@@ -164,12 +156,7 @@ pub(crate) const ONE_WIDTH_BY_CHANCE: f64 = 0.01;
 // Q1: small strain rates.
 
 /// For an answer: four strain rates, five replicates, since each run takes long.
-pub(crate) const Q1_NEEDED: Statistics = Statistics {
-    strain_rates: 4,
-    widths: 8,
-    replicates: 5,
-    runs: 300,
-};
+pub(crate) const Q1_NEEDED: Statistics = Statistics::of(4, 8, 5, 300);
 /// Errors by which the critical width must fall to turn back; it differs from [`CLEAR`] and is that of [`CLEAR_LOOP`], since
 /// the errors are those of brackets.
 pub(crate) const CLEAR_TURN: f64 = 3.0;
@@ -179,24 +166,14 @@ pub(crate) const HALF: f64 = 0.5;
 // Q2: roughness.
 
 /// For an answer: five lattices are asked for apart.
-pub(crate) const Q2_NEEDED: Statistics = Statistics {
-    strain_rates: 2,
-    widths: 7,
-    replicates: 5,
-    runs: 300,
-};
+pub(crate) const Q2_NEEDED: Statistics = Statistics::of(2, 7, 5, 300);
 /// Lattices that an answer takes.
 pub(crate) const LEAST_LATTICES: usize = 5;
 
 // Q3 to Q5 and Q11: one parameter varied at a time.
 
 /// For an answer of Q3: seven widths of each value, three replicates, since many values are compared.
-pub(crate) const Q3_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 7,
-    replicates: 3,
-    runs: 300,
-};
+pub(crate) const Q3_NEEDED: Statistics = Statistics::of(1, 7, 3, 300);
 /// For an answer of Q4: one strain rate, for it is about lengths.
 pub(crate) const Q4_NEEDED: Statistics = F8_NEEDED;
 /// Lengths that an answer to Q4 takes, and lengths of tubes and of sweeps in Q8: an exponent through two has no say.
@@ -206,55 +183,25 @@ pub(crate) const WORSE: f64 = 4.0;
 /// Probability below which pure chance is excluded.
 pub(crate) const EXCLUDED: f64 = 1e-3;
 /// For an answer of Q11: one strain rate, five replicates, since each method is computed anew.
-pub(crate) const Q11_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 7,
-    replicates: 5,
-    runs: 150,
-};
+pub(crate) const Q11_NEEDED: Statistics = Statistics::of(1, 7, 5, 150);
 
 // Q6 to Q10.
 
 /// For an answer to Q6: six values of the friction, three replicates.
-pub(crate) const Q6_NEEDED: Statistics = Statistics {
-    strain_rates: 4,
-    widths: 6,
-    replicates: 3,
-    runs: 60,
-};
+pub(crate) const Q6_NEEDED: Statistics = Statistics::of(4, 6, 3, 60);
 
 /// For an answer to Q7: eight bottlenecks a corner, three replicates.
-pub(crate) const Q7_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 8,
-    replicates: 3,
-    runs: 192,
-};
+pub(crate) const Q7_NEEDED: Statistics = Statistics::of(1, 8, 3, 192);
 
 /// For an answer to Q8: two strain rates, six forces in each of three lengths, two sweeps of each kind.
-pub(crate) const Q8_NEEDED: Statistics = Statistics {
-    strain_rates: 2,
-    widths: 6,
-    replicates: 1,
-    runs: 36,
-};
+pub(crate) const Q8_NEEDED: Statistics = Statistics::of(2, 6, 1, 36);
 
 /// For an answer to Q9: eight pressures of the sine in either model, three replicates.
-pub(crate) const Q9_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 8,
-    replicates: 3,
-    runs: 66,
-};
+pub(crate) const Q9_NEEDED: Statistics = Statistics::of(1, 8, 3, 66);
 
 /// For an answer to Q10, of each setting: so many forces and replicates at one strain rate. The number of settings is asked for
 /// apart.
-pub(crate) const Q10_NEEDED: Statistics = Statistics {
-    strain_rates: 1,
-    widths: 5,
-    replicates: 2,
-    runs: 200,
-};
+pub(crate) const Q10_NEEDED: Statistics = Statistics::of(1, 5, 2, 200);
 /// Settings that it takes: one for each thing that the source does not give.
 pub(crate) const LEAST_SETTINGS: usize = 8;
 /// Forces without a leak from which on a setting is judged: two make one rise.

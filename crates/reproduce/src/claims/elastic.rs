@@ -1,15 +1,8 @@
 //! What the claims about the stress-controlled tube share.
 
-use peristalsis_figures::chart::{ChartPanel, Points, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Units};
+use peristalsis_figures::{ColourScale, Units};
 
-use crate::branch::Branch;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, rate_colours_in};
-use crate::finding::{Finding, Statistics, Verdict};
-use crate::forces::ForceLine;
-use crate::row::Row;
+use super::prelude::*;
 use crate::thresholds::FOR_A_VERDICT_ON_FORCES;
 
 /// Strain rate of the source's pictures.
@@ -20,7 +13,7 @@ const WHAT_COUNTS: &str = "What a verdict takes is counted in runs that average 
      such runs from both starts; tables and figures show all stationary flows.";
 
 /// The runs of frictional grains at all strain rates and forces.
-pub(super) fn branch_rows(evidence: &Evidence) -> Result<Vec<Row<'_>>, ClaimError> {
+pub(super) fn branch_rows(evidence: &Evidence) -> Result<Vec<Row<'_>>> {
     let mut rows = evidence.study("elastic-branches")?.rows();
     rows.extend(evidence.study("elastic-extremes")?.rows());
     Ok(rows)
@@ -42,9 +35,9 @@ pub(super) fn flow_against_force() -> ChartPanel {
 }
 
 /// Colours for the strain rates of some lines, whether or not they are judged.
-pub(super) fn rate_colours(lines: &[ForceLine<'_>]) -> ColourScale {
+pub(super) fn colours_of_rates(lines: &[ForceLine<'_>]) -> ColourScale {
     let rates = lines.iter().map(|line| line.strain_rate);
-    rate_colours_in(Units::Hertz, rates, (1e-3, 8e-3))
+    colours(&label(Axis::StrainRate), rates, (1e-3, 8e-3)).logarithmic()
 }
 
 /// Both branches of each line, filled from rest and open from jammed, coloured by the strain rate.
@@ -55,26 +48,29 @@ pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> 
             Some(points.tint(Tint::Value(line.strain_rate)))
         };
         panel = panel
-            .with_all(points(&line.rest))
-            .with_all(points(&line.jammed).map(Points::open));
+            .with_all(points(&line.flow.rest))
+            .with_all(points(&line.flow.jammed).map(Points::open));
     }
     panel
 }
 
 /// A finding on forces, with what counts for its verdict.
-pub(super) fn finding(verdict: Verdict, summary: String, statistics: Statistics) -> Finding {
-    let mut finding = Finding::new(verdict, summary, statistics, &FOR_A_VERDICT_ON_FORCES);
-    finding.varied = "force";
-    finding.paragraphs.push(WHAT_COUNTS.to_owned());
+pub(super) fn finding(
+    prose: &Prose,
+    verdict: Verdict,
+    summary: String,
+    statistics: Statistics,
+) -> Finding {
+    let finding = prose.finding(verdict, summary, statistics, &FOR_A_VERDICT_ON_FORCES);
+    let mut finding = finding.varying("force");
+    finding.paragraphs.insert(0, WHAT_COUNTS.to_owned());
     finding
 }
 
 /// A finding on forces without runs.
-pub(super) fn nothing(reason: &str) -> Finding {
-    let statistics = Statistics::default();
-    let mut finding = Finding::nothing(reason, statistics, &FOR_A_VERDICT_ON_FORCES);
-    finding.varied = "force";
-    finding
+pub(super) fn nothing(prose: &Prose) -> Finding {
+    let finding = prose.nothing(Statistics::default(), &FOR_A_VERDICT_ON_FORCES);
+    finding.varying("force")
 }
 
 /// Whether the grains of a run are frictionless.

@@ -1,32 +1,15 @@
 //! F1: slow unjammed flow at large widths, a transition to fast jammed flow at small ones.
 
-use peristalsis_analysis::Uncertain;
 use peristalsis_configuration::{Configuration, Sources};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Width};
 use peristalsis_run::{Run, RunError, snapshot_stack};
 
-use crate::branch::{Branch, Control};
-use crate::claim::Claim;
-use crate::critical::LATTICES;
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
-use crate::exhibit::{ends, label, periods};
-use crate::finding::{Finding, ReportFigure, Statistics};
-use crate::judgement::{Part, judge};
-use crate::prose::Prose;
-use crate::row::{Lattice, Row, Start, by_strain_rate, longest};
-use crate::text::number;
-use crate::thresholds::{BELOW_THE_JUMP, MOST_ESCAPED, NEAR_ONE, NEARLY_ALL, SLOW};
+use super::prelude::*;
+use crate::thresholds::{BELOW_THE_JUMP, NEAR_ONE, NEARLY_ALL, SLOW};
 
 const PROSE: Prose = Prose::new(include_str!("f1.md"));
+const STUDIES: &[&str] = &["flow-in-time", "branches-fine", "branches-coarse"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F1",
-    prose: PROSE,
-    studies: &["flow-in-time", "branches-fine", "branches-coarse"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("F1", PROSE, STUDIES, examine);
 
 /// What the branch from rest of one lattice at one strain rate says.
 struct Kind {
@@ -43,9 +26,10 @@ struct Kind {
     jumps: bool,
 }
 
-impl Kind {
-    fn of(lattice: Lattice, strain_rate: f64, rows: &[Row<'_>]) -> Option<Self> {
-        let branch = Branch::of(rows.iter().copied(), Start::Rest, Control::Width);
+impl AtRate<'_> for Kind {
+    fn of(lattice: Lattice, strain_rate: f64, mut rows: Vec<Row<'_>>) -> Option<Self> {
+        rows.retain(|row| row.start() == Start::Rest);
+        let branch = Branch::of(&rows, Start::Rest, Control::Width);
         let [before, after] = branch.step()?.controls;
         let threshold = branch.threshold()?;
         let fraction = |is_beyond: bool| {
@@ -74,6 +58,16 @@ impl Kind {
         })
     }
 
+    fn escaped(&self) -> f64 {
+        self.escaped
+    }
+
+    fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+}
+
+impl Kind {
     fn holds(&self) -> bool {
         self.jumps
             && self.slow >= NEARLY_ALL
@@ -95,42 +89,22 @@ impl Kind {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let (mut kinds, mut parts, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    let mut periods: f64 = 0.0;
-    for (lattice, _, branches) in LATTICES {
-        let rows = evidence.study(branches)?.rows();
-        periods = periods.max(longest(&rows));
-        let from_rest = rows
-            .into_iter()
-            .filter(|row| row.lattice() == lattice && row.start() == Start::Rest);
-        let here: Vec<Kind> = by_strain_rate(from_rest)
-            .into_iter()
-            .filter_map(|(rate, rows)| Kind::of(lattice, rate, &rows))
-            .collect();
-        let tight = || here.iter().filter(|kind| kind.escaped <= MOST_ESCAPED);
-        let holding = tight().filter(|kind| kind.holds()).count();
-        let all = tight().count();
-        let name = lattice.name();
+    let both = Shown::<Kind>::on_both(evidence)?;
+    let (mut parts, mut counts) = (Vec::new(), Vec::new());
+    for one in &both {
+        let holding = one.tight().filter(|kind| kind.holds()).count();
+        let all = one.tight().count();
         counts.push(PROSE.text(
             "count",
-            &[("holding", &holding), ("all", &all), ("lattice", &name)],
+            &[("holding", &holding), ("all", &all), ("lattice", &one.name)],
         ));
-        parts.push(Part {
-            lattice: name,
-            holds: (all > 0).then_some(holding == all),
-            statistics: Statistics::weakest(tight().map(|kind| kind.statistics)),
-        });
-        kinds.extend(here);
+        parts.push(one.part(holding == all));
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
-    if kinds.is_empty() {
-        return Ok(Finding::nothing(
-            &PROSE.text("nothing", &[]),
-            statistics,
-            &needed,
-        ));
+    if both.iter().all(|one| one.all.is_empty()) {
+        return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text(
         "summary",
@@ -142,21 +116,19 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("why", &why),
         ],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &needed);
-    let fine = |kind: &&Kind| kind.lattice == Lattice::FINE && kind.escaped <= MOST_ESCAPED;
-    for kind in kinds.iter().filter(fine) {
+    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
+    let [fine, coarse] = &both;
+    for kind in fine.tight() {
         finding.quantities.push(PROSE.quantity(
             "jammed flow",
             &[("rate", &kind.strain_rate), ("below", &BELOW_THE_JUMP)],
             kind.fast_flow,
         ));
     }
-    finding.tables.push(PROSE.table(
-        "kinds",
-        &[("below", &BELOW_THE_JUMP)],
-        kinds.iter().map(Kind::row).collect(),
-    ));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
+    let rows = fine.all.iter().chain(&coarse.all).map(Kind::row);
+    let table = PROSE.table("kinds", &[("below", &BELOW_THE_JUMP)], rows);
+    finding.tables.push(table);
+    let periods = fine.periods.max(coarse.periods);
     finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
     finding
         .figures
@@ -166,38 +138,36 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
 }
 
 /// J/Jmax in time for several widths, a panel a lattice; nothing where only rows were imported.
-fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
+fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
     let mut panels = Vec::new();
     let mut widths: Vec<f64> = Vec::new();
     for lattice in [Lattice::COARSE, Lattice::FINE] {
-        let mut panel =
-            ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio)).y_range(-0.05..=1.1);
+        let mut panel = panel(Axis::Period, Axis::FlowRateRatio).y_range(-0.05..=1.1);
         let mut drawn = None;
         let is_shown = |row: &Row<'_>| row.lattice() == lattice && row.replicate() == 0;
         for row in study.rows().into_iter().filter(is_shown) {
-            let Some(averages) = study.period_averages(&row)? else {
-                continue;
-            };
-            let curve = Curve::new("", &periods(averages.len()), &averages);
-            panel = panel.with(curve.tint(Tint::Value(row.width())));
-            widths.push(row.width());
-            drawn = Some(row.strain_rate());
+            if let Some(averages) = study.period_averages(&row)? {
+                panel = panel.with(course(row.width(), &averages));
+                widths.push(row.width());
+                drawn = Some(row.strain_rate());
+            }
         }
-        panels.extend(
-            drawn.map(|rate| panel.title(&format!("{} lattice, *ε̇* = {rate}", lattice.name()))),
-        );
+        let name = lattice.name();
+        panels.extend(drawn.map(|rate| panel.title(&format!("{name} lattice, *ε̇* = {rate}"))));
     }
     let Some(first) = widths.first() else {
         return Ok(None);
     };
-    let (least, largest) = ends(widths.iter().copied()).unwrap_or((*first, first + 0.01));
-    let drawing = ChartFigure::grid(2, panels)
+    let otherwise = (*first, first + 0.01);
+    let chart = ChartFigure::grid(2, panels)
         .share_y()
-        .colour_scale(ColourScale::new(&label(Axis::Width), least, largest))
-        .width(Width::DoubleColumn)
-        .description("Flow rate in time for several widths of the bottleneck.")
-        .draw()?;
-    Ok(Some(PROSE.figure("flow-in-time", &[], drawing)))
+        .colour_scale(colours(
+            &label(Axis::Width),
+            widths.iter().copied(),
+            otherwise,
+        ))
+        .width(Width::DoubleColumn);
+    PROSE.chart("flow-in-time", &[], chart).map(Some)
 }
 
 /// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the fine lattice, after so many periods.
@@ -207,7 +177,7 @@ const SNAPSHOTS: [(f64, &str); 2] = [
 ];
 
 /// Both kinds of flow, coloured by the axial velocity; two runs of a tenth of a second.
-fn snapshots() -> Result<ReportFigure, ClaimError> {
+fn snapshots() -> Result<ReportFigure> {
     let mut runs = Vec::new();
     for (width, name) in SNAPSHOTS {
         let overrides = [

@@ -1,63 +1,32 @@
 //! F2: how the mean transition time diverges.
 
-use peristalsis_analysis::{Uncertain, WidthEnsemble};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Tint};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
+use peristalsis_analysis::WidthEnsemble;
 
-use crate::claim::Claim;
-use crate::critical::{Divergence, Line, OnLattice, weighted_mean};
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{cell_of, ends, fitted_curve, label, points, rate_colours};
-use crate::finding::{Finding, Quantity, Statistics};
-use crate::judgement::{agrees, judge};
-use crate::prose::Prose;
-use crate::text::{interval, number};
+use super::prelude::*;
+use crate::critical::{Divergence, Exponent, Line};
+use crate::exhibit::fitted_curve;
 use crate::thresholds::{MOST_ESCAPED, WINDOW};
 
 const PROSE: Prose = Prose::new(include_str!("f2.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F2",
-    prose: PROSE,
-    studies: &[
-        "divergence-fine",
-        "divergence-coarse",
-        "branches-fine",
-        "branches-coarse",
-    ],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("F2", PROSE, DIVERGENCES, examine);
 
 /// What the source says.
 const EXPONENT: f64 = 1.0;
 /// Other thresholds that the fits are made with, relative to the one midway.
 const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let lattices = OnLattice::all(evidence)?;
     let (mut parts, mut means, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
     let (mut rows, mut sensitivity) = (Vec::new(), Vec::new());
     for one in &lattices {
         let exponents: Vec<Uncertain> = one.fitted().map(|(_, fit)| fit.exponent).collect();
-        let mean = weighted_mean(&exponents);
-        parts.push(one.part(mean.and_then(|mean| agrees(&mean, EXPONENT))));
-        if let Some(mean) = mean {
-            means.push(PROSE.text("mean", &[("mean", &mean), ("lattice", &one.name)]));
-            quantities.push(Quantity {
-                source: Some(EXPONENT),
-                ..PROSE.quantity(
-                    "exponent",
-                    &[
-                        ("lattice", &one.name),
-                        ("rates", &exponents.len()),
-                        ("window", &WINDOW),
-                    ],
-                    mean,
-                )
-            });
-        }
+        let found = Exponent::of(&PROSE, one, EXPONENT, &exponents);
+        parts.push(found.part);
+        means.extend(found.words);
+        quantities.extend(found.quantity);
         for (line, fit) in one.fitted() {
             rows.push(row(&one.name, line, fit));
             sensitivity.push(shifted(&one.name, line));
@@ -68,30 +37,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
     if means.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &needed));
+        return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text("summary", &[("means", &means.join(", ")), ("why", &why)]);
-    let mut finding = Finding::new(verdict, summary, statistics, &needed);
+    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
     finding.quantities = quantities;
     finding.paragraphs = PROSE.paragraphs("method", &[("window", &WINDOW)]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    finding.tables.push(PROSE.table("exponents", &[], rows));
-    finding
-        .tables
-        .push(PROSE.table("sensitivity", &[], sensitivity));
+    finding.tables = vec![
+        PROSE.table("exponents", &[], rows),
+        PROSE.table("sensitivity", &[], sensitivity),
+    ];
     let lines = lattices.iter().flat_map(|one| &one.lines);
-    let drawing = ChartFigure::grid(2, lattices.iter().filter_map(panel))
+    let chart = ChartFigure::grid(2, lattices.iter().filter_map(times))
         .share_y()
         .colour_scale(rate_colours(lines.map(|line| line.strain_rate)))
-        .width(Width::DoubleColumn)
-        .description(
-            "Mean transition time against the width of the bottleneck for several strain rates.",
-        )
-        .draw()?;
-    finding
-        .figures
-        .push(PROSE.figure("transition-times", &[], drawing));
+        .width(Width::DoubleColumn);
+    finding.figures = vec![PROSE.chart("transition-times", &[], chart)?];
     Ok(finding)
 }
 
@@ -133,16 +94,14 @@ fn shifted(lattice: &str, line: &Line<'_>) -> Vec<String> {
             format!("{}; {}", fit.critical_width, fit.exponent)
         })
     };
-    [lattice.to_owned(), number(line.strain_rate, 3)]
-        .into_iter()
-        .chain(SHIFTS.map(at))
-        .collect()
+    let names = [lattice.to_owned(), number(line.strain_rate, 3)];
+    names.into_iter().chain(SHIFTS.map(at)).collect()
 }
 
 /// Mean transition times of one lattice with the fitted laws; `None` without any.
-fn panel(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
+fn times(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
     let mut drawn = false;
-    let mut panel = ChartPanel::new(&label(Axis::Width), &label(Axis::TransitionPeriod))
+    let mut panel = panel(Axis::Width, Axis::TransitionPeriod)
         .y_scale(Scale::Logarithmic)
         .title(&format!("{} lattice", lattice.name));
     for (number, line) in lattice.lines.iter().enumerate() {
@@ -153,9 +112,7 @@ fn panel(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
                 true => one.fit.map_or_else(naive, |fit| fit.mean),
                 false => Uncertain::normal(one.watched, 0.0),
             };
-            let in_periods =
-                Uncertain::normal(time.value * line.strain_rate, time.error * line.strain_rate);
-            (one.width, in_periods)
+            (one.width, time.scaled(line.strain_rate))
         };
         let times: Vec<(f64, Uncertain)> = line.ensembles.iter().map(time).collect();
         let limits: Vec<bool> = line.ensembles.iter().map(|one| !seen(one)).collect();
@@ -163,12 +120,8 @@ fn panel(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
             continue;
         };
         drawn = true;
-        panel = panel.with(
-            points
-                .lower_limits(&limits)
-                .series(number)
-                .tint(Tint::Value(line.strain_rate)),
-        );
+        let points = points.lower_limits(&limits).series(number);
+        panel = panel.with(points.tint(Tint::Value(line.strain_rate)));
         if let Some(fit) = &line.fit {
             let mean = |width| fit.mean(width) * line.strain_rate;
             panel = panel.with_all(fitted_curve(line, fit.critical_width.value, &times, mean));

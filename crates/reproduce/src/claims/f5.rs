@@ -1,33 +1,19 @@
 //! F5: the fluctuation of the flow rate across an ensemble.
 
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Curve as Scaled, CurvePoint, Interval, Law, MomentPeak, Uncertain,
-    fit_law, second_moment, second_moment_peak,
+    AfterEnd, Bootstrap, Curve as Scaled, CurvePoint, Interval, Law, MomentPeak, fit_law,
+    second_moment, second_moment_peak,
 };
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
 
-use crate::claim::Claim;
-use crate::collapse::{Collapsed, collapse_curves, drawing};
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
-use crate::exhibit::{ends, label, periods, points, rate_colours};
-use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, by_strain_rate, grouped};
-use crate::text::{number, with_error};
+use super::prelude::*;
+use crate::collapse::{Collapsed, chart, collapse_curves};
 use crate::thresholds::{
     BOUNDED_MOMENT, LEAST_ERROR_OF_A_MOMENT, LEAST_RUNS_OF_A_MOMENT, SAME_CURVE,
 };
 
 const PROSE: Prose = Prose::new(include_str!("f5.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F5",
-    prose: PROSE,
-    studies: &["second-moment"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("F5", PROSE, &["second-moment"], examine);
 
 /// Resamples for the errors of a peak.
 const BOOTSTRAP: Bootstrap = Bootstrap {
@@ -61,7 +47,7 @@ struct Line {
 }
 
 impl Line {
-    fn of(study: &StudyResults, strain_rate: f64, rows: Vec<Row<'_>>) -> Result<Self, ClaimError> {
+    fn of(study: &StudyResults, strain_rate: f64, rows: Vec<Row<'_>>) -> Result<Self> {
         let (mut peaks, mut moments) = (Vec::new(), Vec::new());
         let mut last = f64::NAN;
         for (width, group) in grouped(rows, Row::width) {
@@ -111,9 +97,10 @@ impl Line {
         })
     }
 
-    /// The peaks at the widths at which most runs jam.
-    fn rising(&self) -> impl Iterator<Item = &Peak> {
-        self.peaks.iter().filter(|peak| peak.width <= self.last)
+    /// Width and height of the peaks at the widths at which most runs jam.
+    fn rising(&self) -> impl Iterator<Item = (f64, Uncertain)> {
+        let rising = self.peaks.iter().filter(|peak| peak.width <= self.last);
+        rising.map(|peak| (peak.width, peak.height()))
     }
 
     fn highest(&self) -> Option<&Peak> {
@@ -140,12 +127,7 @@ impl Line {
 
     /// Exponent of the rise of the peak toward the critical width, where it can be fitted.
     fn exponent(&self) -> Option<Quantity> {
-        let width: Vec<f64> = self.rising().map(|peak| peak.width).collect();
-        let value: Vec<f64> = self.rising().map(|peak| peak.height().value).collect();
-        let error: Vec<f64> = self
-            .rising()
-            .map(|peak| peak.height().error.max(LEAST_ERROR_OF_A_MOMENT))
-            .collect();
+        let [width, value, error] = columns(self.rising(), LEAST_ERROR_OF_A_MOMENT);
         let critical = self.critical_width()?;
         let fit = fit_law(Law::Power, &width, &value, &error, Some(critical)).ok()?;
         Some(PROSE.quantity(
@@ -156,7 +138,7 @@ impl Line {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let study = evidence.study("second-moment")?;
     let mut lines = Vec::new();
@@ -172,8 +154,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         runs: study.rows().len(),
     };
     if lines.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &needed));
+        return Ok(PROSE.nothing(statistics, &needed));
     }
     let (mut rows, mut quantities) = (Vec::new(), Vec::new());
     let mut bounded = 0;
@@ -219,27 +200,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("scaling", &in_words),
         ],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &needed);
+    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
     finding.quantities = quantities;
     finding.tables.push(PROSE.table("peaks", &[], rows));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
     if let Some(found) = scaling {
         let of = "peak of the second moment";
-        finding
-            .quantities
-            .extend(found.quantities(of, ["*a_{J}*", "*b_{J}*"]));
+        let exponents = found.quantities(of, ["*a_{J}*", "*b_{J}*"]);
+        finding.quantities.extend(exponents);
         finding.tables.push(found.table(of));
         let found = [("fine".to_owned(), found)];
-        let drawing = drawing(&found, ["", ""], "max_{*t*} *χ_{J}ε̇*^{*a*}", -1.0)?;
-        finding
-            .figures
-            .push(PROSE.figure("collapse-of-second-moments", &[], drawing));
+        let chart = chart(&found, ["", ""], "max_{*t*} *χ_{J}ε̇*^{*a*}", -1.0);
+        let figure = PROSE.chart("collapse-of-second-moments", &[], chart)?;
+        finding.figures.push(figure);
     }
     finding.figures.push(against_width(&lines)?);
-    finding
-        .figures
-        .extend(lines.get(lines.len() / 2).map(in_time).transpose()?);
+    let in_time = lines.get(lines.len() / 2).map(in_time).transpose()?;
+    finding.figures.extend(in_time);
     Ok(finding)
 }
 
@@ -252,14 +228,13 @@ fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
         };
         let points: Vec<CurvePoint> = line
             .rising()
-            .filter(|peak| peak.height().value > 0.0)
-            .map(|peak| {
-                let found = peak.height();
-                let steepness = found.value / (width.value - peak.width);
-                let error = found.error.max(LEAST_ERROR_OF_A_MOMENT);
+            .filter(|(_, height)| height.value > 0.0)
+            .map(|(x, height)| {
+                let steepness = height.value / (width.value - x);
+                let error = height.error.max(LEAST_ERROR_OF_A_MOMENT);
                 CurvePoint {
-                    x: peak.width,
-                    y: found.value,
+                    x,
+                    y: height.value,
                     error: error.hypot(steepness * width.error),
                 }
             })
@@ -275,35 +250,27 @@ fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
     collapse_curves(critical, curves, [0.0, 1.0], None)
 }
 
-fn against_width(lines: &[Line]) -> Result<ReportFigure, ClaimError> {
-    let mut panel =
-        ChartPanel::new(&label(Axis::Width), "peak of *χ_{J}*").y_scale(Scale::Logarithmic);
-    for (place, line) in lines.iter().enumerate() {
+fn against_width(lines: &[Line]) -> Result<ReportFigure> {
+    let series = |line: &Line| {
         let known = line.peaks.iter().filter(|peak| peak.height().value > 0.0);
-        let points = points("", known.map(|peak| (peak.width, peak.height())));
-        let tint = Tint::Value(line.strain_rate);
-        panel = panel.with_all(points.map(|points| points.series(place).tint(tint).joined()));
-    }
-    let drawing = ChartFigure::new(panel)
-        .colour_scale(rate_colours(lines.iter().map(|line| line.strain_rate)))
-        .description("Peak of the second moment against width for several strain rates.")
-        .draw()?;
-    Ok(PROSE.figure("second-moment-peak", &[], drawing))
+        let peaks = known.map(|peak| (peak.width, peak.height()));
+        (line.strain_rate, joined("", peaks))
+    };
+    let panel = ChartPanel::new(&label(Axis::Width), "peak of *χ_{J}*")
+        .y_scale(Scale::Logarithmic)
+        .with_all(coloured(lines.iter().map(series)));
+    let rates = lines.iter().map(|line| line.strain_rate);
+    let chart = ChartFigure::new(panel).colour_scale(rate_colours(rates));
+    PROSE.chart("second-moment-peak", &[], chart)
 }
 
-fn in_time(line: &Line) -> Result<ReportFigure, ClaimError> {
-    let mut panel = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateMoment))
-        .title(&format!("*ε̇* = {}", line.strain_rate));
-    for (width, moment) in &line.moments {
-        let curve = Curve::new("", &periods(moment.len()), moment);
-        panel = panel.with(curve.tint(Tint::Value(*width)));
-    }
+fn in_time(line: &Line) -> Result<ReportFigure> {
+    let courses = line.moments.iter();
+    let panel = panel(Axis::Period, Axis::FlowRateMoment)
+        .title(&format!("*ε̇* = {}", line.strain_rate))
+        .with_all(courses.map(|(width, moment)| course(*width, moment)));
     let widths = line.moments.iter().map(|one| one.0);
-    let (least, largest) = ends(widths).unwrap_or((line.last, line.last));
-    let drawing = ChartFigure::new(panel)
-        .width(Width::SingleColumn)
-        .colour_scale(ColourScale::new(&label(Axis::Width), least, largest))
-        .description("Second moment in time, one peak a width.")
-        .draw()?;
-    Ok(PROSE.figure("second-moment-in-time", &[], drawing))
+    let scale = colours(&label(Axis::Width), widths, (line.last, line.last));
+    let chart = ChartFigure::new(panel).colour_scale(scale);
+    PROSE.chart("second-moment-in-time", &[], chart)
 }

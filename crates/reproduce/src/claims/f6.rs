@@ -1,37 +1,15 @@
 //! F6: the stationary flow jumps, which a Newtonian fluid's does not.
 
-use peristalsis_analysis::{Bootstrap, Uncertain, dip_test, histogram, two_peaks};
-use peristalsis_figures::chart::{Bars, ChartFigure, ChartPanel, Line as Curve, Pattern, Tint};
-use peristalsis_figures::{Quantity as Axis, Width};
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
-use crate::branch::{Branch, Control, Step};
-use crate::claim::Claim;
-use crate::critical::{LATTICES, weighted_mean};
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, cell, cell_of, flow_panel, label, rate_colours, spaced};
-use crate::finding::{Finding, Quantity, ReportFigure, Statistics};
-use crate::judgement::{Part, judge};
-use crate::prose::Prose;
-use crate::row::{Lattice, Row, Start, by_strain_rate, longest};
-use crate::text::number;
-use crate::thresholds::{MOST_ESCAPED, NEAR_THE_JUMP};
+use super::prelude::*;
+use crate::exhibit::{cells_of_peaks, flow_histogram};
+use crate::thresholds::NEAR_THE_JUMP;
 
 const PROSE: Prose = Prose::new(include_str!("f6.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F6",
-    prose: PROSE,
-    studies: &["branches-fine", "branches-coarse"],
-    examine,
-};
-
-/// Resamples of the test for two peaks.
-const BOOTSTRAP: Bootstrap = Bootstrap {
-    resamples: 500,
-    seed: 7,
-};
+pub(super) const CLAIM: Claim =
+    Claim::new("F6", PROSE, &["branches-fine", "branches-coarse"], examine);
 
 /// The branch from rest at one strain rate, with its largest fall.
 struct Line<'a> {
@@ -41,13 +19,12 @@ struct Line<'a> {
     height: Option<Uncertain>,
     /// J/Jmax of the runs from rest near the fall.
     near: Vec<f64>,
-    escaped: f64,
-    statistics: Statistics,
+    runs: usize,
 }
 
-impl<'a> Line<'a> {
-    fn of(strain_rate: f64, rows: Vec<Row<'a>>) -> Option<Self> {
-        let branch = Branch::of(rows.iter().copied(), Start::Rest, Control::Width);
+impl<'a> AtRate<'a> for Line<'a> {
+    fn of(_: Lattice, strain_rate: f64, rows: Vec<Row<'a>>) -> Option<Self> {
+        let branch = Branch::of(&rows, Start::Rest, Control::Width);
         let fall = branch.step()?;
         let [before, after] = fall.controls;
         let is_near = |row: &&Row<'_>| {
@@ -60,129 +37,104 @@ impl<'a> Line<'a> {
             strain_rate,
             near: near.filter(|ratio| ratio.is_finite()).collect(),
             height: branch.jump().map(|jump| jump.height),
-            escaped: branch.escaped(),
-            statistics: branch.statistics(rows.len()),
+            runs: rows.len(),
             branch,
             fall,
         })
     }
 
-    fn is_tight(&self) -> bool {
-        self.escaped <= MOST_ESCAPED
+    fn escaped(&self) -> f64 {
+        self.branch.escaped()
     }
 
+    fn statistics(&self) -> Statistics {
+        self.branch.statistics(self.runs)
+    }
+}
+
+impl Line<'_> {
     fn row(&self, lattice: &str) -> Vec<String> {
         let [before, after] = self.fall.controls;
         let jumps = self.branch.jumps();
-        let peaks = two_peaks(&self.near).ok();
-        let test = dip_test(&self.near, BOOTSTRAP).ok();
+        let [peaks, dip] = cells_of_peaks(&self.near);
         vec![
             lattice.to_owned(),
             number(self.strain_rate, 3),
             format!("{} … {}", number(before, 3), number(after, 3)),
             cell(self.height),
             if jumps { "jump" } else { "none seen" }.to_owned(),
-            cell_of(peaks, |peaks| {
-                if peaks.is_double() { "two" } else { "one" }.to_owned()
-            }),
-            cell_of(test, |test| number(test.probability, 3)),
-            number(self.escaped, 2),
+            peaks,
+            dip,
+            number(self.escaped(), 2),
         ]
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let (mut parts, mut counts, mut panels) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut rows, mut means, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut rates, mut near) = (Vec::new(), Vec::new());
-    let mut periods: f64 = 0.0;
-    for (lattice, _, study) in LATTICES {
-        let runs = evidence.study(study)?.rows();
-        periods = periods.max(longest(&runs));
-        let name = lattice.name();
-        let lines: Vec<Line<'_>> = by_strain_rate(runs)
-            .into_iter()
-            .filter_map(|(rate, rows)| Line::of(rate, rows))
-            .collect();
-        let tight: Vec<&Line<'_>> = lines.iter().filter(|line| line.is_tight()).collect();
-        let jumping = tight.iter().filter(|line| line.branch.jumps()).count();
+    let both = Shown::<Line<'_>>::on_both(evidence)?;
+    let (mut parts, mut counts, mut rows) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut means, mut quantities) = (Vec::new(), Vec::new());
+    for one in &both {
+        let name = &one.name;
+        let all = one.tight().count();
+        let jumping = one.tight().filter(|line| line.branch.jumps()).count();
         counts.push(PROSE.text(
             "count",
-            &[
-                ("jumping", &jumping),
-                ("all", &tight.len()),
-                ("lattice", &name),
-            ],
+            &[("jumping", &jumping), ("all", &all), ("lattice", name)],
         ));
-        let heights = tight
-            .iter()
-            .filter_map(|line| Some((line.strain_rate, line.height?)));
-        let heights: Vec<(f64, Uncertain)> = heights.collect();
-        means.splice(0..0, mean_height(&name, &heights));
-        quantities.extend(heights.iter().map(|(rate, height)| {
-            PROSE.quantity("height", &[("lattice", &name), ("rate", rate)], *height)
+        parts.push(one.part(jumping == all));
+        let heights: Vec<Uncertain> = one.tight().filter_map(|line| line.height).collect();
+        means.extend(weighted_mean(&heights).map(|mean| {
+            PROSE.quantity(
+                "mean height",
+                &[("lattice", name), ("rates", &heights.len())],
+                mean,
+            )
         }));
-        if lattice == Lattice::FINE {
-            near.extend(tight.iter().flat_map(|line| line.near.iter().copied()));
-        }
-        rows.extend(lines.iter().map(|line| line.row(&name)));
-        rates.extend(lines.iter().map(|line| line.strain_rate));
-        panels.push(panel(&name, &lines));
-        parts.push(Part {
-            lattice: name,
-            holds: (!tight.is_empty()).then_some(jumping == tight.len()),
-            statistics: Statistics::weakest(tight.iter().map(|line| line.statistics)),
-        });
+        quantities.extend(one.tight().filter_map(|line| {
+            let rate = &line.strain_rate;
+            Some(PROSE.quantity("height", &[("lattice", name), ("rate", rate)], line.height?))
+        }));
+        rows.extend(one.all.iter().map(|line| line.row(name)));
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
-    if rates.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &needed));
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text(
         "summary",
         &[("counts", &counts.join(" and ")), ("why", &why)],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &needed);
+    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
+    means.reverse();
     finding.quantities = [means, quantities].concat();
-    finding
-        .tables
-        .push(PROSE.table("jumps", &[("near", &NEAR_THE_JUMP)], rows));
+    let table = PROSE.table("jumps", &[("near", &NEAR_THE_JUMP)], rows);
+    finding.tables.push(table);
+    let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
     finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    let drawing = ChartFigure::grid(2, panels)
+    let rates = both.iter().flat_map(|one| &one.all);
+    let chart = ChartFigure::grid(2, both.iter().map(beside_a_fluid))
         .share_y()
-        .colour_scale(rate_colours(rates.into_iter()))
-        .width(Width::DoubleColumn)
-        .description("Stationary flow rate against width for several strain rates, beside that of a Newtonian fluid.")
-        .draw()?;
-    finding
-        .figures
-        .push(PROSE.figure("stationary-flow", &[], drawing));
-    finding.figures.extend(peaks(&near)?);
+        .colour_scale(rate_colours(rates.map(|line| line.strain_rate)))
+        .width(Width::DoubleColumn);
+    let figure = PROSE.chart("stationary-flow", &[], chart)?;
+    finding.figures.push(figure);
+    let [fine, _] = &both;
+    let near: Vec<f64> = fine.tight().flat_map(|line| &line.near).copied().collect();
+    if let Some(bars) = flow_histogram(&near, -0.05, 1.05, 22) {
+        let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(bars);
+        let chart = ChartFigure::new(panel);
+        let figure = PROSE.chart("two-peaks", &[("near", &NEAR_THE_JUMP)], chart)?;
+        finding.figures.push(figure);
+    }
     Ok(finding)
 }
 
-/// The mean height of the jumps on one lattice.
-fn mean_height(lattice: &str, heights: &[(f64, Uncertain)]) -> Option<Quantity> {
-    let heights: Vec<Uncertain> = heights.iter().map(|one| one.1).collect();
-    let mean = weighted_mean(&heights)?;
-    Some(PROSE.quantity(
-        "mean height",
-        &[("lattice", &lattice), ("rates", &heights.len())],
-        mean,
-    ))
-}
-
 /// The branches of one lattice beside the flow of a Newtonian fluid.
-fn panel(lattice: &str, lines: &[Line<'_>]) -> ChartPanel {
-    let mut panel = flow_panel().title(&format!("{lattice} lattice"));
-    for (place, line) in lines.iter().enumerate() {
-        let points = branch_points("", &line.branch);
-        let tint = Tint::Value(line.strain_rate);
-        panel = panel.with_all(points.map(|points| points.series(place).tint(tint)));
-    }
+fn beside_a_fluid(lattice: &Shown<Line<'_>>) -> ChartPanel {
+    let branches = lattice.all.iter();
+    let branches = branches.map(|line| (line.strain_rate, branch_points("", &line.branch)));
     // Radius of the tube to the centres of the wall spheres, and half a diameter.
     let (radius, half) = (1.5, 0.5);
     let widths = spaced(2.4, 3.0, 60);
@@ -196,28 +148,9 @@ fn panel(lattice: &str, lines: &[Line<'_>]) -> ChartPanel {
             .tint(tint)
             .pattern(Pattern::Dashed)
     };
-    panel
+    flow_panel()
+        .title(&format!("{} lattice", lattice.name))
+        .with_all(coloured(branches))
         .with(newtonian("Newtonian", 0.0, Tint::Black))
         .with(newtonian("Newtonian, clear bore", half, Tint::Grey))
-}
-
-/// The flows of the runs near the jump; `None` without any.
-fn peaks(near: &[f64]) -> Result<Option<ReportFigure>, ClaimError> {
-    let Ok(counts) = histogram(near, -0.05, 1.05, 22) else {
-        return Ok(None);
-    };
-    let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
-    if heights.iter().sum::<f64>() == 0.0 {
-        return Ok(None);
-    }
-    let bars = Bars::new("", &counts.edges, &heights);
-    let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(bars);
-    let drawing = ChartFigure::new(panel)
-        .description("Histogram of the stationary flow rate.")
-        .draw()?;
-    Ok(Some(PROSE.figure(
-        "two-peaks",
-        &[("near", &NEAR_THE_JUMP)],
-        drawing,
-    )))
 }

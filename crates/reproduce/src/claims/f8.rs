@@ -1,32 +1,18 @@
 //! F8: what the volume fraction changes.
 
-use peristalsis_analysis::{Uncertain, fit_line};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Corner, Note};
-use peristalsis_figures::{Quantity as Axis, Width};
+use peristalsis_analysis::fit_line;
+use peristalsis_figures::chart::{Corner, Note};
 
-use crate::branch::{Branch, Control, Point};
-use crate::claim::Claim;
-use crate::critical::{Line, crossing, weighted_mean};
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, cell, ends, flow_panel, label, points};
-use crate::finding::{Finding, Quantity, Statistics};
-use crate::judgement::{Part, agrees, all_hold, best, judge};
-use crate::prose::Prose;
-use crate::row::{Row, Start, grouped};
-use crate::text::number;
+use super::prelude::*;
+use crate::critical::Line;
 use crate::thresholds::{
     AGREES_WITHIN, COMPARED_WIDTH, F8_NEEDED, HARDLY, LEAST_DENSITIES, LEAST_ERROR_OF_A_WIDTH,
 };
 
 const PROSE: Prose = Prose::new(include_str!("f8.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F8",
-    prose: PROSE,
-    studies: &["density-fine", "density-coarse"],
-    examine,
-};
+pub(super) const CLAIM: Claim =
+    Claim::new("F8", PROSE, &["density-fine", "density-coarse"], examine);
 
 /// What the source says of the transition time.
 const EXPONENT: f64 = 1.0;
@@ -44,7 +30,7 @@ struct Density<'a> {
 
 impl<'a> Density<'a> {
     fn of(rows: &[Row<'a>]) -> Self {
-        let branch = Branch::of(rows.iter().copied(), Start::Rest, Control::Width);
+        let branch = Branch::of(rows, Start::Rest, Control::Width);
         let is_compared = |point: &&Point<'_>| (point.control - COMPARED_WIDTH).abs() < 1e-9;
         let bracket = || branch.step().map(|step| step.place());
         let compared = branch.points.iter().find(is_compared);
@@ -93,25 +79,19 @@ impl Judged {
     fn of(densities: &[Density<'_>]) -> Self {
         let flows: Option<Vec<Uncertain>> = densities.iter().map(|density| density.flow).collect();
         let falls = |pair: &[Uncertain]| {
-            let error = pair[0].error.max(0.0).hypot(pair[1].error.max(0.0));
-            pair[0].value - pair[1].value > AGREES_WITHIN * error
+            let fall = difference(&pair[0], &pair[1]);
+            fall.value > AGREES_WITHIN * fall.error
         };
-        let (mut fraction, mut width, mut error) = (vec![], vec![], vec![]);
-        for density in densities {
-            if let Some(critical) = density.critical {
-                fraction.push(density.fraction);
-                width.push(critical.value);
-                error.push(critical.error.max(LEAST_ERROR_OF_A_WIDTH));
-            }
-        }
+        let critical = densities
+            .iter()
+            .filter_map(|density| Some((density.fraction, density.critical?)));
+        let [fraction, width, error] = columns(critical, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&fraction, &width, &error).ok();
         let relative = |(least, largest): (f64, f64)| (largest - least) / largest;
         let exponents = densities.iter().filter_map(|density| density.exponent);
         Self {
             slower: flows.map(|flows| flows.windows(2).all(falls)),
-            change: line.map(|line| {
-                Uncertain::normal(line.slope.value, line.slope.error * line.scale_factor())
-            }),
+            change: line.as_ref().map(slope),
             relative_change: ends(width.iter().copied()).map_or(0.0, relative),
             exponent: weighted_mean(&exponents.collect::<Vec<_>>()),
         }
@@ -145,25 +125,23 @@ impl Judged {
     }
 
     fn quantities(&self, lattice: &str) -> [Quantity; 2] {
-        let unknown = Uncertain::normal(f64::NAN, f64::NAN);
-        let change = self.change.unwrap_or(unknown);
-        let exponent = self.exponent.unwrap_or(unknown);
+        // What is not known stands there without a number.
+        let quantity = |quantity: Quantity, source, ours| Quantity {
+            source: Some(source),
+            ours,
+            ..quantity
+        };
+        let none = Uncertain::normal(f64::NAN, f64::NAN);
+        let change = PROSE.quantity("change", &[("lattice", &lattice)], none);
+        let exponent = PROSE.quantity("exponent", &[("lattice", &lattice)], none);
         [
-            Quantity {
-                source: Some(0.0),
-                ours: self.change,
-                ..PROSE.quantity("change", &[("lattice", &lattice)], change)
-            },
-            Quantity {
-                source: Some(EXPONENT),
-                ours: self.exponent,
-                ..PROSE.quantity("exponent", &[("lattice", &lattice)], exponent)
-            },
+            quantity(change, 0.0, self.change),
+            quantity(exponent, EXPONENT, self.exponent),
         ]
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut parts, mut all, mut words) = (Vec::new(), Vec::new(), Vec::new());
     let (mut quantities, mut rows) = (Vec::new(), Vec::new());
     let mut panels: Vec<ChartPanel> = Vec::new();
@@ -172,10 +150,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         if densities.is_empty() {
             continue;
         }
-        let statistics = Statistics {
-            strain_rates: 1,
-            ..Statistics::weakest(densities.iter().map(|density| density.statistics))
-        };
+        let each = densities.iter().map(|density| density.statistics);
+        let statistics = Statistics::weakest_at_one_rate(each);
         all.push(statistics);
         let judged = Judged::of(&densities);
         let mut said = judged.in_words(lattice);
@@ -196,35 +172,30 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let (verdict, _, why) = judge(&parts, &F8_NEEDED);
     let found = best(all.into_iter(), &F8_NEEDED);
     if words.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, found, &F8_NEEDED));
+        return Ok(PROSE.nothing(found, &F8_NEEDED));
     }
     let summary = PROSE.text("summary", &[("found", &words.join(". ")), ("why", &why)]);
-    let mut finding = Finding::new(verdict, summary, found, &F8_NEEDED);
+    let mut finding = PROSE.finding(verdict, summary, found, &F8_NEEDED);
     finding.quantities = quantities;
     finding.paragraphs = PROSE.paragraphs(
         "method",
         &[("compared", &COMPARED_WIDTH), ("hardly", &(100.0 * HARDLY))],
     );
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    finding
-        .tables
-        .push(PROSE.table("densities", &[("compared", &COMPARED_WIDTH)], rows));
-    let drawing = ChartFigure::grid(3, panels)
-        .width(Width::DoubleColumn)
-        .description("Three panels for each lattice about the density dependence.")
-        .draw()?;
-    finding.figures.push(PROSE.figure("density", &[], drawing));
+    let table = PROSE.table("densities", &[("compared", &COMPARED_WIDTH)], rows);
+    finding.tables.push(table);
+    let chart = ChartFigure::grid(3, panels).width(Width::DoubleColumn);
+    finding.figures = vec![PROSE.chart("density", &[], chart)?];
     Ok(finding)
 }
 
 fn panels_of(lattice: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
-    let mut flow = flow_panel().title(&format!("{lattice} lattice"));
-    for (place, density) in densities.iter().enumerate() {
+    let flow = |density: &Density<'_>| {
         let name = format!("*ρ* = {}", number(density.fraction, 2));
-        let points = branch_points(&name, &density.branch);
-        flow = flow.with_all(points.map(|points| points.series(place)));
-    }
+        branch_points(&name, &density.branch)
+    };
+    let flow = flow_panel()
+        .title(&format!("{lattice} lattice"))
+        .with_all(numbered(densities.iter().map(flow)));
     let against = |name: &str, value: fn(&Density<'_>) -> Option<Uncertain>| {
         let known = densities
             .iter()

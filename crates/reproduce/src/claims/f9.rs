@@ -1,39 +1,20 @@
 //! F9: hysteresis.
 
-use peristalsis_analysis::{
-    Family, Transition, Uncertain, fit_lifetime, hysteresis, mean_and_error,
-};
-use peristalsis_figures::Width;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Window};
+use peristalsis_analysis::{Family, Transition, fit_lifetime, hysteresis, mean_and_error};
 
-use crate::branch::{Branch, Control};
-use crate::claim::Claim;
-use crate::critical::LATTICES;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, cell, flow_panel};
-use crate::finding::{Finding, ReportFigure, Statistics};
-use crate::judgement::{Part, judge};
-use crate::prose::Prose;
-use crate::row::{Lattice, Row, Start, by_strain_rate, grouped, longest};
-use crate::text::{number, with_error};
-use crate::thresholds::{CLEAR_LOOP, MOST_ESCAPED, ONE_WIDTH_BY_CHANCE};
+use super::prelude::*;
+use crate::thresholds::{CLEAR_LOOP, ONE_WIDTH_BY_CHANCE};
 
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
+const STUDIES: &[&str] = &["branches-fine", "branches-coarse", "jam-lifetime"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "F9",
-    prose: PROSE,
-    studies: &["branches-fine", "branches-coarse", "jam-lifetime"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("F9", PROSE, STUDIES, examine);
 
 /// Both critical widths at one strain rate.
 struct Loop<'a> {
     lattice: Lattice,
     strain_rate: f64,
-    from_rest: Branch<'a>,
-    from_jammed: Branch<'a>,
+    flow: Branches<'a>,
     /// w_c, w_c' and their distance; w_c' may lie beyond all widths.
     critical: Option<Uncertain>,
     critical_jammed: Option<Uncertain>,
@@ -42,17 +23,15 @@ struct Loop<'a> {
     probability: Option<f64>,
     /// Lower bound of the distance where the jam outlives every width.
     at_least: Option<f64>,
-    escaped: f64,
-    statistics: Statistics,
+    runs: usize,
 }
 
-impl<'a> Loop<'a> {
+impl<'a> AtRate<'a> for Loop<'a> {
     fn of(lattice: Lattice, strain_rate: f64, rows: Vec<Row<'a>>) -> Option<Self> {
-        let branch = |start| Branch::of(rows.iter().copied(), start, Control::Width);
-        let (from_rest, from_jammed) = (branch(Start::Rest), branch(Start::Jammed));
-        let fall = from_rest.step()?;
-        from_jammed.step()?;
-        let threshold = from_rest.threshold()?;
+        let flow = Branches::of(&rows, Control::Width);
+        let fall = flow.rest.step()?;
+        flow.jammed.step()?;
+        let threshold = flow.rest.threshold()?;
         let outcome = |start: Start| -> (Vec<f64>, Vec<bool>) {
             rows.iter()
                 .filter(|row| row.start() == start && row.flow_rate_ratio().is_finite())
@@ -64,7 +43,6 @@ impl<'a> Loop<'a> {
         let outlives = found.is_none() && jammed.1.iter().all(|jammed| *jammed);
         let largest = jammed.0.iter().copied().fold(0.0, f64::max);
         let found = found.as_ref();
-        let both = [&from_rest, &from_jammed].map(|branch| branch.statistics(0));
         Some(Self {
             lattice,
             strain_rate,
@@ -73,17 +51,25 @@ impl<'a> Loop<'a> {
             distance: found.map(|found| found.loop_width),
             probability: found.map(|found| found.probability),
             at_least: outlives.then_some(largest - fall.controls[1]),
-            escaped: from_rest.escaped().max(from_jammed.escaped()),
-            statistics: Statistics {
-                strain_rates: 1,
-                runs: rows.len(),
-                ..Statistics::weakest(both.into_iter())
-            },
-            from_rest,
-            from_jammed,
+            runs: rows.len(),
+            flow,
         })
     }
 
+    fn escaped(&self) -> f64 {
+        self.flow.escaped()
+    }
+
+    fn statistics(&self) -> Statistics {
+        let both = self.flow.each().map(|branch| branch.statistics(0));
+        Statistics {
+            runs: self.runs,
+            ..Statistics::weakest_at_one_rate(both.into_iter())
+        }
+    }
+}
+
+impl Loop<'_> {
     /// Whether jams break up at some width, beyond that at which grains from rest begin to jam.
     fn closes(&self) -> bool {
         self.distance
@@ -112,48 +98,36 @@ impl<'a> Loop<'a> {
             cell(self.critical),
             bound(self.critical_jammed, &|_| "> 3".to_owned()),
             bound(self.distance, &|least| format!("> {}", number(least, 2))),
-            number(self.escaped, 2),
+            number(self.escaped(), 2),
         ]
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let (mut loops, mut parts, mut counts) = (Vec::new(), Vec::new(), Vec::new());
-    let mut periods: f64 = 0.0;
-    for (lattice, _, study) in LATTICES {
-        let rows = evidence.study(study)?.rows();
-        periods = periods.max(longest(&rows));
-        let here: Vec<Loop<'_>> = by_strain_rate(rows)
-            .into_iter()
-            .filter_map(|(rate, rows)| Loop::of(lattice, rate, rows))
-            .collect();
-        let tight = || here.iter().filter(|one| one.escaped <= MOST_ESCAPED);
-        let looping = tight().filter(|one| one.has_loop()).count();
-        let closed = tight().filter(|one| one.closes()).count();
-        let (all, name) = (tight().count(), lattice.name());
+    let both = Shown::<Loop<'_>>::on_both(evidence)?;
+    let (mut parts, mut counts) = (Vec::new(), Vec::new());
+    for one in &both {
+        let looping = one.tight().filter(|one| one.has_loop()).count();
+        let closed = one.tight().filter(|one| one.closes()).count();
         counts.push(PROSE.text(
             "count",
             &[
-                ("lattice", &name),
+                ("lattice", &one.name),
                 ("looping", &looping),
-                ("all", &all),
+                ("all", &one.tight().count()),
                 ("closed", &closed),
             ],
         ));
-        parts.push(Part {
-            lattice: name,
-            // Both halves of the claim: two states, and jams that break up.
-            holds: (all > 0).then_some(looping >= needed.strain_rates && closed > 0),
-            statistics: Statistics::weakest(tight().map(|one| one.statistics)),
-        });
-        loops.extend(here);
+        // Both halves of the claim: two states, and jams that break up.
+        parts.push(one.part(looping >= needed.strain_rates && closed > 0));
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
-    if loops.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &needed));
+    let loops = || both.iter().flat_map(|one| &one.all);
+    if loops().next().is_none() {
+        return Ok(PROSE.nothing(statistics, &needed));
     }
+    let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
     let summary = PROSE.text(
         "summary",
         &[
@@ -162,25 +136,30 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("why", &why),
         ],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &needed);
-    for one in loops.iter().filter(|one| one.escaped <= MOST_ESCAPED) {
-        finding.quantities.extend(one.distance.map(|distance| {
-            PROSE.quantity(
-                "loop",
-                &[("lattice", &one.lattice.name()), ("rate", &one.strain_rate)],
-                distance,
-            )
-        }));
-    }
-    let rows = loops.iter().map(Loop::row).collect();
-    finding.tables.push(PROSE.table("loops", &[], rows));
+    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
+    let widths = loops().filter(|one| one.is_tight()).filter_map(|one| {
+        Some(PROSE.quantity(
+            "loop",
+            &[("lattice", &one.lattice.name()), ("rate", &one.strain_rate)],
+            one.distance?,
+        ))
+    });
+    finding.quantities.extend(widths);
+    let table = PROSE.table("loops", &[], loops().map(Loop::row));
+    finding.tables.push(table);
     let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
     if !rows.is_empty() {
         finding.tables.push(PROSE.table("lifetimes", &[], rows));
     }
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
     finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
-    finding.figures.extend(figure(&loops)?);
+    let [fine, coarse] = &both;
+    let panels = [coarse, fine].map(|one| widest(&one.all));
+    let panels: Vec<ChartPanel> = panels.into_iter().flatten().collect();
+    if !panels.is_empty() {
+        let chart = ChartFigure::grid(2, panels).share_y();
+        let chart = chart.width(Width::DoubleColumn);
+        finding.figures = vec![PROSE.chart("hysteresis", &[], chart)?];
+    }
     Ok(finding)
 }
 
@@ -211,33 +190,14 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
     grouped(jammed, key).into_iter().map(lifetime).collect()
 }
 
-/// On each lattice the widest closed loop, or the first that does not close.
-fn figure(loops: &[Loop<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
-    let mut panels = Vec::new();
-    for lattice in [Lattice::COARSE, Lattice::FINE] {
-        let of = || loops.iter().filter(move |one| one.lattice == lattice);
-        let width = |one: &Loop<'_>| one.distance.map_or(0.0, |distance| distance.value);
-        let widest = of()
-            .filter(|one| one.distance.is_some())
-            .max_by(|one, other| width(one).total_cmp(&width(other)));
-        panels.extend(
-            widest
-                .or_else(|| of().find(|one| one.at_least.is_some()))
-                .map(panel),
-        );
-    }
-    if panels.is_empty() {
-        return Ok(None);
-    }
-    let drawing = ChartFigure::grid(2, panels)
-        .share_y()
-        .width(Width::DoubleColumn)
-        .description("Two branches of the stationary flow.")
-        .draw()?;
-    Ok(Some(PROSE.figure("hysteresis", &[], drawing)))
-}
-
-fn panel(one: &Loop<'_>) -> ChartPanel {
+/// The widest closed loop of a lattice, or the first that does not close.
+fn widest(loops: &[Loop<'_>]) -> Option<ChartPanel> {
+    let width = |one: &Loop<'_>| one.distance.map_or(0.0, |distance| distance.value);
+    let widest = loops
+        .iter()
+        .filter(|one| one.distance.is_some())
+        .max_by(|one, other| width(one).total_cmp(&width(other)));
+    let one = widest.or_else(|| loops.iter().find(|one| one.at_least.is_some()))?;
     let lattice = one.lattice.name();
     let mut panel = flow_panel().title(&format!("{lattice} lattice, *ε̇* = {}", one.strain_rate));
     if let (Some(rest), Some(jammed)) = (one.critical, one.critical_jammed)
@@ -245,9 +205,5 @@ fn panel(one: &Loop<'_>) -> ChartPanel {
     {
         panel = panel.with(Window::new("both states", rest.value, jammed.value));
     }
-    panel
-        .with_all(branch_points("from rest", &one.from_rest).map(|points| points.series(0)))
-        .with_all(
-            branch_points("from jammed", &one.from_jammed).map(|points| points.series(1).open()),
-        )
+    Some(panel.with_all(both_starts(&one.flow).into_iter().flatten()))
 }

@@ -10,6 +10,7 @@ mod f6;
 mod f7;
 mod f8;
 mod f9;
+mod prelude;
 mod q1;
 mod q10;
 mod q11;

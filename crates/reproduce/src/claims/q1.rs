@@ -1,40 +1,20 @@
 //! Q1: small strain rates.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-
-use crate::branch::{Branch, Control};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{NONE, cell, cell_of, label, points};
-use crate::finding::{Finding, ReportFigure, Statistics, Verdict};
-use crate::judgement::best;
-use crate::prose::Prose;
-use crate::row::{Row, Start, by_strain_rate, longest};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{CLEAR_TURN, HALF, LEAST_FALL, MOST_ESCAPED, Q1_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q1.md"));
-
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q1",
-    prose: PROSE,
-    studies: &[
-        "small-strain-rate-coarse",
-        "small-strain-rate-fine",
-        "branches-coarse",
-        "branches-fine",
-    ],
-    examine,
-};
-
-/// The lattices with their studies of small strain rates and of the usual ones.
-const LATTICES: [(&str, &str, &str); 2] = [
-    ("coarse", "small-strain-rate-coarse", "branches-coarse"),
-    ("fine", "small-strain-rate-fine", "branches-fine"),
+const STUDIES: &[&str] = &[
+    "small-strain-rate-coarse",
+    "small-strain-rate-fine",
+    "branches-coarse",
+    "branches-fine",
 ];
+
+pub(super) const CLAIM: Claim = Claim::new("Q1", PROSE, STUDIES, examine);
+
+/// The lattices, whose names end those of their studies.
+const LATTICES: [&str; 2] = ["coarse", "fine"];
 
 /// One strain rate on one lattice.
 struct Line {
@@ -57,11 +37,12 @@ struct Line {
 impl Line {
     /// `None` where there is no branch from rest, or grains leave the tube.
     fn of(lattice: &'static str, strain_rate: f64, rows: &[Row<'_>]) -> Option<Self> {
-        let branch = |start| Branch::of(rows.iter().copied(), start, Control::Width);
-        let (rest, jammed) = (branch(Start::Rest), branch(Start::Jammed));
+        let flow = Branches::of(rows, Control::Width);
+        let is_tight = flow.escaped() <= MOST_ESCAPED;
+        let Branches { rest, jammed } = flow;
         let fall = rest.step()?;
         let falls = jammed.step().filter(|step| -step.height.value > LEAST_FALL);
-        (rest.escaped().max(jammed.escaped()) <= MOST_ESCAPED).then(|| Self {
+        is_tight.then(|| Self {
             lattice,
             strain_rate,
             critical: fall.place(),
@@ -91,34 +72,34 @@ impl Line {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut lines: Vec<Line> = Vec::new();
     let mut all = Vec::new();
-    for (lattice, small, usual) in LATTICES {
-        let of = |study: &str| -> Result<Vec<Line>, ClaimError> {
-            let rates = by_strain_rate(evidence.study(study)?.rows()).into_iter();
+    for lattice in LATTICES {
+        let of = |study: &str| -> Result<Vec<Line>> {
+            let study = evidence.study(&format!("{study}-{lattice}"))?;
+            let rates = by_strain_rate(study.rows()).into_iter();
             Ok(rates
                 .filter_map(|(rate, rows)| Line::of(lattice, rate, &rows))
                 .collect())
         };
-        let mut here = of(small)?;
+        let mut here = of("small-strain-rate")?;
         all.push(Statistics::weakest(here.iter().map(|line| line.statistics)));
         // Strain rates of both studies are taken from the one that is about them.
         let is_new = |line: &Line| {
             let mut known = here.iter().map(|known| known.strain_rate);
             !known.any(|rate| rate == line.strain_rate)
         };
-        let usual: Vec<Line> = of(usual)?.into_iter().filter(is_new).collect();
+        let usual: Vec<Line> = of("branches")?.into_iter().filter(is_new).collect();
         here.extend(usual);
         here.sort_by(|one, other| one.strain_rate.total_cmp(&other.strain_rate));
         lines.extend(here);
     }
     let statistics = best(all.into_iter(), &Q1_NEEDED);
     if lines.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &Q1_NEEDED));
+        return Ok(PROSE.nothing(statistics, &Q1_NEEDED));
     }
-    let words = LATTICES.map(|(lattice, ..)| {
+    let words = LATTICES.map(|lattice| {
         let here: Vec<&Line> = lines
             .iter()
             .filter(|line| line.lattice == lattice)
@@ -126,7 +107,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         in_words(lattice, &here)
     });
     let summary = PROSE.text("summary", &[("lattices", &words.join(". "))]);
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q1_NEEDED);
+    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q1_NEEDED);
     for line in lines.iter().filter(|line| line.jumps) {
         finding.quantities.push(PROSE.quantity(
             "critical width",
@@ -134,10 +115,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             line.critical,
         ));
     }
-    let rows = lines.iter().map(Line::row).collect();
-    finding.tables.push(PROSE.table("falls", &[], rows));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let table = PROSE.table("falls", &[], lines.iter().map(Line::row));
+    finding.tables.push(table);
     finding.figures.push(figure(&lines)?);
     Ok(finding)
 }
@@ -156,12 +135,9 @@ fn in_words(lattice: &str, lines: &[&Line]) -> String {
     );
     let steady = lines.iter().filter(|line| !line.jumps);
     let steady: Vec<String> = steady.map(|line| line.strain_rate.to_string()).collect();
-    let steady = match steady.is_empty() {
-        true => String::new(),
-        false => format!(
-            " {}",
-            PROSE.text("steady", &[("rates", &steady.join(", "))])
-        ),
+    let steady = match &*steady.join(", ") {
+        "" => String::new(),
+        rates => format!(" {}", PROSE.text("steady", &[("rates", &rates)])),
     };
     PROSE.text(
         "lattice",
@@ -178,18 +154,14 @@ fn in_words(lattice: &str, lines: &[&Line]) -> String {
 /// Whether the critical width falls toward the smallest strain rates at which there is a jump, by more than its errors.
 fn turning(lines: &[&Line]) -> String {
     let jumps = || lines.iter().filter(|line| line.jumps);
-    let width = |line: &Line| line.critical.value;
-    let highest = jumps().max_by(|one, other| width(one).total_cmp(&width(other)));
+    let highest = jumps().max_by(|one, other| one.critical.value.total_cmp(&other.critical.value));
     let (Some(slowest), Some(highest)) = (jumps().next(), highest) else {
         return PROSE.text("cannot turn", &[]);
     };
-    let fall = highest.critical.value - slowest.critical.value;
-    let error = highest.critical.error.hypot(slowest.critical.error);
-    if fall > CLEAR_TURN * error {
-        PROSE.text(
-            "turns",
-            &[("rate", &highest.strain_rate), ("fall", &number(fall, 3))],
-        )
+    let fall = difference(&highest.critical, &slowest.critical);
+    if fall.value > CLEAR_TURN * fall.error {
+        let (rate, fall) = (highest.strain_rate, number(fall.value, 3));
+        PROSE.text("turns", &[("rate", &rate), ("fall", &fall)])
     } else {
         PROSE.text("does not turn", &[])
     }
@@ -228,41 +200,31 @@ fn crossing_of_half(branch: &Branch<'_>) -> Option<f64> {
     Some(step.controls[0] + part * (step.controls[1] - step.controls[0]))
 }
 
-fn figure(lines: &[Line]) -> Result<ReportFigure, ClaimError> {
+fn figure(lines: &[Line]) -> Result<ReportFigure> {
     let panel =
         |name: &str| ChartPanel::new(&label(Axis::StrainRate), name).x_scale(Scale::Logarithmic);
     let mut width = panel(&label(Axis::CriticalWidth));
     let mut height = panel("height of the largest fall, Δ*J*/*J*_{max}").y_range(0.0..);
-    for (series, (lattice, ..)) in LATTICES.iter().enumerate() {
-        let of = || lines.iter().filter(|line| line.lattice == *lattice);
+    for (series, lattice) in LATTICES.into_iter().enumerate() {
+        let of = || lines.iter().filter(|line| line.lattice == lattice);
         // Where nothing jumps, the largest fall has no meaning. Bars are the brackets.
-        let jumps = of().filter(|line| line.jumps).map(|line| {
-            let half = line.critical.interval_95.length() / 2.0;
-            (
-                line.strain_rate,
-                Uncertain::normal(line.critical.value, half),
-            )
-        });
-        width = width.with_all(
-            points(&format!("{lattice}, jump"), jumps).map(|points| points.series(series).joined()),
-        );
+        let jumps = of().filter(|line| line.jumps);
+        let jumps = jumps.map(|line| (line.strain_rate, bar(&line.critical)));
         let halves = of().filter_map(|line| {
             let exact = Uncertain::normal(line.half?, 0.0);
             Some((line.strain_rate, exact))
         });
-        width = width.with_all(
-            points(&format!("{lattice}, *J* = *J*_{{max}}/2"), halves)
-                .map(|points| points.series(series).open()),
-        );
         let heights = of().filter_map(|line| Some((line.strain_rate, line.height?)));
-        height = height.with_all(
-            points(&format!("{lattice} lattice"), heights)
-                .map(|points| points.series(series).joined()),
-        );
+        let halves = points(&format!("{lattice}, *J* = *J*_{{max}}/2"), halves);
+        let widths = [
+            joined(&format!("{lattice}, jump"), jumps),
+            halves.map(Points::open),
+        ];
+        let numbered = |points: Points| points.series(series);
+        width = width.with_all(widths.into_iter().flatten().map(numbered));
+        let heights = joined(&format!("{lattice} lattice"), heights);
+        height = height.with_all(heights.map(numbered));
     }
-    let drawing = ChartFigure::grid(2, [width, height])
-        .width(Width::DoubleColumn)
-        .description("Critical width and height of the jump against strain rate on both lattices.")
-        .draw()?;
-    Ok(PROSE.figure("small-strain-rates", &[], drawing))
+    let chart = ChartFigure::grid(2, [width, height]).width(Width::DoubleColumn);
+    PROSE.chart("small-strain-rates", &[], chart)
 }

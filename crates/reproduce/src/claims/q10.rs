@@ -1,19 +1,8 @@
 //! Q10: how far the conclusions on the elastic tube depend on what the source does not give.
 
-use peristalsis_figures::Width;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Reference, Tint};
-
 use super::elastic::{flow_against_force, is_frictionless};
-use crate::branch::{Branch, Control, Point, Step};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, cell_of};
-use crate::finding::{Finding, ReportFigure, Statistics, Verdict};
-use crate::forces::{leaking, lowest, outside};
-use crate::prose::Prose;
-use crate::row::{Row, Start, grouped};
-use crate::text::number;
+use super::prelude::*;
+use crate::forces::{leaking, outside};
 use crate::thresholds::{
     GIVEN_WAY, LEAST_BACK_FLOW, LEAST_FORCES, LEAST_JUMP_AGAINST_FORCE, LEAST_SETTINGS, Q10_NEEDED,
     SIGNED_BY,
@@ -21,12 +10,7 @@ use crate::thresholds::{
 
 const PROSE: Prose = Prose::new(include_str!("q10.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q10",
-    prose: PROSE,
-    studies: &["elastic-sensitivity"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q10", PROSE, &["elastic-sensitivity"], examine);
 
 /// Keys of the wall and of the density with the preset's number, and how a departure from it is called.
 const NUMBERS: [(&str, f64, &str); 8] = [
@@ -86,8 +70,8 @@ struct Outcome<'a> {
     rows: Vec<Row<'a>>,
     /// Those at forces at which grains stay in the tube.
     tight: Vec<Row<'a>>,
-    rest: Branch<'a>,
-    jammed: Branch<'a>,
+    /// Of grains with friction.
+    flow: Branches<'a>,
 }
 
 impl<'a> Outcome<'a> {
@@ -114,14 +98,11 @@ impl<'a> Outcome<'a> {
         let is_tight =
             |row: &&Row<'_>| !leaks[usize::from(is_frictionless(row))].contains(&row.force());
         let tight: Vec<Row<'a>> = rows.iter().filter(is_tight).copied().collect();
-        let branch = |start| {
-            let frictional = tight.iter().filter(|row| !is_frictionless(row));
-            Branch::of(frictional.copied(), start, Control::Force)
-        };
+        let (_, frictional): (Vec<Row<'a>>, Vec<Row<'a>>) =
+            tight.iter().partition(|row| is_frictionless(row));
         Self {
             name,
-            rest: branch(Start::Rest),
-            jammed: branch(Start::Jammed),
+            flow: Branches::of(&frictional, Control::Force),
             rows,
             tight,
         }
@@ -154,12 +135,7 @@ impl<'a> Outcome<'a> {
 
     /// The largest rise between neighbouring forces: S3.
     fn rise(&self) -> Option<Step> {
-        self.rest.rise()
-    }
-
-    /// The smallest flow: S4.
-    fn lowest(&self) -> Option<&Point<'a>> {
-        lowest(self.rest.points.iter().chain(&self.jammed.points))
+        self.flow.rest.rise()
     }
 
     /// The flow rate of frictionless grains, the smallest of all runs: S5.
@@ -179,7 +155,7 @@ impl<'a> Outcome<'a> {
         [
             self.gives_way().map(|(gave, all)| gave > 0 && gave < all),
             self.rise().map(rises),
-            self.lowest().map(flows_back),
+            self.flow.lowest().map(flows_back),
             self.frictionless().map(|flow| flow > -LEAST_BACK_FLOW),
         ]
     }
@@ -210,7 +186,7 @@ impl<'a> Outcome<'a> {
                 let (height, [before, after]) = (number(rise.height.value, 2), rise.controls);
                 format!("{jumps}: {height} at {before} … {after}")
             }),
-            cell_of(self.lowest(), |point| {
+            cell_of(self.flow.lowest(), |point| {
                 format!("{back}: {} at {}", point.flow, point.control)
             }),
             cell_of(self.frictionless(), |flow| {
@@ -221,18 +197,14 @@ impl<'a> Outcome<'a> {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let outcomes = Outcome::all_of(evidence.study("elastic-sensitivity")?.rows());
     if outcomes.is_empty() {
-        let mut nothing = Finding::nothing("No runs yet.", Statistics::default(), &Q10_NEEDED);
-        nothing.varied = "force";
-        return Ok(nothing);
+        let nothing = PROSE.nothing(Statistics::default(), &Q10_NEEDED);
+        return Ok(nothing.varying("force"));
     }
-    let tight: Vec<[Option<bool>; 4]> = outcomes
-        .iter()
-        .filter(|outcome| outcome.holds_its_grains())
-        .map(Outcome::holds)
-        .collect();
+    let tight = outcomes.iter().filter(|outcome| outcome.holds_its_grains());
+    let tight: Vec<[Option<bool>; 4]> = tight.map(Outcome::holds).collect();
     let words = ["S2", "S3", "S4", "S5"].into_iter().enumerate();
     let words: Vec<String> = words
         .map(|(place, name)| {
@@ -254,42 +226,25 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("holding", &words.join(", ")),
         ],
     );
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(outcomes.iter().map(Outcome::statistics))
-    };
-    let mut found = Finding::new(verdict, summary, statistics, &Q10_NEEDED);
-    found.varied = "force";
-    let cells = outcomes.iter().map(Outcome::cells).collect();
-    found.tables.push(PROSE.table("settings", &[], cells));
-    found.paragraphs.push(PROSE.text("method", &[]));
-    found.weaknesses.push(PROSE.text("weakness", &[]));
-    found.figures.extend(figure(&outcomes)?);
+    let statistics = Statistics::weakest_at_one_rate(outcomes.iter().map(Outcome::statistics));
+    let found = PROSE.finding(verdict, summary, statistics, &Q10_NEEDED);
+    let mut found = found.varying("force");
+    let table = PROSE.table("settings", &[], outcomes.iter().map(Outcome::cells));
+    found.tables.push(table);
+    let panels: Vec<ChartPanel> = outcomes.iter().filter_map(flow_of).collect();
+    if !panels.is_empty() {
+        let chart = ChartFigure::grid(3, panels).share_x().share_y();
+        let chart = chart.width(Width::DoubleColumn);
+        found.figures = vec![PROSE.chart("sensitivity", &[], chart)?];
+    }
     Ok(found)
 }
 
-/// Small panels, one a setting: both branches against the force.
-fn figure(outcomes: &[Outcome<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
-    let panels: Vec<ChartPanel> = outcomes.iter().filter_map(panel).collect();
-    if panels.is_empty() {
-        return Ok(None);
-    }
-    let figure = ChartFigure::grid(3, panels)
-        .share_x()
-        .share_y()
-        .width(Width::DoubleColumn)
-        .description(
-            "Flow rate against the force for several settings of the wall and of the density.",
-        );
-    Ok(Some(PROSE.figure("sensitivity", &[], figure.draw()?)))
-}
-
 /// Both branches of one setting; `None` where they are empty.
-fn panel(outcome: &Outcome<'_>) -> Option<ChartPanel> {
-    let rest =
-        branch_points("from rest", &outcome.rest).map(|points| points.series(0).tint(Tint::Blue));
-    let jammed = branch_points("from jammed", &outcome.jammed)
-        .map(|points| points.series(1).tint(Tint::Vermillion).open());
+fn flow_of(outcome: &Outcome<'_>) -> Option<ChartPanel> {
+    let [rest, jammed] = both_starts(&outcome.flow);
+    let rest = rest.map(|points| points.tint(Tint::Blue));
+    let jammed = jammed.map(|points| points.tint(Tint::Vermillion));
     (rest.is_some() || jammed.is_some()).then(|| {
         flow_against_force()
             .y_range(-0.2..=1.05)

@@ -1,27 +1,14 @@
 //! Q11: what the method of computing does to the numbers.
 
-use peristalsis_analysis::{Uncertain, mean_and_error};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
+use peristalsis_analysis::mean_and_error;
 
-use crate::claim::Claim;
-use crate::critical::crossing;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{NONE, label, points};
-use crate::finding::{Finding, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, behind, grouped};
+use super::prelude::*;
 use crate::thresholds::Q11_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q11.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q11",
-    prose: PROSE,
-    studies: &["method-fine", "method-coarse"],
-    examine,
-};
+pub(super) const CLAIM: Claim =
+    Claim::new("Q11", PROSE, &["method-fine", "method-coarse"], examine);
 
 /// How a run was computed.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
@@ -89,10 +76,7 @@ impl Outcome {
     }
 
     fn shift(&self, usual: &Self) -> Uncertain {
-        Uncertain::normal(
-            self.critical.value - usual.critical.value,
-            self.critical.error.hypot(usual.critical.error),
-        )
+        difference(&self.critical, &usual.critical)
     }
 
     fn row(&self, lattice: &str, usual: &Self) -> Vec<String> {
@@ -113,7 +97,7 @@ impl Outcome {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut all, mut panels, mut words) = (Vec::new(), Vec::new(), Vec::new());
     let (mut rows, mut quantities) = (Vec::new(), Vec::new());
     for (study, lattice) in [("method-fine", "fine"), ("method-coarse", "coarse")] {
@@ -149,53 +133,43 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
                 one.critical,
             )
         }));
-        panels.push(panel(lattice, &outcomes));
+        panels.push(against_step(lattice, &outcomes));
     }
     // One strain rate a lattice, whatever the number of methods.
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(all.into_iter())
-    };
+    let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     if panels.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &Q11_NEEDED));
+        return Ok(PROSE.nothing(statistics, &Q11_NEEDED));
     }
     let summary = PROSE.text("summary", &[("lattices", &words.join("; "))]);
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q11_NEEDED);
+    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q11_NEEDED);
     finding.quantities = quantities;
     finding.tables.push(PROSE.table("methods", &[], rows));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    let drawing = ChartFigure::grid(panels.len(), panels)
-        .width(Width::DoubleColumn)
-        .description("Critical width against the time step.")
-        .draw()?;
-    finding.figures.push(PROSE.figure("method", &[], drawing));
+    let chart = ChartFigure::grid(panels.len(), panels).width(Width::DoubleColumn);
+    finding.figures = vec![PROSE.chart("method", &[], chart)?];
     Ok(finding)
 }
 
 /// Critical width against the step, one series an integrator, at the usual skin.
-fn panel(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
-    let time_step = "time step, *h* (*k*/*m*)^{1/2}";
-    let mut panel = ChartPanel::new(time_step, &label(Axis::CriticalWidth))
-        .title(&format!("{lattice} lattice"))
-        .x_scale(Scale::Logarithmic);
-    for (series, is_adams_bashforth) in [false, true].into_iter().enumerate() {
+fn against_step(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
+    let series = [false, true].map(|is_adams_bashforth| {
         let method = Method {
             is_adams_bashforth,
             ..Method::DEFAULT
         };
-        let here = outcomes
-            .iter()
-            .map(|one| (one.method, one.critical))
-            .filter(|(one, _)| one.is_adams_bashforth == is_adams_bashforth)
-            .filter(|(one, _)| one.skin == method.skin);
-        let brackets = here.map(|(method, width)| {
-            let half = width.interval_95.length() / 2.0;
-            (method.time_step, Uncertain::normal(width.value, half))
+        let here = outcomes.iter().filter(|one| {
+            let Method { time_step, .. } = one.method;
+            one.method
+                == Method {
+                    time_step,
+                    ..method
+                }
         });
-        let points = points(method.integrator(), brackets);
-        panel = panel.with_all(points.map(|points| points.series(series).joined()));
-    }
-    panel
+        let widths = here.map(|one| (one.method.time_step, bar(&one.critical)));
+        joined(method.integrator(), widths)
+    });
+    let time_step = "time step, *h* (*k*/*m*)^{1/2}";
+    ChartPanel::new(time_step, &label(Axis::CriticalWidth))
+        .title(&format!("{lattice} lattice"))
+        .x_scale(Scale::Logarithmic)
+        .with_all(numbered(series))
 }

@@ -1,28 +1,11 @@
 //! Q2: roughness of the wall.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::Quantity as Axis;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel};
-
-use crate::claim::Claim;
-use crate::critical::crossing;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{label, points};
-use crate::finding::{Finding, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Lattice, Row, behind, by_strain_rate, grouped};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{ESCAPED_WITHIN, LEAST_LATTICES, MOST_ESCAPED, Q2_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q2",
-    prose: PROSE,
-    studies: &["roughness"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, &["roughness"], examine);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -71,15 +54,9 @@ impl Wall {
             number(self.escaped, 2),
         ]
     }
-
-    /// Depth and critical width, with half of the 95 per cent interval as bars.
-    fn point(&self) -> (f64, Uncertain) {
-        let half = self.critical.interval_95.length() / 2.0;
-        (self.depth, Uncertain::normal(self.critical.value, half))
-    }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut walls, mut ends, mut all) = (Vec::new(), Vec::new(), Vec::new());
     let mut lattices = usize::MAX;
     let depth_label = "depth of the hollows of the wall, *h*/*d*";
@@ -97,11 +74,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .filter(|wall| wall.escaped <= MOST_ESCAPED)
             .collect();
         lattices = lattices.min(tight.len());
-        let drawn = points(
-            &format!("*ε̇* = {rate}"),
-            tight.iter().map(|wall| wall.point()),
-        );
-        panel = panel.with_all(drawn.map(|points| points.series(series).joined()));
+        let widths = tight.iter().map(|wall| (wall.depth, bar(&wall.critical)));
+        let drawn = joined(&format!("*ε̇* = {rate}"), widths);
+        panel = panel.with_all(drawn.map(|points| points.series(series)));
         tight.sort_by(|one, other| one.depth.total_cmp(&other.depth));
         if let (Some(smoothest), Some(roughest)) = (tight.first(), tight.last()) {
             ends.push(PROSE.text(
@@ -116,12 +91,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         walls.extend(of_rate);
     }
     if ends.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(
-            &nothing,
-            Statistics::default(),
-            &Q2_NEEDED,
-        ));
+        return Ok(PROSE.nothing(Statistics::default(), &Q2_NEEDED));
     }
     let verdict = match lattices >= LEAST_LATTICES {
         true => Verdict::Answered,
@@ -132,26 +102,18 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         strain_rates: ends.len(),
         ..Statistics::weakest(all.into_iter())
     };
-    let mut finding = Finding::new(verdict, summary, statistics, &Q2_NEEDED);
+    let mut finding = PROSE.finding(verdict, summary, statistics, &Q2_NEEDED);
     for wall in &walls {
+        let (lattice, rate) = (wall.lattice.name(), wall.strain_rate);
         finding.quantities.push(PROSE.quantity(
             "critical width",
-            &[
-                ("lattice", &wall.lattice.name()),
-                ("rate", &wall.strain_rate),
-            ],
+            &[("lattice", &lattice), ("rate", &rate)],
             wall.critical,
         ));
     }
-    let rows = walls.iter().map(Wall::row).collect();
-    finding.tables.push(PROSE.table("lattices", &[], rows));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    let drawing = ChartFigure::new(panel)
-        .description("Critical width against roughness of the wall.")
-        .draw()?;
-    finding
-        .figures
-        .push(PROSE.figure("roughness", &[], drawing));
+    let table = PROSE.table("lattices", &[], walls.iter().map(Wall::row));
+    finding.tables.push(table);
+    let figure = PROSE.chart("roughness", &[], ChartFigure::new(panel))?;
+    finding.figures.push(figure);
     Ok(finding)
 }

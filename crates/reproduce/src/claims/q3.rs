@@ -1,28 +1,12 @@
 //! Q3: softness or geometry.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel};
-use peristalsis_figures::{Scale, Width};
-
-use crate::claim::Claim;
-use crate::critical::crossing;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{ends, points};
-use crate::finding::{Finding, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, behind, grouped};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::Q3_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q3.md"));
+const STUDIES: &[&str] = &["restitution", "softness", "wavelength", "radius"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q3",
-    prose: PROSE,
-    studies: &["restitution", "softness", "wavelength", "radius"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q3", PROSE, STUDIES, examine);
 
 /// One parameter that is varied, in a study of its name.
 struct Varied {
@@ -117,7 +101,7 @@ impl Critical {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut all = Vec::new();
     let mut found: Vec<(&Varied, Vec<Critical>)> = Vec::new();
     for varied in &VARIED {
@@ -138,8 +122,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         }
     }
     if found.is_empty() {
-        let (nothing, none) = (PROSE.text("nothing", &[]), Statistics::default());
-        return Ok(Finding::nothing(&nothing, none, &Q3_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default(), &Q3_NEEDED));
     }
     let spans: Vec<String> = found
         .iter()
@@ -149,21 +132,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             format!("{} with {}", number(largest - least, 3), varied.name)
         })
         .collect();
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(all.into_iter())
-    };
+    let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     let summary = PROSE.text("summary", &[("spans", &spans.join(", "))]);
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q3_NEEDED);
+    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q3_NEEDED);
     let each = || {
         found
             .iter()
             .flat_map(|(varied, of)| of.iter().map(move |one| (varied, one)))
     };
-    let rows = each().map(|(varied, one)| one.row(varied)).collect();
-    finding
-        .tables
-        .push(PROSE.table("critical widths", &[], rows));
+    let rows = each().map(|(varied, one)| one.row(varied));
+    let table = PROSE.table("critical widths", &[], rows);
+    finding.tables.push(table);
     for (varied, one) in each() {
         finding.quantities.push(PROSE.quantity(
             "critical width",
@@ -175,28 +154,21 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             one.width,
         ));
     }
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
-    let panels = found.iter().map(|(varied, of)| panel(varied, of));
-    let drawing = ChartFigure::grid(2, panels)
-        .width(Width::DoubleColumn)
-        .description("Four panels: critical width against one parameter each.")
-        .draw()?;
-    finding
-        .figures
-        .push(PROSE.figure("softness-or-geometry", &[], drawing));
+    let panels = found.iter().map(|(varied, of)| against(varied, of));
+    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    let figure = PROSE.chart("softness-or-geometry", &[], chart)?;
+    finding.figures.push(figure);
     Ok(finding)
 }
 
-fn panel(varied: &Varied, found: &[Critical]) -> ChartPanel {
-    let mut panel =
-        ChartPanel::new(varied.axis, "critical width, *w*_{c}/(2*a*)").x_scale(varied.scale);
-    for (series, (name, belongs)) in varied.series.iter().enumerate() {
+fn against(varied: &Varied, found: &[Critical]) -> ChartPanel {
+    let series = varied.series.iter().enumerate();
+    let series = series.map(|(place, (name, belongs))| {
         let of = found.iter().filter(|one| belongs(one));
-        if let Some(points) = points(name, of.map(Critical::point)) {
-            let points = points.series(series).joined();
-            panel = panel.with(if series == 1 { points.open() } else { points });
-        }
-    }
-    panel
+        let points = joined(name, of.map(Critical::point))?;
+        Some(if place == 1 { points.open() } else { points })
+    });
+    ChartPanel::new(varied.axis, "critical width, *w*_{c}/(2*a*)")
+        .x_scale(varied.scale)
+        .with_all(numbered(series))
 }

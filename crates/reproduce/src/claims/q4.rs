@@ -1,31 +1,17 @@
 //! Q4: length of the tube, and where a jam begins.
 
 use peristalsis_analysis::{
-    Family, FractionCrossing, Transition, Uncertain, ensembles_by_width, power_exponent,
+    Family, FractionCrossing, Transition, ensembles_by_width, power_exponent,
 };
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Field};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
+use peristalsis_figures::ColourScale;
+use peristalsis_figures::chart::Field;
 
-use crate::branch::{Branch, Control};
-use crate::claim::Claim;
-use crate::critical::{crossing, weighted_mean};
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
-use crate::exhibit::{branch_points, cell, cell_of, flow_panel, label, points};
-use crate::finding::{Finding, ReportFigure, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, Start, behind, grouped};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{LEAST_LENGTHS, Q4_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q4.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q4",
-    prose: PROSE,
-    studies: &["length"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q4", PROSE, &["length"], examine);
 
 /// A tube of some length.
 struct Tube<'a> {
@@ -39,7 +25,7 @@ struct Tube<'a> {
 
 impl<'a> Tube<'a> {
     fn of(waves: f64, rows: &[Row<'a>]) -> Option<Self> {
-        let branch = Branch::of(rows.iter().copied(), Start::Rest, Control::Width);
+        let branch = Branch::of(rows, Start::Rest, Control::Width);
         let (width, transitions): (Vec<f64>, Vec<Transition>) = rows
             .iter()
             .map(|row| (row.width(), row.transition()))
@@ -74,20 +60,17 @@ impl<'a> Tube<'a> {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("length")?;
     let groups = grouped(study.rows(), |row| row.number("waves"));
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(groups.iter().map(|(_, rows)| behind(rows, Row::width)))
-    };
+    let each = groups.iter().map(|(_, rows)| behind(rows, Row::width));
+    let statistics = Statistics::weakest_at_one_rate(each);
     let tubes: Vec<Tube<'_>> = groups
         .iter()
         .filter_map(|(waves, rows)| Tube::of(*waves, rows))
         .collect();
     if tubes.len() < 2 {
-        let (nothing, none) = (PROSE.text("nothing", &[]), Statistics::default());
-        return Ok(Finding::nothing(&nothing, none, &Q4_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default(), &Q4_NEEDED));
     }
     let exponents = exponents(&tubes);
     let of_widths: Vec<Uncertain> = exponents.iter().map(|one| one.1).collect();
@@ -100,7 +83,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         false => Verdict::Open,
     };
     let summary = PROSE.text("summary", &[("how", &how)]);
-    let mut finding = Finding::new(verdict, summary, statistics, &Q4_NEEDED);
+    let mut finding = PROSE.finding(verdict, summary, statistics, &Q4_NEEDED);
     for tube in &tubes {
         let width = tube.critical.as_ref().map(|found| found.width);
         finding.quantities.extend(
@@ -112,9 +95,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             .quantities
             .push(PROSE.quantity("exponent", &[("width", width)], *exponent));
     }
-    let rows = tubes.iter().map(Tube::row).collect();
-    finding.tables.push(PROSE.table("lengths", &[], rows));
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let table = PROSE.table("lengths", &[], tubes.iter().map(Tube::row));
+    finding.tables.push(table);
     finding.figures.push(figure(&tubes)?);
     finding.figures.extend(space_time(study)?);
     Ok(finding)
@@ -127,12 +109,10 @@ fn exponents(tubes: &[Tube<'_>]) -> Vec<(f64, Uncertain)> {
         times.map(|(width, time, _)| (*width, tube.waves, *time))
     });
     let exponent = |(width, here): (f64, Vec<(f64, f64, Uncertain)>)| {
-        let length: Vec<f64> = here.iter().map(|one| one.1).collect();
-        let time: Vec<f64> = here.iter().map(|one| one.2.value).collect();
-        let error: Vec<f64> = here.iter().map(|one| one.2.error).collect();
+        let times = here.iter().map(|one| (one.1, one.2));
+        let [length, time, error] = columns(times, 0.0);
         let line = power_exponent(&length, &time, &error).ok()?;
-        let error = line.scale_factor() * line.slope.error;
-        Some((width, Uncertain::normal(line.slope.value, error)))
+        Some((width, slope(&line)))
     };
     grouped(all, |one| one.0)
         .into_iter()
@@ -140,32 +120,27 @@ fn exponents(tubes: &[Tube<'_>]) -> Vec<(f64, Uncertain)> {
         .collect()
 }
 
-fn figure(tubes: &[Tube<'_>]) -> Result<ReportFigure, ClaimError> {
-    let mut flow = flow_panel();
-    let mut times = ChartPanel::new(&label(Axis::Width), &label(Axis::TransitionPeriod))
-        .y_scale(Scale::Logarithmic);
-    for (series, tube) in tubes.iter().enumerate() {
-        let name = format!("{} waves", tube.waves);
-        let points_of_flow = branch_points(&name, &tube.branch);
-        flow = flow.with_all(points_of_flow.map(|points| points.series(series)));
-        let rate = tube.strain_rate;
-        let in_periods = tube.times.iter().map(|(width, time, _)| {
-            let time = Uncertain::normal(time.value * rate, time.error * rate);
-            (*width, time)
-        });
-        let points_of_times = points(&name, in_periods);
-        times = times.with_all(points_of_times.map(|points| points.series(series).joined()));
-    }
+fn figure(tubes: &[Tube<'_>]) -> Result<ReportFigure> {
+    let name = |tube: &Tube<'_>| format!("{} waves", tube.waves);
+    let flows = tubes.iter();
+    let flows = flows.map(|tube| branch_points(&name(tube), &tube.branch));
+    let times = tubes.iter().map(|tube| {
+        let times = tube.times.iter();
+        let in_periods = times.map(|(width, time, _)| (*width, time.scaled(tube.strain_rate)));
+        joined(&name(tube), in_periods)
+    });
+    let flow = flow_panel().with_all(numbered(flows));
+    let times = panel(Axis::Width, Axis::TransitionPeriod)
+        .y_scale(Scale::Logarithmic)
+        .with_all(numbered(times));
     let timed = tubes.iter().any(|tube| !tube.times.is_empty());
-    let drawing = ChartFigure::grid(2, [flow].into_iter().chain(timed.then_some(times)))
-        .width(Width::DoubleColumn)
-        .description("Flow and transition time for several lengths of the tube.")
-        .draw()?;
-    Ok(PROSE.figure("length", &[], drawing))
+    let panels = [flow].into_iter().chain(timed.then_some(times));
+    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    PROSE.chart("length", &[], chart)
 }
 
 /// The flow of each wave in time, of the longest tube at the widest bottleneck that jammed it.
-fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> {
+fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
     let key = |row: &Row<'_>| (row.number("waves"), row.width());
     let jammed = study
         .rows()
@@ -193,16 +168,11 @@ fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>, ClaimError> 
         }
     }
     let field = Field::new(&values, rows, (0.0, columns as f64), (0.0, rows as f64));
-    let panel = ChartPanel::new(&label(Axis::Period), &label(Axis::Wave)).with(field);
-    let drawing = ChartFigure::new(panel)
-        .description("Flow rate of each wave against time.")
+    let chart = ChartFigure::new(panel(Axis::Period, Axis::Wave).with(field))
         .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
         .panel_height(50.0)
-        .width(Width::DoubleColumn)
-        .draw()?;
-    Ok(Some(PROSE.figure(
-        "space-time",
-        &[("waves", &rows), ("width", &row.width())],
-        drawing,
-    )))
+        .width(Width::DoubleColumn);
+    let width = row.width();
+    let figure = PROSE.chart("space-time", &[("waves", &rows), ("width", &width)], chart)?;
+    Ok(Some(figure))
 }

@@ -1,35 +1,18 @@
 //! Q5: is the divergence real?
 
 use peristalsis_analysis::{
-    Family, Law, LawEvidence, ScatterLawFit, Survival, Transition, Uncertain, compare_laws,
+    Family, Law, LawEvidence, ScatterLawFit, Survival, Transition, compare_laws,
 };
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
+use peristalsis_figures::ColourScale;
 
-use crate::claim::Claim;
-use crate::critical::{Line, OnLattice, weighted_mean};
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{cell_of, ends, label, points, rate_colours, spaced};
-use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};
-use crate::judgement::best;
-use crate::prose::Prose;
-use crate::text::{number, probability};
+use super::prelude::*;
+use crate::critical::Line;
+use crate::exhibit::probability;
 use crate::thresholds::{EXCLUDED, WINDOW, WORSE};
 
 const PROSE: Prose = Prose::new(include_str!("q5.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q5",
-    prose: PROSE,
-    studies: &[
-        "divergence-fine",
-        "divergence-coarse",
-        "branches-fine",
-        "branches-coarse",
-    ],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q5", PROSE, DIVERGENCES, examine);
 
 /// The laws that are compared.
 const LAWS: [Law; 4] = [
@@ -101,35 +84,31 @@ impl<'a> Compared<'a> {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let lattices = OnLattice::all(evidence)?;
     let statistics = best(lattices.iter().map(OnLattice::statistics), &needed);
     let (mut compared, mut quantities) = (Vec::new(), Vec::new());
     let (mut all, mut excluded) = (0, 0);
     for one in &lattices {
-        let scatters = || {
-            one.fitted()
-                .filter_map(|(line, fit)| Some((line, fit.scatter?)))
-        };
-        let exponents: Vec<Uncertain> = scatters().map(|(_, fit)| fit.scatter_exponent).collect();
-        quantities.extend(weighted_mean(&exponents).map(|mean| Quantity {
-            source: Some(1.0),
-            ..PROSE.quantity(
+        let exponents = one.scattered().map(|(_, fit)| fit.scatter_exponent);
+        let exponents: Vec<Uncertain> = exponents.collect();
+        quantities.extend(weighted_mean(&exponents).map(|mean| {
+            let found = PROSE.quantity(
                 "exponent",
                 &[("lattice", &one.name), ("rates", &exponents.len())],
                 mean,
-            )
+            );
+            found.sourced(1.0)
         }));
         all += exponents.len();
-        excluded += scatters()
-            .filter(|(_, fit)| fit.chance_probability < EXCLUDED)
-            .count();
-        compared.extend(scatters().filter_map(|(line, fit)| Compared::of(&one.name, line, fit)));
+        let is_excluded = |fit: ScatterLawFit| fit.chance_probability < EXCLUDED;
+        excluded += one.scattered().filter(|(_, fit)| is_excluded(*fit)).count();
+        let laws = |(line, fit)| Compared::of(&one.name, line, fit);
+        compared.extend(one.scattered().filter_map(laws));
     }
     if compared.is_empty() {
-        let nothing = PROSE.text("nothing", &[]);
-        return Ok(Finding::nothing(&nothing, statistics, &needed));
+        return Ok(PROSE.nothing(statistics, &needed));
     }
     let good = |laws: &[Law]| compared.iter().filter(|one| one.is_good(laws)).count();
     let with_power = |one: &&Compared<'_>| one.excess(Law::Power).is_some();
@@ -144,28 +123,23 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("exponential", &good(&LAWS[3..])),
         ],
     );
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &needed);
+    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &needed);
     finding.quantities = quantities;
-    let rows = compared.iter().map(Compared::row).collect();
-    finding.tables.push(PROSE.table("laws", &[], rows));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let table = PROSE.table("laws", &[], compared.iter().map(Compared::row));
+    finding.tables.push(table);
     finding.figures.extend(relative_variance(&compared)?);
     let survival = compared
         .iter()
         .filter(|one| one.lattice == "fine" && (one.line.strain_rate - 0.1).abs() < 0.03)
         .find_map(|one| survival_panel(one.line, one.scatter.critical_width.value));
     if let Some((panel, scale)) = survival {
-        let drawing = ChartFigure::new(panel)
-            .colour_scale(scale)
-            .description("Survival curves beside an exponential.")
-            .draw()?;
-        finding.figures.push(PROSE.figure("survival", &[], drawing));
+        let chart = ChartFigure::new(panel).colour_scale(scale);
+        finding.figures.push(PROSE.chart("survival", &[], chart)?);
     }
     Ok(finding)
 }
 
-fn relative_variance(compared: &[Compared<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
+fn relative_variance(compared: &[Compared<'_>]) -> Result<Option<ReportFigure>> {
     let mut panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
         .x_scale(Scale::Logarithmic)
         .y_scale(Scale::Logarithmic);
@@ -174,22 +148,15 @@ fn relative_variance(compared: &[Compared<'_>]) -> Result<Option<ReportFigure>, 
         let rate = one.line.strain_rate;
         if let Some(points) = points("", one.variances()) {
             rates.push(rate);
-            panel = panel.with(
-                points
-                    .series(usize::from(one.lattice == "coarse"))
-                    .tint(Tint::Value(rate)),
-            );
+            let points = points.series(usize::from(one.lattice == "coarse"));
+            panel = panel.with(points.tint(Tint::Value(rate)));
         }
     }
     if rates.is_empty() {
         return Ok(None);
     }
-    let drawing = ChartFigure::new(panel)
-        .colour_scale(rate_colours(rates.into_iter()))
-        .width(Width::SingleColumn)
-        .description("Relative variance against distance from the critical width.")
-        .draw()?;
-    Ok(Some(PROSE.figure("relative-variance", &[], drawing)))
+    let chart = ChartFigure::new(panel).colour_scale(rate_colours(rates.into_iter()));
+    PROSE.chart("relative-variance", &[], chart).map(Some)
 }
 
 /// Survival against time over its mean at each width below the critical one, coloured by the width.
@@ -200,10 +167,9 @@ fn survival_panel(line: &Line<'_>, critical: f64) -> Option<(ChartPanel, ColourS
     let (width, transitions) = line.columns();
     let mut widths = Vec::new();
     for ensemble in &line.ensembles {
-        let resolved = ensemble
-            .naive_mean
-            .is_some_and(|mean| mean > 10.0 * line.period());
-        if ensemble.observed <= 2 * ensemble.censored || !resolved || ensemble.width >= critical {
+        let is_resolved = line.resolves(ensemble, 10.0);
+        if ensemble.observed <= 2 * ensemble.censored || !is_resolved || ensemble.width >= critical
+        {
             continue;
         }
         let of_width = width.iter().zip(&transitions);

@@ -2,26 +2,12 @@
 
 mod figures;
 
-use peristalsis_analysis::Uncertain;
-
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults, first_kept};
-use crate::exhibit::cell;
-use crate::finding::{Finding, Quantity, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, behind, grouped, mean, mean_of};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{FREE_FLIGHT, Q6_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q6.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q6",
-    prose: PROSE,
-    studies: &["back-flow"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q6", PROSE, &["back-flow"], examine);
 
 /// Column of the coefficient of static friction.
 const FRICTION: &str = "contact.static_friction";
@@ -114,53 +100,54 @@ impl Sampled<'_> {
 }
 
 /// All points that were sampled.
-struct Samples<'a> {
-    all: Vec<Sampled<'a>>,
-}
+struct Samples<'a>(Vec<Sampled<'a>>);
 
 impl<'a> Samples<'a> {
     fn of(results: &'a StudyResults) -> Self {
-        let all = grouped(results.rows(), Point::of)
-            .into_iter()
-            .filter_map(|(point, rows)| {
-                let flow = mean(&rows, "flow_rate_ratio")?;
-                Some(Sampled { point, rows, flow })
-            })
-            .collect();
-        Self { all }
+        let groups = grouped(results.rows(), Point::of).into_iter();
+        let sampled = groups.filter_map(|(point, rows)| {
+            let flow = mean(&rows, "flow_rate_ratio")?;
+            Some(Sampled { point, rows, flow })
+        });
+        Self(sampled.collect())
     }
 
     fn at(&self, point: Point) -> Option<&Sampled<'a>> {
-        self.all.iter().find(|one| one.point == point)
+        self.0.iter().find(|one| one.point == point)
     }
 
-    fn friction(&self) -> Vec<&Sampled<'a>> {
-        self.along(|point| point.tether == PRESET.tether && point.rate == PRESET.rate)
+    /// All that differ from the preset in its friction only.
+    fn friction(&self) -> impl Iterator<Item = &Sampled<'a>> {
+        self.along(|Point { friction, .. }| Point { friction, ..PRESET })
     }
 
-    fn tether(&self) -> Vec<&Sampled<'a>> {
-        self.along(|point| point.friction == PRESET.friction && point.rate == PRESET.rate)
+    fn tether(&self) -> impl Iterator<Item = &Sampled<'a>> {
+        self.along(|Point { tether, .. }| Point { tether, ..PRESET })
     }
 
-    fn rate(&self, tether: f64) -> Vec<&Sampled<'a>> {
-        self.along(|point| point.friction == PRESET.friction && point.tether == tether)
+    fn rate(&self, tether: f64) -> impl Iterator<Item = &Sampled<'a>> {
+        self.along(move |Point { rate, .. }| Point {
+            tether,
+            rate,
+            ..PRESET
+        })
     }
 
-    fn along(&self, belongs: impl Fn(&Point) -> bool) -> Vec<&Sampled<'a>> {
-        self.all.iter().filter(|one| belongs(&one.point)).collect()
+    fn along(&self, expected: impl Fn(Point) -> Point) -> impl Iterator<Item = &Sampled<'a>> {
+        let all = self.0.iter();
+        all.filter(move |one| one.point == expected(one.point))
     }
 
     /// How much is behind it: strain rates, and the values of the friction.
     fn statistics(&self) -> Statistics {
-        let rows = |of: Vec<&Sampled<'a>>| -> Vec<Row<'a>> {
-            of.iter().flat_map(|one| one.rows.clone()).collect()
-        };
-        let friction = behind(&rows(self.friction()), |row| row.number(FRICTION));
-        let rate = behind(&rows(self.rate(PRESET.tether)), Row::strain_rate);
+        let friction: Vec<Row<'a>> = self.friction().flat_map(|one| one.rows.clone()).collect();
+        let friction = behind(&friction, |row| row.number(FRICTION));
+        let rates = self.rate(PRESET.tether).flat_map(|one| one.rows.clone());
+        let rate = behind(&rates.collect::<Vec<_>>(), Row::strain_rate);
         Statistics {
             strain_rates: rate.widths,
             replicates: friction.replicates.min(rate.replicates),
-            runs: self.all.iter().map(|one| one.rows.len()).sum(),
+            runs: self.0.iter().map(|one| one.rows.len()).sum(),
             ..friction
         }
     }
@@ -179,7 +166,7 @@ struct FreeFlight {
 
 impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
-    fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>, ClaimError> {
+    fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>> {
         let Some((row, profile)) = first_kept(&one.rows, |row| results.profile(row))? else {
             return Ok(None);
         };
@@ -203,27 +190,21 @@ impl FreeFlight {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let results = evidence.study("back-flow")?;
     let samples = Samples::of(results);
     let statistics = samples.statistics();
     let Some(preset) = samples.at(PRESET) else {
-        return Ok(Finding::nothing("No runs yet.", statistics, &Q6_NEEDED));
+        return Ok(PROSE.nothing(statistics, &Q6_NEEDED));
     };
     let at_friction = |friction| samples.at(Point { friction, ..PRESET });
     let at_tether = |tether| samples.at(Point { tether, ..PRESET });
     let (without, pinned) = (at_friction(0.0), at_tether(PINNED));
-    let summary = format!(
-        "{}{}",
-        of_friction(preset, without),
-        of_wall(preset, pinned)
-    );
-    let mut finding = Finding::new(Verdict::Answered, summary, statistics, &Q6_NEEDED);
-    finding.varied = "friction";
-    let flight = FreeFlight::of(results, preset)?;
-    finding.paragraphs.extend(balance(preset, flight));
-    finding.paragraphs.push(PROSE.text("method", &[]));
-    finding.weaknesses.push(PROSE.text("weakness", &[]));
+    let summary = of_friction(preset, without) + &of_wall(preset, pinned);
+    let finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q6_NEEDED);
+    let mut finding = finding.varying("friction");
+    let balance = balance(preset, FreeFlight::of(results, preset)?);
+    finding.paragraphs.splice(0..0, balance);
     let points = [
         ("flow of the preset at a small force", Some(preset)),
         ("the same without friction", without),
@@ -234,8 +215,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         Some(PROSE.quantity("flow", &[("name", &name)], sampled?.flow))
     };
     finding.quantities = points.into_iter().filter_map(quantity).collect();
-    let cells = samples.all.iter().map(Sampled::cells).collect();
-    finding.tables.push(PROSE.table("forces", &[], cells));
+    let table = PROSE.table("forces", &[], samples.0.iter().map(Sampled::cells));
+    finding.tables.push(table);
     finding.figures = figures::all(results, &samples)?;
     Ok(finding)
 }
@@ -270,8 +251,7 @@ fn of_wall(preset: &Sampled<'_>, pinned: Option<&Sampled<'_>>) -> String {
         return String::new();
     };
     let sentence = if preset.flows_back() && pinned.flows_back() {
-        let error = pinned.flow.error.hypot(preset.flow.error);
-        let change = Uncertain::normal(pinned.flow.value - preset.flow.value, error);
+        let change = difference(&pinned.flow, &preset.flow);
         PROSE.text(
             "wall need not move",
             &[("pinned", &pinned.flow), ("change", &change)],

@@ -2,28 +2,13 @@
 
 mod figures;
 
-use peristalsis_analysis::Uncertain;
-
-use crate::branch::{Branch, Control, Point, Step};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::cell_of;
-use crate::finding::{Finding, Quantity, Statistics, Verdict};
-use crate::forces::lowest;
-use crate::prose::Prose;
-use crate::row::{Row, Start, behind, grouped, mean};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{FAST, LEAST_BACK_FLOW, LEAST_JUMP, MOST_ESCAPED, Q7_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q7.md"));
+const STUDIES: &[&str] = &["two-by-two-strain", "two-by-two-stress"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q7",
-    prose: PROSE,
-    studies: &["two-by-two-strain", "two-by-two-stress"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q7", PROSE, STUDIES, examine);
 
 /// How the wall is driven.
 struct Wall {
@@ -57,8 +42,7 @@ struct Corner<'a> {
     wall: &'static Wall,
     /// mu_s.
     friction: f64,
-    rest: Branch<'a>,
-    jammed: Branch<'a>,
+    flow: Branches<'a>,
     /// States that are left out: they still drift, or too many grains are outside.
     left_out: usize,
     rows: Vec<Row<'a>>,
@@ -89,8 +73,10 @@ impl<'a> Corner<'a> {
         Self {
             wall,
             friction,
-            rest: branch(Start::Rest),
-            jammed: branch(Start::Jammed),
+            flow: Branches {
+                rest: branch(Start::Rest),
+                jammed: branch(Start::Jammed),
+            },
             left_out,
             rows,
         }
@@ -108,29 +94,13 @@ impl<'a> Corner<'a> {
         }
     }
 
-    fn points(&self) -> impl Iterator<Item = &Point<'a>> {
-        self.rest.points.iter().chain(&self.jammed.points)
-    }
-
-    /// The largest distance of the two starts at one value of the control.
-    fn gap(&self) -> Option<Step> {
-        self.rest.gap(&self.jammed)
-    }
-
     /// The largest difference from one value of the control to the next, from rest.
     fn steepest(&self) -> Option<Step> {
-        let height = |step: &Step| step.height.value.abs();
-        self.rest
-            .steps()
-            .max_by(|one, other| height(one).total_cmp(&height(other)))
-    }
-
-    fn lowest(&self) -> Option<&Point<'a>> {
-        lowest(self.points())
+        self.flow.rest.largest_step(f64::abs)
     }
 
     fn highest(&self) -> Option<&Point<'a>> {
-        self.points().reduce(|best, one| {
+        self.flow.points().reduce(|best, one| {
             if one.flow.value > best.flow.value {
                 one
             } else {
@@ -140,11 +110,11 @@ impl<'a> Corner<'a> {
     }
 
     fn is_bistable(&self) -> bool {
-        self.gap().is_some_and(|gap| gap.counts(LEAST_JUMP))
+        self.flow.gap().is_some_and(|gap| gap.counts(LEAST_JUMP))
     }
 
     fn flows_back(&self) -> bool {
-        self.lowest().is_some_and(|point| {
+        self.flow.lowest().is_some_and(|point| {
             let by = SIGNED_BY * point.flow.error.max(0.0);
             point.flow.value < -LEAST_BACK_FLOW.max(by)
         })
@@ -164,8 +134,8 @@ impl<'a> Corner<'a> {
     }
 
     fn quantities(&self) -> Vec<Quantity> {
-        let lowest = self.lowest().map(|point| point.flow);
-        let gap = self.gap().map(|gap| gap.height);
+        let lowest = self.flow.lowest().map(|point| point.flow);
+        let gap = self.flow.gap().map(|gap| gap.height);
         let lowest = lowest.map(|flow| PROSE.quantity("lowest", &[("corner", &self.name())], flow));
         let gap = gap.map(|height| PROSE.quantity("gap", &[("corner", &self.name())], height));
         lowest.into_iter().chain(gap).collect()
@@ -185,12 +155,12 @@ impl<'a> Corner<'a> {
             self.grains().to_owned(),
             format!("{}, {}", self.wall.name, self.wall.symbol),
             state(self.highest()),
-            state(self.lowest()),
+            state(self.flow.lowest()),
             cell_of(self.steepest(), |step| {
                 let [from, to] = step.controls.map(control);
                 format!("{} from {from} to {to}", step.height)
             }),
-            cell_of(self.gap(), |gap| {
+            cell_of(self.flow.gap(), |gap| {
                 format!("{} at {}", gap.height, control(gap.controls[0]))
             }),
         ]
@@ -237,19 +207,15 @@ fn where_seen<'a>(corners: &[Corner<'a>], seen: impl Fn(&Corner<'a>) -> bool) ->
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut corners = Vec::new();
     for wall in &WALLS {
         corners.extend(Corner::all_of(wall, evidence.study(wall.study)?.rows()));
     }
     if corners.is_empty() {
-        let statistics = Statistics::default();
-        return Ok(Finding::nothing("No runs yet.", statistics, &Q7_NEEDED));
+        return Ok(PROSE.nothing(Statistics::default(), &Q7_NEEDED));
     }
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(corners.iter().map(Corner::statistics))
-    };
+    let statistics = Statistics::weakest_at_one_rate(corners.iter().map(Corner::statistics));
     let verdict = if corners.len() == 4 {
         Verdict::Answered
     } else {
@@ -263,13 +229,11 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("back", &where_seen(&corners, Corner::flows_back)),
         ],
     );
-    let mut finding = Finding::new(verdict, summary, statistics, &Q7_NEEDED);
-    finding.varied = "bottleneck";
+    let finding = PROSE.finding(verdict, summary, statistics, &Q7_NEEDED);
+    let mut finding = finding.varying("bottleneck");
     finding.quantities = corners.iter().flat_map(Corner::quantities).collect();
-    let cells = corners.iter().map(Corner::cells).collect();
-    finding.tables.push(PROSE.table("corners", &[], cells));
-    finding.paragraphs.push(PROSE.text("method", &[]));
-    finding.weaknesses.push(PROSE.text("weakness", &[]));
+    let table = PROSE.table("corners", &[], corners.iter().map(Corner::cells));
+    finding.tables.push(table);
     let left_out: usize = corners.iter().map(|corner| corner.left_out).sum();
     if left_out > 0 {
         let weakness = PROSE.text("left out", &[("states", &left_out)]);

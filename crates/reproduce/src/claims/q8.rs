@@ -2,27 +2,15 @@
 
 mod figures;
 
-use peristalsis_analysis::{Uncertain, power_exponent};
+use peristalsis_analysis::power_exponent;
 
-use crate::branch::{Branch, Control, Point, Step};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{cell, cell_of};
-use crate::finding::{Finding, Quantity, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, behind, grouped, mean_of};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::{LEAST_JUMP, LEAST_LENGTHS, PASSED, Q8_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
+const STUDIES: &[&str] = &["small-speed-size", "sweep-up", "sweep-down"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q8",
-    prose: PROSE,
-    studies: &["small-speed-size", "sweep-up", "sweep-down"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q8", PROSE, STUDIES, examine);
 
 /// Part of the runs, at their end, over which the study takes its means.
 const LATE: f64 = 0.5;
@@ -43,7 +31,7 @@ impl<'a> Ladder<'a> {
             .map(|((rate, waves), rows)| Self {
                 rate,
                 waves,
-                branch: Branch::of_all(rows.iter().copied(), Control::Force),
+                branch: Branch::of_all(&rows, Control::Force),
                 rows,
             })
             .collect()
@@ -51,9 +39,7 @@ impl<'a> Ladder<'a> {
 
     /// The largest rise between two neighbouring forces.
     fn rise(&self) -> Option<Step> {
-        self.branch
-            .steps()
-            .max_by(|one, other| one.height.value.total_cmp(&other.height.value))
+        self.branch.largest_step(|height| height)
     }
 
     /// Variance of the period averages of J/Jmax times the waves: that of a wave if waves fluctuate by themselves. Of runs
@@ -137,11 +123,7 @@ impl Loop {
 
     /// Width of the loop; `None` where one way did not pass.
     fn width(&self) -> Option<Uncertain> {
-        let (up, down) = (self.up?, self.down?);
-        Some(Uncertain::normal(
-            up.value - down.value,
-            up.error.max(0.0).hypot(down.error.max(0.0)),
-        ))
+        Some(difference(&self.up?, &self.down?))
     }
 
     /// Its width in words.
@@ -177,24 +159,10 @@ fn passed(row: &Row<'_>) -> (f64, f64) {
 
 /// Exponent of a positive quantity in another, from points with errors; `None` from fewer than three.
 fn exponent(points: impl Iterator<Item = (f64, Uncertain)>) -> Option<Uncertain> {
-    let known: Vec<(f64, Uncertain)> = points
-        .filter(|(_, mean)| mean.value > 0.0 && mean.error > 0.0)
-        .collect();
-    if known.len() < 3 {
-        return None;
-    }
-    let column =
-        |value: fn(&(f64, Uncertain)) -> f64| -> Vec<f64> { known.iter().map(value).collect() };
-    let line = power_exponent(
-        &column(|one| one.0),
-        &column(|one| one.1.value),
-        &column(|one| one.1.error),
-    )
-    .ok()?;
-    Some(Uncertain::normal(
-        line.slope.value,
-        line.scale_factor() * line.slope.error,
-    ))
+    let known = points.filter(|(_, mean)| mean.value > 0.0 && mean.error > 0.0);
+    let [x, y, error] = columns(known, 0.0);
+    let line = power_exponent(&x, &y, &error).ok()?;
+    (x.len() > 2).then(|| slope(&line))
 }
 
 /// What was found at one strain rate.
@@ -229,15 +197,13 @@ impl<'b, 'a> AtRate<'b, 'a> {
     fn words(&self) -> String {
         let rises: Vec<String> = self.ladders.iter().filter_map(|one| one.words()).collect();
         let widths: Vec<String> = self.loops.iter().filter_map(|one| one.words()).collect();
-        let rises = if rises.is_empty() {
-            "no rise between two forces is known yet".to_owned()
-        } else {
-            PROSE.text("rises", &[("rises", &rises.join(", "))])
+        let rises = match &*rises.join(", ") {
+            "" => PROSE.text("no rises", &[]),
+            rises => PROSE.text("rises", &[("rises", &rises)]),
         };
-        let sweeps = if widths.is_empty() {
-            "no sweep passes both ways".to_owned()
-        } else {
-            PROSE.text("sweeps", &[("widths", &widths.join(", "))])
+        let sweeps = match &*widths.join(", ") {
+            "" => PROSE.text("no sweeps", &[]),
+            widths => PROSE.text("sweeps", &[("widths", &widths)]),
         };
         PROSE.text(
             "at a strain rate",
@@ -261,19 +227,17 @@ impl<'b, 'a> AtRate<'b, 'a> {
         let of_loop = exponent(widths)
             .map(|exponent| PROSE.quantity("exponent of loop", &[("rate", &self.rate)], exponent));
         let rises = self.ladders.iter().filter_map(|one| {
-            Some(PROSE.quantity(
-                "rise",
-                &[("rate", &self.rate), ("waves", &one.waves)],
-                one.rise()?.height,
-            ))
+            let (rate, waves) = (self.rate, one.waves);
+            let height = one.rise()?.height;
+            Some(PROSE.quantity("rise", &[("rate", &rate), ("waves", &waves)], height))
         });
         let exponents = of_fluctuation.into_iter().chain(of_loop);
         exponents.chain(rises).collect()
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
-    let rows = |study: &str| Ok::<_, ClaimError>(evidence.study(study)?.rows());
+fn examine(evidence: &Evidence) -> Result<Finding> {
+    let rows = |study: &str| -> Result<_> { Ok(evidence.study(study)?.rows()) };
     let ladders = Ladder::all_of(rows("small-speed-size")?);
     let loops = Loop::all_of(rows("sweep-up")?, rows("sweep-down")?);
     let rates = AtRate::all_of(&ladders, &loops);
@@ -283,7 +247,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         ..Statistics::weakest(of_ladders)
     };
     if rates.is_empty() {
-        return Ok(Finding::nothing("No runs yet.", statistics, &Q8_NEEDED));
+        return Ok(PROSE.nothing(statistics, &Q8_NEEDED));
     }
     let words: Vec<String> = rates.iter().map(AtRate::words).collect();
     let verdict = if rates.iter().all(AtRate::is_complete) {
@@ -292,19 +256,18 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         Verdict::Open
     };
     let summary = format!("{}.", words.join(". "));
-    let mut finding = Finding::new(verdict, summary, statistics, &Q8_NEEDED);
-    finding.varied = "force";
+    let finding = PROSE.finding(verdict, summary, statistics, &Q8_NEEDED);
+    let mut finding = finding.varying("force");
     finding.quantities = rates.iter().flat_map(AtRate::quantities).collect();
     if !ladders.is_empty() {
-        let cells = ladders.iter().map(Ladder::cells).collect();
-        finding.tables.push(PROSE.table("ladders", &[], cells));
+        let table = PROSE.table("ladders", &[], ladders.iter().map(Ladder::cells));
+        finding.tables.push(table);
     }
     if !loops.is_empty() {
-        let cells = loops.iter().map(Loop::cells).collect();
-        finding.tables.push(PROSE.table("loops", &[], cells));
+        let table = PROSE.table("loops", &[], loops.iter().map(Loop::cells));
+        finding.tables.push(table);
     }
     finding.paragraphs = PROSE.paragraphs("method", &[("passed", &PASSED)]);
-    finding.weaknesses.push(PROSE.text("weakness", &[]));
     finding.figures.extend(figures::figure(&rates)?);
     Ok(finding)
 }

@@ -2,28 +2,15 @@
 
 mod figures;
 
-use peristalsis_analysis::Uncertain;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
-use crate::branch::{Branch, Control, Point};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
-use crate::exhibit::{cell, cell_of};
-use crate::finding::{Finding, Quantity, Statistics, Verdict};
-use crate::prose::Prose;
-use crate::row::{Row, behind, mean_of};
-use crate::text::number;
+use super::prelude::*;
 use crate::thresholds::Q9_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q9.md"));
+const STUDIES: &[&str] = &["pumping-frictionless", "pumping-frictional"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "Q9",
-    prose: PROSE,
-    studies: &["pumping-frictionless", "pumping-frictional"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("Q9", PROSE, STUDIES, examine);
 
 /// The waveforms in the order of series.
 const WAVEFORMS: [&str; 3] = ["sine", "bolus", "roller"];
@@ -101,10 +88,9 @@ fn scaled(point: &Point<'_>, column: &str, scale: fn(&Row<'_>) -> f64) -> Option
 impl<'a> Characteristic<'a> {
     /// `None` where no run has this waveform.
     fn of(rows: &[Row<'a>], waveform: &'static str) -> Option<Self> {
-        let of_waveform = rows
-            .iter()
-            .filter(|row| row.text("drive.waveform") == waveform);
-        let branch = Branch::of_all(of_waveform.copied(), Control::BackPressure);
+        let is_of = |row: &&Row<'_>| row.text("drive.waveform") == waveform;
+        let of_waveform: Vec<Row<'a>> = rows.iter().filter(is_of).copied().collect();
+        let branch = Branch::of_all(&of_waveform, Control::BackPressure);
         (!branch.points.is_empty()).then_some(Self { waveform, branch })
     }
 
@@ -210,10 +196,10 @@ impl<'a> Pump<'a> {
     fn words(&self) -> Option<String> {
         let (point, efficiency) = self.sine().best()?;
         let unit = self.model.pressure_unit;
-        let stop = self.sine().stop().map_or_else(
-            || "no back pressure that was tried turns the flow round".to_owned(),
-            |stop| format!("the flow turns round at Δ*p* = {stop} {unit}"),
-        );
+        let stop = match self.sine().stop() {
+            None => PROSE.text("no stop", &[]),
+            Some(stop) => PROSE.text("stop", &[("stop", &stop), ("unit", &unit)]),
+        };
         Some(PROSE.text(
             "pump",
             &[
@@ -249,17 +235,13 @@ impl<'a> Pump<'a> {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut pumps = Vec::new();
     for model in &MODELS {
         pumps.extend(Pump::of(model, evidence.study(model.study)?));
     }
     if pumps.is_empty() {
-        return Ok(Finding::nothing(
-            "No runs of the sine yet.",
-            Statistics::default(),
-            &Q9_NEEDED,
-        ));
+        return Ok(PROSE.nothing(Statistics::default(), &Q9_NEEDED));
     }
     let words: Vec<String> = pumps.iter().filter_map(Pump::words).collect();
     let verdict = if pumps.len() == MODELS.len() && words.len() == pumps.len() {
@@ -267,22 +249,16 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     } else {
         Verdict::Open
     };
-    let summary = if words.is_empty() {
-        "No run has pumped against a back pressure yet.".to_owned()
-    } else {
-        format!("{}.", words.join(". "))
+    let summary = match &*words.join(". ") {
+        "" => PROSE.text("no pump", &[]),
+        words => format!("{words}."),
     };
-    let statistics = Statistics {
-        strain_rates: 1,
-        ..Statistics::weakest(pumps.iter().map(Pump::statistics))
-    };
-    let mut finding = Finding::new(verdict, summary, statistics, &Q9_NEEDED);
-    finding.varied = "back pressure";
+    let statistics = Statistics::weakest_at_one_rate(pumps.iter().map(Pump::statistics));
+    let finding = PROSE.finding(verdict, summary, statistics, &Q9_NEEDED);
+    let mut finding = finding.varying("back pressure");
     finding.quantities = pumps.iter().flat_map(Pump::quantities).collect();
-    let cells = pumps.iter().flat_map(Pump::cells).collect();
-    finding.tables.push(PROSE.table("pumps", &[], cells));
-    finding.paragraphs = PROSE.paragraphs("method", &[]);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[]);
+    let table = PROSE.table("pumps", &[], pumps.iter().flat_map(Pump::cells));
+    finding.tables.push(table);
     let at_the_edge: Vec<&str> = pumps
         .iter()
         .filter(|pump| pump.sine().best_is_at_the_edge())

@@ -1,31 +1,17 @@
 //! S1: the flow fields at three forces, and the last of them without friction.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::{
-    Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Width,
-};
-use peristalsis_formats::Table;
+use peristalsis_figures::{Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
 
 use super::elastic::{finding, is_frictionless, judged, nothing};
+use super::prelude::*;
 use crate::branch::flow_of;
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults, first_kept};
-use crate::finding::{Finding, ReportFigure, ReportTable, Statistics, Verdict};
-use crate::forces::{ForceLine, together};
-use crate::prose::Prose;
-use crate::row::{Row, grouped};
-use crate::text::number;
+use crate::forces::together;
 use crate::thresholds::CLEAR;
 
 const PROSE: Prose = Prose::new(include_str!("s1.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S1",
-    prose: PROSE,
-    studies: &["elastic-flow", "elastic-branches"],
-    examine,
-};
+pub(super) const CLAIM: Claim =
+    Claim::new("S1", PROSE, &["elastic-flow", "elastic-branches"], examine);
 
 /// One of the pictures.
 struct Scene<'a> {
@@ -74,7 +60,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The first run whose spheres were kept.
-    fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>, ClaimError> {
+    fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>> {
         let kept = first_kept(&self.rows, |row| study.snapshot(row))?;
         Ok(kept.map(|(row, spheres)| Picture {
             name: self.name(),
@@ -84,45 +70,32 @@ impl<'a> Scene<'a> {
     }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-flow")?;
     let scenes = Scene::all_of(study.rows());
     let Some(first) = scenes.first() else {
-        return Ok(nothing("No runs yet."));
+        return Ok(nothing(&PROSE));
     };
-    let outcomes: Vec<Option<bool>> = scenes
-        .iter()
-        .map(|scene| scene.holds(first.force))
-        .collect();
-    let verdict = if outcomes.contains(&Some(false)) {
-        Verdict::Differs
-    } else if outcomes.len() >= 4 && outcomes.iter().all(Option::is_some) {
-        Verdict::Reproduced
-    } else {
-        Verdict::Open
+    let outcomes = scenes.iter().map(|scene| scene.holds(first.force));
+    let outcomes: Vec<Option<bool>> = outcomes.collect();
+    let verdict = match all_hold(&outcomes) {
+        Some(false) => Verdict::Differs,
+        Some(true) if outcomes.len() >= 4 => Verdict::Reproduced,
+        _ => Verdict::Open,
     };
     let flows: Vec<String> = scenes
         .iter()
         .map(|scene| format!("{} at {}", scene.flow, scene.name()))
         .collect();
     let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
-    let mut found = finding(
-        verdict,
-        PROSE.text("summary", &[("flows", &flows.join(", "))]),
-        statistics(&lines, &scenes),
-    );
-    found.quantities = scenes
-        .iter()
-        .map(|scene| {
-            let (name, runs) = (scene.name(), scene.rows.len());
-            PROSE.quantity(
-                "flow rate",
-                &[("scene", &name), ("runs", &runs)],
-                scene.flow,
-            )
-        })
-        .collect();
-    found.paragraphs.push(PROSE.text("method", &[]));
+    let summary = PROSE.text("summary", &[("flows", &flows.join(", "))]);
+    let mut found = finding(&PROSE, verdict, summary, statistics(&lines, &scenes));
+    let quantity = |scene: &Scene<'_>| {
+        let (name, runs) = (scene.name(), scene.rows.len());
+        let flow = scene.flow;
+        PROSE.quantity("flow rate", &[("scene", &name), ("runs", &runs)], flow)
+    };
+    found.quantities = scenes.iter().map(quantity).collect();
     let drifts = |scene: &&Scene<'_>| scene.rows.iter().any(|row| !row.is_stationary());
     let drifting: Vec<String> = scenes.iter().filter(drifts).map(Scene::name).collect();
     if !drifting.is_empty() {
@@ -153,7 +126,7 @@ fn statistics(lines: &[ForceLine<'_>], scenes: &[Scene<'_>]) -> Statistics {
 }
 
 /// Which part of the grains moves against the wave in each picture.
-fn against_the_wave(pictures: &[Picture<'_>]) -> Result<ReportTable, ClaimError> {
+fn against_the_wave(pictures: &[Picture<'_>]) -> Result<ReportTable> {
     let mut cells = Vec::new();
     for Picture { name, row, spheres } in pictures {
         let is_grain = spheres.booleans("grain")?;
@@ -182,7 +155,7 @@ const SHOWN_RADII: f64 = 2.5;
 
 impl Picture<'_> {
     /// The grains and the wall as they are drawn, velocities over that of the wave.
-    fn drawn(&self) -> Result<(Vec<SnapshotGrain>, Vec<SnapshotSphere>), ClaimError> {
+    fn drawn(&self) -> Result<(Vec<SnapshotGrain>, Vec<SnapshotSphere>)> {
         let is_grain = self.spheres.booleans("grain")?;
         let column = |name| self.spheres.reals(name);
         let (along, across, depth) = (column("along")?, column("across")?, column("depth")?);
@@ -212,7 +185,7 @@ impl Picture<'_> {
     }
 }
 
-fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure, ClaimError> {
+fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
     let mut drawn = Vec::new();
     for picture in pictures {
         drawn.push((picture, picture.drawn()?));

@@ -1,29 +1,20 @@
 //! S2: jammed flow gives way where the wall yields.
 
-use peristalsis_analysis::{Family, Survival, Transition, Uncertain, fit_lifetime, mean_and_error};
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Curve, Points, Tint};
-use peristalsis_figures::{ColourScale, Quantity as Axis, Scale, Width};
+use peristalsis_analysis::{Family, Survival, Transition, fit_lifetime, mean_and_error};
 
 use super::elastic::{finding, judged, label, nothing};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::{Evidence, StudyResults};
-use crate::exhibit::{self, cell_of, ends, periods};
-use crate::finding::{Finding, ReportFigure, Verdict};
-use crate::forces::{ForceLine, together};
-use crate::prose::Prose;
-use crate::row::{Row, Start, grouped, longest};
-use crate::text::number;
+use super::prelude::*;
+use crate::forces::together;
 use crate::thresholds::GIVEN_WAY;
 
 const PROSE: Prose = Prose::new(include_str!("s2.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S2",
-    prose: PROSE,
-    studies: &["elastic-yielding", "elastic-branches"],
+pub(super) const CLAIM: Claim = Claim::new(
+    "S2",
+    PROSE,
+    &["elastic-yielding", "elastic-branches"],
     examine,
-};
+);
 
 /// The runs from jammed at one force.
 struct Rung<'a> {
@@ -43,18 +34,14 @@ impl<'a> Rung<'a> {
         grouped(rows, |row| (row.strain_rate(), row.force()))
             .into_iter()
             .map(|((strain_rate, force), rows)| {
-                let transitions: Vec<Transition> = rows
-                    .iter()
-                    .map(|row| row.transition_at(GIVEN_WAY))
-                    .collect();
+                let transitions = rows.iter().map(|row| row.transition_at(GIVEN_WAY));
+                let transitions: Vec<Transition> = transitions.collect();
+                let times = transitions.iter().filter_map(|one| one.observed());
                 Self {
                     strain_rate,
                     force,
                     rows,
-                    times: transitions
-                        .iter()
-                        .filter_map(|one| one.observed())
-                        .collect(),
+                    times: times.collect(),
                     transitions,
                 }
             })
@@ -86,14 +73,34 @@ impl<'a> Rung<'a> {
     fn most_yield(&self) -> bool {
         2 * self.times.len() >= self.rows.len()
     }
+
+    /// The row of the tables: how many jams gave way, and when.
+    fn cells(&self) -> Vec<String> {
+        let survival = Survival::new(&self.transitions);
+        let median = survival.and_then(|curve| curve.median()).ok();
+        let mean = self.mean().map(|mean| {
+            if mean.error.is_finite() {
+                mean.to_string()
+            } else {
+                number(mean.value, 1)
+            }
+        });
+        vec![
+            self.strain_rate.to_string(),
+            self.force.to_string(),
+            format!("{} of {}", self.times.len(), self.rows.len()),
+            mean.unwrap_or_else(|| format!("> {}", number(self.watched(), 0))),
+            cell_of(median, |median| number(median.value * self.strain_rate, 1)),
+        ]
+    }
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let study = evidence.study("elastic-yielding")?;
     let (rows, branches) = (study.rows(), evidence.study("elastic-branches")?.rows());
     let ladder = Rung::all_of(&rows);
     if ladder.is_empty() {
-        return Ok(nothing("No runs from jammed yet."));
+        return Ok(nothing(&PROSE));
     }
     let gives_way = ladder.iter().rfind(|rung| rung.most_yield());
     let lasts = ladder.iter().find(|rung| rung.times.is_empty());
@@ -110,105 +117,78 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         format!("from {} on none does", rung.force)
     });
     let lines = ForceLine::all_of(&branches);
-    let mut found = finding(
-        verdict,
-        PROSE.text(
-            "summary",
-            &[
-                ("periods", &periods),
-                ("yielding", &yielding),
-                ("lasting", &lasting),
-            ],
-        ),
-        together(judged(&lines)),
+    let summary = PROSE.text(
+        "summary",
+        &[
+            ("periods", &periods),
+            ("yielding", &yielding),
+            ("lasting", &lasting),
+        ],
     );
+    let mut found = finding(&PROSE, verdict, summary, together(judged(&lines)));
     for rung in &ladder {
         let runs = rung.rows.len();
+        let censored = runs - rung.times.len();
         found.quantities.extend(rung.mean().map(|mean| {
             PROSE.quantity(
                 "time",
                 &[
                     ("force", &rung.force),
                     ("runs", &runs),
-                    ("censored", &(runs - rung.times.len())),
+                    ("censored", &censored),
                 ],
                 mean,
             )
         }));
     }
-    found.tables.push(PROSE.table("times", &[], cells(&ladder)));
+    let table = PROSE.table("times", &[], ladder.iter().map(Rung::cells));
+    found.tables.push(table);
     let all = Rung::all_of(&branches);
     if !all.is_empty() {
-        let table = PROSE.table("times at all strain rates", &[], cells(&all));
+        let cells = all.iter().map(Rung::cells);
+        let table = PROSE.table("times at all strain rates", &[], cells);
         found.tables.push(table);
     }
     let method = PROSE.text("method", &[("threshold", &GIVEN_WAY)]);
     found.paragraphs.push(method);
-    let weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
-    found.weaknesses.extend(weaknesses);
+    found.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
     found.figures.push(figure(study, &ladder)?);
     Ok(found)
 }
 
-/// How many jams gave way, and when.
-fn cells(rungs: &[Rung<'_>]) -> Vec<Vec<String>> {
-    let row = |rung: &Rung<'_>| {
-        let median = Survival::new(&rung.transitions)
-            .and_then(|curve| curve.median())
-            .ok();
-        let mean = rung.mean().map(|mean| {
-            if mean.error.is_finite() {
-                mean.to_string()
-            } else {
-                number(mean.value, 1)
-            }
-        });
-        vec![
-            rung.strain_rate.to_string(),
-            rung.force.to_string(),
-            format!("{} of {}", rung.times.len(), rung.rows.len()),
-            mean.unwrap_or_else(|| format!("> {}", number(rung.watched(), 0))),
-            cell_of(median, |median| number(median.value * rung.strain_rate, 1)),
-        ]
-    };
-    rungs.iter().map(row).collect()
-}
-
 /// J(t) of one run a force, and the time until the jam gives way against the force.
-fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ReportFigure, ClaimError> {
+fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ReportFigure> {
     let courses = courses(study, ladder)?;
-    let is_coloured = courses.is_some();
-    let panels = courses.into_iter().chain([times(ladder)]);
-    let mut figure = ChartFigure::grid(2, panels)
-        .width(Width::DoubleColumn)
-        .description("Flow rate in time from jammed, and the time until the jam gives way against the force.");
+    let is_coloured = !courses.is_empty();
+    let in_time = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
+        .y_range(..=1.05)
+        .title("from jammed, one run a force")
+        .with_all(courses);
+    let panels = is_coloured
+        .then_some(in_time)
+        .into_iter()
+        .chain([times(ladder)]);
+    let mut chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
     if is_coloured {
         let first = ladder[0].force;
         let forces = ladder.iter().map(|rung| rung.force);
-        let (least, largest) = ends(forces).unwrap_or((first, 1.01 * first));
-        let scale = ColourScale::new(&label(Axis::ForceAmplitude), least, largest);
-        figure = figure.colour_scale(scale);
+        let axis = label(Axis::ForceAmplitude);
+        chart = chart.colour_scale(colours(&axis, forces, (first, 1.01 * first)));
     }
-    Ok(PROSE.figure("yielding", &[("threshold", &GIVEN_WAY)], figure.draw()?))
+    PROSE.chart("yielding", &[("threshold", &GIVEN_WAY)], chart)
 }
 
-/// The flow in time of the first replicate at each force; `None` where no time series is at hand.
-fn courses(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Option<ChartPanel>, ClaimError> {
+/// The flow in time of the first replicate at each force whose time series is at hand.
+fn courses(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<Vec<Curve>> {
     let mut curves = Vec::new();
     for rung in ladder {
-        let Some(row) = rung.rows.iter().find(|row| row.replicate() == 0) else {
-            continue;
-        };
-        let averages = study.period_averages(row)?.unwrap_or_default();
-        if !averages.is_empty() {
-            let curve = Curve::new("", &periods(averages.len()), &averages);
-            curves.push(curve.tint(Tint::Value(rung.force)));
+        if let Some(row) = rung.rows.iter().find(|row| row.replicate() == 0) {
+            let averages = study.period_averages(row)?;
+            let known = averages.filter(|averages| !averages.is_empty());
+            curves.extend(known.map(|averages| course(rung.force, &averages)));
         }
     }
-    let panel = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
-        .y_range(..=1.05)
-        .title("from jammed, one run a force");
-    Ok((!curves.is_empty()).then(|| panel.with_all(curves)))
+    Ok(curves)
 }
 
 /// The time until the jam gives way against the force, of the runs and their mean.
@@ -243,6 +223,6 @@ fn times(ladder: &[Rung<'_>]) -> ChartPanel {
         .y_scale(Scale::Logarithmic)
         .title("until the jam gives way")
         .with_all(single)
-        .with_all(exhibit::points("mean", means).map(|points| points.series(0).joined()))
+        .with_all(numbered([joined("mean", means)]))
         .with_all(limits)
 }

@@ -1,47 +1,30 @@
 //! S3: the stationary flow against the force, a jump at large strain rates and none at small ones.
 
-use peristalsis_analysis::{Bootstrap, Uncertain, dip_test, histogram, two_peaks};
-use peristalsis_figures::chart::{
-    Bars, ChartFigure, ChartPanel, LegendPlace, Points, Reference, Tint, Window,
-};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-
 use super::elastic::{
-    branch_rows, finding, flow_against_force, judged, label, nothing, rate_colours, with_branches,
+    branch_rows, colours_of_rates, finding, flow_against_force, judged, label, nothing,
+    with_branches,
 };
-use crate::branch::{Branch, bracket};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{cell, cell_of};
-use crate::finding::{Finding, Quantity, ReportFigure, Verdict};
-use crate::forces::{ForceLine, Kind, outside, together};
-use crate::prose::Prose;
-use crate::row::Row;
-use crate::text::number;
+use super::prelude::*;
+use crate::branch::bracket;
+use crate::exhibit::{cells_of_peaks, flow_histogram};
+use crate::forces::{Kind, outside, together};
 use crate::thresholds::{LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED};
 
 const PROSE: Prose = Prose::new(include_str!("s3.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S3",
-    prose: PROSE,
-    studies: &["elastic-branches", "elastic-extremes"],
+pub(super) const CLAIM: Claim = Claim::new(
+    "S3",
+    PROSE,
+    &["elastic-branches", "elastic-extremes"],
     examine,
-};
+);
 
-/// Resamples of the test for a dip.
-const BOOTSTRAP: Bootstrap = Bootstrap {
-    resamples: 500,
-    seed: 7,
-};
-
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = branch_rows(evidence)?;
     let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
-        return Ok(nothing("No runs yet."));
+        return Ok(nothing(&PROSE));
     }
     let of_kind = |kind: Kind| -> Vec<f64> {
         let lines = tight.iter().filter(|line| line.kind() == kind);
@@ -61,27 +44,22 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         &[("jumping", &listed(&jumping)), ("smooth", &listed(&smooth))],
     );
     if let Some(rate) = vanishing {
-        let bounds = rate.interval_95;
-        let sentence = PROSE.text(
-            "vanishing",
-            &[("lower", &bounds.lower), ("upper", &bounds.upper)],
-        );
+        let (lower, upper) = (rate.interval_95.lower, rate.interval_95.upper);
+        let sentence = PROSE.text("vanishing", &[("lower", &lower), ("upper", &upper)]);
         summary = format!("{summary} {sentence}");
     }
-    let mut found = finding(verdict, summary, together(tight.iter().copied()));
+    let statistics = together(tight.iter().copied());
+    let mut found = finding(&PROSE, verdict, summary, statistics);
     let vanishes = vanishing.map(|rate| PROSE.quantity("vanishing", &[], rate));
     let heights = tight.iter().filter_map(|line| height(line));
     found.quantities = vanishes.into_iter().chain(heights).collect();
-    let cells = lines.iter().map(|line| cells(&rows, line)).collect();
+    let cells = lines.iter().map(|line| cells(&rows, line));
     found.tables.push(PROSE.table("rises", &[], cells));
+    let escaped = number(100.0 * MOST_ESCAPED, 0);
     found.paragraphs.push(PROSE.text(
         "method",
-        &[
-            ("least", &LEAST_JUMP_AGAINST_FORCE),
-            ("escaped", &number(100.0 * MOST_ESCAPED, 0)),
-        ],
+        &[("least", &LEAST_JUMP_AGAINST_FORCE), ("escaped", &escaped)],
     ));
-    found.weaknesses = PROSE.paragraphs("weaknesses", &[]);
     found.figures.push(branches(&lines, &tight)?);
     found.figures.extend(peaks(&rows, &tight)?);
     Ok(found)
@@ -143,25 +121,22 @@ fn cells(rows: &[Row<'_>], line: &ForceLine<'_>) -> Vec<String> {
         Kind::Unclear => "unclear",
     };
     let left_out: &[f64] = if leaks_all_along { &[] } else { &line.leaking };
+    let [peaks, dip] = cells_of_peaks(&flows);
     vec![
         line.strain_rate.to_string(),
-        rise(&line.rest),
-        rise(&line.jammed),
+        rise(&line.flow.rest),
+        rise(&line.flow.jammed),
         cell(line.height()),
         cell_of(line.window(), window),
-        cell_of(two_peaks(&flows).ok(), |peaks| {
-            if peaks.is_double() { "two" } else { "one" }.to_owned()
-        }),
-        cell_of(dip_test(&flows, BOOTSTRAP).ok(), |test| {
-            number(test.probability, 3)
-        }),
+        peaks,
+        dip,
         outside(line.escaped, left_out),
         kind.to_owned(),
     ]
 }
 
 /// Both branches at each strain rate, and the height of the rise against the strain rate.
-fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> Result<ReportFigure, ClaimError> {
+fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> Result<ReportFigure> {
     let window = tight
         .iter()
         .rev()
@@ -170,32 +145,28 @@ fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> Result<ReportF
     let flow = with_branches(flow_against_force(), tight)
         .with_all(window.map(|(first, last)| Window::new("", first, last)))
         .title("filled: from rest, open: from jammed");
-    let figure = ChartFigure::grid(2, [flow].into_iter().chain(heights(tight)))
+    let chart = ChartFigure::grid(2, [flow].into_iter().chain(heights(tight)))
         .legend(LegendPlace::Hidden)
-        .colour_scale(rate_colours(lines))
-        .width(Width::DoubleColumn)
-        .description("Stationary flow rate against the force from both starts, and the height of its largest rise.");
-    Ok(PROSE.figure("branches", &[], figure.draw()?))
+        .colour_scale(colours_of_rates(lines))
+        .width(Width::DoubleColumn);
+    PROSE.chart("branches", &[], chart)
 }
 
 /// The height of the rise against the strain rate; `None` where no height is known.
 fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
-    let points: Vec<Points> = tight
-        .iter()
-        .enumerate()
-        .filter_map(|(place, line)| {
-            let height = line.height()?;
-            let point = Points::new("", &[line.strain_rate], &[height.value.max(0.0)])
-                .y_errors(&[height.error])
-                .series(place)
-                .tint(Tint::Value(line.strain_rate));
-            Some(if line.kind() == Kind::Unclear {
-                point.open()
-            } else {
-                point
-            })
-        })
-        .collect();
+    let point = |line: &&ForceLine<'_>| {
+        let height = line.height();
+        let at = height.map(|height| Uncertain::normal(height.value.max(0.0), height.error));
+        let point = points("", at.map(|height| (line.strain_rate, height)));
+        let is_open = line.kind() == Kind::Unclear;
+        let point = if is_open {
+            point.map(Points::open)
+        } else {
+            point
+        };
+        (line.strain_rate, point)
+    };
+    let points: Vec<Points> = coloured(tight.iter().map(point)).collect();
     let panel = ChartPanel::new(
         &label(Axis::StrainRate),
         "height of the jump, Δ*J*/*J*_{max}",
@@ -208,34 +179,22 @@ fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
 }
 
 /// Histograms of J/Jmax, for the slowest and the fastest wave of those with most runs.
-fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
+fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Result<Option<ReportFigure>> {
     let runs = |line: &ForceLine<'_>| line.statistics.runs;
     let most = tight.iter().map(|line| runs(line)).max().unwrap_or(0);
     let many: Vec<&&ForceLine<'_>> = tight.iter().filter(|line| 2 * runs(line) >= most).collect();
     let last = many.last().filter(|_| many.len() > 1);
-    let mut panels = Vec::new();
-    for line in many.first().into_iter().chain(last) {
-        let Ok(counts) = histogram(&flows(rows, line), -0.2, 1.0, 24) else {
-            continue;
-        };
-        let heights: Vec<f64> = counts.counts.iter().map(|count| *count as f64).collect();
-        if heights.iter().sum::<f64>() > 0.0 {
-            panels.push(
-                ChartPanel::new(&label(Axis::FlowRateRatio), "runs")
-                    .title(&format!("*ε̇* = {}", line.strain_rate))
-                    .with(Bars::new("", &counts.edges, &heights).tint(Tint::Blue)),
-            );
-        }
-    }
+    let panel = |line: &&&ForceLine<'_>| {
+        let bars = flow_histogram(&flows(rows, line), -0.2, 1.0, 24)?;
+        let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs");
+        let panel = panel.title(&format!("*ε̇* = {}", line.strain_rate));
+        Some(panel.with(bars.tint(Tint::Blue)))
+    };
+    let panels = many.first().into_iter().chain(last).filter_map(panel);
+    let panels: Vec<ChartPanel> = panels.collect();
     if panels.is_empty() {
         return Ok(None);
     }
-    let figure = ChartFigure::grid(2, panels)
-        .width(Width::DoubleColumn)
-        .description("Histograms of the stationary flow rate.");
-    Ok(Some(PROSE.figure(
-        "peaks-against-force",
-        &[],
-        figure.draw()?,
-    )))
+    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    PROSE.chart("peaks-against-force", &[], chart).map(Some)
 }

@@ -1,30 +1,20 @@
 //! S4: back flow at small forces.
 
-use peristalsis_figures::Drawing;
-use peristalsis_figures::chart::{ChartFigure, LegendPlace, Reference};
-
 use super::elastic::{
-    branch_rows, finding, flow_against_force, judged, nothing, rate_colours, with_branches,
+    branch_rows, colours_of_rates, finding, flow_against_force, judged, nothing, with_branches,
 };
-use crate::branch::Point;
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::cell;
-use crate::finding::{Finding, Verdict};
-use crate::forces::{ForceLine, counted, is_below, lowest, together};
-use crate::prose::Prose;
-use crate::text::number;
+use super::prelude::*;
+use crate::forces::{counted, is_below, together};
 use crate::thresholds::{LEAST_BACK_FLOW, LEAST_JUMP_AGAINST_FORCE};
 
 const PROSE: Prose = Prose::new(include_str!("s4.md"));
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S4",
-    prose: PROSE,
-    studies: &["elastic-branches", "elastic-extremes"],
+pub(super) const CLAIM: Claim = Claim::new(
+    "S4",
+    PROSE,
+    &["elastic-branches", "elastic-extremes"],
     examine,
-};
+);
 
 /// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
 /// jam lasts there.
@@ -33,12 +23,11 @@ pub(super) fn negative(line: &ForceLine<'_>) -> Vec<f64> {
     let lasts = |rest: &Point<'_>, jammed: &Point<'_>| {
         jammed.flow.value > rest.flow.value + LEAST_JUMP_AGAINST_FORCE
     };
-    line.rest
-        .points
-        .iter()
+    let from_rest = line.flow.rest.points.iter();
+    from_rest
         .filter(|rest| flows_back(rest))
         .filter(|rest| {
-            let jammed = line.jammed.at(rest.control);
+            let jammed = line.flow.jammed.at(rest.control);
             jammed.is_none_or(|jammed| flows_back(jammed) || lasts(rest, jammed))
         })
         .map(|rest| rest.control)
@@ -47,18 +36,18 @@ pub(super) fn negative(line: &ForceLine<'_>) -> Vec<f64> {
 
 /// All forces of a line, ascending.
 fn forces(line: &ForceLine<'_>) -> Vec<f64> {
-    let mut forces: Vec<f64> = line.points().map(|point| point.control).collect();
+    let mut forces: Vec<f64> = line.flow.points().map(|point| point.control).collect();
     forces.sort_by(f64::total_cmp);
     forces.dedup();
     forces
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = branch_rows(evidence)?;
     let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
-        return Ok(nothing("No runs yet."));
+        return Ok(nothing(&PROSE));
     }
     let (forward, backward): (Vec<&ForceLine<'_>>, _) =
         tight.iter().partition(|line| negative(line).is_empty());
@@ -68,9 +57,9 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         Verdict::Reproduced
     };
     let statistics = together(tight.iter().copied());
-    let mut found = finding(verdict, summary(&backward, &forward), statistics);
+    let mut found = finding(&PROSE, verdict, summary(&backward, &forward), statistics);
     for line in &tight {
-        found.quantities.extend(lowest(line.points()).map(|lowest| {
+        found.quantities.extend(line.flow.lowest().map(|lowest| {
             PROSE.quantity(
                 "lowest",
                 &[("rate", &line.strain_rate), ("force", &lowest.control)],
@@ -78,7 +67,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             )
         }));
     }
-    let cells = tight.iter().flat_map(|line| cells(line)).collect();
+    let cells = tight.iter().flat_map(|line| cells(line));
     found.tables.push(PROSE.table("flows", &[], cells));
     let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
     found.paragraphs.push(method);
@@ -93,8 +82,13 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         let weakness = PROSE.text("only beyond", &[("rates", &rates(&beyond))]);
         found.weaknesses.push(weakness);
     }
-    let drawing = below_transition(&lines, &tight)?;
-    found.figures.push(PROSE.figure("back-flow", &[], drawing));
+    let panel = flow_against_force()
+        .y_range(-0.12..=0.12)
+        .with(Reference::horizontal(0.0));
+    let chart = ChartFigure::new(with_branches(panel, &tight))
+        .legend(LegendPlace::Hidden)
+        .colour_scale(colours_of_rates(&lines));
+    found.figures = vec![PROSE.chart("back-flow", &[], chart)?];
     Ok(found)
 }
 
@@ -110,7 +104,7 @@ fn rates(lines: &[&ForceLine<'_>]) -> String {
 /// Where the flow is negative.
 fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     let at_rate = |line: &&ForceLine<'_>| {
-        let lowest = lowest(line.points())?;
+        let lowest = line.flow.lowest()?;
         Some(PROSE.text(
             "at a strain rate",
             &[
@@ -145,25 +139,10 @@ fn range(forces: &[f64]) -> String {
     }
 }
 
-/// Both branches of each line about J = 0.
-fn below_transition(
-    lines: &[ForceLine<'_>],
-    tight: &[&ForceLine<'_>],
-) -> Result<Drawing, ClaimError> {
-    let panel = flow_against_force()
-        .y_range(-0.12..=0.12)
-        .with(Reference::horizontal(0.0));
-    Ok(ChartFigure::new(with_branches(panel, tight))
-        .legend(LegendPlace::Hidden)
-        .colour_scale(rate_colours(lines))
-        .description("Stationary flow rate against the force about zero, from both starts.")
-        .draw()?)
-}
-
 /// The rows of the table for one strain rate.
 fn cells(line: &ForceLine<'_>) -> Vec<Vec<String>> {
     let row = |force: f64| {
-        let starts = line.branches().map(|branch| branch.at(force));
+        let starts = line.flow.each().map(|branch| branch.at(force));
         let flows = starts.map(|point| cell(point.map(|point| point.flow)));
         let runs = starts.map(|point| point.map_or(0, |point| counted(&point.rows)));
         let escaped = starts.into_iter().flatten().map(Point::escaped);

@@ -1,47 +1,32 @@
 //! S5: no back flow without friction?
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::Width;
-use peristalsis_figures::chart::{ChartFigure, LegendPlace, Reference, Tint};
-
 use super::elastic::{
-    SOURCE_RATE, branch_rows, finding, flow_against_force, judged, nothing, rate_colours,
+    SOURCE_RATE, branch_rows, colours_of_rates, finding, flow_against_force, judged, nothing,
     with_branches,
 };
+use super::prelude::*;
 use super::s4::negative;
-use crate::branch::Point;
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::exhibit::{branch_points, cell};
-use crate::finding::{Finding, ReportFigure, Verdict};
-use crate::forces::{ForceLine, lowest, together};
-use crate::prose::Prose;
-use crate::text::number;
+use crate::forces::together;
 use crate::thresholds::{LEAST_BACK_FLOW, NO_BACK_FLOW_BY};
 
 const PROSE: Prose = Prose::new(include_str!("s5.md"));
+const STUDIES: &[&str] = &[
+    "elastic-frictionless",
+    "elastic-branches",
+    "elastic-extremes",
+];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S5",
-    prose: PROSE,
-    studies: &[
-        "elastic-frictionless",
-        "elastic-branches",
-        "elastic-extremes",
-    ],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("S5", PROSE, STUDIES, examine);
 
 /// A line of frictionless grains with that of frictional ones at the same strain rate, where there is one.
 type Pair<'b, 'a> = (&'b ForceLine<'a>, Option<&'b ForceLine<'a>>);
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = evidence.study("elastic-frictionless")?.rows();
     let lines = ForceLine::all_of(&rows);
     let tight = judged(&lines);
     if tight.is_empty() {
-        return Ok(nothing("No runs of frictionless grains yet."));
+        return Ok(nothing(&PROSE));
     }
     let frictional = ForceLine::all_of(&branch_rows(evidence)?);
     let pairs: Vec<Pair<'_, '_>> = tight
@@ -55,7 +40,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         })
         .collect();
     let flows_back = tight.iter().any(|line| !negative(line).is_empty());
-    let points = || tight.iter().flat_map(|line| line.points());
+    let points = || tight.iter().flat_map(|line| line.flow.points());
     let never = points()
         .all(|point| point.flow.value + LEAST_BACK_FLOW > NO_BACK_FLOW_BY * point.flow.error);
     let verdict = match (flows_back, never) {
@@ -63,21 +48,17 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         (false, true) => Verdict::Reproduced,
         (false, false) => Verdict::Open,
     };
-    let mut found = finding(
-        verdict,
-        summary(&tight, flows_back),
-        together(tight.iter().copied()),
-    );
+    let (summary, statistics) = (summary(&tight, flows_back), together(tight.iter().copied()));
+    let mut found = finding(&PROSE, verdict, summary, statistics);
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
-        let error = without.flow.error.hypot(with.flow.error);
         found.quantities.push(PROSE.quantity(
             "difference",
             &[("rate", &rate), ("force", &without.control)],
-            Uncertain::normal(without.flow.value - with.flow.value, error),
+            difference(&without.flow, &with.flow),
         ));
     }
-    let cells = pairs.iter().flat_map(cells).collect();
+    let cells = pairs.iter().flat_map(cells);
     found.tables.push(PROSE.table("flows", &[], cells));
     let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
     found.paragraphs.push(method);
@@ -87,10 +68,10 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
 
 /// Whether any flow is negative, and the smallest of them.
 fn summary(tight: &[&ForceLine<'_>], flows_back: bool) -> String {
-    let points = || tight.iter().flat_map(|line| line.points());
+    let points = || tight.iter().flat_map(|line| line.flow.points());
     let smallest = tight
         .iter()
-        .filter_map(|line| Some((line.strain_rate, lowest(line.points())?)))
+        .filter_map(|line| Some((line.strain_rate, line.flow.lowest()?)))
         .min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value));
     smallest.map_or_else(
         || "No stationary runs yet.".to_owned(),
@@ -114,10 +95,9 @@ fn compared<'b, 'a>(
     (line, other): &Pair<'b, 'a>,
 ) -> impl Iterator<Item = (f64, &'b Point<'a>, &'b Point<'a>)> {
     let (line, other) = (*line, *other);
-    line.rest
-        .points
-        .iter()
-        .filter_map(move |point| Some((line.strain_rate, point, other?.rest.at(point.control)?)))
+    let other = move |point: &Point<'_>| other?.flow.rest.at(point.control);
+    let points = line.flow.rest.points.iter();
+    points.filter_map(move |point| Some((line.strain_rate, point, other(point)?)))
 }
 
 /// The rows of the table for one strain rate.
@@ -128,17 +108,17 @@ fn cells((line, other): &Pair<'_, '_>) -> Vec<Vec<String>> {
             line.strain_rate.to_string(),
             point.control.to_string(),
             flow(Some(point)),
-            flow(line.jammed.at(point.control)),
-            flow(other.and_then(|other| other.rest.at(point.control))),
+            flow(line.flow.jammed.at(point.control)),
+            flow(other.and_then(|other| other.flow.rest.at(point.control))),
             number(point.escaped(), 3),
         ]
     };
-    line.rest.points.iter().map(row).collect()
+    line.flow.rest.points.iter().map(row).collect()
 }
 
 /// All flows without friction, and beside them those with friction at one strain rate that both have, the source's if
 /// possible.
-fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> Result<ReportFigure, ClaimError> {
+fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> Result<ReportFigure> {
     let empty = || flow_against_force().with(Reference::horizontal(0.0));
     let tight: Vec<&ForceLine<'_>> = pairs.iter().map(|(line, _)| *line).collect();
     let all =
@@ -153,24 +133,19 @@ fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> Result<ReportFigur
         .or(both().next())
         .map(|(without, with)| {
             let kinds = [
-                ("frictionless", &without.rest, Tint::Blue),
-                ("frictional", &with.rest, Tint::Vermillion),
+                ("frictionless", &without.flow.rest, Tint::Blue),
+                ("frictional", &with.flow.rest, Tint::Vermillion),
             ];
-            let points =
-                kinds
-                    .into_iter()
-                    .enumerate()
-                    .filter_map(|(series, (name, branch, tint))| {
-                        Some(branch_points(name, branch)?.series(series).tint(tint))
-                    });
+            let points = kinds.map(|(name, branch, tint)| {
+                branch_points(name, branch).map(|points| points.tint(tint))
+            });
             let title = format!("from rest, *ε̇* = {}", without.strain_rate);
-            empty().with_all(points).title(&title)
+            empty().with_all(numbered(points)).title(&title)
         });
-    let figure = ChartFigure::grid(2, [all].into_iter().chain(beside))
+    let chart = ChartFigure::grid(2, [all].into_iter().chain(beside))
         .share_y()
         .legend(LegendPlace::Inside)
-        .colour_scale(rate_colours(lines))
-        .width(Width::DoubleColumn)
-        .description("Stationary flow rate of frictionless grains against the force, and that of frictional ones.");
-    Ok(PROSE.figure("frictionless", &[], figure.draw()?))
+        .colour_scale(colours_of_rates(lines))
+        .width(Width::DoubleColumn);
+    PROSE.chart("frictionless", &[], chart)
 }

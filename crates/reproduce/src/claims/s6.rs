@@ -4,27 +4,17 @@ mod figures;
 
 use std::ops::Range;
 
-use peristalsis_analysis::{Uncertain, mean_and_error};
+use peristalsis_analysis::mean_and_error;
 
 use super::elastic::{SOURCE_RATE, finding, is_frictionless, judged, nothing};
-use crate::claim::Claim;
-use crate::error::ClaimError;
-use crate::evidence::Evidence;
-use crate::finding::{Finding, Quantity, ReportTable, Verdict};
-use crate::forces::{ForceLine, together};
-use crate::prose::Prose;
-use crate::row::{Row, by_strain_rate};
-use crate::text::number;
+use super::prelude::*;
+use crate::forces::together;
 use crate::thresholds::{CLEAR, LEAST_DIFFERENCE, LEAST_RATIO, MOST_ESCAPED, UNJAMMED};
 
 const PROSE: Prose = Prose::new(include_str!("s6.md"));
+const STUDIES: &[&str] = &["elastic-flow", "elastic-branches", "unjammed-frictionless"];
 
-pub(super) const CLAIM: Claim = Claim {
-    id: "S6",
-    prose: PROSE,
-    studies: &["elastic-flow", "elastic-branches", "unjammed-frictionless"],
-    examine,
-};
+pub(super) const CLAIM: Claim = Claim::new("S6", PROSE, STUDIES, examine);
 
 /// Name and symbol of a number, and its value in a run.
 type Number = (&'static str, &'static str, fn(&Row<'_>) -> f64);
@@ -144,7 +134,7 @@ fn frictional<'a>(lines: &[ForceLine<'a>], pictures: &[Row<'a>]) -> Vec<Flow<'a>
     let name = |rate: f64, force: f64| format!("frictional, *f*^{{P}} = {force}, *ε̇* = {rate}");
     let mut flows: Vec<Flow<'a>> = Vec::new();
     for line in lines {
-        flows.extend(line.rest.points.iter().filter_map(|point| {
+        flows.extend(line.flow.rest.points.iter().filter_map(|point| {
             let name = name(line.strain_rate, point.control);
             Flow::of(name, point.rows.iter().copied())
         }));
@@ -174,7 +164,7 @@ fn frictionless<'a>(rows: &[Row<'a>]) -> Vec<Flow<'a>> {
         .collect()
 }
 
-fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
+fn examine(evidence: &Evidence) -> Result<Finding> {
     let branches = evidence.study("elastic-branches")?.rows();
     let elastic = evidence.study("elastic-flow")?;
     let prescribed = evidence.study("unjammed-frictionless")?;
@@ -182,7 +172,7 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
     let frictional = frictional(&lines, &elastic.rows());
     let frictionless = frictionless(&prescribed.rows());
     if frictional.is_empty() || frictionless.is_empty() {
-        return Ok(nothing("No unjammed flow of both models yet."));
+        return Ok(nothing(&PROSE));
     }
     let pairs: Vec<(&Flow<'_>, &Flow<'_>, Outcome)> = frictional
         .iter()
@@ -211,22 +201,20 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("agree", &agree),
         ],
     );
-    let mut found = finding(verdict, summary, together(judged(&lines)));
-    for (one, other, outcome) in &pairs {
+    let mut found = finding(&PROSE, verdict, summary, together(judged(&lines)));
+    let alike = pairs.iter().filter_map(|(one, other, outcome)| {
         let alike = match outcome {
             Outcome::DifferInTemperature => "differ in temperature only",
             Outcome::Agree => "agree",
-            Outcome::Differ | Outcome::Unknown => continue,
+            Outcome::Differ | Outcome::Unknown => return None,
         };
-        found.weaknesses.push(PROSE.text(
+        let (one, other) = (&one.name, &other.name);
+        Some(PROSE.text(
             "alike",
-            &[
-                ("alike", &alike),
-                ("one", &one.name),
-                ("other", &other.name),
-            ],
-        ));
-    }
+            &[("alike", &alike), ("one", one), ("other", other)],
+        ))
+    });
+    found.weaknesses.splice(0..0, alike);
     // The first, at the smallest force, of the source's strain rate where there is one.
     let shown = frictional
         .iter()
@@ -234,9 +222,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
         .unwrap_or(&frictional[0]);
     let shown = [shown].into_iter().chain(&frictionless);
     found.quantities = shown.flat_map(quantities).collect();
-    found
-        .tables
-        .push(table(frictional.iter().chain(&frictionless)));
+    let table = table(frictional.iter().chain(&frictionless));
+    found.tables.push(table);
     found.paragraphs.push(PROSE.text("tubes", &[]));
     found.paragraphs.push(PROSE.text(
         "method",
@@ -246,10 +233,8 @@ fn examine(evidence: &Evidence) -> Result<Finding, ClaimError> {
             ("errors", &CLEAR),
         ],
     ));
-    found.weaknesses.extend(PROSE.paragraphs("weaknesses", &[]));
-    found
-        .figures
-        .extend(figures::profiles(elastic, prescribed)?);
+    let profiles = figures::profiles(elastic, prescribed)?;
+    found.figures.extend(profiles);
     Ok(found)
 }
 
@@ -272,7 +257,7 @@ fn quantities(flow: &Flow<'_>) -> Vec<Quantity> {
 }
 
 fn table<'b, 'a: 'b>(flows: impl Iterator<Item = &'b Flow<'a>>) -> ReportTable {
-    let mut table = PROSE.table("flows", &[], flows.map(Flow::cells).collect());
+    let mut table = PROSE.table("flows", &[], flows.map(Flow::cells));
     let symbols = NUMBERS.iter().map(|(_, symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
     table

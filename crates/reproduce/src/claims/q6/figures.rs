@@ -1,118 +1,83 @@
 //! Figures of Q6: the flow against what might cause its turning back, and the momentum balance against the phase.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, Corner, LegendPlace, Line, Note, Pattern, Points, Reference,
-};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-use peristalsis_formats::Table;
+use peristalsis_figures::chart::{Corner, Note};
 
 use super::{PINNED, PRESET, PROSE, Point, Sampled, Samples};
 use crate::claims::elastic::label;
-use crate::error::ClaimError;
-use crate::evidence::{StudyResults, first_kept};
-use crate::exhibit::points;
-use crate::finding::ReportFigure;
+use crate::claims::prelude::*;
 
 /// Where a wall without a tether stands on the logarithmic axis.
 const FREE_TETHER: f64 = 3e-4;
 
 /// All figures, the most important first.
-pub(super) fn all(
-    results: &StudyResults,
-    samples: &Samples<'_>,
-) -> Result<Vec<ReportFigure>, ClaimError> {
+pub(super) fn all(results: &StudyResults, samples: &Samples<'_>) -> Result<Vec<ReportFigure>> {
     let mut figures = vec![causes(samples)?];
     figures.extend(balance(results, samples)?);
     Ok(figures)
 }
 
-/// A value of some samples against one of what is varied, as joined points; `None` where none has it.
-fn series(
+/// A value of some samples against one of what is varied; `None` where none has it.
+fn series<'a: 'b, 'b>(
     name: &str,
-    samples: &[&Sampled<'_>],
+    samples: impl Iterator<Item = &'b Sampled<'a>>,
     x: fn(&Point) -> f64,
     y: impl Fn(&Sampled<'_>) -> Option<Uncertain>,
 ) -> Option<Points> {
-    let known = samples
-        .iter()
-        .filter_map(|one| Some((x(&one.point), y(one)?)));
-    Some(points(name, known)?.joined())
-}
-
-/// Several series in one panel.
-fn with_series(panel: ChartPanel, all: impl IntoIterator<Item = Option<Points>>) -> ChartPanel {
-    let all = all.into_iter().enumerate();
-    panel.with_all(all.filter_map(|(number, points)| Some(points?.series(number))))
+    joined(
+        name,
+        samples.filter_map(|one| Some((x(&one.point), y(one)?))),
+    )
 }
 
 /// The flow against friction, tether and strain rate, and the forces of the wall against friction.
-fn causes(samples: &Samples<'_>) -> Result<ReportFigure, ClaimError> {
-    let flow_panel = |x_label: &str| {
-        ChartPanel::new(x_label, &label(Axis::FlowRateRatio)).with(Reference::horizontal(0.0))
-    };
-    let flows = |name: &str, samples: Vec<&Sampled<'_>>, x: fn(&Point) -> f64| {
-        series(name, &samples, x, |one| Some(one.flow))
-    };
-    let friction = with_series(
-        flow_panel(&label(Axis::StaticFriction)),
-        [flows("", samples.friction(), |point| point.friction)],
+fn causes(samples: &Samples<'_>) -> Result<ReportFigure> {
+    let panel = |x: &str, y: &str| ChartPanel::new(x, y).with(Reference::horizontal(0.0));
+    let flow_panel = |x: &str| panel(x, &label(Axis::FlowRateRatio));
+    let flow = |one: &Sampled<'_>| Some(one.flow);
+    let of_friction = series("", samples.friction(), |point| point.friction, flow);
+    let friction = flow_panel(&label(Axis::StaticFriction)).with_all(numbered([of_friction]));
+    let of_tether = series(
+        "",
+        samples.tether(),
+        |point| point.tether.max(FREE_TETHER),
+        flow,
     );
-    let tether = with_series(
-        flow_panel("axial tether of the wall, *k*_{z}/*Yd*"),
-        [flows("", samples.tether(), |point| {
-            point.tether.max(FREE_TETHER)
-        })],
-    )
-    .x_scale(Scale::Logarithmic)
-    .x_range(1.5e-4..)
-    .with(Reference::vertical(FREE_TETHER).label("free"));
-    let rate = with_series(
-        flow_panel(&label(Axis::StrainRate)),
-        [("preset", PRESET.tether), ("wall pinned", PINNED)]
-            .map(|(name, tether)| flows(name, samples.rate(tether), |point| point.rate)),
-    )
-    .x_scale(Scale::Logarithmic);
-    let along = samples.friction();
+    let tether = flow_panel("axial tether of the wall, *k*_{z}/*Yd*")
+        .with_all(numbered([of_tether]))
+        .x_scale(Scale::Logarithmic)
+        .x_range(1.5e-4..)
+        .with(Reference::vertical(FREE_TETHER).label("free"));
+    let of_rate = [("preset", PRESET.tether), ("wall pinned", PINNED)]
+        .map(|(name, tether)| series(name, samples.rate(tether), |point| point.rate, flow));
+    let rate = flow_panel(&label(Axis::StrainRate))
+        .with_all(numbered(of_rate))
+        .x_scale(Scale::Logarithmic);
     let force = |name: &str, force: fn(&Sampled<'_>) -> Option<Uncertain>| {
-        series(name, &along, |point| point.friction, force)
+        series(name, samples.friction(), |point| point.friction, force)
     };
-    let forces = ChartPanel::new(
-        &label(Axis::StaticFriction),
-        "force of the wall, 10^{3}*F*/*Yd*^{2}",
-    )
-    .with(Reference::horizontal(0.0));
-    let forces = with_series(
-        forces,
-        [
-            force("normal", |one| one.force("wall_normal_force")),
-            force("friction, front", |one| one.force("front_tangential_force")),
-            force("friction, rear", |one| {
-                one.rest("wall_tangential_force", "front_tangential_force")
-            }),
-        ],
-    );
-    let figure = ChartFigure::grid(2, [friction, tether, rate, forces])
-        .width(Width::DoubleColumn)
-        .description(
-            "Flow against friction, tether and strain rate; forces of the wall against friction.",
-        );
-    Ok(PROSE.figure(
+    let forces = [
+        force("normal", |one| one.force("wall_normal_force")),
+        force("friction, front", |one| one.force("front_tangential_force")),
+        force("friction, rear", |one| {
+            one.rest("wall_tangential_force", "front_tangential_force")
+        }),
+    ];
+    let of_wall = "force of the wall, 10^{3}*F*/*Yd*^{2}";
+    let forces = panel(&label(Axis::StaticFriction), of_wall).with_all(numbered(forces));
+    let panels = [friction, tether, rate, forces];
+    PROSE.chart(
         "cause-of-back-flow",
         &[
             ("friction", &PRESET.friction),
             ("tether", &PRESET.tether),
             ("rate", &PRESET.rate),
         ],
-        figure.draw()?,
-    ))
+        ChartFigure::grid(2, panels).width(Width::DoubleColumn),
+    )
 }
 
 /// Radius, velocities and forces against the phase, with and without friction; `None` where no profile is at hand.
-fn balance(
-    results: &StudyResults,
-    samples: &Samples<'_>,
-) -> Result<Option<ReportFigure>, ClaimError> {
+fn balance(results: &StudyResults, samples: &Samples<'_>) -> Result<Option<ReportFigure>> {
     let mut columns = Vec::new();
     for friction in [PRESET.friction, 0.0] {
         let Some(one) = samples.at(Point { friction, ..PRESET }) else {
@@ -129,33 +94,32 @@ fn balance(
         .clone()
         .with(Note::corner(Corner::BottomLeft, "wave →"));
     let panels = (0..3).flat_map(|row| columns.iter().map(move |column| column[row].clone()));
-    let figure = ChartFigure::grid(columns.len(), panels)
+    let chart = ChartFigure::grid(columns.len(), panels)
         .width(Width::DoubleColumn)
         .panel_height(34.0)
         .share_x()
-        .legend(LegendPlace::Below)
-        .description("Radius, velocities and forces against phase with and without friction.");
-    Ok(Some(PROSE.figure("axial-balance", &[], figure.draw()?)))
+        .legend(LegendPlace::Below);
+    PROSE.chart("axial-balance", &[], chart).map(Some)
 }
 
 /// Radius, velocities and forces against the phase of one run.
-fn column(friction: f64, wave_speed: f64, profile: &Table) -> Result<[ChartPanel; 3], ClaimError> {
+fn column(friction: f64, wave_speed: f64, profile: &Table) -> Result<[ChartPanel; 3]> {
     let position = profile.reals("position")?;
-    let scaled = |name: &str, factor: f64| -> Result<Vec<f64>, ClaimError> {
+    let scaled = |name: &str, factor: f64| -> Result<Vec<f64>> {
         let values = profile.reals(name)?;
         Ok(values.iter().map(|value| factor * value).collect())
     };
     let panel = |x_label: &str, y_label: &str| ChartPanel::new(x_label, y_label).x_range(0.0..=1.0);
     let radius = panel("", "radius, *R*/*d*")
         .title(&format!("*μ*_{{s}} = {friction}"))
-        .with(Line::new("", position, profile.reals("radius")?).series(6));
+        .with(Curve::new("", position, profile.reals("radius")?).series(6));
     let grains = scaled("axial_velocity", 1.0 / wave_speed)?;
     let wall = scaled("wall_axial_velocity", 1.0 / wave_speed)?;
     let velocity = panel("", &label(Axis::AxialVelocity))
         .with(Reference::horizontal(0.0))
-        .with(Line::new("grains", position, &grains).series(0))
+        .with(Curve::new("grains", position, &grains).series(0))
         .with(
-            Line::new("wall", position, &wall)
+            Curve::new("wall", position, &wall)
                 .series(4)
                 .pattern(Pattern::Dashed),
         );

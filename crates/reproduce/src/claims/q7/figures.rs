@@ -1,43 +1,33 @@
 //! The figure of Q7: four corners at the bottlenecks that were measured.
 
-use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Points, Reference, Tint,
-};
-use peristalsis_figures::{Quantity as Axis, Width};
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
 use super::{Corner, PROSE, bottleneck};
-use crate::branch::Branch;
 use crate::claims::elastic::label;
-use crate::error::ClaimError;
-use crate::exhibit::{points, spaced};
-use crate::finding::ReportFigure;
+use crate::claims::prelude::*;
 
 /// Flow against the measured bottleneck, a panel a corner.
-pub(super) fn figure(corners: &[Corner<'_>]) -> Result<ReportFigure, ClaimError> {
+pub(super) fn figure(corners: &[Corner<'_>]) -> Result<ReportFigure> {
     let widths = || {
-        let points = corners.iter().flat_map(Corner::points);
+        let points = corners.iter().flat_map(|corner| corner.flow.points());
         points.map(|point| bottleneck(point).value)
     };
     let least = widths().fold(f64::INFINITY, f64::min);
     let largest = widths().fold(0.0, f64::max);
-    let figure = ChartFigure::grid(
-        2,
-        corners.iter().map(|corner| panel(corner, least, largest)),
-    )
-    .width(Width::DoubleColumn)
-    .share_x()
-    .share_y()
-    .legend(LegendPlace::Below)
-    .description("Flow against bottleneck in four panels: friction by control.");
-    Ok(PROSE.figure("two-by-two", &[], figure.draw()?))
+    let panels = corners.iter().map(|corner| panel(corner, least, largest));
+    let chart = ChartFigure::grid(2, panels)
+        .width(Width::DoubleColumn)
+        .share_x()
+        .share_y()
+        .legend(LegendPlace::Below);
+    PROSE.chart("two-by-two", &[], chart)
 }
 
 /// One corner, between the least and the largest bottleneck of all.
 fn panel(corner: &Corner<'_>, least: f64, largest: f64) -> ChartPanel {
     let margin = 0.05 * (largest - least).max(0.1);
-    let rest = flows("from rest", &corner.rest);
-    let jammed = flows("from jammed", &corner.jammed);
+    let rest = flows("from rest", &corner.flow.rest);
+    let jammed = flows("from jammed", &corner.flow.jammed);
     ChartPanel::new(
         "bottleneck as measured, *w*/*d*",
         &label(Axis::FlowRateRatio),
@@ -48,7 +38,7 @@ fn panel(corner: &Corner<'_>, least: f64, largest: f64) -> ChartPanel {
     .with(Reference::horizontal(0.0))
     .with_all(rest.map(|points| points.series(0)))
     .with_all(jammed.map(|points| points.series(1).open()))
-    .with_all(fluid(corner, least, largest))
+    .with_all(of_fluid(corner, least, largest))
 }
 
 /// A branch against the bottleneck, in its order, so that the line does not run back and forth.
@@ -57,23 +47,17 @@ fn flows(name: &str, branch: &Branch<'_>) -> Option<Points> {
     let mut known: Vec<_> = known.map(|point| (bottleneck(point), point.flow)).collect();
     known.sort_by(|one, other| one.0.value.total_cmp(&other.0.value));
     let errors: Vec<f64> = known.iter().map(|one| one.0.error).collect();
-    let points = points(name, known.iter().map(|one| (one.0.value, one.1)))?;
-    Some(points.x_errors(&errors).joined())
+    let points = joined(name, known.iter().map(|one| (one.0.value, one.1)))?;
+    Some(points.x_errors(&errors))
 }
 
 /// A Newtonian fluid in a sine of each bottleneck.
-fn fluid(corner: &Corner<'_>, least: f64, largest: f64) -> Option<Line> {
+fn of_fluid(corner: &Corner<'_>, least: f64, largest: f64) -> Option<Curve> {
     let radius = corner.rows.first()?.radius();
-    let (x, y): (Vec<f64>, Vec<f64>) = spaced(least, largest.min(2.0 * radius), 100)
-        .into_iter()
-        .filter_map(|width| {
-            let fluid = NewtonianPeristalsis::from_width(width, radius, 0.0)?;
-            Some((width, fluid.flow_rate_ratio()))
-        })
-        .unzip();
-    (x.len() > 1).then(|| {
-        Line::new("Newtonian fluid", &x, &y)
-            .tint(Tint::Grey)
-            .pattern(Pattern::Dashed)
-    })
+    let flow = |width| {
+        let fluid = NewtonianPeristalsis::from_width(width, radius, 0.0)?;
+        Some((width, fluid.flow_rate_ratio()))
+    };
+    let widths = spaced(least, largest.min(2.0 * radius), 100);
+    fluid(Tint::Grey, widths.into_iter().map(flow))
 }

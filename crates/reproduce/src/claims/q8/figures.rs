@@ -1,20 +1,12 @@
 //! The figure of Q8: flow and fluctuation in tubes of several lengths, and the loops of sweeps.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Points, Reference};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-
 use super::{AtRate, Ladder, Loop, PROSE};
-use crate::branch::Point;
 use crate::claims::elastic::label;
-use crate::error::ClaimError;
-use crate::exhibit::points;
-use crate::finding::ReportFigure;
-use crate::text::number;
+use crate::claims::prelude::*;
 use crate::thresholds::PASSED;
 
 /// Flow and fluctuation against the force, a column a strain rate, and below the loops.
-pub(super) fn figure(rates: &[AtRate<'_, '_>]) -> Result<Option<ReportFigure>, ClaimError> {
+pub(super) fn figure(rates: &[AtRate<'_, '_>]) -> Result<Option<ReportFigure>> {
     let mut panels = Vec::new();
     if rates.iter().any(|at| !at.ladders.is_empty()) {
         panels.extend(rates.iter().map(flow));
@@ -27,12 +19,11 @@ pub(super) fn figure(rates: &[AtRate<'_, '_>]) -> Result<Option<ReportFigure>, C
     if panels.is_empty() {
         return Ok(None);
     }
-    let figure = ChartFigure::grid(rates.len(), panels)
+    let chart = ChartFigure::grid(rates.len(), panels)
         .width(Width::DoubleColumn)
         .panel_height(36.0)
-        .legend(LegendPlace::Below)
-        .description("Flow, fluctuation and loops of sweeps at two strain rates.");
-    let figure = PROSE.figure("small-speed", &[("passed", &PASSED)], figure.draw()?);
+        .legend(LegendPlace::Below);
+    let figure = PROSE.chart("small-speed", &[("passed", &PASSED)], chart)?;
     Ok(Some(figure))
 }
 
@@ -65,27 +56,22 @@ fn by_length(
     at: &AtRate<'_, '_>,
     value: impl Fn(&Ladder<'_>, &Point<'_>) -> Option<Uncertain>,
 ) -> Vec<Points> {
-    let series = |(series, ladder): (usize, &&Ladder<'_>)| {
+    let series = |(place, ladder): (usize, &&Ladder<'_>)| {
         let known = ladder.branch.points.iter();
         let known = known.filter_map(|point| Some((1e3 * point.control, value(ladder, point)?)));
-        let points = points(&format!("{} waves", ladder.waves), known)?.series(series);
+        let points = joined(&format!("{} waves", ladder.waves), known)?;
         // Curves that fall on one another are told apart by open marks.
-        Some(if series % 2 == 1 {
-            points.open()
-        } else {
-            points
-        })
+        let is_open = place % 2 == 1;
+        Some(if is_open { points.open() } else { points })
     };
-    at.ladders.iter().enumerate().filter_map(series).collect()
+    numbered(at.ladders.iter().enumerate().map(series)).collect()
 }
 
 fn sweeps(at: &AtRate<'_, '_>) -> ChartPanel {
     let force = |name: &str, force: fn(&Loop) -> Option<Uncertain>| {
         let known = at.loops.iter();
-        points(
-            name,
-            known.filter_map(|one| Some((one.periods, force(one)?.scaled(1e3)))),
-        )
+        let forces = known.filter_map(|one| Some((one.periods, force(one)?.scaled(1e3))));
+        joined(name, forces)
     };
     let raised = force("force raised", |one| one.up).map(|points| points.series(3));
     let lowered = force("force lowered", |one| one.down).map(|points| points.series(4).open());
@@ -98,10 +84,10 @@ fn sweeps(at: &AtRate<'_, '_>) -> ChartPanel {
     with_series(panel, raised.into_iter().chain(lowered).collect())
 }
 
-/// Joined points; a panel without data has ranges to itself.
+/// A panel without data has ranges to itself.
 fn with_series(panel: ChartPanel, series: Vec<Points>) -> ChartPanel {
     if series.is_empty() {
         return panel.x_range(1.0..=10.0).y_range(0.01..=1.0);
     }
-    panel.with_all(series.into_iter().map(Points::joined))
+    panel.with_all(series)
 }

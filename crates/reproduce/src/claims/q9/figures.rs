@@ -1,44 +1,30 @@
 //! Figures of Q9: the characteristic curves of the pumps, and what acts on their walls.
 
-use peristalsis_analysis::Uncertain;
-use peristalsis_figures::chart::{
-    ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Points, Reference, Tint,
-};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-use peristalsis_formats::Table;
-
 use super::{PROSE, Pump, WAVEFORMS, dispersion, efficiency};
-use crate::branch::Point;
-use crate::error::ClaimError;
-use crate::evidence::first_kept;
-use crate::exhibit::{error_band, label, points};
-use crate::finding::ReportFigure;
+use crate::claims::prelude::*;
 
 /// Loads at which the curves of a Newtonian fluid are drawn.
 const LOADS: i32 = 100;
-/// What every panel says of the fluid.
-const FLUID: &str = "Newtonian fluid";
 /// Lowest flow that is drawn: grains that fall back go beyond.
 const LEAST_FLOW: f64 = -0.5;
 
 /// All figures, the most important first.
-pub(super) fn all(pumps: &[Pump<'_>]) -> Result<Vec<ReportFigure>, ClaimError> {
+pub(super) fn all(pumps: &[Pump<'_>]) -> Result<Vec<ReportFigure>> {
     let mut figures = vec![characteristic(pumps)?];
     figures.extend(on_the_wall(pumps)?);
     Ok(figures)
 }
 
 /// Flow, efficiency and dispersion against the back pressure, a column a pump.
-fn characteristic(pumps: &[Pump<'_>]) -> Result<ReportFigure, ClaimError> {
+fn characteristic(pumps: &[Pump<'_>]) -> Result<ReportFigure> {
     let panels = [flow_panel, efficiency_panel, dispersion_panel];
     let panels = panels.into_iter().flat_map(|panel| pumps.iter().map(panel));
-    let figure = ChartFigure::grid(pumps.len(), panels)
+    let chart = ChartFigure::grid(pumps.len(), panels)
         .width(Width::DoubleColumn)
         .panel_height(38.0)
         .share_x()
-        .legend(LegendPlace::Below)
-        .description("Flow, efficiency and dispersion against back pressure for both models and three waveforms.");
-    Ok(PROSE.figure("pump-characteristic", &[], figure.draw()?))
+        .legend(LegendPlace::Below);
+    PROSE.chart("pump-characteristic", &[], chart)
 }
 
 fn flow_panel(pump: &Pump<'_>) -> ChartPanel {
@@ -46,7 +32,7 @@ fn flow_panel(pump: &Pump<'_>) -> ChartPanel {
         .title(pump.model.name)
         .y_range(LEAST_FLOW..=1.1)
         .with(Reference::horizontal(0.0));
-    with_series(panel, pump, |point| Some(point.flow)).with_all(fluid(pump, |load| {
+    with_series(panel, pump, |point| Some(point.flow)).with_all(of_fluid(pump, |load| {
         Some(pump.newtonian(load)?.flow_rate_ratio())
     }))
 }
@@ -59,7 +45,7 @@ fn efficiency_panel(pump: &Pump<'_>) -> ChartPanel {
             .filter(|_| point.flow.value > 0.0)
             .or((point.control == 0.0).then_some(Uncertain::normal(0.0, 0.0)))
     };
-    with_series(panel, pump, of_grains).with_all(fluid(pump, |load| match load {
+    with_series(panel, pump, of_grains).with_all(of_fluid(pump, |load| match load {
         0.0 => Some(0.0),
         load => pump.newtonian(load)?.efficiency(),
     }))
@@ -87,16 +73,13 @@ fn with_series(
     if largest > 0.0 {
         panel = panel.x_range(-0.02 * largest..=1.04 * largest);
     }
-    let series: Vec<Points> = pump
-        .characteristics
-        .iter()
-        .filter_map(|one| {
-            let known = one.branch.points.iter();
-            let known = known.filter_map(|point| Some((point.control, value(point)?)));
-            let series = WAVEFORMS.iter().position(|name| *name == one.waveform)?;
-            Some(points(one.waveform, known)?.series(series).joined())
-        })
-        .collect();
+    let series = pump.characteristics.iter().filter_map(|one| {
+        let known = one.branch.points.iter();
+        let known = known.filter_map(|point| Some((point.control, value(point)?)));
+        let series = WAVEFORMS.iter().position(|name| *name == one.waveform)?;
+        Some(joined(one.waveform, known)?.series(series))
+    });
+    let series: Vec<Points> = series.collect();
     if series.is_empty() {
         // An empty panel has a range to itself, whatever its scale.
         return panel.y_range(0.01..=1.0);
@@ -105,23 +88,17 @@ fn with_series(
 }
 
 /// The curve of a Newtonian fluid that stops where the grains turn round.
-fn fluid(pump: &Pump<'_>, value: impl Fn(f64) -> Option<f64>) -> Option<Line> {
-    let stop = pump.sine().stop()?;
-    let (x, y): (Vec<f64>, Vec<f64>) = (0..=LOADS)
-        .filter_map(|part| {
-            let load = f64::from(part) / f64::from(LOADS);
-            Some((load * stop.value, value(load)?))
-        })
-        .unzip();
-    (x.len() > 1).then(|| {
-        Line::new(FLUID, &x, &y)
-            .tint(Tint::Black)
-            .pattern(Pattern::Dashed)
-    })
+fn of_fluid(pump: &Pump<'_>, value: impl Fn(f64) -> Option<f64>) -> Option<Curve> {
+    let stop = pump.sine().stop()?.value;
+    let loads = (0..=LOADS).map(|part| f64::from(part) / f64::from(LOADS));
+    fluid(
+        Tint::Black,
+        loads.map(|load| Some((load * stop, value(load)?))),
+    )
 }
 
 /// The profiles of the sine without back pressure and against the largest that it still pumps against, with their names.
-fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>, ClaimError> {
+fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>> {
     let mut profiles = Vec::new();
     let last = pump.sine().last().filter(|point| point.control > 0.0);
     for point in [pump.sine().free()].into_iter().chain(last) {
@@ -137,7 +114,7 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>, ClaimError> {
 }
 
 /// Radius, pressure and shear against the phase of the wave, a column a pump; `None` where no profile is at hand.
-fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
+fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>> {
     let mut columns = Vec::new();
     for pump in pumps {
         let profiles = profiles(pump)?;
@@ -162,13 +139,12 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>, ClaimError> {
         let panel = ChartPanel::new(&label(Axis::Phase), &y_label).with(Reference::horizontal(0.0));
         panels.push(with_profiles(panel, profiles, "wall_shear")?);
     }
-    let figure = ChartFigure::grid(columns.len(), panels)
+    let chart = ChartFigure::grid(columns.len(), panels)
         .width(Width::DoubleColumn)
         .panel_height(32.0)
         .share_x()
-        .legend(LegendPlace::Below)
-        .description("Radius, pressure and shear against phase for both models.");
-    Ok(Some(PROSE.figure("pump-wall", &[], figure.draw()?)))
+        .legend(LegendPlace::Below);
+    PROSE.chart("pump-wall", &[], chart).map(Some)
 }
 
 /// A column of each profile against the phase, with bands where it has errors.
@@ -176,11 +152,11 @@ fn with_profiles(
     panel: ChartPanel,
     profiles: &[(&str, Table)],
     column: &str,
-) -> Result<ChartPanel, ClaimError> {
+) -> Result<ChartPanel> {
     let mut panel = panel.x_range(0.0..=1.0);
     for (series, (name, profile)) in profiles.iter().enumerate() {
         let (position, value) = (profile.reals("position")?, profile.reals(column)?);
-        panel = panel.with(Line::new(name, position, value).series(series));
+        panel = panel.with(Curve::new(name, position, value).series(series));
         if let Ok(error) = profile.reals(&format!("{column}_error")) {
             panel = panel.with(error_band(position, value, error).series(series));
         }

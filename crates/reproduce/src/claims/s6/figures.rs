@@ -1,15 +1,8 @@
 //! The figure of S6: profiles of the flows that are compared.
 
-use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line as Curve, Reference};
-use peristalsis_figures::{Quantity as Axis, Scale, Width};
-
 use super::PROSE;
 use crate::claims::elastic::{is_frictionless, label};
-use crate::error::ClaimError;
-use crate::evidence::StudyResults;
-use crate::exhibit::error_band;
-use crate::finding::ReportFigure;
-use crate::row::{Row, by_strain_rate};
+use crate::claims::prelude::*;
 use crate::thresholds::UNJAMMED;
 
 /// A profile about the throat: place, density over its mean, v/c, T/(m c^2), each with its error.
@@ -22,7 +15,7 @@ struct Curves {
 
 impl Curves {
     /// The profile of one run, the throat in the middle; `None` where it was not kept.
-    fn of(name: String, study: &StudyResults, row: &Row<'_>) -> Result<Option<Self>, ClaimError> {
+    fn of(name: String, study: &StudyResults, row: &Row<'_>) -> Result<Option<Self>> {
         let Some(table) = study.profile(row)? else {
             return Ok(None);
         };
@@ -35,7 +28,7 @@ impl Curves {
         let density = table.reals("density")?;
         let mean = density.iter().sum::<f64>() / bins.max(1) as f64;
         let order = |k: usize| (throat + k + bins - bins / 2) % bins;
-        let column = |name: &str, unit: f64| -> Result<Vec<f64>, ClaimError> {
+        let column = |name: &str, unit: f64| -> Result<Vec<f64>> {
             let values = table.reals(name)?;
             Ok((0..bins).map(|k| values[order(k)] / unit).collect())
         };
@@ -60,7 +53,7 @@ impl Curves {
 
 /// One run of each flow: of frictional grains at the smallest force, of frictionless ones in the same tube, and between
 /// prescribed walls.
-fn curves(elastic: &StudyResults, prescribed: &StudyResults) -> Result<Vec<Curves>, ClaimError> {
+fn curves(elastic: &StudyResults, prescribed: &StudyResults) -> Result<Vec<Curves>> {
     let is_unjammed = |row: &Row<'_>| row.flow_rate_ratio() < UNJAMMED;
     let rows = elastic.rows();
     let frictional = rows
@@ -89,7 +82,7 @@ fn curves(elastic: &StudyResults, prescribed: &StudyResults) -> Result<Vec<Curve
 pub(super) fn profiles(
     elastic: &StudyResults,
     prescribed: &StudyResults,
-) -> Result<Option<ReportFigure>, ClaimError> {
+) -> Result<Option<ReportFigure>> {
     let curves = curves(elastic, prescribed)?;
     if curves.is_empty() {
         return Ok(None);
@@ -113,9 +106,8 @@ pub(super) fn profiles(
                     .with(Curve::new(&curve.name, &curve.place, value).series(series))
             })
     });
-    let figure = ChartFigure::grid(3, panels)
+    let chart = ChartFigure::grid(3, panels)
         .legend(LegendPlace::Below)
-        .width(Width::DoubleColumn)
-        .description("Density, velocity and temperature along the wave for frictional and frictionless grains.");
-    Ok(Some(PROSE.figure("profiles", &[], figure.draw()?)))
+        .width(Width::DoubleColumn);
+    PROSE.chart("profiles", &[], chart).map(Some)
 }
