@@ -4,7 +4,7 @@ use crate::columns::distinct;
 use crate::error::{Error, check_points, checked, checked_positive, enough_places};
 use crate::law::{CriticalRange, Law};
 use crate::numerics::gamma::chi_squared_tail;
-use crate::numerics::linear::{Cholesky, least_squares};
+use crate::numerics::linear::{Cholesky, add_information, least_squares};
 use crate::numerics::minimum::minimise_from_grid;
 use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
@@ -118,11 +118,7 @@ impl Points<'_> {
                 self.law.covariate(width, critical),
                 exponent * self.law.covariate_slope(width, critical),
             ];
-            for row in 0..3 {
-                for column in 0..3 {
-                    information[row][column] += weight * slopes[row] * slopes[column];
-                }
-            }
+            add_information(&mut information, weight, &slopes);
         }
         match self.known {
             Some(known) if known.error > 0.0 => {

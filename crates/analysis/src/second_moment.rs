@@ -99,8 +99,8 @@ pub fn second_moment_peak<S: AsRef<[f64]>>(
     let group: Vec<Run<'_>> = checked_runs(runs, after_end)?;
     let group: Vec<&Run<'_>> = group.iter().collect();
     let mut heights = Vec::new();
-    let found = bootstrap_errors(&[group], bootstrap, |groups| {
-        let (index, value) = highest(&moments_of(&groups[0]))?;
+    let found = bootstrap_errors(&group, bootstrap, |runs| {
+        let (index, value) = highest(&moments_of(runs))?;
         heights.push(value);
         Some([index as f64, value])
     })?;

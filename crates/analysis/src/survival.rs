@@ -208,20 +208,11 @@ impl Survival {
         self.check_horizon(horizon, 2)?;
         let table = self.table();
         let (mean, _) = restricted_integrals(&table, horizon);
-        let mut survival = 1.0;
-        let mut before = 0.0;
-        let mut since = 0.0;
         let mut variance = 0.0;
-        for &(time, at_risk, transitions) in &table {
-            if time >= horizon {
-                break;
-            }
-            let (exposed, gone) = (at_risk as f64, transitions as f64);
-            before += survival * (time - since);
-            survival *= 1.0 - gone / exposed;
-            since = time;
+        for &(time, at_risk, transitions) in table.iter().take_while(|row| row.0 < horizon) {
             if at_risk > transitions {
-                let after = mean - before;
+                let (exposed, gone) = (at_risk as f64, transitions as f64);
+                let after = mean - restricted_integrals(&table, time).0;
                 variance += after * after * gone / (exposed * (exposed - gone));
             }
         }

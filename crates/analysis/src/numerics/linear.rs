@@ -75,12 +75,10 @@ pub(crate) fn least_squares<const N: usize>(
     let mut right = [0.0; N];
     for (index, (&y, &weight)) in y.iter().zip(weight).enumerate() {
         let functions = basis(index);
-        for row in 0..N {
-            right[row] += weight * functions[row] * y;
-            for column in 0..N {
-                information[row][column] += weight * functions[row] * functions[column];
-            }
+        for (right, function) in right.iter_mut().zip(functions) {
+            *right += weight * function * y;
         }
+        add_information(&mut information, weight, &functions);
     }
     let factor = Cholesky::new(&information)?;
     let coefficients = factor.solve(&right);
@@ -110,6 +108,19 @@ pub(crate) fn error_of<const N: usize>(weights: &[f64; N], covariance: &[[f64; N
         }
     }
     variance.max(0.0).sqrt()
+}
+
+/// Adds what an observation of this weight says of the coefficients of functions with these values.
+pub(crate) fn add_information<const N: usize>(
+    information: &mut [[f64; N]; N],
+    weight: f64,
+    functions: &[f64; N],
+) {
+    for (row, left) in information.iter_mut().zip(functions) {
+        for (entry, right) in row.iter_mut().zip(functions) {
+            *entry += weight * left * right;
+        }
+    }
 }
 
 /// Second derivatives of a function by central differences with the given steps.

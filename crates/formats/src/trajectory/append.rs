@@ -1,6 +1,6 @@
 //! A file that grows at its end, and is cut back where writing fails.
 
-use std::fs::File;
+use std::fs::{File, OpenOptions};
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
@@ -17,35 +17,27 @@ pub(super) struct Growing {
 impl Growing {
     /// A new empty file, over an older one.
     pub(super) fn create(path: &Path) -> Result<Self, FormatError> {
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(true)
-            .open(path)
-            .map_err(FormatError::io("create", path))?;
-        Ok(Self {
-            file,
-            path: path.to_owned(),
-            end: 0,
-        })
+        let mut options = File::options();
+        Self::with(options.create(true).truncate(true), "create", path)
     }
 
     /// A file that there is, as long as it is.
     pub(super) fn open(path: &Path) -> Result<Self, FormatError> {
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .open(path)
-            .map_err(FormatError::io("open", path))?;
-        let end = file
-            .metadata()
-            .map_err(FormatError::io("read", path))?
-            .len();
+        Self::with(&mut File::options(), "open", path)
+    }
+
+    fn with(
+        options: &mut OpenOptions,
+        operation: &'static str,
+        path: &Path,
+    ) -> Result<Self, FormatError> {
+        let file = options.read(true).write(true).open(path);
+        let file = file.map_err(FormatError::io(operation, path))?;
+        let about = file.metadata().map_err(FormatError::io("read", path))?;
         Ok(Self {
             file,
             path: path.to_owned(),
-            end,
+            end: about.len(),
         })
     }
 

@@ -12,23 +12,20 @@ use super::{Frame, TrajectoryFile};
 use crate::error::FormatError;
 
 /// Name of the file in a run's folder.
-pub const FILE: &str = "trajectory.lammpstrj";
+pub(super) const FILE: &str = "trajectory.lammpstrj";
 
 const UNITS: &str = "ITEM: UNITS\nlj\n";
 
 /// A trajectory as LAMMPS text that is being written.
 #[derive(Debug)]
-pub struct LammpsTrajectory {
+pub(super) struct LammpsTrajectory {
     file: Growing,
     frames: u64,
 }
 
 impl LammpsTrajectory {
     /// An empty trajectory.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`].
-    pub fn create(path: &Path) -> Result<Self, FormatError> {
+    pub(super) fn create(path: &Path) -> Result<Self, FormatError> {
         Ok(Self {
             file: Growing::create(path)?,
             frames: 0,
@@ -36,10 +33,7 @@ impl LammpsTrajectory {
     }
 
     /// A trajectory to go on with, without its frames after `step`.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`]; [`FormatError::NotATrajectory`].
-    pub fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
+    pub(super) fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
         let mut file = Growing::open(path)?;
         let failed = |source| FormatError::io("read", path)(source);
         let inner = file.file();

@@ -3,8 +3,8 @@
 //! | format | files | precision | what it holds |
 //! |---|---|---|---|
 //! | [`gsd`] | `trajectory.gsd` | 32 bits | spheres and logged values; small and fast |
-//! | [`vtp`] | `trajectory.pvd`, `contacts.pvd`, `trajectory/*.vtp` | 64 bits | spheres, and contacts with their forces |
-//! | [`lammps`] | `trajectory.lammpstrj` | shortest text that reads back to the same 64 bits | spheres |
+//! | `vtp` | `trajectory.pvd`, `contacts.pvd`, `trajectory/*.vtp` | 64 bits | spheres, and contacts with their forces |
+//! | `lammps` | `trajectory.lammpstrj` | shortest text that reads back to the same 64 bits | spheres |
 //!
 //! After a kill a trajectory is readable up to its last whole frame: what a reader finds a frame by is written after the
 //! frame. [`TrajectoryFile::synchronize`] makes frames outlast a power cut as well. A writer that failed leaves the frames
@@ -12,8 +12,8 @@
 
 mod append;
 pub mod gsd;
-pub mod lammps;
-pub mod vtp;
+mod lammps;
+mod vtp;
 
 use std::borrow::Cow;
 use std::path::Path;
@@ -126,7 +126,7 @@ impl TrajectoryFormat {
     /// Every format.
     pub const ALL: [Self; 3] = [Self::Gsd, Self::Vtp, Self::Lammps];
 
-    /// The file in a folder that a reader opens; [`vtp::CONTACTS`] is beside its own.
+    /// The file in a folder that a reader opens; that of the contacts in VTP is beside its own.
     #[must_use]
     pub fn file_name(self) -> &'static str {
         match self {

@@ -15,18 +15,18 @@ use crate::atomic;
 use crate::error::FormatError;
 
 /// Index of the spheres, in a run's folder.
-pub const SPHERES: &str = "trajectory.pvd";
+pub(super) const SPHERES: &str = "trajectory.pvd";
 /// Index of the contacts.
-pub const CONTACTS: &str = "contacts.pvd";
+pub(super) const CONTACTS: &str = "contacts.pvd";
 /// Folder of the frames.
-pub const FOLDER: &str = "trajectory";
+pub(super) const FOLDER: &str = "trajectory";
 
 const BEGINNING: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" \
                          byte_order=\"LittleEndian\">\n<Collection>\n";
 
 /// A trajectory in VTP that is being written.
 #[derive(Debug)]
-pub struct VtpTrajectory {
+pub(super) struct VtpTrajectory {
     folder: PathBuf,
     listed: Vec<Listed>,
     /// Frames that are on the disk for certain.
@@ -42,45 +42,36 @@ struct Listed {
 }
 
 /// What a file of a frame holds.
-#[derive(Clone, Copy, Debug)]
-enum Content {
-    Spheres,
-    Contacts,
+struct Content {
+    index: &'static str,
+    /// How names of files begin.
+    name: &'static str,
+    encode: fn(&Frame) -> Vec<u8>,
 }
 
+const CONTENTS: [Content; 2] = [
+    Content {
+        index: SPHERES,
+        name: "spheres",
+        encode: spheres,
+    },
+    Content {
+        index: CONTACTS,
+        name: "contacts",
+        encode: contacts,
+    },
+];
+
 impl Content {
-    const ALL: [Self; 2] = [Self::Spheres, Self::Contacts];
-
-    fn index(self) -> &'static str {
-        match self {
-            Self::Spheres => SPHERES,
-            Self::Contacts => CONTACTS,
-        }
-    }
-
     /// The file of a frame, from the folder of the index on.
-    fn file(self, step: u64) -> String {
-        let name = match self {
-            Self::Spheres => "spheres",
-            Self::Contacts => "contacts",
-        };
-        format!("{FOLDER}/{name}-{step:012}.vtp")
-    }
-
-    fn encode(self, frame: &Frame) -> Vec<u8> {
-        match self {
-            Self::Spheres => spheres(frame),
-            Self::Contacts => contacts(frame),
-        }
+    fn file(&self, step: u64) -> String {
+        format!("{FOLDER}/{}-{step:012}.vtp", self.name)
     }
 }
 
 impl VtpTrajectory {
     /// An empty trajectory in a folder.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`].
-    pub fn create(folder: &Path) -> Result<Self, FormatError> {
+    pub(super) fn create(folder: &Path) -> Result<Self, FormatError> {
         let frames = folder.join(FOLDER);
         fs::create_dir_all(&frames).map_err(FormatError::io("create", &frames))?;
         let mut trajectory = Self {
@@ -94,10 +85,7 @@ impl VtpTrajectory {
     }
 
     /// A trajectory to go on with, without its frames after `step`.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`]; [`FormatError::NotATrajectory`].
-    pub fn resume(folder: &Path, step: u64) -> Result<Self, FormatError> {
+    pub(super) fn resume(folder: &Path, step: u64) -> Result<Self, FormatError> {
         let path = folder.join(SPHERES);
         let text = fs::read_to_string(&path).map_err(FormatError::io("read", &path))?;
         if !text.starts_with(BEGINNING) {
@@ -122,7 +110,7 @@ impl VtpTrajectory {
             bytes: 0,
         };
         for frame in &listed[..kept] {
-            for content in Content::ALL {
+            for content in &CONTENTS {
                 let file = folder.join(content.file(frame.step));
                 let found = fs::metadata(&file).map_err(FormatError::io("read", &file))?;
                 trajectory.bytes += found.len();
@@ -149,7 +137,7 @@ impl VtpTrajectory {
 
     /// Writes both indices.
     fn list(&mut self, frames: &[Listed]) -> Result<(), FormatError> {
-        for content in Content::ALL {
+        for content in &CONTENTS {
             let mut text = String::from(BEGINNING);
             for frame in frames {
                 writeln!(
@@ -161,7 +149,7 @@ impl VtpTrajectory {
                 .expect("writing to a String cannot fail");
             }
             text.push_str("</Collection>\n</VTKFile>\n");
-            atomic::replace(&self.folder.join(content.index()), text.as_bytes())?;
+            atomic::replace(&self.folder.join(content.index), text.as_bytes())?;
         }
         self.listed = frames.to_vec();
         Ok(())
@@ -171,8 +159,8 @@ impl VtpTrajectory {
 impl TrajectoryFile for VtpTrajectory {
     fn append(&mut self, frame: &Frame) -> Result<(), FormatError> {
         let mut bytes = 0;
-        for content in Content::ALL {
-            let encoded = content.encode(frame);
+        for content in &CONTENTS {
+            let encoded = (content.encode)(frame);
             atomic::replace(&self.folder.join(content.file(frame.step)), &encoded)?;
             bytes += encoded.len() as u64;
         }
@@ -188,15 +176,10 @@ impl TrajectoryFile for VtpTrajectory {
 
     fn synchronize(&mut self) -> Result<(), FormatError> {
         let new = &self.listed[self.synchronized..];
-        let files = Content::ALL
-            .iter()
-            .flat_map(|content| new.iter().map(|frame| content.file(frame.step)))
-            .chain(
-                Content::ALL
-                    .iter()
-                    .map(|content| content.index().to_owned()),
-            );
-        for name in files {
+        let frames = |content: &'static Content| new.iter().map(|frame| content.file(frame.step));
+        let files: Vec<String> = CONTENTS.iter().flat_map(frames).collect();
+        let indices = CONTENTS.iter().map(|content| content.index.to_owned());
+        for name in files.into_iter().chain(indices) {
             let path = self.folder.join(name);
             File::open(&path)
                 .and_then(|file| file.sync_all())
@@ -219,10 +202,8 @@ impl TrajectoryFile for VtpTrajectory {
 
 /// Bytes that a frame takes.
 pub(super) fn frame_bytes(frame: &Frame) -> u64 {
-    Content::ALL
-        .iter()
-        .map(|content| content.encode(frame).len() as u64)
-        .sum()
+    let bytes = CONTENTS.iter().map(|content| (content.encode)(frame).len());
+    bytes.sum::<usize>() as u64
 }
 
 /// The frame of a line of an index.

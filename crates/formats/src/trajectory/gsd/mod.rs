@@ -6,8 +6,6 @@
 //!   `log/particles/angular_velocity`.
 //! - `log/time` and the frame's other values are in 64 bits; all else in 32.
 //!
-//! [`GsdTrajectory`] writes, [`GsdReader`] reads.
-//!
 //! The container is our own: the published Rust library (`hoomd-gsd`) cannot cut a trajectory back to a
 //! checkpoint, goes on writing after a full disk, and panics on a damaged index.
 
@@ -23,7 +21,7 @@ use crate::error::FormatError;
 pub use self::reader::GsdReader;
 
 /// Name of the file in a run's folder.
-pub const FILE: &str = "trajectory.gsd";
+pub(super) const FILE: &str = "trajectory.gsd";
 
 /// Most arrays in a frame.
 const MOST_CHUNKS: u64 = 20;
@@ -48,14 +46,11 @@ const WALL: &str = "wall";
 
 /// A trajectory in GSD that is being written.
 #[derive(Debug)]
-pub struct GsdTrajectory(Container);
+pub(super) struct GsdTrajectory(Container);
 
 impl GsdTrajectory {
     /// An empty trajectory with room for so many frames.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`].
-    pub fn create(path: &Path, frames: u64) -> Result<Self, FormatError> {
+    pub(super) fn create(path: &Path, frames: u64) -> Result<Self, FormatError> {
         Ok(Self(Container::create(
             path,
             frames.saturating_mul(MOST_CHUNKS),
@@ -63,10 +58,7 @@ impl GsdTrajectory {
     }
 
     /// A trajectory to go on with, without its frames after `step`.
-    ///
-    /// # Errors
-    /// [`FormatError::Io`]; [`FormatError::NotATrajectory`].
-    pub fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
+    pub(super) fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
         Ok(Self(Container::resume(path, STEP, |found| found <= step)?))
     }
 }

@@ -20,7 +20,7 @@ const MAJOR_VERSION: u16 = 2;
 /// Most bytes of names: as many names as 16 bits can number.
 const MOST_NAME_BYTES: u64 = 65_536 * NAME_UNIT;
 
-/// A trajectory in GSD that [`GsdTrajectory`](super::GsdTrajectory) wrote, or is writing.
+/// A trajectory in GSD that this program wrote, or is writing.
 ///
 /// What a kill or a full disk left is read up to the last whole frame; [`GsdReader::lost_frames`] says how many more were
 /// begun. Single precision in the file: positions are right to some 1e-6 of the tube's length.
