@@ -24,6 +24,11 @@ pub struct Bootstrap {
 }
 
 impl Bootstrap {
+    /// So many resamples, by random numbers of a seed.
+    pub const fn new(resamples: usize, seed: u64) -> Self {
+        Self { resamples, seed }
+    }
+
     /// Random numbers of every resample, in order.
     pub(crate) fn streams(self) -> Result<impl Iterator<Item = Randomness>, Error> {
         if self.resamples < LEAST_RESAMPLES {
@@ -162,10 +167,7 @@ mod tests {
         };
         assert_eq!(draw(20)[..], draw(30)[..20]);
         assert_ne!(draw(20)[0], draw(20)[1]);
-        let few = Bootstrap {
-            resamples: 19,
-            seed: 7,
-        };
+        let few = Bootstrap::new(19, 7);
         assert!(matches!(
             few.streams().err(),
             Some(Error::TooFewResamples { found: 19, .. })
@@ -174,10 +176,7 @@ mod tests {
 
     #[test]
     fn the_error_of_a_mean() {
-        let bootstrap = Bootstrap {
-            resamples: 200,
-            seed: 1,
-        };
+        let bootstrap = Bootstrap::new(200, 1);
         let mean = |sample: &[f64]| Some([mean_of(sample)]);
         let found = bootstrap_errors(&[1.0, 2.0, 3.0, 4.0], bootstrap, mean).unwrap();
         assert_eq!(found.estimates[0].value, 2.5);

@@ -42,7 +42,7 @@ struct Place {
 ///
 /// ```
 /// use peristalsis_analysis::{Bootstrap, dip_test};
-/// let simulations = Bootstrap { resamples: 200, seed: 1 };
+/// let simulations = Bootstrap::new(200, 1 );
 /// let found = dip_test(&[0.1, 0.1, 0.1, 0.9, 0.9, 0.9], simulations)?;
 /// assert!((found.dip - 0.25).abs() < 1e-12);
 /// # Ok::<(), peristalsis_analysis::Error>(())
@@ -82,12 +82,13 @@ fn dip(sample: &mut [f64]) -> f64 {
     while first < last {
         let minorant = hull(&places, first, last, |place| place.below, 1.0);
         let majorant = hull(&places, first, last, |place| place.up_to, -1.0);
-        let (gap, mode_first, mode_last) = widest_gap(&places, &minorant, &majorant);
-        if gap <= doubled {
-            break;
-        }
         let below = on_chords(&places, &minorant, |place| place.below);
         let above = on_chords(&places, &majorant, |place| place.up_to);
+        let gap = |index: usize| above[index - first] - below[index - first];
+        let (widest, mode_first, mode_last) = widest_gap(gap, &minorant, &majorant);
+        if widest <= doubled {
+            break;
+        }
         for index in first..mode_first {
             doubled = doubled.max(places[index].up_to - below[index - first]);
         }
@@ -137,12 +138,12 @@ fn on_chords(places: &[Place], corners: &[usize], height: impl Fn(&Place) -> f64
 }
 
 /// Largest distance between minorant and majorant, with the modal interval that it leaves.
-fn widest_gap(places: &[Place], minorant: &[usize], majorant: &[usize]) -> (f64, usize, usize) {
-    let first = minorant[0];
-    let below = on_chords(places, minorant, |place| place.below);
-    let above = on_chords(places, majorant, |place| place.up_to);
-    let gap = |index: usize| above[index - first] - below[index - first];
-    let mut widest = (f64::NEG_INFINITY, first, first);
+fn widest_gap(
+    gap: impl Fn(usize) -> f64,
+    minorant: &[usize],
+    majorant: &[usize],
+) -> (f64, usize, usize) {
+    let mut widest = (f64::NEG_INFINITY, minorant[0], minorant[0]);
     for &index in minorant {
         if gap(index) > widest.0 {
             let next = majorant[majorant.partition_point(|&corner| corner < index)];
@@ -210,10 +211,7 @@ mod tests {
 
     #[test]
     fn one_peak_is_rarely_rejected_and_two_are() {
-        let simulations = Bootstrap {
-            resamples: 99,
-            seed: 4,
-        };
+        let simulations = Bootstrap::new(99, 4);
         let trials = 200;
         let (mut uniform_rejected, mut normal_rejected, mut double_rejected) = (0, 0, 0);
         for seed in 0..trials {
@@ -239,10 +237,7 @@ mod tests {
 
     #[test]
     fn too_few_values_are_refused() {
-        let simulations = Bootstrap {
-            resamples: 50,
-            seed: 0,
-        };
+        let simulations = Bootstrap::new(50, 0);
         assert_refused!(dip_test(&[1.0, 2.0, 3.0], simulations) => TooFew { needed: 4, .. });
     }
 

@@ -194,15 +194,18 @@ fn maximise(values: &[f64], split: f64, narrowest: f64) -> (f64, Peak, Peak) {
         .map(|&x| f64::from(u8::from(x < split)))
         .collect();
     let mut last = f64::NEG_INFINITY;
-    let nowhere = (f64::NEG_INFINITY, peak_of(values, |_| 1.0, narrowest));
+    let peaks = |shares: &[f64]| {
+        let first = peak_of(values, |k| shares[k], narrowest);
+        (first, peak_of(values, |k| 1.0 - shares[k], narrowest))
+    };
     for _ in 0..MOST_STEPS {
         let total: f64 = shares.iter().sum();
         // A peak without values does not count.
         if !(total > 1e-9 && total < values.len() as f64 - 1e-9) {
-            return (nowhere.0, nowhere.1, nowhere.1);
+            let nowhere = peak_of(values, |_| 1.0, narrowest);
+            return (f64::NEG_INFINITY, nowhere, nowhere);
         }
-        let first = peak_of(values, |k| shares[k], narrowest);
-        let second = peak_of(values, |k| 1.0 - shares[k], narrowest);
+        let (first, second) = peaks(&shares);
         let mut log_likelihood = 0.0;
         for (share, &x) in shares.iter_mut().zip(values) {
             let (a, b) = (ln_density(first, x), ln_density(second, x));
@@ -216,8 +219,7 @@ fn maximise(values: &[f64], split: f64, narrowest: f64) -> (f64, Peak, Peak) {
         }
         last = log_likelihood;
     }
-    let first = peak_of(values, |k| shares[k], narrowest);
-    let second = peak_of(values, |k| 1.0 - shares[k], narrowest);
+    let (first, second) = peaks(&shares);
     (last, first, second)
 }
 

@@ -174,10 +174,7 @@ mod tests {
     use crate::{Law, fit_law};
     use proptest::prelude::*;
 
-    const BOOTSTRAP: Bootstrap = Bootstrap {
-        resamples: 200,
-        seed: 1,
-    };
+    const BOOTSTRAP: Bootstrap = Bootstrap::new(200, 1);
 
     /// Each run jams at its own time, uniform in the window, and is stopped 5 samples later at j = 1.
     fn jamming(seed: u64, runs: usize, window: (f64, f64)) -> Vec<Vec<f64>> {
@@ -296,7 +293,7 @@ mod tests {
             if let (Some(odd), Some(run)) = (odd, runs.first_mut()) {
                 run.push(odd);
             }
-            let bootstrap = Bootstrap { resamples: 20, seed: 0 };
+            let bootstrap = Bootstrap::new(20, 0 );
             for after_end in [AfterEnd::Leave, AfterEnd::Hold { samples }] {
                 if let Ok(found) = second_moment(&runs, after_end) {
                     prop_assert!(found.iter().all(|moment| moment.variance >= 0.0));

@@ -61,10 +61,7 @@ fn is_whole(numbers: &[Uncertain]) -> bool {
     })
 }
 
-const FEW: Bootstrap = Bootstrap {
-    resamples: 20,
-    seed: 1,
-};
+const FEW: Bootstrap = Bootstrap::new(20, 1);
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]

@@ -219,7 +219,7 @@ pub(crate) fn jump_height(upper: [Column; 3], lower: [Column; 3], critical: (f64
 
 #[pyfunction]
 pub(crate) fn dip_test(values: Column, resamples: usize, seed: u64) -> Answer {
-    answer(|| analysis::dip_test(&values, Bootstrap { resamples, seed }))
+    answer(|| analysis::dip_test(&values, Bootstrap::new(resamples, seed)))
 }
 
 #[pyfunction]
@@ -261,7 +261,7 @@ pub(crate) fn second_moment_peak(
     resamples: usize,
     seed: u64,
 ) -> Answer {
-    answer(|| analysis::second_moment_peak(&runs, after_end(held), Bootstrap { resamples, seed }))
+    answer(|| analysis::second_moment_peak(&runs, after_end(held), Bootstrap::new(resamples, seed)))
 }
 
 /// A curve, from its parameter and its columns (x, y, error).
@@ -388,10 +388,7 @@ pub(crate) fn fit_collapse<'py>(
     let work = || {
         let (start, steps) = (&search.start, &search.steps);
         let fit = collapse.fit(start, steps, search.starts, search.seed)?;
-        let bootstrap = Bootstrap {
-            resamples: search.resamples,
-            seed: search.seed,
-        };
+        let bootstrap = Bootstrap::new(search.resamples, search.seed);
         let resampled = (search.resamples > 0)
             .then(|| collapse.bootstrap(&fit, steps, bootstrap))
             .transpose()?;
@@ -428,12 +425,5 @@ pub(crate) fn apply_collapse<'py>(
         })
         .collect();
     let quality = scheme.outcome(analysis::collapse_quality(&scaled))?;
-    let columns: Vec<[Vec<f64>; 3]> = scaled
-        .iter()
-        .map(|points| {
-            let picks: [fn(&CurvePoint) -> f64; 3] = [|it| it.x, |it| it.y, |it| it.error];
-            picks.map(|pick| points.iter().map(pick).collect())
-        })
-        .collect();
-    Ok(pythonize(py, &(quality, columns))?.unbind())
+    Ok(pythonize(py, &(quality, scaled))?.unbind())
 }

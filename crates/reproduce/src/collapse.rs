@@ -96,10 +96,7 @@ pub(crate) fn collapse_curves(
         least_overlap: OVERLAP,
     };
     let fit = collapse.fit(&start, &STEPS, STARTS, SEED).ok()?;
-    let bootstrap = Bootstrap {
-        resamples: RESAMPLES,
-        seed: SEED,
-    };
+    let bootstrap = Bootstrap::new(RESAMPLES, SEED);
     let left_out: Vec<(f64, Vec<f64>)> = collapse
         .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
         .map(|fits| {

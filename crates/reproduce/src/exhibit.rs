@@ -13,10 +13,7 @@ use crate::thresholds::WINDOW;
 pub(crate) const NONE: &str = "–";
 
 /// Resamples of the test for a dip.
-const BOOTSTRAP: Bootstrap = Bootstrap {
-    resamples: 500,
-    seed: 7,
-};
+const BOOTSTRAP: Bootstrap = Bootstrap::new(500, 7);
 
 /// A cell with a number and its error, or a dash.
 pub(crate) fn cell(number: Option<Uncertain>) -> String {

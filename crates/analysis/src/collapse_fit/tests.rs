@@ -58,10 +58,7 @@ fn exponents_are_found_with_bootstrap_errors_that_cover() {
         let fit = collapse.fit(&[3.0, 1.2], &steps, 2, 1).unwrap();
         assert!(fit.quality.overlap > 0.8, "{fit:?}");
         mean_quality += fit.quality.quality / trials as f64;
-        let bootstrap = Bootstrap {
-            resamples: 40,
-            seed,
-        };
+        let bootstrap = Bootstrap::new(40, seed);
         let errors = collapse.bootstrap(&fit, &steps, bootstrap).unwrap();
         let found = [errors.estimates[0], errors.estimates[1]];
         coverage.count(found);

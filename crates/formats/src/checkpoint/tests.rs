@@ -126,25 +126,18 @@ fn another_kind_layout_or_physics_is_refused_by_name() {
         decode::<State>(&identity, &bytes).expect_err("the identity differs")
     };
 
-    let error = read(CheckpointIdentity {
-        kind: *b"wall    ",
-        ..IDENTITY
-    });
+    let with = |change: fn(&mut CheckpointIdentity)| {
+        let mut identity = IDENTITY;
+        change(&mut identity);
+        read(identity)
+    };
+    let error = with(|identity| identity.kind = *b"wall    ");
     assert_eq!(
         error.to_string(),
         "the checkpoint holds a state of kind `engine  `, not `wall    `"
     );
-    let error = read(CheckpointIdentity {
-        layout_version: 4,
-        ..IDENTITY
-    });
-    assert!(matches!(
-        error,
-        FormatError::CheckpointLayout {
-            found: 3,
-            readable: 4
-        }
-    ));
+    let error = Err::<(), _>(with(|identity| identity.layout_version = 4));
+    assert_refused!(error => CheckpointLayout { found: 3, readable: 4 });
     for version in [0, 1, 3, 259, u32::MAX] {
         let error = read(CheckpointIdentity {
             physics_version: version,
@@ -155,12 +148,7 @@ fn another_kind_layout_or_physics_is_refused_by_name() {
             FormatError::OtherPhysicsVersion { found: 2, computed } if computed == version
         ));
     }
-    let mut physics_hash = IDENTITY.physics_hash;
-    physics_hash[31] = 0xab;
-    let error = read(CheckpointIdentity {
-        physics_hash,
-        ..IDENTITY
-    });
+    let error = with(|identity| identity.physics_hash[31] = 0xab);
     assert!(
         matches!(error, FormatError::OtherPhysics { found, .. } if found == IDENTITY.physics_hash)
     );

@@ -641,8 +641,12 @@ class Collapse:
 
     def scaled(self, parameters: Sequence[float]) -> list[tuple[float, Array, Array, Array]]:
         """The scaled curves (p, x, y, error)."""
-        _, columns = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
+        _, scaled = _core.apply_collapse(self.curves, self.scaling, [float(p) for p in parameters])
+
+        def column(points: list[dict[str, float]], name: str) -> Array:
+            return np.array([point[name] for point in points], dtype=np.float64)
+
         return [
-            (curve[0], np.array(x), np.array(y), np.array(error))
-            for curve, (x, y, error) in zip(self.curves, columns, strict=True)
+            (curve[0], column(points, "x"), column(points, "y"), column(points, "error"))
+            for curve, points in zip(self.curves, scaled, strict=True)
         ]

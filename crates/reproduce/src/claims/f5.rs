@@ -16,10 +16,7 @@ const PROSE: Prose = Prose::new(include_str!("f5.md"));
 pub(super) const CLAIM: Claim = Claim::new("F5", PROSE, &["second-moment"], examine);
 
 /// Resamples for the errors of a peak.
-const BOOTSTRAP: Bootstrap = Bootstrap {
-    resamples: 200,
-    seed: 5,
-};
+const BOOTSTRAP: Bootstrap = Bootstrap::new(200, 5);
 /// Periods whose mean stands for a run after its end.
 const HELD: usize = 5;
 
