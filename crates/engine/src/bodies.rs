@@ -1,6 +1,7 @@
 //! State of the moving spheres: a structure of arrays.
 
 use glam::DVec3;
+use peristalsis_physics::contact::Contact;
 
 /// Moving spheres: the grains first, then the spheres of an elastic wall, if there is one.
 ///
@@ -41,6 +42,17 @@ pub struct Sphere {
     pub angular_velocity: DVec3,
     /// \[d\]
     pub diameter: f64,
+}
+
+impl Sphere {
+    /// The contact with another sphere at this one's place less `separation`; `None` where they do not touch.
+    pub(crate) fn contact(&self, other: &Self, separation: DVec3) -> Option<Contact> {
+        let diameters = (self.diameter, other.diameter);
+        let contact = Contact::new(diameters, separation, self.velocity - other.velocity);
+        let rotation = contact.arm(self.diameter) * self.angular_velocity
+            + contact.arm(other.diameter) * other.angular_velocity;
+        contact.touches().then(|| contact.rotating(rotation))
+    }
 }
 
 impl Bodies {

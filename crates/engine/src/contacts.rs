@@ -24,7 +24,7 @@ impl<H: Copy + Default + PartialEq> Contacts<H> {
 
     /// Makes the neighbour list anew where it no longer holds.
     pub(crate) fn refresh(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
-        let length = wall.lattice().length();
+        let length = wall.length();
         if self
             .pairs
             .outdated(&bodies.position, &bodies.turns, length, skin)
@@ -38,7 +38,7 @@ impl<H: Copy + Default + PartialEq> Contacts<H> {
         let grains = bodies.grains;
         let rule = PairRule {
             diameter: &bodies.diameter,
-            length: wall.lattice().length(),
+            length: wall.length(),
             skin,
             half_width: wall.usual_radius(),
             admits_all_below: grains,

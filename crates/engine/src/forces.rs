@@ -79,10 +79,15 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
     if T::ROTATES {
         bodies.angular_acceleration.fill(DVec3::ZERO);
     }
-    let length = wall.lattice().length();
+    let length = wall.length();
     let pairs = &mut contacts.pairs;
     add_pairs(law, bodies, pairs, length, time_step, &mut tally);
-    wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
+    match wall {
+        Wall::Prescribed(wall) => {
+            wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
+        }
+        Wall::Elastic(wall) => wall.add_forces(bodies, &mut tally),
+    }
     // Until here the arrays held forces and torques.
     for (acceleration, mass) in bodies.acceleration.iter_mut().zip(&bodies.mass) {
         *acceleration /= *mass;

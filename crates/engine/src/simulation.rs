@@ -56,7 +56,7 @@ impl Simulation {
     }
 
     fn assemble(mut bodies: Bodies, mut wall: Wall, parameters: Parameters) -> Self {
-        bodies.fold(wall.lattice().length());
+        bodies.fold(wall.length());
         wall.move_to(0.0);
         let diameters = bodies.diameter.iter().copied();
         let least_diameter = diameters.fold(f64::INFINITY, f64::min);
@@ -265,10 +265,10 @@ impl Simulation {
         begin: impl Fn(usize) -> S + Sync,
         add: impl Fn(&mut S, WallContact) + Sync,
     ) -> Vec<S> {
-        if let (Some(wall), Memory::Smooth(_)) = (self.wall().prescribed(), &self.memory) {
+        if let (0, Memory::Smooth(_)) = (self.wall().mobile_spheres(), &self.memory) {
             let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
             return with_normal_law!(self.parameters().contact.normal, law => {
-                add_up_smooth_contacts(law, self.bodies(), wall, pool, begin, add)
+                add_up_smooth_contacts(law, self.bodies(), self.wall(), pool, begin, add)
             });
         }
         let mut sums = begin(0);
@@ -378,7 +378,7 @@ impl System {
 
     /// First moment of the grains' mass along the tube, sum m z with turns round it counted \[m d\].
     fn axial_moment(&self) -> f64 {
-        let length = self.course.wall.lattice().length();
+        let length = self.course.wall.length();
         (0..self.bodies.grains)
             .map(|i| self.bodies.mass[i] * self.bodies.unfolded(i, length))
             .sum()
@@ -409,7 +409,7 @@ impl System {
     }
 
     fn advance(&mut self, memory: &mut Memory, steps: u64) -> Result<(), Runaway> {
-        let length = self.course.wall.lattice().length();
+        let length = self.course.wall.length();
         let Self {
             bodies,
             course,

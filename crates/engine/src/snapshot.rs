@@ -136,7 +136,7 @@ impl Snapshot {
         {
             let strips = Sorted::strips(bodies, wall, parameters.skin);
             sorting
-                .check(bodies.grains, strips, wall.lattice().length())
+                .check(bodies.grains, strips, wall.length())
                 .or_else(mismatch)?;
         }
         Ok(())

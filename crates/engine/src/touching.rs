@@ -3,7 +3,7 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 
-use crate::bodies::{Bodies, Sphere};
+use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
@@ -42,7 +42,6 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     contacts: &mut Contacts<T::History<f64>>,
 ) -> Vec<Touching> {
     contacts.rebuild(bodies, wall, 0.0);
-    let lattice = wall.lattice();
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);
@@ -50,8 +49,8 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
         for (&partner, history) in partners.iter().zip(histories) {
             let second = partner as usize;
             let there = bodies.sphere(second);
-            let separation = periodic(here.position - there.position, lattice.length());
-            let Some(contact) = contact_of(&here, &there, separation) else {
+            let separation = periodic(here.position - there.position, wall.length());
+            let Some(contact) = here.contact(&there, separation) else {
                 continue;
             };
             // Wall against wall has no friction.
@@ -64,34 +63,14 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
         if first >= bodies.grains {
             continue;
         }
-        wall.for_each_touching(
-            here.position,
-            here.diameter,
-            |sphere, separation, velocity| {
-                let there = Sphere {
-                    position: here.position - separation,
-                    velocity,
-                    angular_velocity: DVec3::ZERO,
-                    diameter: lattice.sphere_diameter,
-                };
-                if let Some(contact) = contact_of(&here, &there, separation) {
-                    let history = contacts.wall.take(first, sphere);
-                    let second = bodies.grains + sphere as usize;
-                    found.push(answered(law, &contact, history, first, second));
-                }
-            },
-        );
+        wall.for_each_contact(&here, |sphere, contact, _| {
+            let history = contacts.wall.take(first, sphere);
+            let second = bodies.grains + sphere as usize;
+            let contact = contact.rotating(contact.arm(here.diameter) * here.angular_velocity);
+            found.push(answered(law, &contact, history, first, second));
+        });
     }
     found
-}
-
-/// The contact of two spheres; `None` where they do not overlap.
-fn contact_of(one: &Sphere, other: &Sphere, separation: DVec3) -> Option<Contact> {
-    let diameters = (one.diameter, other.diameter);
-    let contact = Contact::new(diameters, separation, one.velocity - other.velocity);
-    let rotation = contact.arm(one.diameter) * one.angular_velocity
-        + contact.arm(other.diameter) * other.angular_velocity;
-    contact.touches().then(|| contact.rotating(rotation))
 }
 
 fn answered<N: NormalLaw, T: TangentialLaw>(

@@ -7,10 +7,10 @@ use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw,
 use rayon::ThreadPool;
 use rayon::prelude::*;
 
-use crate::bodies::{Bodies, Sphere};
+use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::neighbours::periodic;
-use crate::wall::{PrescribedWall, Wall};
+use crate::wall::Wall;
 
 /// A contact of a grain with a sphere of the wall; forces are those on the grain \[m d/t^2\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct WallContact {
     pub tangential_force: DVec3,
 }
 
-/// Contacts with a prescribed wall that are found before any of them is worked out: many at a time, so that the branches
+/// Contacts with an immobile wall that are found before any of them is worked out: many at a time, so that the branches
 /// of the search do not hold up the forces, and few enough to stay near the processor.
 const AT_A_TIME: usize = 64;
 
@@ -37,26 +37,17 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
     contacts: &Contacts<T::History<f64>>,
     mut visit: impl FnMut(WallContact),
 ) {
-    match wall {
-        Wall::Prescribed(wall) => {
-            let history = |grain, sphere| contacts.wall.history(grain, sphere);
-            touch_prescribed(law, bodies, wall, 0..bodies.grains, history, visit);
-        }
-        Wall::Elastic(wall) => {
-            let length = wall.lattice().length();
-            for (i, j, history) in contacts.pairs.iter() {
-                let (i, j) = (i as usize, j as usize);
-                if i < bodies.grains && j >= bodies.grains {
-                    let side = WallSide {
-                        separation: periodic(bodies.position[i] - bodies.position[j], length),
-                        velocity: bodies.velocity[j],
-                        diameter: bodies.diameter[j],
-                    };
-                    let mut history = *history;
-                    if let Some(contact) = contact_of(law, bodies, i, &side, &mut history) {
-                        visit(contact);
-                    }
-                }
+    let history = |grain, sphere| contacts.wall.history(grain, sphere);
+    touch_immobile(law, bodies, wall, 0..bodies.grains, history, &mut visit);
+    if wall.mobile_spheres() == 0 {
+        return;
+    }
+    for (i, j, history) in contacts.pairs.iter() {
+        let (i, j) = (i as usize, j as usize);
+        if i < bodies.grains && j >= bodies.grains {
+            let separation = periodic(bodies.position[i] - bodies.position[j], wall.length());
+            if let Some(contact) = bodies.sphere(i).contact(&bodies.sphere(j), separation) {
+                visit(answered(law, bodies, i, &contact, *history));
             }
         }
     }
@@ -65,12 +56,12 @@ pub(crate) fn for_each_contact<N: NormalLaw, T: TangentialLaw>(
 /// Grains whose contacts are added up by themselves.
 const PIECE: usize = 2048;
 
-/// The same for smooth grains in a prescribed tube, added up piece by piece of the grains, by threads where there are any.
+/// The same for smooth grains in a tube that no force moves, added up piece by piece of the grains, by threads where there are any.
 /// Pieces do not depend on threads, so that sums do not either.
 pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     normal: N,
     bodies: &Bodies,
-    wall: &PrescribedWall,
+    wall: &Wall,
     pool: Option<&ThreadPool>,
     begin: impl Fn(usize) -> S + Sync,
     add: impl Fn(&mut S, WallContact) + Sync,
@@ -81,7 +72,7 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
         let grains = piece * PIECE..((piece + 1) * PIECE).min(bodies.grains);
         let mut sums = begin(piece);
         let visit = |contact| add(&mut sums, contact);
-        touch_prescribed(&law, bodies, wall, grains, |_, _| (), visit);
+        touch_immobile(&law, bodies, wall, grains, |_, _| (), visit);
         sums
     };
     let pieces = 0..bodies.grains.div_ceil(PIECE).max(1);
@@ -94,77 +85,48 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     }
 }
 
-/// Calls `visit` for each contact of some grains with a prescribed wall; `history` answers the history of a contact of
-/// a grain with a wall sphere.
-fn touch_prescribed<N: NormalLaw, T: TangentialLaw>(
+/// Calls `visit` for each contact of some grains with what of the wall no force moves; `history` answers the history of a
+/// contact of a grain with a wall sphere.
+fn touch_immobile<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
-    wall: &PrescribedWall,
+    wall: &Wall,
     grains: Range<usize>,
     history: impl Fn(usize, u32) -> T::History<f64>,
     mut visit: impl FnMut(WallContact),
 ) {
-    let diameter = wall.lattice().sphere_diameter;
     let mut found = Vec::new();
     let last = grains.end.saturating_sub(1);
     for grain in grains {
-        let (centre, of_grain) = (bodies.position[grain], bodies.diameter[grain]);
-        wall.for_each_touching(centre, of_grain, |sphere, separation, velocity| {
-            let side = WallSide {
-                separation,
-                velocity,
-                diameter,
-            };
-            found.push((grain, side, history(grain, sphere)));
+        let here = bodies.sphere(grain);
+        wall.for_each_contact(&here, |sphere, contact, _| {
+            let contact = contact.rotating(contact.arm(here.diameter) * here.angular_velocity);
+            found.push((grain, contact, history(grain, sphere)));
         });
         if found.len() >= AT_A_TIME || grain == last {
-            for (grain, side, mut history) in found.drain(..) {
-                if let Some(contact) = contact_of(law, bodies, grain, &side, &mut history) {
-                    visit(contact);
-                }
+            for (grain, contact, history) in found.drain(..) {
+                visit(answered(law, bodies, grain, &contact, history));
             }
         }
     }
 }
 
-/// A sphere of the wall as a grain sees it.
-struct WallSide {
-    /// From it to the grain.
-    separation: DVec3,
-    velocity: DVec3,
-    diameter: f64,
-}
-
-/// The contact of a grain with a sphere of the wall; `None` where they do not touch.
-fn contact_of<N: NormalLaw, T: TangentialLaw>(
+/// What the law answers for a contact of a grain.
+fn answered<N: NormalLaw, T: TangentialLaw>(
     law: &ContactLaw<N, T>,
     bodies: &Bodies,
     grain: usize,
-    wall: &WallSide,
-    history: &mut T::History<f64>,
-) -> Option<WallContact> {
-    let Sphere {
-        position,
-        velocity,
-        angular_velocity,
-        diameter,
-    } = bodies.sphere(grain);
-    let diameters = (diameter, wall.diameter);
-    let mut contact = Contact::new(diameters, wall.separation, velocity - wall.velocity);
-    if !contact.touches() {
-        return None;
-    }
-    let arm = contact.arm(diameter);
-    if T::ROTATES {
-        contact.rotation = arm * angular_velocity;
-    }
+    contact: &Contact,
+    mut history: T::History<f64>,
+) -> WallContact {
     // A step of no length: the history stays where it is.
-    let answer = law.force(&contact, history, 0.0);
+    let answer = law.force(contact, &mut history, 0.0);
     let tangential_force = answer.tangential.force;
-    Some(WallContact {
+    let arm = contact.arm(bodies.diameter[grain]);
+    WallContact {
         grain,
-        point: position - arm * contact.normal,
+        point: bodies.position[grain] - arm * contact.normal,
         normal_force: answer.force - tangential_force,
         tangential_force,
-    })
+    }
 }

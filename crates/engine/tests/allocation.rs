@@ -14,7 +14,7 @@ const SKIN: f64 = 0.05;
 
 /// Places of the grains along the tube, unfolded.
 fn places(simulation: &Simulation) -> Vec<f64> {
-    let (bodies, length) = (simulation.bodies(), simulation.wall().lattice().length());
+    let (bodies, length) = (simulation.bodies(), simulation.wall().length());
     (0..bodies.grains)
         .map(|grain| bodies.unfolded(grain, length))
         .collect()

@@ -55,7 +55,7 @@ fn a_free_grain_falls_as_galilei_says_whatever_its_mass() {
                 }
                 simulation.advance(steps).unwrap();
                 let time = simulation.time();
-                let length = wall.lattice().length();
+                let length = wall.length();
                 for grain in 0..2 {
                     let bodies = simulation.bodies();
                     let z = start + velocity * time + 0.5 * BODY_FORCE * time * time;

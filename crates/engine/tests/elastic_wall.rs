@@ -8,7 +8,7 @@ use common::{
     INTEGRATORS, LINEAR, Numbers, elastic, elastic_parameters, momentum, with_wall_spheres,
 };
 use glam::DVec3;
-use peristalsis_engine::wall::{DriveAngle, ElasticParameters, NetForce, Tethers};
+use peristalsis_engine::wall::{DriveAngle, ElasticNetwork, ElasticParameters, NetForce, Tethers};
 use peristalsis_engine::{Bodies, Integrator, Simulation, Wall};
 use peristalsis_physics::wall::{Lattice, Schedule};
 
@@ -61,10 +61,13 @@ fn the_balanced_tube_is_in_equilibrium() {
         // Each part of the mean would cancel in a straight tube anyway: it is left in.
         let tethers = Tethers {
             net_force: NetForce::Free,
-            ..parameters.tethers
+            ..parameters.network.tethers
         };
         let parameters = undriven(ElasticParameters {
-            tethers,
+            network: ElasticNetwork {
+                tethers,
+                ..ElasticNetwork::default()
+            },
             ..parameters
         });
         let mut simulation = alone(parameters.clone(), |_| ());
@@ -85,11 +88,14 @@ fn the_balanced_tube_is_in_equilibrium() {
         // Without the balance it shrinks: the springs are stretched.
         let tethers = Tethers {
             balance: false,
-            ..parameters.tethers
+            ..parameters.network.tethers
         };
         let free = alone(
             ElasticParameters {
-                tethers,
+                network: ElasticNetwork {
+                    tethers,
+                    ..ElasticNetwork::default()
+                },
                 ..parameters
             },
             |_| (),
@@ -117,14 +123,14 @@ fn shaken(size: f64, seed: u64) -> impl Fn(&mut Bodies) {
 #[test]
 fn the_forces_are_the_slope_of_the_energy() {
     let mut parameters = undriven(elastic_parameters());
-    parameters.tethers = Tethers {
+    parameters.network.tethers = Tethers {
         radial: 0.02,
         net_force: NetForce::Free,
-        ..parameters.tethers
+        ..parameters.network.tethers
     };
     // A tube so narrow that opposite sides touch.
     parameters.mean_radius = 0.55;
-    parameters.contact_range = 1.0;
+    parameters.network.contact_range = 1.0;
     let law = common::parameters(
         peristalsis_physics::contact::Normal::Linear(
             peristalsis_physics::contact::LinearSpringDashpot {
@@ -187,8 +193,8 @@ fn each_bond_counts_once() {
                 let mut apart =
                     simulation.bodies().position[one] - simulation.bodies().position[other];
                 apart.z -= lattice.length() * (apart.z / lattice.length()).round();
-                0.5 * parameters.spring_stiffness
-                    * (apart.length() - parameters.natural_length).powi(2)
+                0.5 * parameters.network.spring_stiffness
+                    * (apart.length() - parameters.network.natural_length).powi(2)
             })
             .sum();
         let found = simulation.tally().network_energy;
@@ -209,10 +215,13 @@ fn a_removed_mean_force_leaves_the_momentum() {
             let parameters = elastic_parameters();
             let tethers = Tethers {
                 net_force,
-                ..parameters.tethers
+                ..parameters.network.tethers
             };
             let wall = elastic(ElasticParameters {
-                tethers,
+                network: ElasticNetwork {
+                    tethers,
+                    ..ElasticNetwork::default()
+                },
                 ..parameters.clone()
             });
             let mut bodies = with_wall_spheres(Bodies::default(), &wall);
@@ -286,8 +295,11 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
             net_force: NetForce::Free,
         };
         let parameters = ElasticParameters {
-            tethers,
-            spring_stiffness: 0.0,
+            network: ElasticNetwork {
+                tethers,
+                spring_stiffness: 0.0,
+                ..ElasticNetwork::default()
+            },
             angle,
             heading,
             force_amplitude: Schedule::constant(0.004),
@@ -353,7 +365,7 @@ fn turning_the_drive_round_mirrors_the_wall() {
 #[test]
 fn drag_and_dashpots_take_the_energy_out() {
     let mut parameters = undriven(elastic_parameters());
-    (parameters.drag, parameters.spring_damping) = (0.02, 0.02);
+    (parameters.network.drag, parameters.network.spring_damping) = (0.02, 0.02);
     let mut simulation = alone(parameters, shaken(0.1, 5));
     let start = simulation.energy();
     let rest = alone(undriven(elastic_parameters()), |_| ()).energy();
@@ -373,12 +385,15 @@ fn what_removes_the_mean_force_does_work_on_a_drifting_wall() {
         let parameters = undriven(elastic_parameters());
         let tethers = Tethers {
             net_force,
-            ..parameters.tethers
+            ..parameters.network.tethers
         };
         let axial = tethers.axial;
         let mut simulation = alone(
             ElasticParameters {
-                tethers,
+                network: ElasticNetwork {
+                    tethers,
+                    ..ElasticNetwork::default()
+                },
                 ..parameters
             },
             |bodies| {

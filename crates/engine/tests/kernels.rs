@@ -1,7 +1,9 @@
 //! The fast kernels against the reference, over every combination of laws, sizes, tube and integrator.
 
 use glam::DVec3;
-use peristalsis_engine::wall::{DriveAngle, ElasticParameters, NetForce, PrescribedWall, Tethers};
+use peristalsis_engine::wall::{
+    DriveAngle, ElasticNetwork, ElasticParameters, NetForce, PrescribedWall, Tethers,
+};
 use peristalsis_engine::{Instructions, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
 use proptest::prelude::*;
@@ -178,10 +180,13 @@ fn where_no_normal_and_no_radius_has_a_direction() {
         elastic(ElasticParameters {
             lattice,
             mean_radius: 1.5,
-            spring_stiffness: 0.0,
-            tethers: Tethers {
-                net_force: NetForce::Free,
-                ..elastic_parameters().tethers
+            network: ElasticNetwork {
+                spring_stiffness: 0.0,
+                tethers: Tethers {
+                    net_force: NetForce::Free,
+                    ..Tethers::default()
+                },
+                ..ElasticNetwork::default()
             },
             force_amplitude: Schedule::constant(force_amplitude),
             angle: DriveAngle::Current,
@@ -228,7 +233,8 @@ fn what_ended_contacts_held_is_lost_once() {
         ] {
             for skin in [0.0, 0.02, 0.1, 0.3, 0.7] {
                 // One grain in a sphere of the wall, and two in each other, all slipping.
-                let beside_wall = DVec3::new(radius - 0.8, 0.0, wall.lattice().axial_position(2));
+                let beside_wall =
+                    DVec3::new(radius - 0.8, 0.0, wall.lattice().unwrap().axial_position(2));
                 let on_axis = DVec3::new(0.0, 0.0, 5.0);
                 let bodies = grains(&[
                     (beside_wall, DVec3::Z),

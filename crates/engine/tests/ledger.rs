@@ -73,13 +73,13 @@ fn under_strain_control() {
 #[test]
 fn under_stress_control_with_everything_on() {
     let mut parameters = elastic_parameters();
-    parameters.spring_damping = 0.01;
-    parameters.drag = 0.005;
+    parameters.network.spring_damping = 0.01;
+    parameters.network.drag = 0.005;
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
-        parameters.tethers = Tethers {
+        parameters.network.tethers = Tethers {
             radial: 0.002,
             net_force,
-            ..parameters.tethers
+            ..parameters.network.tethers
         };
         closes(&elastic(parameters.clone()), 120, |simulation| {
             let ledger = simulation.ledger();

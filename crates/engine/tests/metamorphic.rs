@@ -2,7 +2,9 @@
 //! combination of laws, sizes, tube and integrator, by the fast kernels.
 
 use glam::DVec3;
-use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Tethers};
+use peristalsis_engine::wall::{
+    ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall, Tethers,
+};
 use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
     ContactModel, CundallStrack, LinearSpringDashpot, Normal, ViscoelasticHertz,
@@ -58,7 +60,7 @@ fn difference(original: &State, image: &Image<'_>) -> f64 {
     };
     let (plain, other) = (after(original), after(&image.state));
     let (plain, found) = (plain.bodies(), other.bodies());
-    let length = image.state.wall.lattice().length();
+    let length = image.state.wall.length();
     let [place_unit, velocity_unit, spin_unit] = image.units;
     (0..plain.number())
         .map(|i| {
@@ -97,7 +99,7 @@ fn mapped(
 
 /// Number of the sphere whose wall sphere is the image of another's; grains keep theirs.
 fn on_the_wall(state: &State, image: impl Fn(&Lattice, WallSphere) -> WallSphere) -> Vec<usize> {
-    let (lattice, grains) = (*state.wall.lattice(), state.bodies.grains);
+    let (lattice, grains) = (*state.wall.lattice().unwrap(), state.bodies.grains);
     (0..state.bodies.number())
         .map(|i| {
             if i < grains {
@@ -132,7 +134,7 @@ fn turned_round(wall: &Wall) -> Wall {
 
 /// z -> -z with the wave and the body force turned round. Spins are axial vectors.
 fn reversed(original: &State) -> f64 {
-    let length = original.wall.lattice().length();
+    let length = original.wall.length();
     let numbers = on_the_wall(original, |lattice, sphere| WallSphere {
         ring: (lattice.rings() - sphere.ring) % lattice.rings(),
         ..sphere
@@ -177,7 +179,7 @@ fn mirrored(original: &State) -> f64 {
 
 /// By so many steps of the lattice about the axis.
 fn turned(original: &State, steps: u32) -> f64 {
-    let per_ring = original.wall.lattice().spheres_per_ring;
+    let per_ring = original.wall.lattice().unwrap().spheres_per_ring;
     let angle = core::f64::consts::TAU * f64::from(steps) / f64::from(per_ring);
     let (sin, cos) = libm::sincos(angle);
     let numbers = on_the_wall(original, |_, sphere| WallSphere {
@@ -191,7 +193,7 @@ fn turned(original: &State, steps: u32) -> f64 {
 
 /// By a wavelength along the tube; one of an odd number of rings must be shifted by two, for the seam to close.
 fn shifted(original: &State) -> f64 {
-    let lattice = *original.wall.lattice();
+    let lattice = *original.wall.lattice().unwrap();
     let waves = 1 + lattice.rings_per_wave % 2;
     let numbers = on_the_wall(original, |lattice, sphere| WallSphere {
         ring: (sphere.ring + waves * lattice.rings_per_wave) % lattice.rings(),
@@ -274,21 +276,24 @@ impl Units {
             }
             Wall::Elastic(wall) => {
                 let ours = wall.parameters();
+                let network = &ours.network;
                 let force = self.stiffness() * self.length;
                 Wall::Elastic(ElasticWall::new(ElasticParameters {
                     lattice: self.lattice(ours.lattice),
                     mean_radius: self.length * ours.mean_radius,
-                    sphere_mass: self.mass * ours.sphere_mass,
-                    spring_stiffness: self.stiffness() * ours.spring_stiffness,
-                    natural_length: self.length * ours.natural_length,
-                    spring_damping: self.damping() * ours.spring_damping,
-                    drag: self.damping() * ours.drag,
-                    contact_range: self.length * ours.contact_range,
-                    tethers: Tethers {
-                        radial: self.stiffness() * ours.tethers.radial,
-                        azimuthal: self.stiffness() * ours.tethers.azimuthal,
-                        axial: self.stiffness() * ours.tethers.axial,
-                        ..ours.tethers
+                    network: ElasticNetwork {
+                        sphere_mass: self.mass * network.sphere_mass,
+                        spring_stiffness: self.stiffness() * network.spring_stiffness,
+                        natural_length: self.length * network.natural_length,
+                        spring_damping: self.damping() * network.spring_damping,
+                        drag: self.damping() * network.drag,
+                        contact_range: self.length * network.contact_range,
+                        tethers: Tethers {
+                            radial: self.stiffness() * network.tethers.radial,
+                            azimuthal: self.stiffness() * network.tethers.azimuthal,
+                            axial: self.stiffness() * network.tethers.axial,
+                            ..network.tethers
+                        },
                     },
                     force_amplitude: ours.force_amplitude.map(|value| force * value),
                     frequency: ours.frequency.map(|value| value / self.time),
@@ -443,7 +448,7 @@ fn angular_momentum(simulation: &Simulation) -> DVec3 {
 fn half_a_step_of_the_lattice_is_something_else() {
     let row = rows(Tube::Narrow)[0];
     let state = moving(row, 1);
-    let angle = core::f64::consts::PI / f64::from(state.wall.lattice().spheres_per_ring);
+    let angle = core::f64::consts::PI / f64::from(state.wall.lattice().unwrap().spheres_per_ring);
     let (sin, cos) = libm::sincos(angle);
     let vector = |v: DVec3| DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
     assert!(rigidly(&state, &|i| i, &vector, &vector, &vector) > 1e-3);

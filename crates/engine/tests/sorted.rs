@@ -106,7 +106,7 @@ fn case() -> impl Strategy<Value = Case> {
         prop_oneof![Just(0.05), Just(0.01)],
     )
         .prop_flat_map(|((wall, tube_radius), number, hertz, time_step)| {
-            let length = wall.lattice().length();
+            let length = wall.length();
             let grain = (
                 prop_oneof![
                     8 => 0.0..1.4_f64,
@@ -273,7 +273,7 @@ fn threads_instructions_and_restarts_do_not_change_a_bit() {
 fn threads_that_share_the_sorting_of_a_long_tube_do_not_change_a_bit() {
     let wall = prescribed(common::coarse(400), 1.5, 1.0, 0.2, 0.05);
     let number = 10_000_u32;
-    let along = wall.lattice().length() / f64::from(number);
+    let along = wall.length() / f64::from(number);
     let places = (0..number).map(|grain| {
         let angle = 2.4 * f64::from(grain);
         DVec3::new(

@@ -56,7 +56,7 @@ fn packed_grains_stand_inside_at_rest() {
                 0
             };
             assert_eq!(bodies.number(), number + spheres);
-            let length = wall.lattice().length();
+            let length = wall.length();
             for grain in 0..number {
                 let (place, diameter) = (bodies.position[grain], bodies.diameter[grain]);
                 assert!((0.0..length).contains(&place.z), "{name}: {place}");

@@ -79,7 +79,7 @@ fn assert_forces(simulation: &Simulation, case: &str) {
                 sphere.expect("a sphere of the wall").position
             }
         };
-        let length = simulation.wall().lattice().length();
+        let length = simulation.wall().length();
         let mut away = bodies.position[touch.first] - position - touch.separation;
         away.z -= (away.z / length).round() * length;
         assert!(away.length() < 1e-12, "{case}");

@@ -79,7 +79,7 @@ impl WallFault {
 /// Notes the first fault of each kind that an elastic wall shows.
 pub fn note_wall_faults(simulation: &Simulation, faults: &mut Vec<WallFault>) {
     let (wall, bodies) = (simulation.wall(), simulation.bodies());
-    let diameter = wall.lattice().sphere_diameter;
+    let diameter = wall.sphere_diameter();
     for (sphere, away) in wall.displacements(bodies).enumerate() {
         let position = bodies.position[bodies.grains + sphere];
         let radius = (position.x * position.x + position.y * position.y).sqrt();

@@ -238,22 +238,21 @@ impl WaveFrameProfile {
             return;
         };
         let wall = view.simulation.wall();
-        let lattice = wall.lattice();
         let (heading, cycles) = (wall.heading(), wall.cycles());
+        let (waves, wavelength) = (wall.waves(), wall.wavelength());
         match &view.shape {
             TubeShape::Wave(wave, _) => {
                 let outline = self.outline.of(wave.waveform, bins);
                 for (sums, &value) in last.iter_mut().zip(outline) {
                     let radius = wave.mean_radius + wave.amplitude * value;
-                    sums.look_at(Slice::round(radius), f64::from(lattice.waves));
+                    sums.look_at(Slice::round(radius), f64::from(waves));
                 }
             }
             shape @ TubeShape::Slices(..) => {
-                for wave in 0..lattice.waves {
+                for wave in 0..waves {
                     for (bin, sums) in last.iter_mut().enumerate() {
                         let position = (bin as f64 + 0.5) / bins as f64 + f64::from(wave) + cycles;
-                        let z =
-                            (heading * position * lattice.wavelength).rem_euclid(lattice.length());
+                        let z = (heading * position * wavelength).rem_euclid(wall.length());
                         sums.look_at(shape.slice(z), 1.0);
                     }
                 }
@@ -268,7 +267,7 @@ impl WaveFrameProfile {
         for (((place, &velocity), &mass), &inside) in grains.zip(&view.inside) {
             if inside {
                 let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
-                let position = heading * place.z / lattice.wavelength - cycles;
+                let position = heading * place.z / wavelength - cycles;
                 last[bin_of(position, bins)].add_grain(mass, velocity);
             }
         }
@@ -285,9 +284,9 @@ impl WaveFrameProfile {
         };
         let wall = simulation.wall();
         let (heading, cycles) = (wall.heading(), wall.cycles());
-        let lattice = wall.lattice();
+        let wavelength = wall.wavelength();
         for sums in last.iter_mut() {
-            sums.wall.looks += f64::from(lattice.waves);
+            sums.wall.looks += f64::from(wall.waves());
         }
         // The first piece goes on from the sums so far: where it is the only one, nothing is rounded once more.
         let so_far: Vec<WallSums> = last.iter().map(|sums| sums.wall).collect();
@@ -297,7 +296,7 @@ impl WaveFrameProfile {
         };
         let of_pieces = simulation.add_up_wall_contacts(begin, |sums, contact| {
             let point = contact.point;
-            let bin = bin_of(heading * point.z / lattice.wavelength - cycles, bins);
+            let bin = bin_of(heading * point.z / wavelength - cycles, bins);
             let from_axis = (point.x * point.x + point.y * point.y).sqrt();
             let force = contact.normal_force + contact.tangential_force;
             let sums = &mut sums[bin];
@@ -319,7 +318,7 @@ impl WaveFrameProfile {
         let bodies = simulation.bodies();
         for sphere in bodies.grains..bodies.number() {
             let z = bodies.position[sphere].z;
-            let bin = bin_of(heading * z / lattice.wavelength - cycles, bins);
+            let bin = bin_of(heading * z / wavelength - cycles, bins);
             last[bin].wall.axial_velocity += heading * bodies.velocity[sphere].z;
             last[bin].wall.spheres += 1.0;
         }

@@ -107,7 +107,7 @@ impl Observer {
 
     /// Begins an interval now; displacements count from `start`.
     fn at(simulation: &Simulation, start: Vec<f64>) -> Self {
-        let length = simulation.wall().lattice().length();
+        let length = simulation.wall().length();
         let bodies = simulation.bodies();
         Self {
             time: simulation.time(),
@@ -150,7 +150,7 @@ impl Sample {
         let bodies = simulation.bodies();
         let (tally, ledger) = (simulation.tally(), simulation.ledger());
         let heading = wall.heading();
-        let length = wall.lattice().length();
+        let length = wall.length();
         let interval = after.time - before.time;
         let grains = bodies.grains as f64;
 
@@ -158,7 +158,7 @@ impl Sample {
         let inside = sums.inside;
         let rate = |flux: f64| heading * flux / (length * interval);
         // Jmax = N c/L with the mean wave speed of the interval.
-        let wave_run = (after.cycles - before.cycles) * wall.lattice().wavelength;
+        let wave_run = (after.cycles - before.cycles) * wall.wavelength();
         let ratio = |flux: f64, number: f64| {
             if wave_run > 0.0 && number > 0.0 {
                 heading * flux / (number * wave_run)

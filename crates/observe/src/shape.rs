@@ -1,7 +1,7 @@
 //! The shape of the tube: the wall's radius along the axis.
 
 use peristalsis_engine::{Bodies, Simulation, Wall};
-use peristalsis_physics::wall::RadiusWave;
+use peristalsis_physics::wall::{Lattice, RadiusWave};
 
 /// Radius of the tube as a function of z, to the centres of the wall spheres.
 #[derive(Clone, Debug)]
@@ -41,7 +41,7 @@ impl TubeShape {
         let wall = simulation.wall();
         match wall.wave() {
             Some(wave) => Self::Wave(*wave, wall.cycles()),
-            None => Self::Slices(slices(simulation.bodies(), wall), wall.lattice().length()),
+            None => Self::Slices(slices(simulation.bodies(), wall), wall.length()),
         }
     }
 
@@ -87,11 +87,10 @@ impl TubeShape {
 
 /// Slices one ring's spacing thick; a slice that no sphere is in takes the reference radius.
 fn slices(bodies: &Bodies, wall: &Wall) -> Vec<Slice> {
-    let lattice = wall.lattice();
-    let number = lattice.rings() as usize;
+    let number = wall.lattice().map_or(1, Lattice::rings) as usize;
     let mut sums = vec![(0_u32, 0.0, f64::INFINITY, 0.0_f64); number];
     for position in &bodies.position[bodies.grains..] {
-        let index = ((position.z / lattice.length() * number as f64) as usize).min(number - 1);
+        let index = ((position.z / wall.length() * number as f64) as usize).min(number - 1);
         let radius = (position.x * position.x + position.y * position.y).sqrt();
         let (count, sum, least, largest) = &mut sums[index];
         *count += 1;

@@ -36,7 +36,7 @@ impl<'a> View<'a> {
             .filter(|&(_, &inside)| inside)
             .map(|(velocity, _)| velocity.z)
             .sum();
-        wall.heading() * flux / wall.lattice().length()
+        wall.heading() * flux / wall.length()
     }
 }
 

@@ -49,7 +49,7 @@ impl WaveByWave {
     /// Begins a period of so many samples.
     #[must_use]
     pub fn new(simulation: &Simulation, samples_per_period: u64) -> Self {
-        let waves = simulation.wall().lattice().waves as usize;
+        let waves = simulation.wall().waves() as usize;
         Self {
             samples_per_period: samples_per_period.max(1),
             samples: 0,
@@ -71,7 +71,7 @@ impl WaveByWave {
     pub fn add(&mut self, before: &Observer, after: &Observer, view: &View<'_>) {
         let wall = view.simulation.wall();
         let (heading, throat) = (wall.heading(), wall.throat());
-        let wavelength = wall.lattice().wavelength;
+        let wavelength = wall.wavelength();
         let waves = self.sums.len();
         let half_way = 0.5 * (before.cycles + after.cycles) + throat;
         let wave_run = (after.cycles - before.cycles) * wavelength;

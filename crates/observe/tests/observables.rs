@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
+    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
 };
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_observe::columns::Scope;
@@ -324,19 +324,7 @@ fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
             sphere_diameter: 1.0,
         },
         mean_radius: 3.5,
-        sphere_mass: 0.1,
-        spring_stiffness: 0.018,
-        natural_length: 0.7,
-        spring_damping: 0.0,
-        drag: 0.0,
-        contact_range: 3.0,
-        tethers: Tethers {
-            balance: true,
-            radial: 0.0,
-            azimuthal: 0.1,
-            axial: 0.01,
-            net_force: NetForce::Removed,
-        },
+        network: ElasticNetwork::default(),
         force_amplitude: Schedule::constant(0.004),
         frequency: Schedule::constant(4e-3),
         heading: 1.0,

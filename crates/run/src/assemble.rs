@@ -121,29 +121,20 @@ pub fn walls(configuration: &Configuration) -> Wall {
         Control::Stress {
             force_amplitude,
             angle,
-        } => {
-            let network = wall.elastic.unwrap_or_default();
-            Wall::Elastic(ElasticWall::new(ElasticParameters {
-                lattice,
-                mean_radius: tube.radius,
-                sphere_mass: network.sphere_mass,
-                spring_stiffness: network.spring_stiffness,
-                natural_length: network.natural_length,
-                spring_damping: network.spring_damping,
-                drag: network.drag,
-                contact_range: network.contact_range,
-                tethers: network.tethers,
-                force_amplitude: schedule(
-                    configuration,
-                    ScheduledParameter::ForceAmplitude,
-                    force_amplitude,
-                ),
-                frequency,
-                heading,
-                waveform: drive.waveform,
-                angle,
-            }))
-        }
+        } => Wall::Elastic(ElasticWall::new(ElasticParameters {
+            lattice,
+            mean_radius: tube.radius,
+            network: wall.elastic.unwrap_or_default(),
+            force_amplitude: schedule(
+                configuration,
+                ScheduledParameter::ForceAmplitude,
+                force_amplitude,
+            ),
+            frequency,
+            heading,
+            waveform: drive.waveform,
+            angle,
+        })),
     }
 }
 

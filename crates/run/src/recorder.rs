@@ -74,7 +74,7 @@ impl Recorder {
         let samples = self.samples.len() as u64;
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let each = configuration.run.steps_per_sample;
-        let waves = simulation.wall().lattice().waves as usize;
+        let waves = simulation.wall().waves() as usize;
         let bins = configuration.observe.profile_bins as usize;
         self.samples_per_period == samples_per_period
             && self.wall_interval == wall_interval(each, samples_per_period)

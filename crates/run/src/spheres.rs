@@ -32,7 +32,7 @@ pub(crate) const SPHERE: &[Quantity<SeenSphere>] = &[
 pub(crate) fn seen_spheres(run: &Run) -> Vec<SeenSphere> {
     let simulation = run.simulation();
     let bodies = simulation.bodies();
-    let tube = simulation.wall().lattice().length();
+    let tube = simulation.wall().length();
     let heading = simulation.wall().heading();
     (0..bodies.number())
         .map(|body| {

@@ -96,8 +96,8 @@ fn one_grain(run: &Run, position: [f64; 3], along: f64) -> Frame {
 fn a_grain_is_where_it_is_and_in_its_colour() {
     let run = jammed("forward");
     let wall = run.simulation().wall();
-    let (heading, length) = (wall.heading(), wall.lattice().length());
-    let speed = wall.frequency(0.0) * wall.lattice().wavelength;
+    let (heading, length) = (wall.heading(), wall.length());
+    let speed = wall.frequency(0.0) * wall.wavelength();
     let bare = Look {
         wall: WallLook::Hidden,
         ..look(500)
@@ -138,7 +138,7 @@ fn a_mirrored_tube_gives_the_mirrored_outline() {
         wall: WallLook::Hidden,
         ..look(300)
     };
-    let length = run.simulation().wall().lattice().length();
+    let length = run.simulation().wall().length();
     let outline = |z: f64| -> Vec<Vec<bool>> {
         let frame = one_grain(&run, [0.3, 0.1, z], 0.0);
         let scene = PictureScene::new(&run, bare, std::slice::from_ref(&frame)).unwrap();

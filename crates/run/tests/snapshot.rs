@@ -25,10 +25,7 @@ fn spheres_are_turned_along_the_wave() {
         let table = snapshot_table(&run).unwrap();
         let simulation = run.simulation();
         let bodies = simulation.bodies();
-        let (heading, length) = (
-            simulation.wall().heading(),
-            simulation.wall().lattice().length(),
-        );
+        let (heading, length) = (simulation.wall().heading(), simulation.wall().length());
         let is_elastic = preset == "frictional";
         assert_eq!(
             heading > 0.0,

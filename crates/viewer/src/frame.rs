@@ -99,7 +99,8 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
     };
     let wall = run.simulation().wall();
     let rings: Vec<f64> = wall.wave().map_or_else(Vec::new, |wave| {
-        let places = (0..head.rings).map(|ring| wall.lattice().axial_position(ring as u32));
+        let spacing = wall.wavelength() / head.rings as f64;
+        let places = (0..head.rings).map(|ring| ring as f64 * spacing);
         places.map(|z| wave.radius(z, wall.cycles())).collect()
     });
     encode(

@@ -101,8 +101,7 @@ impl Recording {
         self.check(&frame)?;
         let timeline = Timeline(&self.configuration);
         let clock = timeline.clock(frame.time);
-        let lattice = self.wall.lattice();
-        let is_elastic = self.wall.mobile_spheres() > 0;
+        let (lattice, mobile) = (self.wall.lattice(), self.wall.mobile_spheres());
         let slack = SLACK * timeline.unit_period();
         let run = &self.configuration.run;
         let interval = run.steps_per_sample as f64 * run.time_step + slack;
@@ -124,36 +123,34 @@ impl Recording {
             time: frame.time,
             clock,
             period: frame.value("period").unwrap_or(clock),
-            wave_speed: self.wall.frequency(frame.time) * lattice.wavelength,
+            wave_speed: self.wall.frequency(frame.time) * self.wall.wavelength(),
             grains: frame.grains,
-            wall_spheres: if is_elastic { lattice.spheres() } else { 0 },
-            rings: if is_elastic {
-                0
-            } else {
-                lattice.rings_per_wave as usize
+            wall_spheres: mobile,
+            rings: match lattice {
+                Some(lattice) if mobile == 0 => lattice.rings_per_wave as usize,
+                _ => 0,
             },
             turning: frame.rotation.is_some(),
             driven: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
         };
-        let spheres_per_ring = lattice.spheres_per_ring as usize;
+        let spheres_per_ring = lattice.map_or(0, |lattice| lattice.spheres_per_ring as usize);
         Ok(of_recording(&head, &frame, spheres_per_ring))
     }
 
     /// Whether a frame is of this run.
     fn check(&self, frame: &Frame) -> Result<(), ViewerError> {
-        let lattice = self.wall.lattice();
-        let (length, wall) = (lattice.length(), frame.spheres() - frame.grains);
+        let spheres = self.wall.lattice().map_or(0, |lattice| lattice.spheres());
+        let (length, wall) = (self.wall.length(), frame.spheres() - frame.grains);
         let is_as_long = (frame.length - length).abs() <= TOLERANCE * length;
-        if !is_as_long || wall != lattice.spheres() || frame.grains != self.grains {
+        if !is_as_long || wall != spheres || frame.grains != self.grains {
             return Err(self.foreign(format!(
                 "its tube of {} d with {} grains and {wall} wall spheres is not that of the configuration, \
-                 {length} d with {} grains and {} wall spheres",
+                 {length} d with {} grains and {spheres} wall spheres",
                 frame.length,
                 frame.grains,
                 self.grains,
-                lattice.spheres(),
             )));
         }
         Ok(())

@@ -394,11 +394,11 @@ impl Tube {
             time: simulation.time(),
             clock: self.clock_now(),
             period: wall.cycles(),
-            wave_speed: wall.frequency(simulation.time()) * wall.lattice().wavelength,
+            wave_speed: wall.frequency(simulation.time()) * wall.wavelength(),
             grains: bodies.grains,
             wall_spheres: bodies.number() - bodies.grains,
             rings: if prescribed {
-                wall.lattice().rings_per_wave as usize
+                self.run.configuration().tube.rings_per_wave as usize
             } else {
                 0
             },

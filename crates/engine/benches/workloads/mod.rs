@@ -2,7 +2,7 @@
 
 use peristalsis_engine::initial::{InitialState, Packing, pack};
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
+    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
 };
 use peristalsis_engine::{
     EngineError, Instructions, Integrator, Kernel, Parameters, Simulation, Wall,
@@ -219,19 +219,7 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
     let wall = ElasticWall::new(ElasticParameters {
         lattice,
         mean_radius: 3.5,
-        sphere_mass: 0.1,
-        spring_stiffness: 0.018,
-        natural_length: 0.7,
-        spring_damping: 0.0,
-        drag: 0.0,
-        contact_range: 3.0,
-        tethers: Tethers {
-            balance: true,
-            radial: 0.0,
-            azimuthal: 0.1,
-            axial: 0.01,
-            net_force: NetForce::Removed,
-        },
+        network: ElasticNetwork::default(),
         force_amplitude: Schedule::constant(0.004),
         frequency: Schedule::constant(strain_rate),
         heading: 1.0,

@@ -28,7 +28,7 @@ pub(super) struct Region<'a> {
 
 impl<'a> Region<'a> {
     pub(super) fn new(packing: &Packing, wall: &'a Wall) -> Self {
-        let length = wall.lattice().length();
+        let length = wall.length();
         let (filled, belly) = match (packing.state, wall.wave()) {
             (InitialState::Jammed, Some(wave)) => {
                 let radius = wave.mean_radius;
@@ -49,21 +49,20 @@ impl<'a> Region<'a> {
 
     /// Radius within which centres of spheres of this diameter are clear of the wall at z.
     fn clear_radius(&self, z: f64, diameter: f64) -> f64 {
-        let lattice = self.wall.lattice();
-        (self.wall.radius(z) - 0.5 * (diameter + lattice.sphere_diameter)).max(0.0)
+        (self.wall.radius(z) - 0.5 * (diameter + self.wall.sphere_diameter())).max(0.0)
     }
 
     /// A random place, uniform in the volume that is clear of the wall (a narrow core where nothing is).
     fn place(&self, diameter: f64, random: &mut ChaCha8Rng) -> DVec3 {
-        let lattice = self.wall.lattice();
+        let (waves, wavelength) = (f64::from(self.wall.waves()), self.wall.wavelength());
         let widest = self.clear_radius(self.belly, diameter).max(
             // An elastic tube has the same radius everywhere.
             self.clear_radius(0.0, diameter),
         );
         for _ in 0..TRIES {
-            let wave = (uniform(random) * f64::from(lattice.waves)).floor();
-            let along = (uniform(random) - 0.5) * self.filled * lattice.wavelength;
-            let z = (self.belly + wave * lattice.wavelength + along).rem_euclid(self.length);
+            let wave = (uniform(random) * waves).floor();
+            let along = (uniform(random) - 0.5) * self.filled * wavelength;
+            let z = (self.belly + wave * wavelength + along).rem_euclid(self.length);
             let clear = self.clear_radius(z, diameter);
             let accepted = uniform(random) * widest * widest < clear * clear;
             let (from_axis, angle) = (clear * uniform(random).sqrt(), TAU * uniform(random));

@@ -183,7 +183,7 @@ impl Descent {
             if self.step(bodies) {
                 break;
             }
-            bodies.fold(wall.lattice().length());
+            bodies.fold(wall.length());
         }
     }
 

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_physics::wall::{
-    DriveAngle, Lattice, NetForce, Schedule, Tethers, WallSphere, Waveform,
+    DriveAngle, ElasticNetwork, Lattice, NetForce, Schedule, Tethers, WallSphere, Waveform,
 };
 
 use crate::bodies::Bodies;
@@ -16,20 +16,8 @@ pub struct ElasticParameters {
     pub lattice: Lattice,
     /// Radius of the reference tube, to the centres \[d\].
     pub mean_radius: f64,
-    /// Mass of a wall sphere \[m\].
-    pub sphere_mass: f64,
-    /// k_w \[m/t^2\]
-    pub spring_stiffness: f64,
-    /// l, natural length of the springs \[d\].
-    pub natural_length: f64,
-    /// Dashpot beside each spring \[m/t\].
-    pub spring_damping: f64,
-    /// Drag on each wall sphere, force over velocity \[m/t\].
-    pub drag: f64,
-    /// Wall spheres further apart than this in the reference tube touch like grains without friction \[d\].
-    pub contact_range: f64,
-    /// f_keep.
-    pub tethers: Tethers,
+    /// The spheres, their springs and tethers; the natural length of the springs is in d.
+    pub network: ElasticNetwork,
     /// f^P(t) \[m d/t^2\].
     pub force_amplitude: Schedule,
     /// c(t)/lambda \[1/t\].
@@ -89,7 +77,7 @@ impl ElasticWall {
             })
             .collect();
         let far = distances(&parameters)
-            .map(|distance| distance > parameters.contact_range)
+            .map(|distance| distance > parameters.network.contact_range)
             .collect();
         let mut wall = Self {
             amplitude: parameters.force_amplitude.value(0.0),
@@ -101,7 +89,7 @@ impl ElasticWall {
             balance: 0.0,
             cycles: 0.0,
         };
-        if wall.parameters.tethers.balance {
+        if wall.parameters.network.tethers.balance {
             wall.balance = -wall.reference_spring_force();
         }
         wall
@@ -119,8 +107,8 @@ impl ElasticWall {
                     here - self.reference(lattice.index(neighbour)),
                     lattice.length(),
                 );
-                let stretch = separation.length() - self.parameters.natural_length;
-                -self.parameters.spring_stiffness * stretch * separation.normalize()
+                let stretch = separation.length() - self.parameters.network.natural_length;
+                -self.parameters.network.spring_stiffness * stretch * separation.normalize()
             })
             .sum();
         let (cos, sin) = self.directions[0];
@@ -210,7 +198,7 @@ impl ElasticWall {
         self.add_springs(bodies, tally);
         self.add_tethers_and_drive(bodies, tally);
         let spheres = self.directions.len();
-        match self.parameters.tethers.net_force {
+        match self.parameters.network.tethers.net_force {
             NetForce::Free => {}
             NetForce::Removed => remove_mean(bodies, bodies.grains..bodies.grains + spheres, tally),
             NetForce::RemovedPerRing => {
@@ -224,15 +212,14 @@ impl ElasticWall {
     }
 
     fn add_springs(&self, bodies: &mut Bodies, tally: &mut Tally) {
-        let ElasticParameters {
+        let ElasticNetwork {
             spring_stiffness,
             natural_length,
             spring_damping,
-            lattice,
             ..
-        } = &self.parameters;
+        } = self.parameters.network;
         let first = bodies.grains;
-        let length = lattice.length();
+        let length = self.parameters.lattice.length();
         for (sphere, partners) in self.bonds.iter().enumerate() {
             let i = first + sphere;
             let mut force = bodies.acceleration[i];
@@ -259,8 +246,8 @@ impl ElasticWall {
             azimuthal,
             axial,
             ..
-        } = self.parameters.tethers;
-        let drag = self.parameters.drag;
+        } = self.parameters.network.tethers;
+        let drag = self.parameters.network.drag;
         let wavelength = self.parameters.lattice.wavelength;
         for (sphere, &(cos, sin)) in self.directions.iter().enumerate() {
             let i = bodies.grains + sphere;

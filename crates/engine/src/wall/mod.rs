@@ -5,16 +5,15 @@ pub(crate) mod memory;
 mod prescribed;
 
 pub use elastic::{ElasticParameters, ElasticWall};
-pub use peristalsis_physics::wall::{DriveAngle, NetForce, Tethers};
+pub use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, NetForce, Tethers};
+pub(crate) use prescribed::Grains;
 pub use prescribed::PrescribedWall;
 
 use glam::DVec3;
-use peristalsis_physics::contact::{ContactLaw, NormalLaw, TangentialLaw};
+use peristalsis_physics::contact::Contact;
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
-use self::memory::WallMemory;
 use crate::bodies::{Bodies, Sphere};
-use crate::ledger::Tally;
 
 /// The wall of a simulation.
 #[derive(Clone, Debug)]
@@ -78,13 +77,47 @@ impl Wall {
         }
     }
 
-    /// The lattice of the wall's spheres.
+    /// The lattice of the wall's spheres; `None` where the wall has none.
     #[must_use]
-    pub fn lattice(&self) -> &Lattice {
+    pub fn lattice(&self) -> Option<&Lattice> {
         match self {
+            Self::Prescribed(wall) => Some(wall.lattice()),
+            Self::Elastic(wall) => Some(wall.lattice()),
+        }
+    }
+
+    /// Length of the tube, lambda and the number of wavelengths.
+    fn extent(&self) -> (f64, f64, u32) {
+        let lattice = match self {
             Self::Prescribed(wall) => wall.lattice(),
             Self::Elastic(wall) => wall.lattice(),
-        }
+        };
+        (lattice.length(), lattice.wavelength, lattice.waves)
+    }
+
+    /// L, the period of the tube \[d\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.extent().0
+    }
+
+    /// lambda \[d\]
+    #[must_use]
+    pub fn wavelength(&self) -> f64 {
+        self.extent().1
+    }
+
+    /// Wavelengths in the tube.
+    #[must_use]
+    pub fn waves(&self) -> u32 {
+        self.extent().2
+    }
+
+    /// Diameter of the wall's spheres, 0 where it has none \[d\]: the wall's surface lies half of it inside its radius.
+    #[must_use]
+    pub fn sphere_diameter(&self) -> f64 {
+        self.lattice()
+            .map_or(0.0, |lattice| lattice.sphere_diameter)
     }
 
     /// Wavelengths that the wave has run since the start, the integral of c/lambda.
@@ -162,14 +195,9 @@ impl Wall {
 
     /// The wall's spheres that move as prescribed, in the order of their numbers.
     pub fn prescribed_spheres(&self) -> impl Iterator<Item = Sphere> {
-        self.prescribed().into_iter().flat_map(|wall| {
-            (0..wall.lattice().spheres()).map(|index| Sphere {
-                position: wall.sphere_position(index),
-                velocity: wall.sphere_velocity(index),
-                angular_velocity: DVec3::ZERO,
-                diameter: wall.lattice().sphere_diameter,
-            })
-        })
+        self.prescribed()
+            .into_iter()
+            .flat_map(|wall| (0..wall.lattice().spheres()).map(|index| wall.sphere(index)))
     }
 
     /// Displacements of the mobile spheres from their reference places: (radial, azimuthal, axial) along the reference
@@ -187,7 +215,7 @@ impl Wall {
             bodies.push_wall_sphere(
                 wall.reference(sphere),
                 wall.lattice().sphere_diameter,
-                wall.parameters().sphere_mass,
+                wall.parameters().network.sphere_mass,
             );
         }
     }
@@ -214,32 +242,11 @@ impl Wall {
             .is_some_and(|wall| wall.may_touch(one, other))
     }
 
-    /// Calls `touch` for each sphere that moves as prescribed and overlaps a sphere of diameter `diameter` at `centre`,
-    /// with its number, the separation (centre minus wall sphere) and its velocity.
-    pub(crate) fn for_each_touching(
-        &self,
-        centre: DVec3,
-        diameter: f64,
-        touch: impl FnMut(u32, DVec3, DVec3),
-    ) {
-        if let Some(wall) = self.prescribed() {
-            wall.for_each_touching(centre, diameter, touch);
-        }
-    }
-
-    /// Adds the forces of a prescribed wall on the grains, or all forces on the spheres of an elastic wall except
-    /// contact forces, which must be there already.
-    pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
-        &self,
-        law: &ContactLaw<N, T>,
-        bodies: &mut Bodies,
-        memory: &mut WallMemory<T::History<f64>>,
-        time_step: f64,
-        tally: &mut Tally,
-    ) {
-        match self {
-            Self::Prescribed(wall) => wall.add_forces(law, bodies, memory, time_step, tally),
-            Self::Elastic(wall) => wall.add_forces(bodies, tally),
+    /// Calls `touch` for each contact of a grain with what of the wall no force moves: with the number of the wall's
+    /// sphere, the contact (the grain not rotating) and the velocity of the wall there.
+    pub(crate) fn for_each_contact(&self, grain: &Sphere, touch: impl FnMut(u32, Contact, DVec3)) {
+        if let Self::Prescribed(wall) = self {
+            wall.for_each_contact(grain, touch);
         }
     }
 }

@@ -19,9 +19,6 @@ use crate::ledger::Tally;
 #[derive(Clone, Debug)]
 pub struct PrescribedWall {
     lattice: Lattice,
-    mean_radius: f64,
-    waveform: Waveform,
-    heading: f64,
     amplitude: Schedule,
     frequency: Schedule,
     /// Distance of neighbouring rings, and its inverse.
@@ -73,9 +70,6 @@ impl PrescribedWall {
         };
         let mut wall = Self {
             lattice,
-            mean_radius,
-            waveform,
-            heading,
             amplitude,
             frequency,
             spacing: lattice.spacing(),
@@ -107,15 +101,9 @@ impl PrescribedWall {
 
     fn move_with_amplitude(&mut self, time: f64, amplitude: f64) {
         self.cycles = self.frequency.integral(time);
-        self.wave = RadiusWave {
-            mean_radius: self.mean_radius,
-            amplitude,
-            wavelength: self.lattice.wavelength,
-            waveform: self.waveform,
-            heading: self.heading,
-        };
+        self.wave.amplitude = amplitude;
         let (frequency, amplitude_rate) = (self.frequency.value(time), self.amplitude.rate(time));
-        if self.waveform == Waveform::Sine {
+        if self.wave.waveform == Waveform::Sine {
             // One sine for all rings: sin(a - b) = sin a cos b - cos a sin b.
             let (sin, cos) = libm::sincos(TAU * (self.cycles - self.cycles.floor()));
             for (ring, (ring_cos, ring_sin)) in self.rings.iter_mut().zip(&self.ring_phases) {
@@ -159,31 +147,24 @@ impl PrescribedWall {
         self.frequency.value(time)
     }
 
-    /// Centre of a wall sphere now \[d\].
-    pub(crate) fn sphere_position(&self, index: usize) -> DVec3 {
+    /// A wall sphere as it is now; its velocity is radial.
+    pub(crate) fn sphere(&self, index: usize) -> Sphere {
         let sphere = self.lattice.sphere(index);
         let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
-        let Ring { radius, .. } = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
-        DVec3::new(
-            radius * cos,
-            radius * sin,
-            self.lattice.axial_position(sphere.ring),
-        )
-    }
-
-    /// Velocity of a wall sphere now, radial \[d/t\].
-    pub(crate) fn sphere_velocity(&self, index: usize) -> DVec3 {
-        let sphere = self.lattice.sphere(index);
-        let (cos, sin) = self.directions[self.lattice.half_steps(sphere) as usize];
-        let Ring { velocity, .. } =
-            self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
-        DVec3::new(velocity * cos, velocity * sin, 0.0)
+        let ring = self.rings[(sphere.ring % self.lattice.rings_per_wave) as usize];
+        let z = self.lattice.axial_position(sphere.ring);
+        Sphere {
+            position: DVec3::new(ring.radius * cos, ring.radius * sin, z),
+            velocity: DVec3::new(ring.velocity * cos, ring.velocity * sin, 0.0),
+            angular_velocity: DVec3::ZERO,
+            diameter: self.lattice.sphere_diameter,
+        }
     }
 
     /// Calls `touch` for each wall sphere that overlaps a sphere of diameter `diameter` at `centre`, with the number of
     /// the wall sphere, the separation (centre minus wall sphere, length below the reach) and the wall's velocity.
     #[inline(always)]
-    pub(crate) fn for_each_touching<F: FnMut(u32, DVec3, DVec3)>(
+    fn for_each_touching<F: FnMut(u32, DVec3, DVec3)>(
         &self,
         centre: DVec3,
         diameter: f64,
@@ -256,11 +237,30 @@ impl PrescribedWall {
         }
     }
 
+    /// Calls `touch` for each contact of a grain: with the number of the wall sphere, the contact (the grain not rotating)
+    /// and the velocity of the wall there.
+    #[inline(always)]
+    pub(crate) fn for_each_contact(
+        &self,
+        grain: &Sphere,
+        mut touch: impl FnMut(u32, Contact, DVec3),
+    ) {
+        let diameters = (grain.diameter, self.lattice.sphere_diameter);
+        let at = (grain.position, grain.diameter);
+        self.for_each_touching(at.0, at.1, |sphere, separation, velocity| {
+            let contact = Contact::new(diameters, separation, grain.velocity - velocity);
+            // Rounding may leave a sphere at the very edge of reach.
+            if contact.touches() {
+                touch(sphere, contact, velocity);
+            }
+        });
+    }
+
     /// Adds the forces and torques of the wall on the grains.
     pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
         &self,
         law: &ContactLaw<N, T>,
-        bodies: &mut Bodies,
+        grains: &mut impl Grains,
         memory: &mut WallMemory<T::History<f64>>,
         time_step: f64,
         tally: &mut Tally,
@@ -268,74 +268,71 @@ impl PrescribedWall {
         if T::ROTATES {
             memory.begin();
         }
-        for grain in 0..bodies.grains {
-            let sphere = bodies.sphere(grain);
-            let force = &mut bodies.acceleration[grain];
-            let torque = &mut bodies.angular_acceleration[grain];
-            self.add_force(
-                law,
-                (grain, &sphere),
-                (force, torque),
-                memory,
-                time_step,
-                tally,
-            );
+        for grain in 0..grains.grains() {
+            let sphere = grains.sphere(grain);
+            let (mut force, mut torque) = grains.force(grain);
+            self.for_each_contact(&sphere, |number, mut contact, wall_velocity| {
+                let arm = contact.arm(sphere.diameter);
+                let mut history = T::History::<f64>::default();
+                if T::ROTATES {
+                    contact.rotation = arm * sphere.angular_velocity;
+                    history = memory.take(grain, number);
+                }
+                let answer = law.force(&contact, &mut history, time_step);
+                if T::ROTATES {
+                    memory.put(number, history);
+                    torque += arm * answer.torque_per_arm;
+                }
+                force += answer.force;
+                tally.add_contact(&answer, contact.overlap);
+                tally.wall_contacts += 1;
+                tally.wall_power += answer.force.dot(wall_velocity);
+                tally.wall_axial_force += answer.force.z;
+            });
+            grains.set_force(grain, force, torque);
+            if T::ROTATES {
+                for ended in memory.end_grain(grain) {
+                    tally.history_reset += law.tangential.stored_energy(ended);
+                }
+            }
         }
         if T::ROTATES {
             memory.end();
         }
     }
+}
 
-    /// Adds the force and torque of the wall on one grain; grains come in their order, between [`WallMemory::begin`] and
-    /// [`WallMemory::end`] if contacts have histories.
+/// Grains, as a kernel keeps them, with the forces and torques on them.
+pub(crate) trait Grains {
+    /// How many there are.
+    fn grains(&self) -> usize;
+    /// One of them.
+    fn sphere(&self, grain: usize) -> Sphere;
+    /// Force and torque on one of them.
+    fn force(&self, grain: usize) -> (DVec3, DVec3);
+    /// Writes both.
+    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3);
+}
+
+/// Until all forces are known accelerations stand for them.
+impl Grains for Bodies {
+    fn grains(&self) -> usize {
+        self.grains
+    }
+
     #[inline(always)]
-    pub(crate) fn add_force<N: NormalLaw, T: TangentialLaw>(
-        &self,
-        law: &ContactLaw<N, T>,
-        (grain, sphere): (usize, &Sphere),
-        (on_grain, torque_on_grain): (&mut DVec3, &mut DVec3),
-        memory: &mut WallMemory<T::History<f64>>,
-        time_step: f64,
-        tally: &mut Tally,
-    ) {
-        let Sphere {
-            position,
-            velocity,
-            angular_velocity,
-            diameter,
-        } = *sphere;
-        let diameters = (diameter, self.lattice.sphere_diameter);
-        let (mut force, mut torque) = (*on_grain, *torque_on_grain);
-        self.for_each_touching(position, diameter, |sphere, separation, wall_velocity| {
-            let mut contact = Contact::new(diameters, separation, velocity - wall_velocity);
-            // Rounding may leave a sphere at the very edge of reach.
-            if !contact.touches() {
-                return;
-            }
-            let arm = contact.arm(diameter);
-            let mut history = T::History::<f64>::default();
-            if T::ROTATES {
-                contact.rotation = arm * angular_velocity;
-                history = memory.take(grain, sphere);
-            }
-            let answer = law.force(&contact, &mut history, time_step);
-            if T::ROTATES {
-                memory.put(sphere, history);
-                torque += arm * answer.torque_per_arm;
-            }
-            force += answer.force;
-            tally.add_contact(&answer, contact.overlap);
-            tally.wall_contacts += 1;
-            tally.wall_power += answer.force.dot(wall_velocity);
-            tally.wall_axial_force += answer.force.z;
-        });
-        *on_grain = force;
-        if T::ROTATES {
-            *torque_on_grain = torque;
-            for ended in memory.end_grain(grain) {
-                tally.history_reset += law.tangential.stored_energy(ended);
-            }
-        }
+    fn sphere(&self, grain: usize) -> Sphere {
+        self.sphere(grain)
+    }
+
+    #[inline(always)]
+    fn force(&self, grain: usize) -> (DVec3, DVec3) {
+        (self.acceleration[grain], self.angular_acceleration[grain])
+    }
+
+    #[inline(always)]
+    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3) {
+        (self.acceleration[grain], self.angular_acceleration[grain]) = (force, torque);
     }
 }
 

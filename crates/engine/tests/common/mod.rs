@@ -9,7 +9,7 @@ pub(crate) mod states;
 use glam::DVec3;
 use peristalsis_engine::initial::{InitialState, Packing, pack};
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
+    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
 };
 use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
@@ -117,19 +117,7 @@ pub(crate) fn elastic_parameters() -> ElasticParameters {
             sphere_diameter: 1.0,
         },
         mean_radius: 2.5,
-        sphere_mass: 0.1,
-        spring_stiffness: 0.018,
-        natural_length: 0.7,
-        spring_damping: 0.0,
-        drag: 0.0,
-        contact_range: 3.0,
-        tethers: Tethers {
-            balance: true,
-            radial: 0.0,
-            azimuthal: 0.1,
-            axial: 0.01,
-            net_force: NetForce::Removed,
-        },
+        network: ElasticNetwork::default(),
         force_amplitude: Schedule::constant(0.005),
         frequency: Schedule::constant(0.02),
         heading: 1.0,

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_engine::wall::{
-    DriveAngle, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
+    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
 use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
 use peristalsis_physics::contact::{
@@ -190,7 +190,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
         Tube::Wide => (wide(numbers, time_step), 5.0),
         Tube::Elastic => springy(numbers, time_step),
     };
-    let mut bodies = grains(numbers, number, row.alike, radius, wall.lattice().length());
+    let mut bodies = grains(numbers, number, row.alike, radius, wall.length());
     if let Wall::Elastic(elastic) = &wall {
         add_wall_spheres(&mut bodies, elastic, numbers);
     }
@@ -295,22 +295,24 @@ fn springy(numbers: &mut Numbers, time_step: f64) -> (Wall, f64) {
             sphere_diameter: numbers.one_of(&[1.0, 0.8]),
         },
         mean_radius: radius,
-        sphere_mass: numbers.between(0.1, 0.5),
-        spring_stiffness: numbers.between(0.005, 0.1),
-        natural_length: numbers.between(0.5, 1.1),
-        spring_damping: numbers.perhaps(0.05),
-        drag: numbers.perhaps(0.05),
-        contact_range: numbers.between(1.2, 3.0),
-        tethers: Tethers {
-            balance: numbers.happens(0.5),
-            radial: numbers.perhaps(0.1),
-            azimuthal: numbers.perhaps(0.1),
-            axial: numbers.perhaps(0.1),
-            net_force: numbers.one_of(&[
-                NetForce::Free,
-                NetForce::Removed,
-                NetForce::RemovedPerRing,
-            ]),
+        network: ElasticNetwork {
+            sphere_mass: numbers.between(0.1, 0.5),
+            spring_stiffness: numbers.between(0.005, 0.1),
+            natural_length: numbers.between(0.5, 1.1),
+            spring_damping: numbers.perhaps(0.05),
+            drag: numbers.perhaps(0.05),
+            contact_range: numbers.between(1.2, 3.0),
+            tethers: Tethers {
+                balance: numbers.happens(0.5),
+                radial: numbers.perhaps(0.1),
+                azimuthal: numbers.perhaps(0.1),
+                axial: numbers.perhaps(0.1),
+                net_force: numbers.one_of(&[
+                    NetForce::Free,
+                    NetForce::Removed,
+                    NetForce::RemovedPerRing,
+                ]),
+            },
         },
         force_amplitude: numbers.schedule(force, time_step),
         frequency: numbers.schedule(frequency, time_step),
@@ -339,7 +341,7 @@ fn add_wall_spheres(bodies: &mut Bodies, wall: &ElasticWall, numbers: &mut Numbe
         bodies.push_wall_sphere(
             place,
             wall.lattice().sphere_diameter,
-            wall.parameters().sphere_mass,
+            wall.parameters().network.sphere_mass,
         );
     }
 }

@@ -80,7 +80,7 @@ impl SideView {
     fn of(run: &Run) -> Self {
         let configuration = run.configuration();
         let simulation = run.simulation();
-        let tube = simulation.wall().lattice().length();
+        let tube = simulation.wall().length();
         let heading = simulation.wall().heading();
         let speed = configuration.wave_speed();
         // Drawn with the wave running to the right.

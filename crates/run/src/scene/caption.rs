@@ -26,7 +26,6 @@ pub(super) struct Caption {
 
 impl Caption {
     pub(super) fn of(scene: &PictureScene, frame: &Frame) -> Self {
-        let lattice = scene.wall.lattice();
         let is_moving = scene.wall.frequency(frame.time) != 0.0;
         let (place, across) = match scene.look.aspect {
             Aspect::Side => {
@@ -63,7 +62,7 @@ impl Caption {
             title: format!(
                 "The tube after {:.2} periods, {:.0} d long, {} grains",
                 cycles(frame),
-                lattice.length(),
+                scene.wall.length(),
                 frame.grains
             ),
             notes,
@@ -82,7 +81,7 @@ impl Caption {
 
 /// Bellies and throats of the wave from the left.
 fn marks(scene: &PictureScene, frame: &Frame) -> Vec<PlaceMark> {
-    let wavelength = scene.wall.lattice().wavelength;
+    let wavelength = scene.wall.wavelength();
     let heading = scene.wall.heading();
     let throat = scene.wall.throat();
     let mut marks = Vec::new();

@@ -173,7 +173,7 @@ impl Coloured {
             ));
         }
         let heading = wall.heading();
-        let wavelength = wall.lattice().wavelength;
+        let wavelength = wall.wavelength();
         let speed = match wall.frequency(frame.time) * wavelength {
             _ if !self.is_moving => 1.0,
             speed if speed > 0.0 => speed,

@@ -194,9 +194,8 @@ impl PictureScene {
             return Err(refused("there is nothing to draw", "take a longer window"));
         };
         let wall = run.simulation().wall().clone();
-        let lattice = wall.lattice();
-        look.check(lattice.length())?;
-        let shown = lattice.length().min(look.waves * lattice.wavelength);
+        look.check(wall.length())?;
+        let shown = wall.length().min(look.waves * wall.wavelength());
         let coloured = Coloured::new(look.field, run, samples)?;
         let scale = coloured.scale(look.range);
         let scene = Self {
@@ -266,7 +265,7 @@ impl PictureScene {
     /// # Errors
     /// As [`PictureScene::draw`].
     pub fn picture(&self, frame: &Frame) -> Result<Picture, RunError> {
-        let length = self.wall.lattice().length();
+        let length = self.wall.length();
         if (frame.length - length).abs() > 1e-3 * length {
             let found = frame.length;
             return Err(refused(
@@ -291,10 +290,7 @@ impl PictureScene {
         let heading = self.wall.heading();
         let (middle, right) = match self.look.aspect {
             Aspect::Side => (0.5 * self.shown, heading * glam::DVec3::Z),
-            Aspect::Section(_) => (
-                0.5 * self.wall.lattice().length(),
-                -heading * glam::DVec3::Y,
-            ),
+            Aspect::Section(_) => (0.5 * self.wall.length(), -heading * glam::DVec3::Y),
         };
         View {
             middle: glam::DVec3::new(0.0, 0.0, middle),
@@ -309,7 +305,7 @@ impl PictureScene {
 
 /// Distance from the axis that a picture shows: to the outer side of the widest wall.
 fn shown_radius(wall: &Wall, first: &Frame, samples: &[Frame]) -> f64 {
-    let half = 0.5 * wall.lattice().sphere_diameter;
+    let half = 0.5 * wall.sphere_diameter();
     if wall.wave().is_some() {
         return wall.usual_radius() + half;
     }

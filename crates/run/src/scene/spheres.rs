@@ -13,27 +13,24 @@ const STONE: [u8; 3] = [207, 202, 193];
 impl PictureScene {
     /// What z of a picture is less than z of the tube \[d\], up to whole lengths.
     pub(super) fn shift(&self, cycles: f64) -> f64 {
-        let lattice = self.wall.lattice();
-        let wave = self.wall.heading() * lattice.wavelength;
+        let middle = 0.5 * self.wall.length();
+        let wave = self.wall.heading() * self.wall.wavelength();
         match (self.look.aspect, self.look.eye) {
             (Aspect::Side, Eye::Laboratory) => 0.0,
             (Aspect::Side, Eye::Wave) => wave * cycles,
-            (Aspect::Section(Place::At(z)), _) => z - 0.5 * lattice.length(),
-            (Aspect::Section(Place::Phase(phase)), _) => {
-                wave * (phase + cycles) - 0.5 * lattice.length()
-            }
+            (Aspect::Section(Place::At(z)), _) => z - middle,
+            (Aspect::Section(Place::Phase(phase)), _) => wave * (phase + cycles) - middle,
         }
     }
 
     /// The spheres that are shown, grains in the colours of their values.
     pub(super) fn spheres(&self, frame: &Frame, values: &[f64]) -> Vec<Sphere> {
-        let lattice = self.wall.lattice();
-        let length = lattice.length();
+        let length = self.wall.length();
         let shift = self.shift(cycles(frame));
         let shown = match self.look.aspect {
             Aspect::Side => 0.0..self.shown,
             Aspect::Section(_) => {
-                let half = 0.5 * SECTION * lattice.sphere_diameter;
+                let half = 0.5 * SECTION * self.wall.sphere_diameter();
                 0.5 * length - half..0.5 * length + half
             }
         };

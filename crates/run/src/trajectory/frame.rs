@@ -15,7 +15,7 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
     let mut frame = Frame {
         step: simulation.step(),
         time: simulation.time(),
-        length: wall.lattice().length(),
+        length: wall.length(),
         width: 0.0,
         grains: bodies.grains,
         position: bodies.position.iter().map(|p| p.to_array()).collect(),
@@ -48,7 +48,7 @@ pub(super) fn frame(run: &Run, with_contacts: bool) -> Frame {
 /// Side of a box about the axis that holds every sphere, with a wall sphere's diameter to spare: the same throughout a
 /// run, unless a grain flies far away.
 fn width(frame: &Frame, wall: &Wall) -> f64 {
-    let spare = wall.lattice().sphere_diameter;
+    let spare = wall.sphere_diameter();
     let spheres = frame.position.iter().zip(&frame.diameter);
     let reach = spheres
         .map(|(&[x, y, _], diameter)| x.abs().max(y.abs()) + 0.5 * diameter)

@@ -53,9 +53,9 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
         && let wall = walls(&hardest)
         && let Some(wave) = wall.wave()
     {
-        warnings.extend(leaking::warning(&hardest, wave, wall.lattice()));
-        let opening =
-            2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.lattice().sphere_diameter;
+        let lattice = wall.lattice();
+        warnings.extend(lattice.and_then(|lattice| leaking::warning(&hardest, wave, lattice)));
+        let opening = 2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.sphere_diameter();
         if opening <= 0.0 {
             let led = configuration.drive.schedule(ScheduledParameter::Width);
             warnings.push(Warning {

@@ -43,7 +43,7 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     if arguments.view == ViewName::SpaceTime {
         return finish_picture(arguments, &out, format, &space_time(&run)?);
     }
-    let middle = 0.5 * run.simulation().wall().lattice().length();
+    let middle = 0.5 * run.simulation().wall().length();
     let look = arguments.look(format.film().is_some(), middle);
     match format.film() {
         Some(film) => make_film(arguments, run, look, film, &out, &stop),

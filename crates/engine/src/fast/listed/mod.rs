@@ -1,13 +1,12 @@
 //! The fast kernel for everything that has a neighbour list: rotating grains, elastic walls, wide tubes.
 //!
 //! For as long as an advance lasts the spheres live in records ([`spheres`]); a step is one pass over the listed pairs
-//! ([`pairs`]), one over the wall ([`network`], [`prescribed`]) and one over the spheres ([`motion`]).
+//! ([`pairs`]), one over the wall ([`network`]) and one over the spheres ([`motion`]).
 
 mod history;
 mod motion;
 mod network;
 mod pairs;
-mod prescribed;
 mod record;
 mod spheres;
 
@@ -222,7 +221,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
             }
             Wall::Prescribed(wall) => {
                 let memory = &mut contacts.wall;
-                prescribed::add_forces(wall, law, spheres, memory, time_step, &mut tally);
+                wall.add_forces(law, spheres, memory, time_step, &mut tally);
             }
         }
         tally

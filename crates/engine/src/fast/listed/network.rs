@@ -174,7 +174,7 @@ impl Work for WallForces<'_> {
         if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
             rows.resize(wall);
         }
-        let net_force = wall.parameters().tethers.net_force;
+        let net_force = wall.parameters().network.tethers.net_force;
         let mut sums = Sums::<M>::none();
         let nothing = Quad::<M>::splat(0.0);
         let (mut total_force, mut total_velocity) = (nothing, nothing);
@@ -294,11 +294,12 @@ impl<M: Machine> Bond<M> {
 fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &mut Sums<M>) {
     let parameters = wall.parameters();
     let per_ring = parameters.lattice.spheres_per_ring as usize;
-    let damped = parameters.spring_damping != 0.0;
+    let network = &parameters.network;
+    let damped = network.spring_damping != 0.0;
     let bond = Bond {
-        stiffness: Lanes::splat(parameters.spring_stiffness),
-        natural_length: Lanes::splat(parameters.natural_length),
-        damping: damped.then_some(Lanes::splat(parameters.spring_damping)),
+        stiffness: Lanes::splat(network.spring_stiffness),
+        natural_length: Lanes::splat(network.natural_length),
+        damping: damped.then_some(Lanes::splat(network.spring_damping)),
         length: parameters.lattice.length(),
     };
     for start in (0..per_ring).step_by(LANES) {
@@ -340,13 +341,14 @@ fn tethers_and_drive<M: Machine>(
         Lanes::splat(0.5),
         Lanes::splat(wall.balance()),
     );
-    let tethers = parameters.tethers;
+    let network = &parameters.network;
+    let tethers = network.tethers;
     let (radial, azimuthal, axial) = (
         Lanes::splat(tethers.radial),
         Lanes::splat(tethers.azimuthal),
         Lanes::splat(tethers.axial),
     );
-    let drag = Lanes::splat(parameters.drag);
+    let drag = Lanes::splat(network.drag);
     let radius = Lanes::splat(parameters.mean_radius);
     let reference_z = Lanes::splat(lattice.axial_position(ring as u32));
     let parity = ring % 2;

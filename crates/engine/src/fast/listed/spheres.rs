@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::record::Record;
 use crate::bodies::{Bodies, Sphere};
 use crate::integrate::Past;
+use crate::wall::Grains;
 
 /// The spheres of [`Bodies`] in records of four numbers.
 #[derive(Clone, Debug, Default)]
@@ -40,18 +41,6 @@ fn empty(vectors: &mut Vec<DVec3>, records: &[Record]) {
 }
 
 impl Spheres {
-    /// One of the spheres.
-    #[inline(always)]
-    pub(super) fn sphere(&self, index: usize) -> Sphere {
-        let turning = self.turning[index];
-        Sphere {
-            position: self.position[index].vector(),
-            velocity: self.velocity[index].vector(),
-            angular_velocity: turning.vector(),
-            diameter: turning.0[3],
-        }
-    }
-
     pub(super) fn number(&self) -> usize {
         self.position.len()
     }
@@ -111,5 +100,33 @@ impl Spheres {
             &mut past.angular_acceleration,
             &self.angular_acceleration_before,
         );
+    }
+}
+
+impl Grains for Spheres {
+    fn grains(&self) -> usize {
+        self.grains
+    }
+
+    #[inline(always)]
+    fn sphere(&self, grain: usize) -> Sphere {
+        let turning = self.turning[grain];
+        Sphere {
+            position: self.position[grain].vector(),
+            velocity: self.velocity[grain].vector(),
+            angular_velocity: turning.vector(),
+            diameter: turning.0[3],
+        }
+    }
+
+    #[inline(always)]
+    fn force(&self, grain: usize) -> (DVec3, DVec3) {
+        (self.force[grain].vector(), self.torque[grain].vector())
+    }
+
+    #[inline(always)]
+    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3) {
+        self.force[grain] = Record::new(force, 0.0);
+        self.torque[grain] = Record::new(torque, 0.0);
     }
 }

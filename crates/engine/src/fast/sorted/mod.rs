@@ -99,13 +99,15 @@ impl Sorted {
 
     /// Whether it serves smooth grains in this tube.
     fn serves_tube(bodies: &Bodies, wall: &Wall, skin: f64) -> bool {
-        let lattice = wall.lattice();
+        let Some(prescribed) = wall.prescribed() else {
+            return false;
+        };
+        let lattice = prescribed.lattice();
         let equal = bodies.diameter.windows(2).all(|pair| pair[0] == pair[1])
             && bodies.mass.windows(2).all(|pair| pair[0] == pair[1]);
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
         let cutoff = diameter + SKINS * skin;
         equal
-            && wall.prescribed().is_some()
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
             && lattice.rings().is_multiple_of(2)
@@ -120,7 +122,7 @@ impl Sorted {
 
     fn strips_of(bodies: &Bodies, wall: &Wall, skin: f64) -> Strips {
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
-        let (length, radius) = (wall.lattice().length(), wall.mean_radius());
+        let (length, radius) = (wall.length(), wall.mean_radius());
         Strips::new(bodies.grains, length, radius, diameter, skin)
     }
 
@@ -140,14 +142,14 @@ impl Sorted {
         let strips = Self::strips_of(bodies, wall, skin);
         let mut sorted = Self {
             grains,
-            length: wall.lattice().length(),
+            length: wall.length(),
             skin: strips.skin,
             mass: bodies.mass.first().copied().unwrap_or(1.0),
             pairs: PairConstants {
                 reach: diameter,
                 reduced_radius: 0.25 * diameter,
             },
-            wall: WallTable::new(wall.lattice(), diameter),
+            wall: WallTable::new(wall.prescribed()?.lattice(), diameter),
             strips,
             rows: Vec::new(),
             order: Vec::new(),

@@ -25,7 +25,7 @@ fn by_looking_at_all(wall: &PrescribedWall, centre: DVec3, diameter: f64) -> BTr
     let reach = 0.5 * (diameter + wall.lattice.sphere_diameter);
     (0..wall.lattice.spheres())
         .map(|sphere| {
-            let apart = periodic(centre - wall.sphere_position(sphere), wall.lattice.length());
+            let apart = periodic(centre - wall.sphere(sphere).position, wall.lattice.length());
             (sphere as u32, apart)
         })
         .filter(|(_, apart)| apart.length() < reach)
@@ -140,7 +140,7 @@ fn the_velocity_is_the_derivative_of_the_place() {
             let places = |wall: &mut PrescribedWall, time: f64| -> Vec<DVec3> {
                 wall.move_to(time);
                 (0..COARSE.spheres())
-                    .map(|sphere| wall.sphere_position(sphere))
+                    .map(|sphere| wall.sphere(sphere).position)
                     .collect()
             };
             let (before, after) = (
@@ -199,7 +199,7 @@ fn forces_are_sums_over_the_spheres() {
                 let ring = wall.lattice.sphere(sphere as usize).ring;
                 let z = wall.lattice.axial_position(ring);
                 let speed = wall.wave.ring(z, wall.cycles, 0.07, 0.0).velocity;
-                let place = wall.sphere_position(sphere as usize);
+                let place = wall.sphere(sphere as usize).position;
                 let velocity = speed * DVec3::new(place.x, place.y, 0.0).normalize();
                 let n = apart.normalize();
                 let overlap = 0.5 * (diameter + 1.0) - apart.length();
