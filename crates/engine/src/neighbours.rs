@@ -4,125 +4,105 @@
 //! partners' numbers, whatever the skin and whenever the list was made: results do not depend on either by a single bit,
 //! and a snapshot needs no list.
 
-mod cells;
+pub(crate) mod cells;
 
 use glam::DVec3;
 
-use self::cells::{Cells, Grid, Search};
+pub(crate) use self::cells::PairRule;
+use self::cells::{Cells, Grid, Rows, Search};
 use crate::fast::machine::Instructions;
 
 /// Rows of partners with a value of type `H` beside each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<H> {
-    /// Row i is `partner[start[i]..start[i + 1]]`.
-    start: Vec<u32>,
-    partner: Vec<u32>,
-    history: Vec<H>,
+    rows: Rows<H>,
+    /// Room for the list to come.
+    next: Rows<H>,
     /// Unfolded positions when the list was made.
     origin: Vec<DVec3>,
     /// Skin with which it was made.
     skin: f64,
-    scratch: Scratch<H>,
-}
-
-#[derive(Clone, Debug, Default)]
-struct Scratch<H> {
     cells: Cells,
     late_cells: Cells,
-    start: Vec<u32>,
-    partner: Vec<u32>,
-    history: Vec<H>,
     remembered: Vec<(u32, u32)>,
-}
-
-/// The rule by which pairs are listed.
-pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
-    /// Diameters of the spheres \[d\].
-    pub(crate) diameter: &'a [f64],
-    /// Period of the tube \[d\].
-    pub(crate) length: f64,
-    /// Added to the reach of every pair \[d\].
-    pub(crate) skin: f64,
-    /// Half width of the region where spheres usually are \[d\].
-    pub(crate) half_width: f64,
-    /// All pairs i < j whose i is less than this can have a contact.
-    pub(crate) admits_all_below: usize,
-    /// Which of the other pairs i < j can have a contact at all.
-    pub(crate) admits: F,
 }
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// A list without pairs, which the first [`Neighbours::rebuild`] fills.
     pub(crate) fn empty() -> Self {
         Self {
-            start: vec![0],
-            partner: Vec::new(),
-            history: Vec::new(),
+            rows: Rows {
+                start: vec![0],
+                ..Rows::default()
+            },
+            next: Rows::default(),
             origin: Vec::new(),
             skin: 0.0,
-            scratch: Scratch::default(),
+            cells: Cells::default(),
+            late_cells: Cells::default(),
+            remembered: Vec::new(),
         }
     }
 
     /// Number of listed pairs.
     #[cfg(test)]
     fn pairs(&self) -> usize {
-        self.partner.len()
+        self.rows.partner.len()
     }
 
     /// The partners of sphere i with larger numbers, and the histories of their contacts.
     #[inline(always)]
     pub(crate) fn row(&mut self, i: usize) -> (&[u32], &mut [H]) {
-        let range = self.start[i] as usize..self.start[i + 1] as usize;
-        (&self.partner[range.clone()], &mut self.history[range])
+        let range = self.rows.range(i);
+        (
+            &self.rows.partner[range.clone()],
+            &mut self.rows.history[range],
+        )
     }
 
     /// Number of pairs in the first so many rows.
     pub(crate) fn pairs_above(&self, rows: usize) -> usize {
-        self.start[rows] as usize
+        self.rows.start[rows] as usize
     }
 
     /// Number of rows: spheres when the list was made.
     pub(crate) fn rows(&self) -> usize {
-        self.start.len() - 1
+        self.rows.start.len() - 1
     }
 
     /// The partners of sphere i with larger numbers.
     pub(crate) fn partners(&self, i: usize) -> &[u32] {
-        &self.partner[self.start[i] as usize..self.start[i + 1] as usize]
+        &self.rows.partner[self.rows.range(i)]
     }
 
     /// The histories of all pairs, row after row.
     pub(crate) fn histories(&self) -> &[H] {
-        &self.history
+        &self.rows.history
     }
 
     /// The histories of all pairs, row after row.
     pub(crate) fn histories_mut(&mut self) -> &mut [H] {
-        &mut self.history
+        &mut self.rows.history
     }
 
     /// All pairs with their histories, in order.
     pub(crate) fn iter(&self) -> impl Iterator<Item = (u32, u32, &H)> {
-        (0..self.start.len() - 1).flat_map(move |i| {
-            let range = self.start[i] as usize..self.start[i + 1] as usize;
-            self.partner[range.clone()]
+        (0..self.rows()).flat_map(move |i| {
+            let row = self
+                .partners(i)
                 .iter()
-                .zip(&self.history[range])
-                .map(move |(&j, history)| (i as u32, j, history))
+                .zip(&self.rows.history[self.rows.range(i)]);
+            row.map(move |(&j, history)| (i as u32, j, history))
         })
     }
 
     /// Sets the history of a listed pair; `false` where the pair is not listed.
     pub(crate) fn set_history(&mut self, i: u32, j: u32, history: H) -> bool {
-        let range = self.start[i as usize] as usize..self.start[i as usize + 1] as usize;
-        match self.partner[range.clone()].binary_search(&j) {
-            Ok(at) => {
-                self.history[range.start + at] = history;
-                true
-            }
-            Err(_) => false,
+        let place = self.rows.place(i as usize, j);
+        if let Some(place) = place {
+            self.rows.history[place] = history;
         }
+        place.is_some()
     }
 
     /// Whether two spheres may have come closer by more than `skin` since the list was made.
@@ -172,44 +152,33 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
         turns: &[i32],
         rule: &PairRule<'_, F>,
     ) {
-        let Scratch {
-            cells,
-            late_cells,
-            start,
-            partner,
-            history,
-            remembered,
-        } = &mut self.scratch;
         let grid = Grid::of(position, rule);
-        cells.sort(grid, position, rule.diameter, 0);
+        self.cells.sort(grid, position, rule.diameter, 0);
         let late = rule.admits_all_below.min(position.len());
-        late_cells.sort(grid, position, rule.diameter, late);
-        remembered.clear();
-        start.clear();
-        partner.clear();
-        start.push(0);
+        self.late_cells.sort(grid, position, rule.diameter, late);
+        self.remembered.clear();
         Instructions::widest().run(Search {
-            cells,
-            late_cells,
+            cells: &self.cells,
+            late_cells: &self.late_cells,
             position,
             rule,
-            old: (&self.start, &self.partner, &self.history),
-            start,
-            partner,
-            remembered,
+            old: &self.rows,
+            new: &mut self.next,
+            remembered: &mut self.remembered,
         });
         // Only histories of contacts need be moved.
-        history.clear();
-        history.resize(partner.len(), H::default());
-        for &(row, at) in &*remembered {
-            let (row, at) = (row as usize, at as usize);
-            let new = start[row] as usize..start[row + 1] as usize;
-            let to = partner[new.clone()].binary_search(&self.partner[at]);
-            history[new.start + to.expect("a pair with a history is listed")] = self.history[at];
+        self.next.history.clear();
+        self.next
+            .history
+            .resize(self.next.partner.len(), H::default());
+        for &(row, at) in &self.remembered {
+            let to = self
+                .next
+                .place(row as usize, self.rows.partner[at as usize]);
+            self.next.history[to.expect("a pair with a history is listed")] =
+                self.rows.history[at as usize];
         }
-        core::mem::swap(&mut self.start, start);
-        core::mem::swap(&mut self.partner, partner);
-        core::mem::swap(&mut self.history, history);
+        core::mem::swap(&mut self.rows, &mut self.next);
         self.skin = rule.skin;
         self.origin.clear();
         self.origin.extend(
@@ -218,7 +187,7 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
                 .zip(turns)
                 .map(|(p, &turns)| DVec3::new(p.x, p.y, p.z + f64::from(turns) * rule.length)),
         );
-        debug_assert_eq!(self.start.len(), position.len() + 1);
+        debug_assert_eq!(self.rows(), position.len());
     }
 }
 

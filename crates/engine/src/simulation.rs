@@ -12,7 +12,7 @@ use crate::fast::listed;
 use crate::fast::machine::Instructions;
 use crate::fast::sorted::{Sorted, Sorting};
 use crate::forces::{Reference, add_body_force, evaluate};
-use crate::integrate::{Past, Runaway};
+use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
 use crate::parameters::{Kernel, Parameters};
 use crate::snapshot::{Snapshot, SnapshotView};
@@ -25,21 +25,16 @@ use crate::wall_contacts::{WallContact, add_up_smooth_contacts, for_each_contact
 /// Grains in a peristaltic tube, advanced in time.
 #[derive(Clone, Debug)]
 pub struct Simulation {
-    system: System,
-    memory: Memory,
-    /// The kernel that keeps the grains in the order of z, where it serves.
-    sorted: Option<Box<Sorted>>,
-}
-
-/// Everything but the memory of contacts, whose type depends on the law.
-#[derive(Clone, Debug)]
-struct System {
     bodies: Bodies,
     course: Course,
     parameters: Parameters,
     past: Past,
+    memory: Memory,
+    /// Longest displacement of a step \[d\].
     limit: f64,
     scratch: listed::Scratch,
+    /// The kernel that keeps the grains in the order of z, where it serves.
+    sorted: Option<Box<Sorted>>,
 }
 
 impl Simulation {
@@ -47,10 +42,20 @@ impl Simulation {
     #[must_use]
     pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
         let mut simulation = Self::assemble(bodies, wall, parameters);
-        let Self { system, memory, .. } = &mut simulation;
-        system.evaluate_at_rest(memory);
-        system.course.ledger.initial_energy = system.energy();
-        system.course.ledger.initial_axial_moment = system.axial_moment();
+        // Forces at the start, so that the first step knows its accelerations.
+        let Self {
+            bodies,
+            course,
+            memory,
+            ..
+        } = &mut simulation;
+        with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
+            contacts.refresh(bodies, &course.wall, parameters.skin);
+            course.tally = evaluate(law, bodies, &course.wall, contacts, 0.0);
+        });
+        add_body_force(bodies, parameters.body_force);
+        simulation.course.ledger.initial_energy = simulation.energy();
+        simulation.course.ledger.initial_axial_moment = simulation.axial_moment();
         simulation.choose_kernel(None);
         simulation
     }
@@ -61,37 +66,30 @@ impl Simulation {
         let diameters = bodies.diameter.iter().copied();
         let least_diameter = diameters.fold(f64::INFINITY, f64::min);
         Self {
-            system: System {
-                bodies,
-                course: Course {
-                    wall,
-                    tally: Tally::default(),
-                    ledger: Ledger::default(),
-                    step: 0,
-                    time_step: parameters.time_step,
-                },
-                parameters,
-                past: Past::default(),
-                limit: 0.5 * least_diameter,
-                scratch: listed::Scratch::default(),
+            bodies,
+            course: Course {
+                wall,
+                tally: Tally::default(),
+                ledger: Ledger::default(),
+                step: 0,
+                time_step: parameters.time_step,
             },
+            parameters,
+            past: Past::default(),
             memory: Memory::of(parameters.contact.friction),
+            limit: 0.5 * least_diameter,
+            scratch: listed::Scratch::default(),
             sorted: None,
         }
     }
 
     /// Hands equal smooth grains in a prescribed tube to the kernel that is made for them.
     fn choose_kernel(&mut self, sorting: Option<&Sorting>) {
-        let System {
-            bodies,
-            course,
-            parameters,
-            ..
-        } = &self.system;
-        if parameters.kernel == Kernel::Fast && Sorted::serves(bodies, &course.wall, parameters) {
+        let (bodies, wall, parameters) = (&self.bodies, &self.course.wall, &self.parameters);
+        if parameters.kernel == Kernel::Fast && Sorted::serves(bodies, wall, parameters) {
             // No list is needed any more; its memory serves the kernel.
             self.memory = Memory::of(None);
-            let sorted = Sorted::new(bodies, &course.wall, parameters.skin, sorting);
+            let sorted = Sorted::new(bodies, wall, parameters.skin, sorting);
             self.sorted = sorted.map(Box::new);
         }
     }
@@ -103,16 +101,49 @@ impl Simulation {
     /// position is no longer finite; the state is then the one in which the step failed.
     pub fn advance(&mut self, steps: u64) -> Result<(), EngineError> {
         let Self {
-            system,
+            bodies,
+            course,
+            parameters,
+            past,
             memory,
+            limit,
+            scratch,
             sorted,
         } = self;
+        let (normal, body_force) = (parameters.contact.normal, parameters.body_force);
         let outcome = match sorted {
-            None => system.advance(memory, steps),
-            Some(sorted) => system.advance_sorted(sorted, steps),
+            Some(sorted) => with_normal_law!(normal, law => {
+                sorted.advance(&law, course, bodies, (body_force, *limit), steps)
+            }),
+            None => with_contact_law!(normal, memory, |law, contacts| {
+                let mut reference = Reference {
+                    law,
+                    contacts,
+                    bodies,
+                    past,
+                    parameters,
+                    limit: *limit,
+                    length: course.wall.length(),
+                };
+                match parameters.kernel {
+                    Kernel::Reference => course.advance(&mut reference, steps),
+                    Kernel::Fast => listed::advance(reference, scratch, course, steps),
+                }
+            }),
         };
-        system.book_body_force();
-        outcome.map_err(|runaway| system.diverged(runaway))
+        if body_force != 0.0 {
+            // Its work, g sum m (z - z_0): exact whatever the path, so that no step need look at it.
+            let moved = self.axial_moment() - self.course.ledger.initial_axial_moment;
+            self.course.ledger.body_work = body_force * moved;
+        }
+        outcome.map_err(|runaway| EngineError::Diverged {
+            step: self.course.step,
+            time: self.course.time(),
+            grain: runaway.body,
+            grains: self.bodies.grains,
+            displacement: runaway.displacement,
+            limit: self.limit,
+        })
     }
 
     /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
@@ -127,7 +158,7 @@ impl Simulation {
         instructions: Instructions,
         threads: usize,
     ) -> Result<(), EngineError> {
-        self.system.scratch.instructions = instructions;
+        self.scratch.instructions = instructions;
         if let Some(sorted) = &mut self.sorted {
             let pool = (threads > 1)
                 .then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build())
@@ -154,7 +185,7 @@ impl Simulation {
         if let Some(reason) = difference {
             return Err(EngineError::OtherWall { reason });
         }
-        self.system.course.wall = wall;
+        self.course.wall = wall;
         Ok(())
     }
 
@@ -179,10 +210,9 @@ impl Simulation {
             let allowed = "from 0 to contact.static_friction";
             return refused("contact.kinetic_friction", kinetic, allowed);
         }
-        let (Memory::Frictional(law, _), Some(known)) = (
-            &mut self.memory,
-            &mut self.system.parameters.contact.friction,
-        ) else {
+        let (Memory::Frictional(law, _), Some(known)) =
+            (&mut self.memory, &mut self.parameters.contact.friction)
+        else {
             let allowed = "grains that began without friction keep none";
             return refused("contact.static_friction", static_friction, allowed);
         };
@@ -196,49 +226,51 @@ impl Simulation {
     /// The spheres.
     #[must_use]
     pub fn bodies(&self) -> &Bodies {
-        &self.system.bodies
+        &self.bodies
     }
 
     /// The wall as it is now.
     #[must_use]
     pub fn wall(&self) -> &Wall {
-        &self.system.course.wall
+        &self.course.wall
     }
 
     /// How the simulation is computed.
     #[must_use]
     pub fn parameters(&self) -> &Parameters {
-        &self.system.parameters
+        &self.parameters
     }
 
     /// Sums over the contacts at the end of the last step.
     #[must_use]
     pub fn tally(&self) -> &Tally {
-        &self.system.course.tally
+        &self.course.tally
     }
 
     /// Energies accumulated since the start.
     #[must_use]
     pub fn ledger(&self) -> &Ledger {
-        &self.system.course.ledger
+        &self.course.ledger
     }
 
     /// Steps done since the start.
     #[must_use]
     pub fn step(&self) -> u64 {
-        self.system.course.step
+        self.course.step
     }
 
     /// Time since the start \[t\].
     #[must_use]
     pub fn time(&self) -> f64 {
-        self.system.course.time()
+        self.course.time()
     }
 
     /// Kinetic plus potential energy of grains and elastic wall \[m d^2/t^2\].
     #[must_use]
     pub fn energy(&self) -> f64 {
-        self.system.energy()
+        self.bodies.kinetic_energy(0..self.bodies.number())
+            + self.bodies.rotational_energy()
+            + self.tally().potential_energy()
     }
 
     /// Energy that the ledger cannot account for over the integral of |power that enters|.
@@ -316,7 +348,7 @@ impl Simulation {
         SnapshotView {
             step: self.step(),
             bodies: self.bodies(),
-            past: &self.system.past,
+            past: &self.past,
             tally: self.tally(),
             ledger: self.ledger(),
             pair_histories,
@@ -336,20 +368,19 @@ impl Simulation {
     ) -> Result<Self, EngineError> {
         snapshot.check(&wall, &parameters)?;
         let mut simulation = Self::assemble(snapshot.bodies, wall, parameters);
-        let Self { system, memory, .. } = &mut simulation;
-        system.past = snapshot.past;
-        let Course {
-            wall,
-            tally,
-            ledger,
-            step,
+        simulation.past = snapshot.past;
+        let Self {
+            bodies,
+            course,
+            memory,
             ..
-        } = &mut system.course;
-        (*tally, *ledger, *step) = (snapshot.tally, snapshot.ledger, snapshot.step);
-        wall.move_to(*step as f64 * parameters.time_step);
+        } = &mut simulation;
+        (course.tally, course.ledger) = (snapshot.tally, snapshot.ledger);
+        course.step = snapshot.step;
+        course.wall.move_to(course.time());
         // Contacts with mobile spheres of the wall, and all that have a history, are found in the list.
-        if wall.mobile_spheres() > 0 || parameters.contact.friction.is_some() {
-            memory.refresh(&system.bodies, wall, parameters.skin);
+        if course.wall.mobile_spheres() > 0 || parameters.contact.friction.is_some() {
+            memory.refresh(bodies, &course.wall, parameters.skin);
         }
         if let Memory::Frictional(_, contacts) = memory {
             for (i, j, history) in snapshot.pair_histories {
@@ -361,101 +392,17 @@ impl Simulation {
                     });
                 }
             }
-            contacts.wall =
-                WallMemory::from_entries(system.bodies.grains, &snapshot.wall_histories);
+            contacts.wall = WallMemory::from_entries(bodies.grains, &snapshot.wall_histories);
         }
         simulation.choose_kernel(snapshot.sorting.as_ref());
         Ok(simulation)
     }
-}
-
-impl System {
-    fn energy(&self) -> f64 {
-        self.bodies.kinetic_energy(0..self.bodies.number())
-            + self.bodies.rotational_energy()
-            + self.course.tally.potential_energy()
-    }
 
     /// First moment of the grains' mass along the tube, sum m z with turns round it counted \[m d\].
     fn axial_moment(&self) -> f64 {
-        let length = self.course.wall.length();
+        let length = self.wall().length();
         (0..self.bodies.grains)
             .map(|i| self.bodies.mass[i] * self.bodies.unfolded(i, length))
             .sum()
-    }
-
-    /// The work of the body force, g sum m (z - z_0): exact whatever the path, so that no step need look at it.
-    fn book_body_force(&mut self) {
-        let body_force = self.parameters.body_force;
-        if body_force != 0.0 {
-            let moved = self.axial_moment() - self.course.ledger.initial_axial_moment;
-            self.course.ledger.body_work = body_force * moved;
-        }
-    }
-
-    /// Forces at the start, so that the first step knows its accelerations.
-    fn evaluate_at_rest(&mut self, memory: &mut Memory) {
-        let Self {
-            bodies,
-            course,
-            parameters,
-            ..
-        } = self;
-        with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
-            contacts.refresh(bodies, &course.wall, parameters.skin);
-            course.tally = evaluate(law, bodies, &course.wall, contacts, 0.0);
-        });
-        add_body_force(bodies, parameters.body_force);
-    }
-
-    fn advance(&mut self, memory: &mut Memory, steps: u64) -> Result<(), Runaway> {
-        let length = self.course.wall.length();
-        let Self {
-            bodies,
-            course,
-            parameters,
-            past,
-            limit,
-            scratch,
-        } = self;
-        with_contact_law!(parameters.contact.normal, memory, |law, contacts| {
-            let mut reference = Reference {
-                law,
-                contacts,
-                bodies,
-                past,
-                parameters,
-                limit: *limit,
-                length,
-            };
-            match parameters.kernel {
-                Kernel::Reference => course.advance(&mut reference, steps),
-                Kernel::Fast => listed::advance(reference, scratch, course, steps),
-            }
-        })
-    }
-
-    fn advance_sorted(&mut self, sorted: &mut Sorted, steps: u64) -> Result<(), Runaway> {
-        let Self {
-            bodies,
-            course,
-            parameters,
-            limit,
-            ..
-        } = self;
-        with_normal_law!(parameters.contact.normal, law => {
-            sorted.advance(&law, course, bodies, (parameters.body_force, *limit), steps)
-        })
-    }
-
-    fn diverged(&self, runaway: Runaway) -> EngineError {
-        EngineError::Diverged {
-            step: self.course.step,
-            time: self.course.time(),
-            grain: runaway.body,
-            grains: self.bodies.grains,
-            displacement: runaway.displacement,
-            limit: self.limit,
-        }
     }
 }

@@ -1,13 +1,10 @@
 //! Once warm, steps take no memory: whatever a step needs, the steps before it have left.
 
 use allocation_counter::measure;
-use peristalsis_engine::{Integrator, Kernel, Simulation};
-use peristalsis_physics::contact::Sliding;
 
 mod common;
 
-use common::states::{Tube, lively, rows};
-use common::{HERTZ, LINEAR};
+use common::*;
 
 /// Small, so that lists and orders are made anew again and again.
 const SKIN: f64 = 0.05;

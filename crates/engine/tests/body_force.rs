@@ -2,31 +2,22 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, bits, coarse, elastic, elastic_parameters, grains,
-    momentum, packed, parameters, strained, wide, with_wall_spheres,
-};
-use glam::DVec3;
-use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation};
-use peristalsis_physics::wall::Schedule;
+use common::*;
 
 const BODY_FORCE: f64 = -0.004;
 
 /// Laws and integrators such that every kernel has its turn, under the body force.
 fn kernels(time_step: f64) -> Vec<Parameters> {
-    let mut all = Vec::new();
-    for integrator in INTEGRATORS {
-        for friction in [None, Some(FRICTION)] {
-            for kernel in [Kernel::Fast, Kernel::Reference] {
-                all.push(Parameters {
-                    kernel,
-                    body_force: BODY_FORCE,
-                    ..parameters(LINEAR, friction, integrator, time_step)
-                });
-            }
-        }
-    }
-    all
+    let methods = methods().filter(|(_, normal, ..)| *normal == LINEAR);
+    methods
+        .flat_map(|(_, normal, friction, integrator)| {
+            KERNELS.map(|kernel| Parameters {
+                kernel,
+                body_force: BODY_FORCE,
+                ..parameters(normal, friction, integrator, time_step)
+            })
+        })
+        .collect()
 }
 
 #[test]
@@ -35,9 +26,9 @@ fn a_free_grain_falls_as_galilei_says_whatever_its_mass() {
     let state = |x, diameter| (DVec3::new(x, 0.0, start), diameter);
     let free = wide(30.0);
     // Without a drive the elastic wall stays where it is, and is not pushed.
-    let mut still = elastic_parameters();
-    still.force_amplitude = Schedule::constant(0.0);
-    let springy = elastic(still);
+    let springy = elastic(elastic_with(|wall| {
+        wall.force_amplitude = Schedule::constant(0.0)
+    }));
     for (wall, equal) in [(&free, true), (&free, false), (&springy, true)] {
         for parameters in kernels(0.05) {
             let (places, diameters): (Vec<_>, Vec<_>) =
@@ -79,7 +70,7 @@ fn momentum_grows_by_the_weight() {
     let wall = wide(20.0);
     for parameters in kernels(0.05) {
         let mut bodies = packed(40, 0.8, &strained(coarse(2), -1.0, 2.6, 0.1), LINEAR, 5);
-        let mut numbers = common::Numbers(8);
+        let mut numbers = Numbers(8);
         for velocity in &mut bodies.velocity {
             *velocity = numbers.vector(0.2);
         }

@@ -2,13 +2,7 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, LINEAR, bits, coarse, elastic, elastic_parameters, packed, parameters,
-    strained,
-};
-use peristalsis_engine::wall::{ElasticParameters, PrescribedWall};
-use peristalsis_engine::{EngineError, Integrator, Simulation, Wall};
-use peristalsis_physics::wall::{Schedule, Waveform};
+use common::*;
 
 const TIME_STEP: f64 = 0.05;
 
@@ -22,31 +16,22 @@ fn from_step(step: u64, from: f64, to: f64) -> Schedule {
     Schedule::through(vec![(start, from), (start + 20.0, to)]).expect("two knots in order")
 }
 
-fn prescribed(amplitude: Schedule, frequency: Schedule) -> Wall {
-    Wall::Prescribed(PrescribedWall::new(
-        coarse(2),
-        1.5,
-        Waveform::Sine,
-        -1.0,
-        amplitude,
-        frequency,
-    ))
+fn strained_wall(amplitude: Schedule, frequency: Schedule) -> Wall {
+    waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency)
 }
 
 fn elastic_wall(force_amplitude: Schedule, frequency: Schedule) -> Wall {
-    elastic(ElasticParameters {
-        force_amplitude,
-        frequency,
-        ..elastic_parameters()
-    })
+    elastic(elastic_with(|wall| {
+        (wall.force_amplitude, wall.frequency) = (force_amplitude, frequency);
+    }))
 }
 
 /// A way to make walls, the amplitudes and frequencies before and after, and whether there is friction.
 type Case = (fn(Schedule, Schedule) -> Wall, [f64; 2], [f64; 2], bool);
 
 const CASES: [Case; 4] = [
-    (prescribed, [0.1, 0.2], [0.05, 0.08], false),
-    (prescribed, [0.1, 0.2], [0.05, 0.08], true),
+    (strained_wall, [0.1, 0.2], [0.05, 0.08], false),
+    (strained_wall, [0.1, 0.2], [0.05, 0.08], true),
     (elastic_wall, [0.005, 0.007], [0.02, 0.03], false),
     (elastic_wall, [0.005, 0.007], [0.02, 0.03], true),
 ];
@@ -147,8 +132,8 @@ fn what_would_jump_or_is_another_tube_is_refused() {
     simulation.advance(10).unwrap();
     let before = simulation.snapshot();
     let walls = [
-        prescribed(constant(0.11), constant(0.05)),
-        prescribed(constant(0.1), constant(0.06)),
+        strained_wall(constant(0.11), constant(0.05)),
+        strained_wall(constant(0.1), constant(0.06)),
         strained(coarse(3), -1.0, 2.8, 0.05),
         strained(coarse(2), 1.0, 2.8, 0.05),
         elastic(elastic_parameters()),

@@ -1,30 +1,16 @@
 //! The elastic wall by itself: equilibrium, forces and energies, bonds, the mean force, contact across the throat.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{
-    INTEGRATORS, LINEAR, Numbers, elastic, elastic_parameters, momentum, with_wall_spheres,
-};
-use glam::DVec3;
-use peristalsis_engine::wall::{DriveAngle, ElasticNetwork, ElasticParameters, NetForce, Tethers};
-use peristalsis_engine::{Bodies, Integrator, Simulation, Wall};
-use peristalsis_physics::wall::{Lattice, Schedule};
+use peristalsis_physics::wall::WallSphere;
+
+mod common;
+
+use common::*;
 
 /// The wall of the frictional preset.
 fn preset() -> ElasticParameters {
-    ElasticParameters {
-        lattice: Lattice {
-            spheres_per_ring: 22,
-            rings_per_wave: 23,
-            waves: 2,
-            wavelength: 20.0,
-            sphere_diameter: 1.0,
-        },
-        mean_radius: 3.5,
-        ..elastic_parameters()
-    }
+    elastic_with(|wall| (wall.lattice, wall.mean_radius) = (lattice(22, 23, 2, 20.0), 3.5))
 }
 
 fn undriven(parameters: ElasticParameters) -> ElasticParameters {
@@ -58,18 +44,9 @@ fn forces(simulation: &Simulation) -> Vec<DVec3> {
 #[test]
 fn the_balanced_tube_is_in_equilibrium() {
     for parameters in [elastic_parameters(), preset()] {
+        let mut parameters = undriven(parameters);
         // Each part of the mean would cancel in a straight tube anyway: it is left in.
-        let tethers = Tethers {
-            net_force: NetForce::Free,
-            ..parameters.network.tethers
-        };
-        let parameters = undriven(ElasticParameters {
-            network: ElasticNetwork {
-                tethers,
-                ..ElasticNetwork::default()
-            },
-            ..parameters
-        });
+        parameters.network.tethers.net_force = NetForce::Free;
         let mut simulation = alone(parameters.clone(), |_| ());
         let largest = forces(&simulation)
             .iter()
@@ -86,20 +63,8 @@ fn the_balanced_tube_is_in_equilibrium() {
         assert!(fastest < 1e-9, "{fastest}");
 
         // Without the balance it shrinks: the springs are stretched.
-        let tethers = Tethers {
-            balance: false,
-            ..parameters.network.tethers
-        };
-        let free = alone(
-            ElasticParameters {
-                network: ElasticNetwork {
-                    tethers,
-                    ..ElasticNetwork::default()
-                },
-                ..parameters
-            },
-            |_| (),
-        );
+        parameters.network.tethers.balance = false;
+        let free = alone(parameters, |_| ());
         let inwards = free
             .bodies()
             .position
@@ -123,25 +88,16 @@ fn shaken(size: f64, seed: u64) -> impl Fn(&mut Bodies) {
 #[test]
 fn the_forces_are_the_slope_of_the_energy() {
     let mut parameters = undriven(elastic_parameters());
-    parameters.network.tethers = Tethers {
-        radial: 0.02,
-        net_force: NetForce::Free,
-        ..parameters.network.tethers
-    };
+    parameters.network.tethers.radial = 0.02;
+    parameters.network.tethers.net_force = NetForce::Free;
     // A tube so narrow that opposite sides touch.
     parameters.mean_radius = 0.55;
     parameters.network.contact_range = 1.0;
-    let law = common::parameters(
-        peristalsis_physics::contact::Normal::Linear(
-            peristalsis_physics::contact::LinearSpringDashpot {
-                normal_stiffness: 1.0,
-                normal_damping: 0.0,
-            },
-        ),
-        None,
-        Integrator::Verlet,
-        0.05,
-    );
+    let normal = Normal::Linear(LinearSpringDashpot {
+        normal_stiffness: 1.0,
+        normal_damping: 0.0,
+    });
+    let law = common::parameters(normal, None, Integrator::Verlet, 0.05);
     let wall = elastic(parameters);
     let mut bodies = with_wall_spheres(Bodies::default(), &wall);
     shaken(0.2, 3)(&mut bodies);
@@ -212,18 +168,9 @@ fn a_removed_mean_force_leaves_the_momentum() {
             (NetForce::RemovedPerRing, true),
             (NetForce::Free, false),
         ] {
-            let parameters = elastic_parameters();
-            let tethers = Tethers {
-                net_force,
-                ..parameters.network.tethers
-            };
-            let wall = elastic(ElasticParameters {
-                network: ElasticNetwork {
-                    tethers,
-                    ..ElasticNetwork::default()
-                },
-                ..parameters.clone()
-            });
+            let parameters = elastic_with(|wall| wall.network.tethers.net_force = net_force);
+            let per_ring = parameters.lattice.spheres_per_ring as usize;
+            let wall = elastic(parameters);
             let mut bodies = with_wall_spheres(Bodies::default(), &wall);
             shaken(0.1, 8)(&mut bodies);
             let mut simulation = Simulation::new(
@@ -234,7 +181,6 @@ fn a_removed_mean_force_leaves_the_momentum() {
             simulation.advance(400).unwrap();
             let found = momentum(simulation.bodies()).length();
             assert_eq!(found < 1e-13, kept, "{net_force:?}: {found}");
-            let per_ring = parameters.lattice.spheres_per_ring as usize;
             let of_rings = simulation
                 .bodies()
                 .velocity
@@ -287,25 +233,19 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
         (DriveAngle::Reference, -1.0),
         (DriveAngle::Current, 1.0),
     ] {
-        let tethers = Tethers {
-            balance: false,
-            radial: 0.0,
-            azimuthal: 0.0,
-            axial: 0.0,
-            net_force: NetForce::Free,
-        };
-        let parameters = ElasticParameters {
-            network: ElasticNetwork {
-                tethers,
-                spring_stiffness: 0.0,
-                ..ElasticNetwork::default()
-            },
-            angle,
-            heading,
-            force_amplitude: Schedule::constant(0.004),
-            frequency: Schedule::constant(0.03),
-            ..elastic_parameters()
-        };
+        let parameters = elastic_with(|wall| {
+            wall.network.spring_stiffness = 0.0;
+            wall.network.tethers = Tethers {
+                balance: false,
+                radial: 0.0,
+                azimuthal: 0.0,
+                axial: 0.0,
+                net_force: NetForce::Free,
+            };
+            (wall.angle, wall.heading) = (angle, heading);
+            wall.force_amplitude = Schedule::constant(0.004);
+            wall.frequency = Schedule::constant(0.03);
+        });
         let mut simulation = alone(parameters.clone(), shaken(0.2, 12));
         simulation.advance(37).unwrap();
         let time = simulation.time();
@@ -334,13 +274,7 @@ fn the_drive_pushes_radially_as_the_wave_has_it() {
 #[test]
 fn turning_the_drive_round_mirrors_the_wall() {
     let run = |heading: f64| {
-        let mut simulation = alone(
-            ElasticParameters {
-                heading,
-                ..elastic_parameters()
-            },
-            |_| (),
-        );
+        let mut simulation = alone(elastic_with(|wall| wall.heading = heading), |_| ());
         simulation.advance(400).unwrap();
         simulation
     };
@@ -350,7 +284,7 @@ fn turning_the_drive_round_mirrors_the_wall() {
     for index in 0..lattice.spheres() {
         let sphere = lattice.sphere(index);
         let ring = (lattice.rings() - sphere.ring) % lattice.rings();
-        let image = lattice.index(peristalsis_physics::wall::WallSphere { ring, ..sphere });
+        let image = lattice.index(WallSphere { ring, ..sphere });
         let (one, other) = (
             forward.bodies().velocity[index],
             backward.bodies().velocity[image],
@@ -382,24 +316,12 @@ fn drag_and_dashpots_take_the_energy_out() {
 #[test]
 fn what_removes_the_mean_force_does_work_on_a_drifting_wall() {
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
-        let parameters = undriven(elastic_parameters());
-        let tethers = Tethers {
-            net_force,
-            ..parameters.network.tethers
-        };
-        let axial = tethers.axial;
-        let mut simulation = alone(
-            ElasticParameters {
-                network: ElasticNetwork {
-                    tethers,
-                    ..ElasticNetwork::default()
-                },
-                ..parameters
-            },
-            |bodies| {
-                bodies.velocity.fill(DVec3::new(0.0, 0.0, 0.02));
-            },
-        );
+        let mut parameters = undriven(elastic_parameters());
+        parameters.network.tethers.net_force = net_force;
+        let axial = parameters.network.tethers.axial;
+        let mut simulation = alone(parameters, |bodies| {
+            bodies.velocity.fill(DVec3::new(0.0, 0.0, 0.02));
+        });
         let start = simulation.energy();
         simulation.advance(400).unwrap();
         let drifted = 0.02 * simulation.time();

@@ -2,12 +2,7 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, packed, parameters,
-    strained,
-};
-use peristalsis_engine::wall::{NetForce, Tethers};
-use peristalsis_engine::{Bodies, Parameters, Simulation, Wall};
+use common::*;
 
 const DURATION: f64 = 20.0;
 
@@ -29,36 +24,26 @@ fn residual(bodies: &Bodies, wall: &Wall, parameters: Parameters) -> (f64, Simul
 /// their integrals alike.
 #[allow(clippy::print_stdout, reason = "the numbers are for VALIDATION.md")]
 fn closes(wall: &Wall, number: usize, check: impl Fn(&Simulation)) {
-    for (name, normal) in [("linear", LINEAR), ("hertz", HERTZ)] {
+    for (name, normal, friction, integrator) in methods() {
+        let name = format!("{name}, {integrator:?}");
         let bodies = packed(number, 0.8, wall, normal, 3);
-        for friction in [None, Some(FRICTION)] {
-            for integrator in INTEGRATORS {
-                let found = [0.05, 0.025, 0.0125].map(|time_step| {
-                    let parameters = parameters(normal, friction, integrator, time_step);
-                    let (residual, simulation) = residual(&bodies, wall, parameters);
-                    check(&simulation);
-                    let ledger = simulation.ledger();
-                    assert!(ledger.normal_dissipated > 0.0);
-                    let rough =
-                        ledger.tangential_dissipated > 0.0 && ledger.sliding_dissipated > 0.0;
-                    assert_eq!(rough, friction.is_some(), "{name}: {ledger:?}");
-                    residual
-                });
-                let order = 0.5 * libm::log2(found[0] / found[2]);
-                let rough = friction.is_some();
-                println!(
-                    "{name}, friction {rough}, {integrator:?}: residuals {found:?}, order {order:.2}"
-                );
-                assert!(
-                    found[0] < 1e-2 && found[2] < 5e-4,
-                    "{name}, {integrator:?}: {found:?}"
-                );
-                assert!(
-                    (1.7..2.9).contains(&order),
-                    "{name}, {integrator:?}: order {order}, {found:?}"
-                );
-            }
-        }
+        let found = [0.05, 0.025, 0.0125].map(|time_step| {
+            let parameters = parameters(normal, friction, integrator, time_step);
+            let (residual, simulation) = residual(&bodies, wall, parameters);
+            check(&simulation);
+            let ledger = simulation.ledger();
+            assert!(ledger.normal_dissipated > 0.0);
+            let rough = ledger.tangential_dissipated > 0.0 && ledger.sliding_dissipated > 0.0;
+            assert_eq!(rough, friction.is_some(), "{name}: {ledger:?}");
+            residual
+        });
+        let order = 0.5 * libm::log2(found[0] / found[2]);
+        println!("{name}: residuals {found:?}, order {order:.2}");
+        assert!(found[0] < 1e-2 && found[2] < 5e-4, "{name}: {found:?}");
+        assert!(
+            (1.7..2.9).contains(&order),
+            "{name}: order {order}, {found:?}"
+        );
     }
 }
 
@@ -72,16 +57,14 @@ fn under_strain_control() {
 /// Springs with dashpots, drag, every part of what keeps the wall, the drive, grains: all at once.
 #[test]
 fn under_stress_control_with_everything_on() {
-    let mut parameters = elastic_parameters();
-    parameters.network.spring_damping = 0.01;
-    parameters.network.drag = 0.005;
     for net_force in [NetForce::Removed, NetForce::RemovedPerRing] {
-        parameters.network.tethers = Tethers {
-            radial: 0.002,
-            net_force,
-            ..parameters.network.tethers
-        };
-        closes(&elastic(parameters.clone()), 120, |simulation| {
+        let wall = elastic_with(|wall| {
+            wall.network.spring_damping = 0.01;
+            wall.network.drag = 0.005;
+            wall.network.tethers.radial = 0.002;
+            wall.network.tethers.net_force = net_force;
+        });
+        closes(&elastic(wall), 120, |simulation| {
             let ledger = simulation.ledger();
             assert!(ledger.drive_work != 0.0);
             assert!(ledger.drag_dissipated > 0.0 && ledger.network_dissipated > 0.0);
@@ -92,18 +75,16 @@ fn under_stress_control_with_everything_on() {
 /// Two grains that collide without friction in a tube that does nothing: what is lost is in the ledger, term by term.
 #[test]
 fn the_terms_of_a_single_impact() {
-    use glam::DVec3;
-    use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
     let law = LinearSpringDashpot {
         normal_stiffness: 1.0,
         normal_damping: 0.1,
     };
-    let bodies = common::grains(&[
+    let bodies = grains(&[
         (DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.0, 0.0, 0.1)),
         (DVec3::new(0.0, 0.0, 6.01), DVec3::ZERO),
     ]);
     let parameters = parameters(Normal::Linear(law), None, INTEGRATORS[0], 1e-3);
-    let mut simulation = Simulation::new(bodies, common::wide(20.0), parameters);
+    let mut simulation = Simulation::new(bodies, wide(20.0), parameters);
     simulation.advance(5_000).unwrap();
     let e = law.restitution(0.5);
     // m_ij v^2 (1 - e^2)/2 with m_ij = 1/2

@@ -1,21 +1,13 @@
 //! Images of a system: mirrored, turned, shifted, renumbered, in other units. Each goes the image of its way, over every
 //! combination of laws, sizes, tube and integrator, by the fast kernels.
 
-use glam::DVec3;
-use peristalsis_engine::wall::{
-    ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall, Tethers,
-};
-use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
-use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, LinearSpringDashpot, Normal, ViscoelasticHertz,
-};
-use peristalsis_physics::wall::{Lattice, Schedule, WallSphere};
+use glam::DMat3;
+use peristalsis_physics::wall::WallSphere;
 use proptest::prelude::*;
 
 mod common;
 
-use common::states::{Row, State, Tube, lively, rows};
-use common::{Numbers, momentum, wide};
+use common::*;
 
 /// Steps of 0.04: long enough for contacts to begin, slide and end.
 const STEPS: u64 = 60;
@@ -40,75 +32,102 @@ fn moving(row: Row, seed: u64) -> State {
     state
 }
 
-/// Where a sphere of the original is in the image: its number, and what becomes of places and of directions.
-struct Image<'a> {
-    state: State,
-    number: &'a dyn Fn(usize) -> usize,
-    place: &'a dyn Fn(DVec3) -> DVec3,
-    velocity: &'a dyn Fn(DVec3) -> DVec3,
-    spin: &'a dyn Fn(DVec3) -> DVec3,
-    /// Length, velocity and spin of the image that are 1 in the original.
-    units: [f64; 3],
+/// What becomes of a system: its spheres have other numbers; places and directions are turned or mirrored, shifted along the
+/// tube, and in other units.
+struct Map {
+    /// Number of each sphere in the image.
+    numbers: Vec<usize>,
+    turn: DMat3,
+    shift: f64,
+    units: Units,
 }
 
-/// Largest difference, in units of the original, between the image of where the original goes and where the image goes.
-fn difference(original: &State, image: &Image<'_>) -> f64 {
-    let after = |state: &State| {
-        let mut simulation: Simulation = state.start(Kernel::Fast);
-        simulation.advance(STEPS).expect("does not diverge");
-        simulation
-    };
-    let (plain, other) = (after(original), after(&image.state));
-    let (plain, found) = (plain.bodies(), other.bodies());
-    let length = image.state.wall.length();
-    let [place_unit, velocity_unit, spin_unit] = image.units;
-    (0..plain.number())
-        .map(|i| {
-            let j = (image.number)(i);
-            let mut place = (image.place)(plain.position[i]) - found.position[j];
-            place.z -= length * (place.z / length).round();
-            let velocity = (image.velocity)(plain.velocity[i]) - found.velocity[j];
-            let spin = (image.spin)(plain.angular_velocity[i]) - found.angular_velocity[j];
-            (place.length() / place_unit)
-                .max(velocity.length() / velocity_unit)
-                .max(spin.length() / spin_unit)
-        })
-        .fold(0.0, f64::max)
-}
-
-/// The bodies with every sphere mapped.
-fn mapped(
-    bodies: &Bodies,
-    number: &dyn Fn(usize) -> usize,
-    place: &dyn Fn(DVec3) -> DVec3,
-    velocity: &dyn Fn(DVec3) -> DVec3,
-    spin: &dyn Fn(DVec3) -> DVec3,
-) -> Bodies {
-    let mut image = bodies.clone();
-    for i in 0..bodies.number() {
-        let j = number(i);
-        image.position[j] = place(bodies.position[i]);
-        image.velocity[j] = velocity(bodies.velocity[i]);
-        image.angular_velocity[j] = spin(bodies.angular_velocity[i]);
-        image.diameter[j] = bodies.diameter[i];
-        image.mass[j] = bodies.mass[i];
-        image.inertia[j] = bodies.inertia[i];
+impl Map {
+    /// Turns or mirrors; `image` is the wall sphere that a wall sphere comes to stand on. Grains keep their numbers.
+    fn of(state: &State, turn: DMat3, image: impl Fn(&Lattice, WallSphere) -> WallSphere) -> Self {
+        let (lattice, grains) = (*state.wall.lattice().unwrap(), state.bodies.grains);
+        let of_wall = (0..state.bodies.number() - grains)
+            .map(|sphere| grains + lattice.index(image(&lattice, lattice.sphere(sphere))));
+        Self {
+            numbers: (0..grains).chain(of_wall).collect(),
+            turn,
+            shift: 0.0,
+            units: Units {
+                length: 1.0,
+                mass: 1.0,
+                time: 1.0,
+            },
+        }
     }
-    image
-}
 
-/// Number of the sphere whose wall sphere is the image of another's; grains keep theirs.
-fn on_the_wall(state: &State, image: impl Fn(&Lattice, WallSphere) -> WallSphere) -> Vec<usize> {
-    let (lattice, grains) = (*state.wall.lattice().unwrap(), state.bodies.grains);
-    (0..state.bodies.number())
-        .map(|i| {
-            if i < grains {
-                i
-            } else {
-                grains + lattice.index(image(&lattice, lattice.sphere(i - grains)))
-            }
-        })
-        .collect()
+    fn identity(state: &State) -> Self {
+        Self::of(state, DMat3::IDENTITY, |_, sphere| sphere)
+    }
+
+    fn place(&self, place: DVec3) -> DVec3 {
+        self.units.length * (self.turn * place + self.shift * DVec3::Z)
+    }
+
+    fn velocity(&self, velocity: DVec3) -> DVec3 {
+        self.units.length / self.units.time * (self.turn * velocity)
+    }
+
+    /// Spins are axial vectors.
+    fn spin(&self, spin: DVec3) -> DVec3 {
+        self.turn.determinant().signum() / self.units.time * (self.turn * spin)
+    }
+
+    fn bodies(&self, bodies: &Bodies, length: f64) -> Bodies {
+        let mut image = bodies.clone();
+        let Units {
+            length: d, mass, ..
+        } = self.units;
+        for (i, &j) in self.numbers.iter().enumerate() {
+            let mut place = self.place(bodies.position[i]);
+            // Within the tube: a wall sphere that has gone round it would pull at its tether.
+            place.z = place.z.rem_euclid(length);
+            image.position[j] = place;
+            image.velocity[j] = self.velocity(bodies.velocity[i]);
+            image.angular_velocity[j] = self.spin(bodies.angular_velocity[i]);
+            image.diameter[j] = d * bodies.diameter[i];
+            image.mass[j] = mass * bodies.mass[i];
+            image.inertia[j] = mass * d * d * bodies.inertia[i];
+        }
+        image
+    }
+
+    /// Largest difference, in units of the original, between the image of where the original goes and where its image
+    /// goes in `wall` with `parameters`.
+    fn difference(&self, original: &State, wall: Wall, parameters: Parameters) -> f64 {
+        let length = wall.length();
+        let image = State {
+            bodies: self.bodies(&original.bodies, length),
+            wall,
+            parameters,
+        };
+        let [plain, found] = [original, &image].map(|state| {
+            let mut simulation = state.start(Kernel::Fast);
+            simulation.advance(STEPS).expect("does not diverge");
+            simulation.bodies().clone()
+        });
+        let Units {
+            length: d, time, ..
+        } = self.units;
+        let apart = self.numbers.iter().enumerate().map(|(i, &j)| {
+            let mut place = self.place(plain.position[i]) - found.position[j];
+            place.z -= length * (place.z / length).round();
+            let velocity = self.velocity(plain.velocity[i]) - found.velocity[j];
+            let spin = self.spin(plain.angular_velocity[i]) - found.angular_velocity[j];
+            let moved = (place.length() / d).max(velocity.length() * time / d);
+            moved.max(spin.length() * time)
+        });
+        apart.fold(0.0, f64::max)
+    }
+
+    /// The same in the wall and with the parameters of the original.
+    fn in_place(&self, original: &State) -> f64 {
+        self.difference(original, original.wall.clone(), original.parameters)
+    }
 }
 
 /// The wall with its wave turned round.
@@ -116,124 +135,87 @@ fn turned_round(wall: &Wall) -> Wall {
     match wall {
         Wall::Prescribed(wall) => {
             let wave = wall.wave();
-            Wall::Prescribed(PrescribedWall::new(
+            let (heading, rate) = (-wave.heading, wall.frequency(0.0));
+            prescribed(
                 *wall.lattice(),
                 wave.mean_radius,
-                wave.waveform,
-                -wave.heading,
-                Schedule::constant(wave.amplitude),
-                Schedule::constant(wall.frequency(0.0)),
-            ))
+                heading,
+                wave.amplitude,
+                rate,
+            )
         }
-        Wall::Elastic(wall) => Wall::Elastic(ElasticWall::new(ElasticParameters {
+        Wall::Elastic(wall) => elastic(ElasticParameters {
             heading: -wall.parameters().heading,
             ..wall.parameters().clone()
-        })),
+        }),
     }
 }
 
-/// z -> -z with the wave and the body force turned round. Spins are axial vectors.
+/// z -> -z with the wave and the body force turned round.
 fn reversed(original: &State) -> f64 {
-    let length = original.wall.length();
-    let numbers = on_the_wall(original, |lattice, sphere| WallSphere {
-        ring: (lattice.rings() - sphere.ring) % lattice.rings(),
-        ..sphere
-    });
-    let number = |i: usize| numbers[i];
-    let place = |r: DVec3| DVec3::new(r.x, r.y, if r.z == 0.0 { 0.0 } else { length - r.z });
-    let velocity = |v: DVec3| DVec3::new(v.x, v.y, -v.z);
-    let spin = |s: DVec3| DVec3::new(-s.x, -s.y, s.z);
-    let state = State {
-        bodies: mapped(&original.bodies, &number, &place, &velocity, &spin),
-        wall: turned_round(&original.wall),
-        parameters: Parameters {
-            body_force: -original.parameters.body_force,
-            ..original.parameters
-        },
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, 1.0, -1.0));
+    let map = Map {
+        shift: original.wall.length(),
+        ..Map::of(original, mirror, |lattice, sphere| WallSphere {
+            ring: (lattice.rings() - sphere.ring) % lattice.rings(),
+            ..sphere
+        })
     };
-    let image = Image {
-        state,
-        number: &number,
-        place: &place,
-        velocity: &velocity,
-        spin: &spin,
-        units: [1.0; 3],
+    let parameters = Parameters {
+        body_force: -original.parameters.body_force,
+        ..original.parameters
     };
-    difference(original, &image)
+    map.difference(original, turned_round(&original.wall), parameters)
 }
 
 /// y -> -y, a mirror through the axis.
 fn mirrored(original: &State) -> f64 {
-    let numbers = on_the_wall(original, |lattice, sphere| {
+    let mirror = DMat3::from_diagonal(DVec3::new(1.0, -1.0, 1.0));
+    let map = Map::of(original, mirror, |lattice, sphere| {
         let per_ring = lattice.spheres_per_ring;
         WallSphere {
             ring: sphere.ring,
             place: (2 * per_ring - sphere.place - sphere.ring % 2) % per_ring,
         }
     });
-    let number = |i: usize| numbers[i];
-    let vector = |v: DVec3| DVec3::new(v.x, -v.y, v.z);
-    let spin = |s: DVec3| DVec3::new(-s.x, s.y, -s.z);
-    rigidly(original, &number, &vector, &vector, &spin)
+    map.in_place(original)
 }
 
 /// By so many steps of the lattice about the axis.
 fn turned(original: &State, steps: u32) -> f64 {
     let per_ring = original.wall.lattice().unwrap().spheres_per_ring;
     let angle = core::f64::consts::TAU * f64::from(steps) / f64::from(per_ring);
-    let (sin, cos) = libm::sincos(angle);
-    let numbers = on_the_wall(original, |_, sphere| WallSphere {
+    let turn = DMat3::from_rotation_z(angle);
+    let map = Map::of(original, turn, |_, sphere| WallSphere {
         ring: sphere.ring,
         place: (sphere.place + steps) % per_ring,
     });
-    let number = |i: usize| numbers[i];
-    let vector = |v: DVec3| DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
-    rigidly(original, &number, &vector, &vector, &vector)
+    map.in_place(original)
 }
 
 /// By a wavelength along the tube; one of an odd number of rings must be shifted by two, for the seam to close.
 fn shifted(original: &State) -> f64 {
-    let lattice = *original.wall.lattice().unwrap();
-    let waves = 1 + lattice.rings_per_wave % 2;
-    let numbers = on_the_wall(original, |lattice, sphere| WallSphere {
-        ring: (sphere.ring + waves * lattice.rings_per_wave) % lattice.rings(),
-        ..sphere
-    });
-    let number = |i: usize| numbers[i];
-    let (length, shift) = (lattice.length(), f64::from(waves) * lattice.wavelength);
-    // Within the tube: a wall sphere that has gone round it would pull at its tether.
-    let place = |r: DVec3| DVec3::new(r.x, r.y, (r.z + shift).rem_euclid(length));
-    rigidly(original, &number, &place, &|v| v, &|s| s)
+    let rings_per_wave = original.wall.lattice().unwrap().rings_per_wave;
+    let waves = 1 + rings_per_wave % 2;
+    let map = Map {
+        shift: f64::from(waves) * original.wall.wavelength(),
+        ..Map::of(original, DMat3::IDENTITY, |lattice, sphere| WallSphere {
+            ring: (sphere.ring + waves * rings_per_wave) % lattice.rings(),
+            ..sphere
+        })
+    };
+    map.in_place(original)
 }
 
 /// Grains numbered in another order.
 fn renumbered(original: &State) -> f64 {
     let grains = original.bodies.grains;
+    let mut map = Map::identity(original);
     // 7 divides no number of grains here.
-    let number = |i: usize| if i < grains { (7 * i + 5) % grains } else { i };
-    rigidly(original, &number, &|r| r, &|v| v, &|s| s)
-}
-
-fn rigidly(
-    original: &State,
-    number: &dyn Fn(usize) -> usize,
-    place: &dyn Fn(DVec3) -> DVec3,
-    velocity: &dyn Fn(DVec3) -> DVec3,
-    spin: &dyn Fn(DVec3) -> DVec3,
-) -> f64 {
-    let state = State {
-        bodies: mapped(&original.bodies, number, place, velocity, spin),
-        ..original.clone()
-    };
-    let image = Image {
-        state,
-        number,
-        place,
-        velocity,
-        spin,
-        units: [1.0; 3],
-    };
-    difference(original, &image)
+    for number in &mut map.numbers[..grains] {
+        *number = (7 * *number + 5) % grains;
+    }
+    map.in_place(original)
 }
 
 /// Units of length, mass and time that are so many of others.
@@ -330,37 +312,19 @@ impl Units {
 
 /// The same system in other units of length, mass and time.
 fn in_other_units(original: &State, units: Units) -> f64 {
-    let speed = units.length / units.time;
-    let (place, velocity) = (|r: DVec3| units.length * r, |v: DVec3| speed * v);
-    let spin = |s: DVec3| s / units.time;
-    let number = |i: usize| i;
-    let mut bodies = mapped(&original.bodies, &number, &place, &velocity, &spin);
-    for i in 0..bodies.number() {
-        bodies.diameter[i] *= units.length;
-        bodies.mass[i] *= units.mass;
-        bodies.inertia[i] *= units.mass * units.length * units.length;
-    }
+    let map = Map {
+        units,
+        ..Map::identity(original)
+    };
     let ours = &original.parameters;
-    let state = State {
-        bodies,
-        wall: units.wall(&original.wall),
-        parameters: Parameters {
-            contact: units.contact(ours.contact),
-            time_step: units.time * ours.time_step,
-            skin: units.length * ours.skin,
-            body_force: speed / units.time * ours.body_force,
-            ..*ours
-        },
+    let parameters = Parameters {
+        contact: units.contact(ours.contact),
+        time_step: units.time * ours.time_step,
+        skin: units.length * ours.skin,
+        body_force: units.length / (units.time * units.time) * ours.body_force,
+        ..*ours
     };
-    let image = Image {
-        state,
-        number: &number,
-        place: &place,
-        velocity: &velocity,
-        spin: &spin,
-        units: [units.length, speed, 1.0 / units.time],
-    };
-    difference(original, &image)
+    map.difference(original, units.wall(&original.wall), parameters)
 }
 
 proptest! {
@@ -415,10 +379,10 @@ proptest! {
             velocity.z += boost;
         }
         let (mut plain, mut other) = (state.start(Kernel::Fast), boosted.start(Kernel::Fast));
-        let before = (momentum(plain.bodies()), angular_momentum(&plain));
+        let before = (momentum(plain.bodies()), angular_momentum(plain.bodies(), 20.0));
         plain.advance(STEPS).expect("does not diverge");
         other.advance(STEPS).expect("does not diverge");
-        let after = (momentum(plain.bodies()), angular_momentum(&plain));
+        let after = (momentum(plain.bodies()), angular_momentum(plain.bodies(), 20.0));
         prop_assert!((after.0 - before.0).length() < 1e-12, "momentum {:?}", after.0 - before.0);
         if row.integrator == Integrator::Verlet {
             let change = (after.1 - before.1).length();
@@ -431,42 +395,22 @@ proptest! {
     }
 }
 
-fn angular_momentum(simulation: &Simulation) -> DVec3 {
-    let bodies = simulation.bodies();
-    (0..bodies.number())
-        .map(|i| {
-            let z = bodies.unfolded(i, 20.0);
-            let place = DVec3::new(bodies.position[i].x, bodies.position[i].y, z);
-            bodies.mass[i] * place.cross(bodies.velocity[i])
-                + bodies.inertia[i] * bodies.angular_velocity[i]
-        })
-        .sum()
-}
-
 /// What is no symmetry is seen: the relations above would notice a mistake.
 #[test]
 fn half_a_step_of_the_lattice_is_something_else() {
     let row = rows(Tube::Narrow)[0];
     let state = moving(row, 1);
     let angle = core::f64::consts::PI / f64::from(state.wall.lattice().unwrap().spheres_per_ring);
-    let (sin, cos) = libm::sincos(angle);
-    let vector = |v: DVec3| DVec3::new(cos * v.x - sin * v.y, sin * v.x + cos * v.y, v.z);
-    assert!(rigidly(&state, &|i| i, &vector, &vector, &vector) > 1e-3);
+    let half_turned = Map {
+        turn: DMat3::from_rotation_z(angle),
+        ..Map::identity(&state)
+    };
+    assert!(half_turned.in_place(&state) > 1e-3);
     // And a body force that was forgotten.
     let heavier = Parameters {
         body_force: state.parameters.body_force + 0.01,
         ..state.parameters
     };
-    let image = Image {
-        state: State {
-            parameters: heavier,
-            ..state.clone()
-        },
-        number: &|i| i,
-        place: &|r| r,
-        velocity: &|v| v,
-        spin: &|s| s,
-        units: [1.0; 3],
-    };
-    assert!(difference(&state, &image) > 1e-3);
+    let apart = Map::identity(&state).difference(&state, state.wall.clone(), heavier);
+    assert!(apart > 1e-3);
 }

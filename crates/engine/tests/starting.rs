@@ -1,17 +1,10 @@
 //! How simulations begin, and how they fail: packing, seeds, few grains, divergence.
 
+use peristalsis_engine::initial::LARGEST_MEAN_OVERLAP;
+
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, bits, coarse, elastic, elastic_parameters, grains,
-    packed, parameters, strained, wide,
-};
-use glam::DVec3;
-use peristalsis_engine::initial::{InitialState, LARGEST_MEAN_OVERLAP, Packing, pack};
-use peristalsis_engine::wall::PrescribedWall;
-use peristalsis_engine::{Bodies, EngineError, Integrator, Simulation, Wall};
-use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
-use peristalsis_physics::wall::{Schedule, Waveform};
+use common::*;
 
 fn packing(number: usize, state: InitialState, seed: u64) -> Packing {
     Packing {
@@ -133,14 +126,8 @@ fn a_jammed_start_fills_the_bellies_and_moves_with_the_wave() {
 fn a_jammed_start_fills_the_straight_parts_of_a_squeezed_tube() {
     for waveform in [Waveform::Bolus, Waveform::Roller] {
         for heading in [1.0, -1.0] {
-            let wall = Wall::Prescribed(PrescribedWall::new(
-                coarse(2),
-                1.5,
-                waveform,
-                heading,
-                Schedule::constant(0.4),
-                Schedule::constant(0.1),
-            ));
+            let (amplitude, frequency) = (Schedule::constant(0.4), Schedule::constant(0.1));
+            let wall = waving(coarse(2), 1.5, waveform, heading, amplitude, frequency);
             let jammed = packing(number(0.1, 20.0), InitialState::Jammed, 1);
             let (bodies, _) = pack(&jammed, &wall, LINEAR).unwrap();
             for position in &bodies.position {

@@ -2,33 +2,19 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, bits, coarse, packed, parameters, strained, wide,
-};
-use glam::DVec3;
-use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation};
-use peristalsis_physics::contact::{CundallStrack, Normal};
+use common::*;
 
 const WAVES: u32 = 2;
 const LENGTH: f64 = 20.0;
 /// Grains in the tube of two waves: volume fraction 0.2.
 const GRAINS: usize = 54;
 
-fn laws() -> [(&'static str, Normal, Option<CundallStrack>); 4] {
-    [
-        ("linear", LINEAR, None),
-        ("linear, rough", LINEAR, Some(FRICTION)),
-        ("hertz", HERTZ, None),
-        ("hertz, rough", HERTZ, Some(FRICTION)),
-    ]
+fn tube(heading: f64) -> Wall {
+    strained(coarse(WAVES), heading, 2.6, 0.1)
 }
 
 fn start(bodies: &Bodies, heading: f64, parameters: Parameters) -> Simulation {
-    Simulation::new(
-        bodies.clone(),
-        strained(coarse(WAVES), heading, 2.6, 0.1),
-        parameters,
-    )
+    Simulation::new(bodies.clone(), tube(heading), parameters)
 }
 
 /// Sum of v_z over L.
@@ -63,21 +49,11 @@ const ROUNDING: f64 = 1e-7;
 #[test]
 fn the_mirror_image_flows_the_other_way() {
     for (name, normal, friction) in laws() {
-        let bodies = packed(
-            GRAINS,
-            0.8,
-            &strained(coarse(WAVES), -1.0, 2.6, 0.1),
-            normal,
-            9,
-        );
+        let bodies = packed(GRAINS, 0.8, &tube(-1.0), normal, 9);
         let mirror = |v: DVec3| DVec3::new(v.x, v.y, -v.z);
         let mut image = bodies.clone();
         for position in &mut image.position {
-            position.z = if position.z == 0.0 {
-                0.0
-            } else {
-                LENGTH - position.z
-            };
+            position.z = (LENGTH - position.z).rem_euclid(LENGTH);
         }
         for integrator in INTEGRATORS {
             let parameters = parameters(normal, friction, integrator, 0.05);
@@ -111,13 +87,7 @@ fn skinless(friction: Option<CundallStrack>) -> Kernel {
 #[test]
 fn the_skin_changes_no_bit() {
     for (name, normal, friction) in laws() {
-        let bodies = packed(
-            GRAINS,
-            0.8,
-            &strained(coarse(WAVES), -1.0, 2.6, 0.1),
-            normal,
-            9,
-        );
+        let bodies = packed(GRAINS, 0.8, &tube(-1.0), normal, 9);
         let with = |skin: f64, steps: u64| {
             let parameters = Parameters {
                 skin,
@@ -151,7 +121,7 @@ fn the_skin_changes_no_bit_in_odd_tubes() {
     let wide_tube = wide(10.0);
     let many = packed(300, 0.7, &wide_tube, LINEAR, 2);
     let mut moving = many.clone();
-    let mut numbers = common::Numbers(5);
+    let mut numbers = Numbers(5);
     moving
         .velocity
         .iter_mut()
@@ -199,7 +169,7 @@ fn the_skin_changes_no_bit_in_odd_tubes() {
 #[test]
 fn the_skin_changes_no_bit_of_the_ledger_of_a_fast_parting() {
     let with = |skin: f64| {
-        let mut bodies = common::grains(&[
+        let mut bodies = grains(&[
             (DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.3, 0.0, -2.0)),
             (DVec3::new(0.0, 0.0, 5.7), DVec3::new(0.0, 0.0, 2.0)),
         ]);

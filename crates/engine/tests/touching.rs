@@ -2,31 +2,23 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, packed, parameters,
-    strained,
-};
-use glam::DVec3;
-use peristalsis_engine::{Kernel, Parameters, Simulation};
+use common::*;
 
 #[test]
 fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
     let strain = strained(coarse(2), -1.0, 2.6, 0.1);
     let stress = elastic(elastic_parameters());
     for (wall, number) in [(&strain, 60), (&stress, 120)] {
-        for normal in [LINEAR, HERTZ] {
-            for friction in [None, Some(FRICTION)] {
-                for kernel in [Kernel::Fast, Kernel::Reference] {
-                    let case = format!("{normal:?} {friction:?} {kernel:?} {number} grains");
-                    let bodies = packed(number, 1.0, wall, normal, 5);
-                    let parameters = Parameters {
-                        kernel,
-                        ..parameters(normal, friction, INTEGRATORS[0], 0.01)
-                    };
-                    let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
-                    simulation.advance(2_000).unwrap();
-                    assert_forces(&simulation, &case);
-                }
+        for (name, normal, friction) in laws() {
+            for kernel in KERNELS {
+                let bodies = packed(number, 1.0, wall, normal, 5);
+                let parameters = Parameters {
+                    kernel,
+                    ..parameters(normal, friction, INTEGRATORS[0], 0.01)
+                };
+                let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
+                simulation.advance(2_000).unwrap();
+                assert_forces(&simulation, &format!("{name} {kernel:?} {number} grains"));
             }
         }
     }

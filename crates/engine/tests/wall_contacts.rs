@@ -2,18 +2,12 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, coarse, elastic, elastic_parameters, momentum, packed,
-    parameters, strained,
-};
-use glam::DVec3;
-use peristalsis_engine::{Bodies, Kernel, Parameters, Simulation, Wall};
+use common::*;
 
 const BODY_FORCE: f64 = -0.003;
 
 fn walls() -> [Wall; 2] {
-    let mut driven = elastic_parameters();
-    driven.force_amplitude = peristalsis_physics::wall::Schedule::constant(0.02);
+    let driven = elastic_with(|wall| wall.force_amplitude = Schedule::constant(0.02));
     [strained(coarse(2), -1.0, 2.4, 0.1), elastic(driven)]
 }
 
@@ -39,21 +33,15 @@ fn of_grains(bodies: &Bodies) -> Bodies {
 #[test]
 fn the_momentum_balance_closes() {
     for wall in &walls() {
-        for (normal, friction) in [
-            (LINEAR, None),
-            (LINEAR, Some(FRICTION)),
-            (HERTZ, Some(FRICTION)),
-        ] {
+        for (_, normal, friction, integrator) in methods() {
             let bodies = packed(80, 0.8, wall, normal, 3);
-            for integrator in INTEGRATORS {
-                for kernel in [Kernel::Fast, Kernel::Reference] {
-                    let parameters = Parameters {
-                        kernel,
-                        body_force: BODY_FORCE,
-                        ..parameters(normal, friction, integrator, 0.02)
-                    };
-                    balance(Simulation::new(bodies.clone(), wall.clone(), parameters));
-                }
+            for kernel in KERNELS {
+                let parameters = Parameters {
+                    kernel,
+                    body_force: BODY_FORCE,
+                    ..parameters(normal, friction, integrator, 0.02)
+                };
+                balance(Simulation::new(bodies.clone(), wall.clone(), parameters));
             }
         }
     }

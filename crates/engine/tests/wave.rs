@@ -2,13 +2,7 @@
 
 mod common;
 
-use common::{
-    FRICTION, HERTZ, INTEGRATORS, LINEAR, Numbers, coarse, grains, packed, parameters, strained,
-};
-use glam::DVec3;
-use peristalsis_engine::{Bodies, Integrator, Simulation};
-use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
-use peristalsis_physics::wall::Lattice;
+use common::*;
 
 const STRAIN_RATE: f64 = 0.05;
 const WAVELENGTH: f64 = 10.0;
@@ -69,13 +63,7 @@ fn in_the_wave_frame_a_refined_wall_keeps_the_energy_of_a_grain() {
     }
 }
 
-fn moving(
-    number: usize,
-    normal: Normal,
-    speed: f64,
-    drift: f64,
-    wall: &peristalsis_engine::Wall,
-) -> Bodies {
+fn moving(number: usize, normal: Normal, speed: f64, drift: f64, wall: &Wall) -> Bodies {
     let mut bodies = packed(number, 0.8, wall, normal, 6);
     let mut numbers = Numbers(11);
     for velocity in &mut bodies.velocity {

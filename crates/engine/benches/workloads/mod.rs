@@ -1,30 +1,14 @@
 //! The work that is timed (`cargo bench`) and whose instructions are counted (`scripts/instruction_counts.py`).
 
-use peristalsis_engine::initial::{InitialState, Packing, pack};
-use peristalsis_engine::wall::{
-    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
-};
-use peristalsis_engine::{
-    EngineError, Instructions, Integrator, Kernel, Parameters, Simulation, Wall,
-};
-use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
-    ViscoelasticHertz,
-};
-use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+#[path = "../../tests/common/mod.rs"]
+mod common;
+
+use self::common::*;
 
 const TIME_STEP: f64 = 0.05;
 
 /// Radius of the prescribed tube \[d\].
 const RADIUS: f64 = 1.5;
-
-const FRICTION: CundallStrack = CundallStrack {
-    tangential_stiffness: 1.0,
-    tangential_damping: 0.1,
-    static_friction: 0.5,
-    kinetic_friction: 0.4,
-    sliding: Sliding::Spring,
-};
 
 /// A way to compute.
 #[derive(Clone, Copy, Debug)]
@@ -115,12 +99,13 @@ impl Workload {
         let (packing, wall, contact) = self.parts();
         let (bodies, _) = pack(&packing, &wall, contact.normal)?;
         let parameters = |kernel| Parameters {
-            contact,
-            integrator: Integrator::Verlet,
-            time_step: TIME_STEP,
-            skin: 0.3,
             kernel,
-            body_force: 0.0,
+            ..parameters(
+                contact.normal,
+                contact.friction,
+                Integrator::Verlet,
+                TIME_STEP,
+            )
         };
         let mut flow = Simulation::new(bodies, wall.clone(), parameters(Kernel::Fast));
         flow.advance(self.warm_up())?;
@@ -154,19 +139,9 @@ impl Workload {
     }
 }
 
-const FINE: Lattice = Lattice {
-    spheres_per_ring: 24,
-    rings_per_wave: 26,
-    waves: 10,
-    wavelength: 10.0,
-    sphere_diameter: 1.0,
-};
+const FINE: Lattice = lattice(24, 26, 10, 10.0);
 
-const COARSE: Lattice = Lattice {
-    spheres_per_ring: 12,
-    rings_per_wave: 14,
-    ..FINE
-};
+const COARSE: Lattice = lattice(12, 14, 10, 10.0);
 
 /// Equal smooth grains with linear contacts in a prescribed tube.
 fn strain_controlled(
@@ -176,19 +151,8 @@ fn strain_controlled(
     strain_rate: f64,
     state: InitialState,
 ) -> (Packing, Wall, ContactModel) {
-    let wall = PrescribedWall::new(
-        lattice,
-        RADIUS,
-        Waveform::Sine,
-        -1.0,
-        Schedule::constant(RADIUS - 0.5 * width),
-        Schedule::constant(strain_rate),
-    );
     let contact = ContactModel {
-        normal: Normal::Linear(LinearSpringDashpot {
-            normal_stiffness: 1.0,
-            normal_damping: 5.48e-3,
-        }),
+        normal: LINEAR,
         friction: None,
     };
     let packing = Packing {
@@ -203,36 +167,24 @@ fn strain_controlled(
         },
         seed: 1,
     };
-    (packing, Wall::Prescribed(wall), contact)
+    (
+        packing,
+        strained(lattice, -1.0, width, strain_rate),
+        contact,
+    )
 }
 
 /// Frictional grains in an elastic tube of six waves.
 fn stress_controlled() -> (Packing, Wall, ContactModel) {
     let strain_rate = 4.01e-3;
-    let lattice = Lattice {
-        spheres_per_ring: 22,
-        rings_per_wave: 23,
-        waves: 6,
-        wavelength: 20.0,
-        sphere_diameter: 1.0,
-    };
-    let wall = ElasticWall::new(ElasticParameters {
-        lattice,
-        mean_radius: 3.5,
-        network: ElasticNetwork::default(),
-        force_amplitude: Schedule::constant(0.004),
-        frequency: Schedule::constant(strain_rate),
-        heading: 1.0,
-        waveform: Waveform::Sine,
-        angle: DriveAngle::Reference,
-    });
+    let lattice = lattice(22, 23, 6, 20.0);
+    let wall = elastic(elastic_with(|wall| {
+        (wall.lattice, wall.mean_radius) = (lattice, 3.5);
+        wall.force_amplitude = Schedule::constant(0.004);
+        wall.frequency = Schedule::constant(strain_rate);
+    }));
     let contact = ContactModel {
-        normal: Normal::Hertz(ViscoelasticHertz {
-            young_modulus: 1.0,
-            poisson_ratio: 0.5,
-            dissipation_time: 0.1,
-            dissipation_form: DissipationForm::Viscoelastic,
-        }),
+        normal: HERTZ,
         friction: Some(FRICTION),
     };
     let packing = Packing {
@@ -244,5 +196,5 @@ fn stress_controlled() -> (Packing, Wall, ContactModel) {
         axial_velocity: strain_rate * lattice.wavelength,
         seed: 1,
     };
-    (packing, Wall::Elastic(wall), contact)
+    (packing, wall, contact)
 }

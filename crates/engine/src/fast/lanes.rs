@@ -3,16 +3,22 @@
 //! Nothing here fuses a multiplication with an addition: not every machine could, and all give the same bits.
 
 use core::fmt;
-use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub, SubAssign};
+use core::ops::{Add, AddAssign, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use peristalsis_physics::real::{Real, Vector};
 
 pub(crate) use super::machine::LANES;
-use super::machine::Machine;
+use super::machine::{Arithmetic, Machine, Truths};
+
+/// N real numbers.
+#[derive(Clone, Copy)]
+pub(crate) struct Numbers<A: Arithmetic<N>, const N: usize>(A::Numbers);
 
 /// Eight real numbers.
-#[derive(Clone, Copy)]
-pub(crate) struct Lanes<M: Machine>(M::Numbers);
+pub(crate) type Lanes<M> = Numbers<M, LANES>;
+
+/// Four real numbers: a vector in space and one number more.
+pub(crate) type Quad<M> = Numbers<<M as Machine>::Quads, 4>;
 
 /// Eight truth values.
 #[derive(Clone, Copy)]
@@ -26,13 +32,37 @@ pub(crate) struct LaneVector<M: Machine> {
     pub(crate) z: Lanes<M>,
 }
 
-impl<M: Machine> Lanes<M> {
-    /// The number of each lane.
+impl<A: Arithmetic<N>, const N: usize> Numbers<A, N> {
     #[inline(always)]
-    pub(crate) fn to_array(self) -> [f64; LANES] {
-        M::to_array(self.0)
+    pub(crate) fn from_array(values: &[f64; N]) -> Self {
+        Self(A::load(values))
     }
 
+    #[inline(always)]
+    pub(crate) fn to_array(self) -> [f64; N] {
+        let mut array = [0.0; N];
+        A::store(self.0, &mut array);
+        array
+    }
+
+    /// The same number everywhere.
+    #[inline(always)]
+    pub(crate) fn splat(value: f64) -> Self {
+        Self(A::splat(value))
+    }
+
+    #[inline(always)]
+    pub(crate) fn min(self, other: Self) -> Self {
+        Self(A::min(self.0, other.0))
+    }
+
+    #[inline(always)]
+    pub(crate) fn max(self, other: Self) -> Self {
+        Self(A::max(self.0, other.0))
+    }
+}
+
+impl<M: Machine> Lanes<M> {
     /// The numbers of `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn load(slice: &[f64], start: usize) -> Self {
@@ -78,28 +108,28 @@ impl<M: Machine> Lanes<M> {
             window.expect("a window of four numbers")
         });
         Self::of_quads([
-            M::load_quad(a),
-            M::load_quad(b),
-            M::load_quad(c),
-            M::load_quad(d),
-            M::load_quad(e),
-            M::load_quad(f),
-            M::load_quad(g),
-            M::load_quad(h),
+            Quad::<M>::from_array(a),
+            Quad::<M>::from_array(b),
+            Quad::<M>::from_array(c),
+            Quad::<M>::from_array(d),
+            Quad::<M>::from_array(e),
+            Quad::<M>::from_array(f),
+            Quad::<M>::from_array(g),
+            Quad::<M>::from_array(h),
         ])
     }
 
     /// Eight quads turned into lanes: number k of quad l becomes lane l of numbers k.
     #[inline(always)]
-    pub(crate) fn of_quads(quads: [M::Quad; LANES]) -> [Self; 4] {
-        let [x, y, z, fourth] = M::lanes_of(quads);
+    pub(crate) fn of_quads([a, b, c, d, e, f, g, h]: [Quad<M>; LANES]) -> [Self; 4] {
+        let [x, y, z, fourth] = M::lanes_of([a.0, b.0, c.0, d.0, e.0, f.0, g.0, h.0]);
         [Self(x), Self(y), Self(z), Self(fourth)]
     }
 
     /// Lanes turned into eight quads.
     #[inline(always)]
-    pub(crate) fn to_quads([x, y, z, fourth]: [Self; 4]) -> [M::Quad; LANES] {
-        M::quads_of([x.0, y.0, z.0, fourth.0])
+    pub(crate) fn to_quads([x, y, z, fourth]: [Self; 4]) -> [Quad<M>; LANES] {
+        M::quads_of([x.0, y.0, z.0, fourth.0]).map(Numbers)
     }
 
     /// Where this is at most `other`; false where either is not a number.
@@ -149,7 +179,7 @@ impl<M: Machine> Mask<M> {
     /// Bit l is the truth value of lane l.
     #[inline(always)]
     pub(crate) fn from_bits(bits: u8) -> Self {
-        Self(M::from_bits(bits))
+        Self(M::Truths::from_bits(bits))
     }
 
     /// True in the first so many lanes, in all if there are fewer.
@@ -165,7 +195,7 @@ impl<M: Machine> Mask<M> {
     /// Bit l is the truth value of lane l.
     #[inline(always)]
     pub(crate) fn to_bits(self) -> u8 {
-        M::to_bits(self.0)
+        self.0.to_bits()
     }
 
     /// Writes down `first` + l for each lane l where it holds, in order; the numbers behind them are arbitrary.
@@ -277,23 +307,47 @@ impl<M: Machine> Vector<Lanes<M>> for LaneVector<M> {
     }
 }
 
-/// An operator of a wrapper, by the machine's operation of that name.
+/// An operator on numbers, by the machine's operation of that name.
 macro_rules! operators {
-    ($($type:ident: $($operator:ident $method:ident $operation:ident),+;)+) => {$($(
-        impl<M: Machine> $operator for $type<M> {
+    ($($operator:ident $operation:ident),+) => {$(
+        impl<A: Arithmetic<N>, const N: usize> $operator for Numbers<A, N> {
             type Output = Self;
 
             #[inline(always)]
-            fn $method(self, other: Self) -> Self {
-                Self(M::$operation(self.0, other.0))
+            fn $operation(self, other: Self) -> Self {
+                Self(A::$operation(self.0, other.0))
             }
         }
-    )+)+};
+    )+};
 }
 
-operators! {
-    Lanes: Add add add, Sub sub sub, Mul mul mul, Div div div;
-    Mask: BitAnd bitand and, BitOr bitor or;
+operators!(Add add, Sub sub, Mul mul);
+
+impl<M: Machine> Div for Lanes<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(M::div(self.0, other.0))
+    }
+}
+
+impl<M: Machine> BitAnd for Mask<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+}
+
+impl<M: Machine> BitOr for Mask<M> {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
 }
 
 impl<M: Machine> Neg for Lanes<M> {
@@ -301,7 +355,7 @@ impl<M: Machine> Neg for Lanes<M> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self(M::neg(self.0))
+        self * Self::splat(-1.0)
     }
 }
 
@@ -310,7 +364,7 @@ impl<M: Machine> Not for Mask<M> {
 
     #[inline(always)]
     fn not(self) -> Self {
-        Self(M::not(self.0))
+        Self(!self.0)
     }
 }
 
@@ -318,13 +372,6 @@ impl<M: Machine> AddAssign for Lanes<M> {
     #[inline(always)]
     fn add_assign(&mut self, other: Self) {
         *self = *self + other;
-    }
-}
-
-impl<M: Machine> SubAssign for Lanes<M> {
-    #[inline(always)]
-    fn sub_assign(&mut self, other: Self) {
-        *self = *self - other;
     }
 }
 

@@ -3,10 +3,12 @@
 use core::f64::consts::TAU;
 
 use glam::DVec3;
+use peristalsis_physics::method::InitialState;
 use peristalsis_physics::wall::RadiusWave;
 use rand_chacha::ChaCha8Rng;
 
-use super::{InitialState, Packing, uniform};
+use super::packing::{Packing, uniform};
+use crate::neighbours::cells::Grid;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
 
@@ -146,65 +148,42 @@ pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8
 
 /// Grains by cells of a rectangular grid.
 struct Bins {
-    across: i64,
-    along: i64,
-    half_width: f64,
-    width: f64,
-    depth: f64,
+    grid: Grid,
     length: f64,
     members: Vec<Vec<u32>>,
 }
 
 impl Bins {
-    /// Cells at least as wide as the largest grain; not many more of them than grains, which may be small in a large tube.
+    /// Cells at least as wide as the largest grain.
     fn new(region: &Region<'_>, largest_diameter: f64, grains: usize) -> Self {
-        let half_width = region.wall.usual_radius();
-        let most = (8.0 * grains as f64).max(4096.0);
-        let across = (2.0 * half_width / largest_diameter).floor();
-        let along = (region.length / largest_diameter).floor();
-        let coarser = (across * across * along / most).cbrt().max(1.0);
-        let across = (across / coarser).floor().clamp(1.0, 64.0);
-        let along = along.min(most / (across * across)).floor().clamp(1.0, 1e6);
+        let (half_width, length) = (region.wall.usual_radius(), region.length);
+        let grid = Grid::new(half_width, largest_diameter, length, (8 * grains).max(4096));
         Self {
-            across: across as i64,
-            along: along as i64,
-            half_width,
-            width: 2.0 * half_width / across,
-            depth: region.length / along,
-            length: region.length,
-            members: vec![Vec::new(); (across * across * along) as usize],
+            grid,
+            length,
+            members: vec![Vec::new(); grid.cells()],
         }
     }
 
-    fn cell(&self, place: DVec3) -> [i64; 3] {
-        let across =
-            |x: f64| (((x + self.half_width) / self.width) as i64).clamp(0, self.across - 1);
-        let along = ((place.z / self.depth) as i64).clamp(0, self.along - 1);
-        [across(place.x), across(place.y), along]
-    }
-
-    fn index(&self, [x, y, z]: [i64; 3]) -> usize {
-        ((z * self.across + y) * self.across + x) as usize
-    }
-
     fn add(&mut self, place: DVec3, grain: usize) {
-        let index = self.index(self.cell(place));
+        let index = self.grid.index(self.grid.cell(place));
         self.members[index].push(grain as u32);
     }
 
     fn is_free(&self, place: DVec3, size: f64, position: &[DVec3], diameter: &[f64]) -> bool {
-        let [x, y, z] = self.cell(place);
-        for dz in -1..=1 {
-            for ny in (y - 1).max(0)..=(y + 1).min(self.across - 1) {
-                for nx in (x - 1).max(0)..=(x + 1).min(self.across - 1) {
-                    let cell = self.index([nx, ny, (z + dz).rem_euclid(self.along)]);
-                    for &other in &self.members[cell] {
-                        let other = other as usize;
-                        let reach = 0.5 * (size + diameter[other]);
-                        let separation = periodic(place - position[other], self.length);
-                        if separation.length_squared() < reach * reach {
-                            return false;
-                        }
+        let [x, y, z] = self.grid.cell(place);
+        let is_clear_of = |&other: &u32| {
+            let other = other as usize;
+            let reach = 0.5 * (size + diameter[other]);
+            let separation = periodic(place - position[other], self.length);
+            separation.length_squared() >= reach * reach
+        };
+        for z in self.grid.beside_along(z) {
+            for y in self.grid.beside(y) {
+                for x in self.grid.beside(x) {
+                    let members = &self.members[self.grid.index([x, y, z])];
+                    if !members.iter().all(is_clear_of) {
+                        return false;
                     }
                 }
             }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use peristalsis_physics::contact::{ContactLaw, Frictionless, NormalLaw};
 
-use super::{LARGEST_MEAN_OVERLAP, PackingReport};
+use super::packing::{LARGEST_MEAN_OVERLAP, PackingReport};
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
 use crate::error::EngineError;

@@ -5,7 +5,7 @@
 //! The first step has no past: x' = x + h v + h^2 a/2, v' = v + h a. Its local errors, of order h^3 in x and h^2 in v,
 //! occur once, so that the order stays 2. A snapshot holds the past, so that a restart is no first step.
 
-use super::{Linear, Scheme};
+use super::scheme::{Linear, Scheme};
 
 /// Adams-Bashforth from the second step on.
 #[derive(Clone, Copy)]

@@ -1,14 +1,14 @@
 //! Integrators of the equations of motion: the formulas of each in a file, the same for all kernels.
 
 pub(crate) mod adams_bashforth;
+mod scheme;
 pub(crate) mod verlet;
-
-use core::ops::{Add, Mul, Sub};
 
 use glam::DVec3;
 use peristalsis_physics::method::Integrator;
 
 use self::adams_bashforth::AdamsBashforth;
+pub(crate) use self::scheme::Scheme;
 use self::verlet::Verlet;
 use crate::bodies::Bodies;
 
@@ -26,29 +26,6 @@ pub struct Past {
 pub(crate) struct Runaway {
     pub(crate) body: usize,
     pub(crate) displacement: f64,
-}
-
-/// Vectors that can be added, and multiplied by numbers of type `S`.
-pub(crate) trait Linear<S>:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<S, Output = Self>
-{
-}
-
-impl<S, V: Copy + Add<Output = V> + Sub<Output = V> + Mul<S, Output = V>> Linear<S> for V {}
-
-/// The formulas of an integrator, for the vectors of one sphere or of several side by side.
-pub(crate) trait Scheme<V> {
-    /// Whether it needs the velocities of the step before.
-    const TWO_STEP: bool;
-
-    /// Displacement of the step.
-    fn displacement(&self, velocity: V, acceleration: V, velocity_before: V) -> V;
-
-    /// Velocity at the end of the step, as the forces there see it.
-    fn predicted(&self, velocity: V, acceleration: V, acceleration_before: V) -> V;
-
-    /// Velocity at the end of the step, from the predicted one and the acceleration there.
-    fn corrected(&self, velocity: V, acceleration: V, acceleration_before: V) -> V;
 }
 
 /// Moves positions to the end of the step and velocities to where the forces want them.

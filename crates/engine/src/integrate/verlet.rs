@@ -6,7 +6,7 @@
 //! integrated to order 2 as well (a velocity of the half step would leave order 1). Without damping this is the
 //! symplectic velocity Verlet method. Groot & Warren, J. Chem. Phys. 107, 4423 (1997), with lambda = 1.
 
-use super::{Linear, Scheme};
+use super::scheme::{Linear, Scheme};
 
 /// Velocity Verlet with steps of length h, as a number that multiplies vectors of the kind at hand.
 #[derive(Clone, Copy)]

@@ -3,14 +3,53 @@
 use glam::DVec3;
 use peristalsis_physics::real::Real;
 
-use super::PairRule;
+use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
+
+/// The rule by which pairs are listed.
+pub(crate) struct PairRule<'a, F: Fn(usize, usize) -> bool> {
+    /// Diameters of the spheres \[d\].
+    pub(crate) diameter: &'a [f64],
+    /// Period of the tube \[d\].
+    pub(crate) length: f64,
+    /// Added to the reach of every pair \[d\].
+    pub(crate) skin: f64,
+    /// Half width of the region where spheres usually are \[d\].
+    pub(crate) half_width: f64,
+    /// All pairs i < j whose i is less than this can have a contact.
+    pub(crate) admits_all_below: usize,
+    /// Which of the other pairs i < j can have a contact at all.
+    pub(crate) admits: F,
+}
+
+/// Rows of partners, and a value beside each.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rows<H> {
+    /// Row i is `start[i]..start[i + 1]` of the others.
+    pub(super) start: Vec<u32>,
+    pub(super) partner: Vec<u32>,
+    pub(super) history: Vec<H>,
+}
+
+impl<H> Rows<H> {
+    #[inline(always)]
+    pub(super) fn range(&self, row: usize) -> core::ops::Range<usize> {
+        self.start[row] as usize..self.start[row + 1] as usize
+    }
+
+    /// Place of a partner of row `row`, if it is listed.
+    pub(super) fn place(&self, row: usize, partner: u32) -> Option<usize> {
+        let range = self.range(row);
+        let place = self.partner[range.clone()].binary_search(&partner).ok()?;
+        Some(range.start + place)
+    }
+}
 
 /// Rectangular cells of a tube, at least `cutoff` wide; beyond the outermost cells across the tube a sphere belongs to
 /// the nearest, so that one that has escaped is still found.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Grid {
+pub(crate) struct Grid {
     across: u32,
     along: u32,
     half_width: f64,
@@ -22,6 +61,26 @@ pub(super) struct Grid {
 const MOST_CELLS_ACROSS: f64 = 256.0;
 
 impl Grid {
+    /// A cell across the tube and those beside it.
+    pub(crate) fn beside(&self, cell: u32) -> core::ops::RangeInclusive<u32> {
+        cell.saturating_sub(1)..=(cell + 1).min(self.across - 1)
+    }
+
+    /// A cell and the two beside it along the periodic tube, each once.
+    pub(crate) fn beside_along(&self, cell: u32) -> impl Iterator<Item = u32> + use<> {
+        let along = self.along;
+        let beside = match along {
+            1 => [Some(cell), None, None],
+            2 => [Some(cell), Some(1 - cell), None],
+            _ => [
+                Some((cell + along - 1) % along),
+                Some(cell),
+                Some((cell + 1) % along),
+            ],
+        };
+        beside.into_iter().flatten()
+    }
+
     /// Cells at least as wide as the farthest pair of a rule.
     pub(super) fn of<F: Fn(usize, usize) -> bool>(
         position: &[DVec3],
@@ -29,22 +88,22 @@ impl Grid {
     ) -> Self {
         let largest_diameter = rule.diameter.iter().copied().fold(0.0, f64::max);
         let cutoff = largest_diameter + rule.skin;
-        Self::new(position, cutoff, rule.length, rule.half_width + cutoff)
-    }
-
-    fn new(position: &[DVec3], cutoff: f64, length: f64, usual_half_width: f64) -> Self {
         // Spheres that fly away must not stretch the grid without bound.
         let farthest = position
             .iter()
             .fold(0.0_f64, |far, p| far.max(p.x.abs()).max(p.y.abs()));
+        let usual_half_width = rule.half_width + cutoff;
         let half_width = farthest.min(usual_half_width).max(0.5 * cutoff);
+        // Never many more cells than spheres.
+        Self::new(half_width, cutoff, rule.length, 4 * position.len())
+    }
+
+    /// Cells at least `cutoff` wide, about `most` of them at most where there are several along the tube.
+    pub(crate) fn new(half_width: f64, cutoff: f64, length: f64, most: usize) -> Self {
         let across = (2.0 * half_width / cutoff)
             .floor()
             .clamp(1.0, MOST_CELLS_ACROSS);
-        // Never many more cells than spheres.
-        let most_along = (4.0 * position.len() as f64 / (across * across))
-            .ceil()
-            .max(1.0);
+        let most_along = (most as f64 / (across * across)).ceil().max(1.0);
         let along = (length / cutoff).floor().clamp(1.0, most_along);
         Self {
             across: across as u32,
@@ -55,11 +114,11 @@ impl Grid {
         }
     }
 
-    fn cells(&self) -> usize {
+    pub(crate) fn cells(&self) -> usize {
         self.across as usize * self.across as usize * self.along as usize
     }
 
-    fn cell(&self, position: DVec3) -> [u32; 3] {
+    pub(crate) fn cell(&self, position: DVec3) -> [u32; 3] {
         let across = |coordinate: f64| {
             let cell = ((coordinate + self.half_width) * self.per_across).floor();
             cell.clamp(0.0, f64::from(self.across - 1)) as u32
@@ -70,23 +129,9 @@ impl Grid {
         [across(position.x), across(position.y), along]
     }
 
-    fn index(&self, [x, y, z]: [u32; 3]) -> usize {
+    pub(crate) fn index(&self, [x, y, z]: [u32; 3]) -> usize {
         ((z * self.across + y) * self.across + x) as usize
     }
-}
-
-/// The cell itself and the two beside it along the periodic tube, each once.
-fn axial_cells(cell: u32, along: u32) -> impl Iterator<Item = u32> {
-    let beside = match along {
-        1 => [Some(cell), None, None],
-        2 => [Some(cell), Some(1 - cell), None],
-        _ => [
-            Some((cell + along - 1) % along),
-            Some(cell),
-            Some((cell + 1) % along),
-        ],
-    };
-    beside.into_iter().flatten()
 }
 
 /// Spheres in the order of their cells; in a cell by their numbers.
@@ -97,9 +142,7 @@ pub(super) struct Cells {
     /// Cell c holds the places `start[c]..start[c + 1]` of the columns.
     start: Vec<u32>,
     number: Vec<u32>,
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
+    place: Columns,
     radius: Vec<f64>,
     /// The numbers once more, to be compared in lanes.
     number_in_lanes: Vec<f64>,
@@ -135,14 +178,9 @@ impl Cells {
             self.number[*place as usize] = (first + sphere) as u32;
         }
         let filled = self.number[..spheres].iter().map(|&number| number as usize);
-        for (column, of) in [
-            (&mut self.x, (|p: DVec3| p.x) as fn(DVec3) -> f64),
-            (&mut self.y, |p| p.y),
-            (&mut self.z, |p| p.z),
-        ] {
-            column.clear();
-            column.extend(filled.clone().map(|sphere| of(position[sphere])));
-            column.resize(spheres + LANES, 0.0);
+        self.place.clear(spheres + LANES);
+        for (place, sphere) in filled.clone().enumerate() {
+            self.place.set(place, position[sphere]);
         }
         self.radius.clear();
         self.radius
@@ -162,10 +200,9 @@ pub(super) struct Search<'a, H, F: Fn(usize, usize) -> bool> {
     pub(super) late_cells: &'a Cells,
     pub(super) position: &'a [DVec3],
     pub(super) rule: &'a PairRule<'a, F>,
-    /// Rows, partners and histories of the list before.
-    pub(super) old: (&'a [u32], &'a [u32], &'a [H]),
-    pub(super) start: &'a mut Vec<u32>,
-    pub(super) partner: &'a mut Vec<u32>,
+    /// The list before.
+    pub(super) old: &'a Rows<H>,
+    pub(super) new: &'a mut Rows<H>,
     /// Row and place of each pair of the list before that remembers a contact.
     pub(super) remembered: &'a mut Vec<(u32, u32)>,
 }
@@ -180,11 +217,13 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
             late_cells,
             position,
             rule,
-            old: (old_start, old_partner, old_history),
-            start,
-            partner,
+            old,
+            new: Rows { start, partner, .. },
             remembered,
         } = self;
+        start.clear();
+        start.push(0);
+        partner.clear();
         let grid = &cells.grid;
         partner.resize(partner.capacity().max(64 * LANES), 0);
         let mut end = 0;
@@ -197,7 +236,7 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
                 late_cells
             };
             let [cx, cy, cz] = grid.cell(centre);
-            let (first_x, last_x) = (cx.saturating_sub(1), (cx + 1).min(grid.across - 1));
+            let (first_x, last_x) = grid.beside(cx).into_inner();
             let place = LaneVector::<M>::new(
                 Lanes::splat(centre.x),
                 Lanes::splat(centre.y),
@@ -206,18 +245,13 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
             let reach = Lanes::splat(0.5 * rule.diameter[i] + rule.skin);
             let this = Lanes::splat(i as f64);
             let (half, whole) = (Lanes::splat(0.5 * rule.length), Lanes::splat(rule.length));
-            for z in axial_cells(cz, grid.along) {
-                for y in cy.saturating_sub(1)..=(cy + 1).min(grid.across - 1) {
+            for z in grid.beside_along(cz) {
+                for y in grid.beside(cy) {
                     // Cells beside each other across the tube are beside each other in the columns.
                     let from = cells.start[grid.index([first_x, y, z])] as usize;
                     let to = cells.start[grid.index([last_x, y, z]) + 1] as usize;
                     for block in (from..to).step_by(LANES) {
-                        let other = LaneVector::new(
-                            Lanes::load(&cells.x, block),
-                            Lanes::load(&cells.y, block),
-                            Lanes::load(&cells.z, block),
-                        );
-                        let mut separation = place - other;
+                        let mut separation = place - cells.place.load(block);
                         separation.z = separation.z.abs();
                         separation.z = Lanes::select(
                             half.less(separation.z),
@@ -251,14 +285,14 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
             // A contact that ended in this very step is listed once more, however far its spheres have jumped: what it
             // remembers must be accounted for.
             let near = end;
-            if i + 1 < old_start.len() {
-                for at in old_start[i] as usize..old_start[i + 1] as usize {
-                    if old_history[at] == H::default() {
+            if i + 1 < old.start.len() {
+                for at in old.range(i) {
+                    if old.history[at] == H::default() {
                         continue;
                     }
                     remembered.push((i as u32, at as u32));
-                    if !partner[begin..near].contains(&old_partner[at]) {
-                        partner[end] = old_partner[at];
+                    if !partner[begin..near].contains(&old.partner[at]) {
+                        partner[end] = old.partner[at];
                         end += 1;
                         if end + LANES > partner.len() {
                             partner.resize(2 * partner.len(), 0);

@@ -1,22 +1,27 @@
 //! What the tests of the engine share: laws, tubes, grains and ways to compare states.
 
 // Each test program uses its own part.
-#![allow(dead_code)]
+#![allow(dead_code, unused_imports)]
 
 pub(crate) mod apart;
 pub(crate) mod states;
 
-use glam::DVec3;
-use peristalsis_engine::initial::{InitialState, Packing, pack};
-use peristalsis_engine::wall::{
-    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, PrescribedWall,
+pub(crate) use glam::DVec3;
+pub(crate) use peristalsis_engine::initial::{InitialState, Packing, pack};
+pub(crate) use peristalsis_engine::wall::{
+    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
 };
-use peristalsis_engine::{Bodies, Integrator, Parameters, Simulation, Wall};
-use peristalsis_physics::contact::{
+pub(crate) use peristalsis_engine::{
+    Bodies, EngineError, Instructions, Integrator, Kernel, Parameters, Simulation, Wall,
+};
+pub(crate) use peristalsis_physics::contact::{
     ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
     ViscoelasticHertz,
 };
-use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+pub(crate) use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
+
+pub(crate) use self::apart::Apart;
+pub(crate) use self::states::{Row, State, Tube, lively, random, rows};
 
 /// Both integrators.
 pub(crate) const INTEGRATORS: [Integrator; 2] = [Integrator::Verlet, Integrator::AdamsBashforth];
@@ -55,18 +60,28 @@ pub(crate) fn parameters(
         integrator,
         time_step,
         skin: 0.3,
-        kernel: peristalsis_engine::Kernel::default(),
+        kernel: Kernel::default(),
         body_force: 0.0,
     }
 }
 
 /// The coarse lattice of the frictionless preset.
 pub(crate) fn coarse(waves: u32) -> Lattice {
+    lattice(12, 14, waves, 10.0)
+}
+
+/// A lattice of spheres of diameter 1.
+pub(crate) const fn lattice(
+    spheres_per_ring: u32,
+    rings_per_wave: u32,
+    waves: u32,
+    wavelength: f64,
+) -> Lattice {
     Lattice {
-        spheres_per_ring: 12,
-        rings_per_wave: 14,
+        spheres_per_ring,
+        rings_per_wave,
         waves,
-        wavelength: 10.0,
+        wavelength,
         sphere_diameter: 1.0,
     }
 }
@@ -84,38 +99,70 @@ pub(crate) fn prescribed(
     amplitude: f64,
     strain_rate: f64,
 ) -> Wall {
-    Wall::Prescribed(PrescribedWall::new(
+    let (amplitude, frequency) = (
+        Schedule::constant(amplitude),
+        Schedule::constant(strain_rate),
+    );
+    waving(
         lattice,
         mean_radius,
         Waveform::Sine,
         heading,
-        Schedule::constant(amplitude),
-        Schedule::constant(strain_rate),
-    ))
+        amplitude,
+        frequency,
+    )
+}
+
+/// A strain-controlled tube of any waveform that follows schedules.
+pub(crate) fn waving(
+    lattice: Lattice,
+    mean_radius: f64,
+    waveform: Waveform,
+    heading: f64,
+    amplitude: Schedule,
+    frequency: Schedule,
+) -> Wall {
+    let wall = PrescribedWall::new(
+        lattice,
+        mean_radius,
+        waveform,
+        heading,
+        amplitude,
+        frequency,
+    );
+    Wall::Prescribed(wall)
 }
 
 /// A straight tube whose wall is too far away to be touched.
 pub(crate) fn wide(length: f64) -> Wall {
-    let lattice = Lattice {
-        spheres_per_ring: 60,
-        rings_per_wave: 2,
-        waves: 1,
-        wavelength: length,
-        sphere_diameter: 1.0,
-    };
-    prescribed(lattice, 10.0, -1.0, 0.0, 0.1)
+    prescribed(lattice(60, 2, 1, length), 10.0, -1.0, 0.0, 0.1)
 }
+
+/// The laws of both presets and what lies between, each with a name.
+pub(crate) fn laws() -> [(&'static str, Normal, Option<CundallStrack>); 4] {
+    [
+        ("linear", LINEAR, None),
+        ("linear, rough", LINEAR, Some(FRICTION)),
+        ("hertz", HERTZ, None),
+        ("hertz, rough", HERTZ, Some(FRICTION)),
+    ]
+}
+
+/// These laws with both integrators.
+pub(crate) fn methods()
+-> impl Iterator<Item = (&'static str, Normal, Option<CundallStrack>, Integrator)> {
+    laws().into_iter().flat_map(|(name, normal, friction)| {
+        INTEGRATORS.map(|integrator| (name, normal, friction, integrator))
+    })
+}
+
+/// Both kernels.
+pub(crate) const KERNELS: [Kernel; 2] = [Kernel::Fast, Kernel::Reference];
 
 /// A small elastic tube, with all that keeps the one of the frictional preset.
 pub(crate) fn elastic_parameters() -> ElasticParameters {
     ElasticParameters {
-        lattice: Lattice {
-            spheres_per_ring: 16,
-            rings_per_wave: 12,
-            waves: 2,
-            wavelength: 10.4,
-            sphere_diameter: 1.0,
-        },
+        lattice: lattice(16, 12, 2, 10.4),
         mean_radius: 2.5,
         network: ElasticNetwork::default(),
         force_amplitude: Schedule::constant(0.005),
@@ -124,6 +171,13 @@ pub(crate) fn elastic_parameters() -> ElasticParameters {
         waveform: Waveform::Sine,
         angle: DriveAngle::Reference,
     }
+}
+
+/// The same with changes.
+pub(crate) fn elastic_with(change: impl FnOnce(&mut ElasticParameters)) -> ElasticParameters {
+    let mut parameters = elastic_parameters();
+    change(&mut parameters);
+    parameters
 }
 
 pub(crate) fn elastic(parameters: ElasticParameters) -> Wall {
@@ -176,6 +230,17 @@ pub(crate) fn bits(simulation: &Simulation) -> Vec<u64> {
         .flat_map(|vector| vector.to_array())
         .map(f64::to_bits)
         .collect()
+}
+
+/// Total angular momentum about the axis of a tube of length `length`.
+pub(crate) fn angular_momentum(bodies: &Bodies, length: f64) -> DVec3 {
+    (0..bodies.number())
+        .map(|i| {
+            let place = bodies.position[i].with_z(bodies.unfolded(i, length));
+            bodies.mass[i] * place.cross(bodies.velocity[i])
+                + bodies.inertia[i] * bodies.angular_velocity[i]
+        })
+        .sum()
 }
 
 /// Total momentum.

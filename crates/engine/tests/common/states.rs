@@ -1,19 +1,6 @@
 //! Every combination of laws, sizes, tube and integrator, and random states of each.
 
-use glam::DVec3;
-use peristalsis_engine::wall::{
-    DriveAngle, ElasticNetwork, ElasticParameters, ElasticWall, NetForce, PrescribedWall, Tethers,
-};
-use peristalsis_engine::{Bodies, Integrator, Kernel, Parameters, Simulation, Wall};
-use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, Normal, Sliding, ViscoelasticHertz,
-};
-use peristalsis_physics::wall::{Lattice, Schedule, Waveform};
-
-use super::{
-    FRICTION, INTEGRATORS, LINEAR, Numbers, coarse, elastic_parameters, packed, prescribed,
-    strained,
-};
+use super::*;
 
 /// What surrounds the grains.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,21 +73,20 @@ pub(crate) struct State {
 }
 
 impl State {
-    pub(crate) fn start(&self, kernel: Kernel) -> Simulation {
-        let parameters = Parameters {
+    pub(crate) fn with(&self, kernel: Kernel) -> Parameters {
+        Parameters {
             kernel,
             ..self.parameters
-        };
-        Simulation::new(self.bodies.clone(), self.wall.clone(), parameters)
+        }
+    }
+
+    pub(crate) fn start(&self, kernel: Kernel) -> Simulation {
+        Simulation::new(self.bodies.clone(), self.wall.clone(), self.with(kernel))
     }
 
     /// Goes on from the state of `other` with a kernel.
     pub(crate) fn go_on(&self, other: &Simulation, kernel: Kernel) -> Simulation {
-        let parameters = Parameters {
-            kernel,
-            ..self.parameters
-        };
-        Simulation::restore(other.snapshot(), self.wall.clone(), parameters)
+        Simulation::restore(other.snapshot(), self.wall.clone(), self.with(kernel))
             .expect("kernels take each other's snapshots")
     }
 }
@@ -145,16 +131,10 @@ pub(crate) fn lively(row: Row) -> State {
     let (wall, number) = match row.tube {
         Tube::Narrow => (strained(coarse(2), -1.0, 2.6, 0.1), 60),
         Tube::Wide => {
-            let lattice = Lattice {
-                spheres_per_ring: 34,
-                rings_per_wave: 22,
-                waves: 1,
-                wavelength: 20.0,
-                sphere_diameter: 1.0,
-            };
+            let lattice = lattice(34, 22, 1, 20.0);
             (prescribed(lattice, 5.0, 1.0, 1.5, 0.02), 300)
         }
-        Tube::Elastic => (super::elastic(elastic_parameters()), 120),
+        Tube::Elastic => (elastic(elastic_parameters()), 120),
     };
     let diameter_min = if row.alike { 1.0 } else { 0.8 };
     let mut bodies = packed(number, diameter_min, &wall, LINEAR, 7);
@@ -169,7 +149,7 @@ pub(crate) fn lively(row: Row) -> State {
     State {
         bodies,
         wall,
-        parameters: super::parameters(row.normal, friction, row.integrator, 0.04),
+        parameters: parameters(row.normal, friction, row.integrator, 0.04),
     }
 }
 
@@ -186,11 +166,11 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
         ..FRICTION
     });
     let (wall, radius) = match row.tube {
-        Tube::Narrow => (narrow(numbers, time_step), 1.5),
-        Tube::Wide => (wide(numbers, time_step), 5.0),
+        Tube::Narrow => (narrow_tube(numbers, time_step), 1.5),
+        Tube::Wide => (wide_tube(numbers, time_step), 5.0),
         Tube::Elastic => springy(numbers, time_step),
     };
-    let mut bodies = grains(numbers, number, row.alike, radius, wall.length());
+    let mut bodies = scattered(numbers, number, row.alike, radius, wall.length());
     if let Wall::Elastic(elastic) = &wall {
         add_wall_spheres(&mut bodies, elastic, numbers);
     }
@@ -218,14 +198,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
 }
 
 /// A prescribed tube of radius 1.5: fine, coarse, of one wave, and barely longer than two spheres.
-fn narrow(numbers: &mut Numbers, time_step: f64) -> Wall {
-    let lattice = |spheres_per_ring, rings_per_wave, waves, wavelength| Lattice {
-        spheres_per_ring,
-        rings_per_wave,
-        waves,
-        wavelength,
-        sphere_diameter: 1.0,
-    };
+fn narrow_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
     let lattice = numbers.one_of(&[
         lattice(24, 26, 2, 10.0),
         lattice(12, 14, 1, 10.0),
@@ -235,11 +208,11 @@ fn narrow(numbers: &mut Numbers, time_step: f64) -> Wall {
         lattice(12, 2, 1, 2.05),
     ]);
     let amplitude = numbers.perhaps(1.5);
-    waving(numbers, lattice, 1.5, amplitude, time_step)
+    driven(numbers, lattice, 1.5, amplitude, time_step)
 }
 
 /// A prescribed tube of radius 5.
-fn wide(numbers: &mut Numbers, time_step: f64) -> Wall {
+fn wide_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
     let lattice = Lattice {
         spheres_per_ring: numbers.one_of(&[31, 36, 50]),
         rings_per_wave: numbers.one_of(&[16, 20]),
@@ -248,10 +221,10 @@ fn wide(numbers: &mut Numbers, time_step: f64) -> Wall {
         sphere_diameter: 1.0,
     };
     let amplitude = numbers.between(0.5, 4.8);
-    waving(numbers, lattice, 5.0, amplitude, time_step)
+    driven(numbers, lattice, 5.0, amplitude, time_step)
 }
 
-fn waving(
+fn driven(
     numbers: &mut Numbers,
     lattice: Lattice,
     radius: f64,
@@ -260,14 +233,14 @@ fn waving(
 ) -> Wall {
     // Fast enough to have any phase when the grains have moved a few steps.
     let frequency = numbers.perhaps(0.5);
-    Wall::Prescribed(PrescribedWall::new(
+    waving(
         lattice,
         radius,
         numbers.one_of(&Waveform::ALL),
         numbers.one_of(&[1.0, -1.0]),
         numbers.schedule(amplitude, time_step),
         numbers.schedule(frequency, time_step),
-    ))
+    )
 }
 
 /// An elastic tube and its radius.
@@ -346,7 +319,7 @@ fn add_wall_spheres(bodies: &mut Bodies, wall: &ElasticWall, numbers: &mut Numbe
     }
 }
 
-fn grains(
+fn scattered(
     numbers: &mut Numbers,
     number: usize,
     alike: bool,

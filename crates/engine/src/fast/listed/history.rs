@@ -3,8 +3,8 @@
 use peristalsis_physics::contact::{CundallStrack, Frictionless, TangentialHistory, TangentialLaw};
 use peristalsis_physics::real::Real;
 
-use super::record::{self, Quad, Record};
-use crate::fast::lanes::{LANES, Lanes};
+use super::record::{self, Record};
+use crate::fast::lanes::{LANES, Lanes, Quad};
 use crate::fast::machine::Machine;
 
 /// A history in eight numbers.
@@ -35,7 +35,7 @@ impl PackedHistory for Frictionless {
 
     #[inline(always)]
     fn from_lanes<M: Machine>((): &()) -> [[Quad<M>; LANES]; 2] {
-        [[Quad::splat(0.0); LANES]; 2]
+        [[Quad::<M>::splat(0.0); LANES]; 2]
     }
 }
 
@@ -58,14 +58,14 @@ impl PackedHistory for CundallStrack {
 
     #[inline(always)]
     fn into_lanes<M: Machine>(packed: [&Packed; LANES]) -> TangentialHistory<Lanes<M>> {
-        let mut first = [Quad::splat(0.0); LANES];
+        let mut first = [Quad::<M>::splat(0.0); LANES];
         let mut second = first;
         for lane in 0..LANES {
             first[lane] = packed[lane][0].quad();
             second[lane] = packed[lane][1].quad();
         }
-        let (displacement, power) = record::into_lanes(first);
-        let (rate, sliding) = record::into_lanes(second);
+        let (displacement, power) = record::into_lanes::<M>(first);
+        let (rate, sliding) = record::into_lanes::<M>(second);
         TangentialHistory {
             displacement,
             rate,

@@ -102,12 +102,7 @@ struct Listed<'a, N, T: PackedHistory> {
 
 impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
     fn pass(&mut self) -> Result<Travel, Runaway> {
-        let Reference {
-            parameters,
-            limit,
-            length,
-            ..
-        } = self.reference;
+        let parameters = self.reference.parameters;
         self.scratch.instructions.run(Motion {
             spheres: &mut self.scratch.spheres,
             integrator: parameters.integrator,
@@ -116,27 +111,16 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             rotates: T::ROTATES,
             body_force: parameters.body_force,
             time_step: parameters.time_step,
-            limit,
-            length,
+            limit: self.reference.limit,
+            length: self.reference.length,
         })
     }
 
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
     fn choose_pairs(&mut self, wall: &Wall) {
-        let Reference {
-            contacts,
-            bodies,
-            parameters,
-            length,
-            ..
-        } = &mut self.reference;
-        let Scratch {
-            instructions,
-            spheres,
-            pairs,
-            ..
-        } = &mut *self.scratch;
-        let (skin, length) = (parameters.skin, *length);
+        let (skin, length) = (self.reference.parameters.skin, self.reference.length);
+        let (contacts, bodies) = (&mut *self.reference.contacts, &mut *self.reference.bodies);
+        let (spheres, pairs) = (&self.scratch.spheres, &mut self.scratch.pairs);
         spheres.store_places(bodies);
         let (places, turns) = (&bodies.position, &bodies.turns);
         if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
@@ -144,7 +128,7 @@ impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
             contacts.rebuild(bodies, wall, LISTED * skin);
             pairs.load::<T>(&contacts.pairs, bodies);
         }
-        instructions.run(Prune {
+        self.scratch.instructions.run(Prune {
             pairs,
             spheres,
             length,
@@ -163,21 +147,15 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
     }
 
     fn contact_energy(&mut self, wall: &Wall) -> f64 {
-        let Reference {
-            law,
-            contacts,
-            bodies,
-            parameters,
-            ..
-        } = &self.reference;
-        let (mut bodies, mut contacts) = ((**bodies).clone(), (**contacts).clone());
+        let reference = &self.reference;
+        let (mut bodies, mut contacts) = (reference.bodies.clone(), reference.contacts.clone());
         // With their velocities: contacts that slide store less.
         self.scratch
             .spheres
             .store(&mut bodies, &mut Past::default());
         self.scratch.pairs.store::<T>(&mut contacts.pairs);
-        contacts.refresh(&bodies, wall, parameters.skin);
-        evaluate(law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
+        contacts.refresh(&bodies, wall, reference.parameters.skin);
+        evaluate(reference.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
     }
 
     fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
@@ -187,26 +165,19 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         {
             self.choose_pairs(wall);
         }
-        let Reference {
-            law,
-            contacts,
-            parameters,
-            length,
-            ..
-        } = &mut self.reference;
+        let (law, time_step) = (self.reference.law, self.reference.parameters.time_step);
         let Scratch {
             instructions,
             spheres,
             pairs,
             rows,
         } = &mut *self.scratch;
-        let time_step = parameters.time_step;
         let mut tally = Tally::default();
         instructions.run(PairForces {
-            law: *law,
+            law,
             pairs,
             spheres,
-            length: *length,
+            length: self.reference.length,
             time_step,
             tally: &mut tally,
         });
@@ -220,7 +191,7 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
                 });
             }
             Wall::Prescribed(wall) => {
-                let memory = &mut contacts.wall;
+                let memory = &mut self.reference.contacts.wall;
                 wall.add_forces(law, spheres, memory, time_step, &mut tally);
             }
         }

@@ -2,9 +2,10 @@
 
 use peristalsis_physics::method::Integrator;
 
-use super::record::{Quad, Record};
+use super::record::Record;
 use super::spheres::Spheres;
 use crate::bodies::fold;
+use crate::fast::lanes::Quad;
 use crate::fast::machine::{Machine, Work};
 use crate::integrate::adams_bashforth::AdamsBashforth;
 use crate::integrate::verlet::Verlet;
@@ -133,7 +134,7 @@ impl Motion<'_> {
     ) -> Result<(), Runaway> {
         let (limit_squared, length) = (self.limit * self.limit, self.length);
         let (count, body) = (range.len(), range.start);
-        let mean = mean.quad::<M>();
+        let mean = mean.quad::<M::Quads>();
         let push = body_force.map(|push| Record([0.0, 0.0, push, 0.0]));
         let push = push.as_ref().map(Record::quad);
         let spheres = &mut *self.spheres;
@@ -147,8 +148,8 @@ impl Motion<'_> {
             false => &mut [],
         };
         for k in 0..count {
-            let mut acceleration = force[k].quad::<M>();
-            let mut v = velocity[k].quad::<M>();
+            let mut acceleration = force[k].quad::<M::Quads>();
+            let mut v = velocity[k].quad::<M::Quads>();
             if !FIRST {
                 acceleration = (acceleration - mean) * inverse_mass[k];
                 if let Some(push) = push {
@@ -213,8 +214,8 @@ impl Motion<'_> {
             false => &mut [],
         };
         for k in 0..grains {
-            let mut acceleration = torque[k].quad::<M>();
-            let mut omega = turning[k].quad::<M>();
+            let mut acceleration = torque[k].quad::<M::Quads>();
+            let mut omega = turning[k].quad::<M::Quads>();
             if !FIRST {
                 acceleration = acceleration * inverse_inertia[k];
                 omega = scheme.corrected(omega, acceleration, before[k].quad());
@@ -246,8 +247,8 @@ impl<M: Machine> Extremes<M> {
     #[inline(always)]
     fn none() -> Self {
         Self {
-            least: Quad::splat(f64::INFINITY),
-            largest: Quad::splat(f64::NEG_INFINITY),
+            least: Quad::<M>::splat(f64::INFINITY),
+            largest: Quad::<M>::splat(f64::NEG_INFINITY),
         }
     }
 

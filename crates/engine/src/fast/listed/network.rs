@@ -5,70 +5,41 @@
 
 use peristalsis_physics::real::{Real, Vector};
 
-use super::record::{self, Quad, Record};
+use super::record::{self, Record};
 use super::spheres::Spheres;
-use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
+use crate::fast::columns::Columns;
+use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
+use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 use crate::wall::{DriveAngle, ElasticWall, NetForce};
 
-/// Three components of the spheres of a ring, sphere p at p + 1; before and after them stand copies of the last and
-/// first, which are their neighbours.
-#[derive(Clone, Debug, Default)]
-struct Row {
-    x: Vec<f64>,
-    y: Vec<f64>,
-    z: Vec<f64>,
-}
-
-impl Row {
-    fn resize(&mut self, spheres: usize) {
-        let room = spheres.next_multiple_of(LANES) + 2 * LANES;
-        for component in [&mut self.x, &mut self.y, &mut self.z] {
-            component.clear();
-            component.resize(room, 0.0);
-        }
-    }
-
-    #[inline(always)]
-    fn at<M: Machine>(&self, start: usize) -> LaneVector<M> {
-        LaneVector::new(
-            Lanes::load(&self.x, start),
-            Lanes::load(&self.y, start),
-            Lanes::load(&self.z, start),
-        )
-    }
-
-    #[inline(always)]
-    fn put<M: Machine>(&mut self, start: usize, of: LaneVector<M>) {
-        of.x.store(&mut self.x, start);
-        of.y.store(&mut self.y, start);
-        of.z.store(&mut self.z, start);
-    }
-
+/// Vectors of the spheres of a ring: sphere p at p + 1; before and after them stand copies of the last and first, which are
+/// their neighbours.
+impl Columns {
     /// The vectors of all spheres of a ring; answers nothing about their fourth numbers.
     #[inline(always)]
-    fn fill<M: Machine>(&mut self, records: &[Record]) {
+    fn fill_ring<M: Machine>(&mut self, records: &[Record]) {
         let (blocks, rest) = records.as_chunks::<LANES>();
         for (block, records) in blocks.iter().enumerate() {
             let mut quads = [Quad::<M>::splat(0.0); LANES];
             for lane in 0..LANES {
                 quads[lane] = records[lane].quad();
             }
-            self.put(block * LANES + 1, record::into_lanes(quads).0);
+            self.store::<M>(block * LANES + 1, record::into_lanes::<M>(quads).0);
         }
         let mut quads = [Quad::<M>::splat(0.0); LANES];
         for (quad, record) in quads.iter_mut().zip(rest) {
             *quad = record.quad();
         }
-        self.put(blocks.len() * LANES + 1, record::into_lanes(quads).0);
+        self.store::<M>(blocks.len() * LANES + 1, record::into_lanes::<M>(quads).0);
         self.close(records.len());
     }
 
     /// Copies the ends round.
     #[inline(always)]
     fn close(&mut self, count: usize) {
-        for component in [&mut self.x, &mut self.y, &mut self.z] {
+        for component in self.each() {
             component[0] = component[count];
             component[count + 1] = component[1];
         }
@@ -78,18 +49,18 @@ impl Row {
 /// Room for the rings at hand.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rows {
-    place: Row,
-    velocity: Row,
-    place_above: Row,
-    velocity_above: Row,
+    place: Columns,
+    velocity: Columns,
+    place_above: Columns,
+    velocity_above: Columns,
     turns: Vec<f64>,
     /// Forces of the bonds: along the ring, and to the two spheres above.
-    along: Row,
-    first: Row,
-    second: Row,
+    along: Columns,
+    first: Columns,
+    second: Columns,
     /// Force of the bonds from the ring below.
-    carried: Row,
-    force: Row,
+    carried: Columns,
+    force: Columns,
     cos: [Vec<f64>; 2],
     sin: [Vec<f64>; 2],
 }
@@ -108,7 +79,7 @@ impl Rows {
             &mut self.carried,
             &mut self.force,
         ] {
-            row.resize(spheres);
+            row.clear(spheres.next_multiple_of(LANES) + 2 * LANES);
         }
         let room = spheres.next_multiple_of(LANES);
         self.turns.clear();
@@ -134,29 +105,6 @@ pub(super) struct WallForces<'a> {
     pub(super) tally: &'a mut Tally,
 }
 
-#[derive(Clone, Copy)]
-struct Sums<M: Machine> {
-    network_energy: Lanes<M>,
-    network_dissipation: Lanes<M>,
-    keep_energy: Lanes<M>,
-    drive_power: Lanes<M>,
-    drag_dissipation: Lanes<M>,
-}
-
-impl<M: Machine> Sums<M> {
-    #[inline(always)]
-    fn none() -> Self {
-        let zero = Lanes::splat(0.0);
-        Self {
-            network_energy: zero,
-            network_dissipation: zero,
-            keep_energy: zero,
-            drive_power: zero,
-            drag_dissipation: zero,
-        }
-    }
-}
-
 impl Work for WallForces<'_> {
     type Answer = Record;
 
@@ -175,24 +123,26 @@ impl Work for WallForces<'_> {
             rows.resize(wall);
         }
         let net_force = wall.parameters().network.tethers.net_force;
-        let mut sums = Sums::<M>::none();
+        let mut sums = Sums::<M>::zero();
         let nothing = Quad::<M>::splat(0.0);
         let (mut total_force, mut total_velocity) = (nothing, nothing);
         let range = |ring: usize| first + ring * per_ring..first + (ring + 1) * per_ring;
 
         // Forces of the bonds of the last ring on the first.
         let last = range(rings - 1);
-        rows.place.fill::<M>(&spheres.position[last.clone()]);
-        rows.velocity.fill::<M>(&spheres.velocity[last]);
-        rows.place_above.fill::<M>(&spheres.position[range(0)]);
-        rows.velocity_above.fill::<M>(&spheres.velocity[range(0)]);
-        bonds(wall, rows, 1, &mut Sums::<M>::none());
+        rows.place.fill_ring::<M>(&spheres.position[last.clone()]);
+        rows.velocity.fill_ring::<M>(&spheres.velocity[last]);
+        rows.place_above.fill_ring::<M>(&spheres.position[range(0)]);
+        rows.velocity_above
+            .fill_ring::<M>(&spheres.velocity[range(0)]);
+        bonds(wall, rows, 1, &mut Sums::<M>::zero());
         for ring in 0..rings {
             core::mem::swap(&mut rows.place, &mut rows.place_above);
             core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);
             let above = range(if ring + 1 == rings { 0 } else { ring + 1 });
-            rows.place_above.fill::<M>(&spheres.position[above.clone()]);
-            rows.velocity_above.fill::<M>(&spheres.velocity[above]);
+            rows.place_above
+                .fill_ring::<M>(&spheres.position[above.clone()]);
+            rows.velocity_above.fill_ring::<M>(&spheres.velocity[above]);
             let here = range(ring);
             for (turns, place) in rows.turns.iter_mut().zip(&spheres.position[here.clone()]) {
                 *turns = place.0[3];
@@ -216,21 +166,17 @@ impl Work for WallForces<'_> {
                 for force in forces.iter_mut() {
                     *force = (force.quad() - mean).record();
                 }
-                tally.keep_power -= dot(mean, ring_velocity);
+                tally.keep_power -= dot::<M>(mean, ring_velocity);
             }
             total_force = total_force + ring_force;
             total_velocity = total_velocity + ring_velocity;
         }
-        tally.network_energy += sums.network_energy.sum();
-        tally.network_dissipation += sums.network_dissipation.sum();
-        tally.keep_energy += sums.keep_energy.sum();
-        tally.drive_power += sums.drive_power.sum();
-        tally.drag_dissipation += sums.drag_dissipation.sum();
+        sums.add_to(tally);
         if net_force != NetForce::Removed {
             return Record::ZERO;
         }
         let mean = total_force * (1.0 / (rings * per_ring) as f64);
-        tally.keep_power -= dot(mean, total_velocity);
+        tally.keep_power -= dot::<M>(mean, total_velocity);
         mean.record()
     }
 }
@@ -248,8 +194,8 @@ fn carry<M: Machine>(rows: &mut Rows, parity: usize, per_ring: usize) {
     // The ring below has the other parity; its place p is bound to the places p - 1 + o and p + o here, o its parity.
     let odd = 1 - parity;
     for start in (0..per_ring).step_by(LANES) {
-        let on_these = rows.first.at::<M>(start + 2 - odd) + rows.second.at(start + 1 - odd);
-        rows.carried.put(start + 1, -on_these);
+        let on_these = rows.first.load::<M>(start + 2 - odd) + rows.second.load(start + 1 - odd);
+        rows.carried.store(start + 1, -on_these);
     }
 }
 
@@ -304,22 +250,22 @@ fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &
     };
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let here = (rows.place.at(start + 1), rows.velocity.at(start + 1));
-        let next = (rows.place.at(start + 2), rows.velocity.at(start + 2));
+        let here = (rows.place.load(start + 1), rows.velocity.load(start + 1));
+        let next = (rows.place.load(start + 2), rows.velocity.load(start + 2));
         let first = (
-            rows.place_above.at(start + parity),
-            rows.velocity_above.at(start + parity),
+            rows.place_above.load(start + parity),
+            rows.velocity_above.load(start + parity),
         );
         let second = (
-            rows.place_above.at(start + parity + 1),
-            rows.velocity_above.at(start + parity + 1),
+            rows.place_above.load(start + parity + 1),
+            rows.velocity_above.load(start + parity + 1),
         );
         let along = bond.force(here, next, valid, sums);
         let first = bond.force(here, first, valid, sums);
         let second = bond.force(here, second, valid, sums);
-        rows.along.put(start + 1, along);
-        rows.first.put(start + 1, first);
-        rows.second.put(start + 1, second);
+        rows.along.store(start + 1, along);
+        rows.first.store(start + 1, first);
+        rows.second.store(start + 1, second);
     }
     rows.along.close(per_ring);
 }
@@ -354,8 +300,8 @@ fn tethers_and_drive<M: Machine>(
     let parity = ring % 2;
     for start in (0..per_ring).step_by(LANES) {
         let valid = Mask::first(per_ring - start);
-        let place = rows.place.at(start + 1);
-        let velocity = rows.velocity.at(start + 1);
+        let place = rows.place.load(start + 1);
+        let velocity = rows.velocity.load(start + 1);
         let (cos, sin) = (
             Lanes::load(&rows.cos[parity], start),
             Lanes::load(&rows.sin[parity], start),
@@ -396,9 +342,9 @@ fn tethers_and_drive<M: Machine>(
             drive_y + (outward * sin + across * cos),
             -(axial * away_axial),
         ) - velocity * drag;
-        let springs = (rows.along.at(start + 1) - rows.along.at(start))
-            + (rows.first.at(start + 1) + rows.second.at(start + 1))
-            + rows.carried.at(start + 1);
-        rows.force.put(start + 1, springs + tethers_and_drive);
+        let springs = (rows.along.load(start + 1) - rows.along.load(start))
+            + (rows.first.load(start + 1) + rows.second.load(start + 1))
+            + rows.carried.load(start + 1);
+        rows.force.store(start + 1, springs + tethers_and_drive);
     }
 }

@@ -9,11 +9,12 @@ use peristalsis_physics::contact::{Contact, ContactForce, ContactLaw, NormalLaw}
 use peristalsis_physics::real::Real;
 
 use super::history::{Packed, PackedHistory};
-use super::record::{self, Quad, Record};
+use super::record::{self, Record};
 use super::spheres::Spheres;
 use crate::bodies::Bodies;
-use crate::fast::lanes::{LANES, Lanes, Mask};
+use crate::fast::lanes::{LANES, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
+use crate::fast::sums::Sums;
 use crate::ledger::Tally;
 use crate::neighbours::Neighbours;
 
@@ -75,7 +76,7 @@ impl Flat {
                 let (i, j) = (first[lane] as usize, second[lane] as usize);
                 apart[lane] = position[i].quad() - position[j].quad();
             }
-            let (separation, _) = record::into_lanes(apart);
+            let (separation, _) = record::into_lanes::<M>(apart);
             let squared = record::periodic(separation, length).squared();
             let reach = Lanes::load(reach, 0) + skin;
             // Coincident centres have no normal.
@@ -265,70 +266,29 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
     }
 }
 
-/// Sums over the contacts, lane by lane.
-#[derive(Clone, Copy)]
-struct Sums<M: Machine> {
-    energy: Lanes<M>,
-    normal_dissipation: Lanes<M>,
-    damped: Lanes<M>,
-    slid: Lanes<M>,
-    overlap: Lanes<M>,
-    largest_overlap: Lanes<M>,
-    wall_axial_force: Lanes<M>,
-    wall_contacts: u64,
-    sliding_contacts: u64,
-}
-
 impl<M: Machine> Sums<M> {
-    #[inline(always)]
-    fn none() -> Self {
-        let zero = Lanes::splat(0.0);
-        Self {
-            energy: zero,
-            normal_dissipation: zero,
-            damped: zero,
-            slid: zero,
-            overlap: zero,
-            largest_overlap: zero,
-            wall_axial_force: zero,
-            wall_contacts: 0,
-            sliding_contacts: 0,
-        }
-    }
-
+    /// Adds the answers for `contacts` contacts, one in each of the first lanes.
     #[inline(always)]
     fn add(
         &mut self,
         answer: &ContactForce<Lanes<M>>,
         overlap: Lanes<M>,
         with_wall: Mask<M>,
-        valid: Mask<M>,
+        contacts: usize,
     ) {
-        let zero = Lanes::splat(0.0);
+        let (zero, valid) = (Lanes::splat(0.0), Mask::first(contacts));
         let overlap = Lanes::select(valid, overlap, zero);
-        self.energy += Lanes::select(valid, answer.energy, zero);
+        self.contact_energy += Lanes::select(valid, answer.energy, zero);
         self.normal_dissipation += Lanes::select(valid, answer.normal_dissipation, zero);
-        self.damped += Lanes::select(valid, answer.tangential.damped, zero);
-        self.slid += Lanes::select(valid, answer.tangential.slid, zero);
-        self.overlap += overlap;
+        self.tangential_lost += Lanes::select(valid, answer.tangential.damped, zero);
+        self.sliding_lost += Lanes::select(valid, answer.tangential.slid, zero);
+        self.total_overlap += overlap;
         self.largest_overlap = self.largest_overlap.max(overlap);
         self.wall_axial_force += Lanes::select(valid & with_wall, answer.force.z, zero);
-        self.wall_contacts += (valid & with_wall).count();
+        let with_wall = (valid & with_wall).count();
+        self.wall_contacts += with_wall;
+        self.grain_contacts += contacts as u64 - with_wall;
         self.sliding_contacts += (valid & answer.tangential.sliding).count();
-    }
-
-    #[inline(always)]
-    fn add_to(&self, tally: &mut Tally, contacts: u64) {
-        tally.contact_energy += self.energy.sum();
-        tally.normal_dissipation += self.normal_dissipation.sum();
-        tally.tangential_lost += self.damped.sum();
-        tally.sliding_lost += self.slid.sum();
-        tally.total_overlap += self.overlap.sum();
-        tally.largest_overlap = tally.largest_overlap.max(self.largest_overlap.max_lane());
-        tally.wall_axial_force += self.wall_axial_force.sum();
-        tally.wall_contacts += self.wall_contacts;
-        tally.grain_contacts += contacts - self.wall_contacts;
-        tally.sliding_contacts += self.sliding_contacts;
     }
 }
 
@@ -351,7 +311,7 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
     let force = &mut spheres.force[..];
     let torque = &mut spheres.torque[..];
     let zero = Lanes::<M>::splat(0.0);
-    let mut sums = Sums::<M>::none();
+    let mut sums = Sums::<M>::zero();
     for block in touching.chunks(LANES) {
         let lanes = block.len();
         let (mut pair, mut i, mut j) = ([0; LANES], [0; LANES], [0; LANES]);
@@ -372,10 +332,10 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
             turnings_j[lane] = turning[j].quad();
             with_wall |= u8::from(j >= grains) << lane;
         }
-        let separation = record::periodic(record::into_lanes(apart).0, length);
-        let (relative_velocity, _) = record::into_lanes(relative);
-        let (turning_i, diameter_i) = record::into_lanes(turnings_i);
-        let (turning_j, diameter_j) = record::into_lanes(turnings_j);
+        let separation = record::periodic(record::into_lanes::<M>(apart).0, length);
+        let (relative_velocity, _) = record::into_lanes::<M>(relative);
+        let (turning_i, diameter_i) = record::into_lanes::<M>(turnings_i);
+        let (turning_j, diameter_j) = record::into_lanes::<M>(turnings_j);
         let mut contact = Contact::new((diameter_i, diameter_j), separation, relative_velocity);
         let arms = (contact.arm(diameter_i), contact.arm(diameter_j));
         if T::ROTATES {
@@ -383,21 +343,10 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
         }
         let mut history = T::History::<Lanes<M>>::default();
         if T::ROTATES {
-            let [a, b, c, d, e, f, g, h] = pair;
-            history = T::into_lanes::<M>([
-                &histories[a],
-                &histories[b],
-                &histories[c],
-                &histories[d],
-                &histories[e],
-                &histories[f],
-                &histories[g],
-                &histories[h],
-            ]);
+            history = T::into_lanes::<M>(pair.map(|k| &histories[k]));
         }
         let answer = law.force(&contact, &mut history, time_step);
-        let valid = Mask::first(lanes);
-        sums.add(&answer, contact.overlap, Mask::from_bits(with_wall), valid);
+        sums.add(&answer, contact.overlap, Mask::from_bits(with_wall), lanes);
         let forces = record::from_lanes(answer.force, zero);
         let torques = record::from_lanes(answer.torque_per_arm, zero);
         let (arms_i, arms_j) = (arms.0.to_array(), arms.1.to_array());
@@ -417,5 +366,5 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
             }
         }
     }
-    sums.add_to(tally, touching.len() as u64);
+    sums.add_to(tally);
 }

@@ -1,12 +1,21 @@
 //! Eight numbers in two registers of 256 bits.
 
 use core::arch::x86_64::*;
+use core::ops::{BitAnd, BitOr, Not};
 
-use super::{LANES, Machine, Plain};
+use super::arithmetic::{Arithmetic, LANES, Machine, Truths};
 
 /// AVX2.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx2;
+
+/// Four numbers in one register.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Four;
+
+/// All bits of a lane are its truth value.
+#[derive(Clone, Copy)]
+pub(super) struct Halves([__m256d; 2]);
 
 /// Does the same with both registers.
 macro_rules! both {
@@ -17,25 +26,60 @@ macro_rules! both {
 }
 
 // SAFETY of every block below: as above.
-impl Machine for Avx2 {
-    type Numbers = [__m256d; 2];
-    type Truths = [__m256d; 2];
-    type Quad = __m256d;
+impl Arithmetic<4> for Four {
+    type Numbers = __m256d;
 
     #[inline(always)]
-    fn splat(value: f64) -> Self::Numbers {
+    fn splat(value: f64) -> __m256d {
+        unsafe { _mm256_set1_pd(value) }
+    }
+
+    #[inline(always)]
+    fn load(values: &[f64; 4]) -> __m256d {
+        unsafe { _mm256_loadu_pd(values.as_ptr()) }
+    }
+
+    #[inline(always)]
+    fn store(values: __m256d, to: &mut [f64; 4]) {
+        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
+    }
+
+    #[inline(always)]
+    fn add(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_add_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn sub(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_sub_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn mul(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_mul_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn min(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_min_pd(a, b) }
+    }
+
+    #[inline(always)]
+    fn max(a: __m256d, b: __m256d) -> __m256d {
+        unsafe { _mm256_max_pd(a, b) }
+    }
+}
+
+impl Arithmetic<LANES> for Avx2 {
+    type Numbers = [__m256d; 2];
+
+    #[inline(always)]
+    fn splat(value: f64) -> [__m256d; 2] {
         unsafe { [_mm256_set1_pd(value); 2] }
     }
 
     #[inline(always)]
-    fn to_array(values: Self::Numbers) -> [f64; LANES] {
-        let mut array = [0.0; LANES];
-        Self::store(values, &mut array);
-        array
-    }
-
-    #[inline(always)]
-    fn load(values: &[f64; LANES]) -> Self::Numbers {
+    fn load(values: &[f64; LANES]) -> [__m256d; 2] {
         let (low, high) = values.split_at(4);
         unsafe {
             [
@@ -46,7 +90,7 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn store(values: Self::Numbers, to: &mut [f64; LANES]) {
+    fn store(values: [__m256d; 2], to: &mut [f64; LANES]) {
         let (low, high) = to.split_at_mut(4);
         unsafe {
             _mm256_storeu_pd(low.as_mut_ptr(), values[0]);
@@ -55,54 +99,53 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn add(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn add(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_add_pd(a, b))
     }
 
     #[inline(always)]
-    fn sub(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn sub(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_sub_pd(a, b))
     }
 
     #[inline(always)]
-    fn mul(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn mul(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_mul_pd(a, b))
     }
 
     #[inline(always)]
-    fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        both!(_mm256_min_pd(a, b))
+    }
+
+    #[inline(always)]
+    fn max(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+        both!(_mm256_max_pd(a, b))
+    }
+}
+
+impl Machine for Avx2 {
+    type Quads = Four;
+    type Truths = Halves;
+
+    #[inline(always)]
+    fn div(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_div_pd(a, b))
     }
 
     #[inline(always)]
-    fn neg(a: Self::Numbers) -> Self::Numbers {
-        let sign = Self::splat(-0.0);
-        both!(_mm256_xor_pd(a, sign))
-    }
-
-    #[inline(always)]
-    fn sqrt(a: Self::Numbers) -> Self::Numbers {
+    fn sqrt(a: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_sqrt_pd(a))
     }
 
     #[inline(always)]
-    fn abs(a: Self::Numbers) -> Self::Numbers {
+    fn abs(a: [__m256d; 2]) -> [__m256d; 2] {
         let sign = Self::splat(-0.0);
         both!(_mm256_andnot_pd(sign, a))
     }
 
     #[inline(always)]
-    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        both!(_mm256_min_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        both!(_mm256_max_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers {
+    fn rough_reciprocal_sqrt(a: [__m256d; 2]) -> [__m256d; 2] {
         a.map(|a| unsafe {
             let root = _mm_sqrt_ps(_mm256_cvtpd_ps(a));
             _mm256_cvtps_pd(_mm_div_ps(_mm_set1_ps(1.0), root))
@@ -110,65 +153,32 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn less(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn less(a: [__m256d; 2], b: [__m256d; 2]) -> Halves {
         unsafe {
-            [
+            Halves([
                 _mm256_cmp_pd::<_CMP_LT_OQ>(a[0], b[0]),
                 _mm256_cmp_pd::<_CMP_LT_OQ>(a[1], b[1]),
-            ]
+            ])
         }
     }
 
     #[inline(always)]
-    fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn at_most(a: [__m256d; 2], b: [__m256d; 2]) -> Halves {
         unsafe {
-            [
+            Halves([
                 _mm256_cmp_pd::<_CMP_LE_OQ>(a[0], b[0]),
                 _mm256_cmp_pd::<_CMP_LE_OQ>(a[1], b[1]),
-            ]
+            ])
         }
     }
 
     #[inline(always)]
-    fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers {
+    fn select(Halves(mask): Halves, yes: [__m256d; 2], no: [__m256d; 2]) -> [__m256d; 2] {
         both!(_mm256_blendv_pd(no, yes, mask))
     }
 
     #[inline(always)]
-    fn and(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        both!(_mm256_and_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn or(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        both!(_mm256_or_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn not(a: Self::Truths) -> Self::Truths {
-        let all = unsafe { [_mm256_castsi256_pd(_mm256_set1_epi64x(-1)); 2] };
-        both!(_mm256_xor_pd(a, all))
-    }
-
-    #[inline(always)]
-    fn from_bits(bits: u8) -> Self::Truths {
-        unsafe {
-            let bits = _mm256_set1_epi64x(i64::from(bits));
-            [
-                _mm256_setr_epi64x(1, 2, 4, 8),
-                _mm256_setr_epi64x(16, 32, 64, 128),
-            ]
-            .map(|bit| _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, bit), bit)))
-        }
-    }
-
-    #[inline(always)]
-    fn to_bits(a: Self::Truths) -> u8 {
-        unsafe { (_mm256_movemask_pd(a[0]) | _mm256_movemask_pd(a[1]) << 4) as u8 }
-    }
-
-    #[inline(always)]
-    fn pack(bits: u8, [low, high]: Self::Numbers, to: &mut [f64; LANES]) {
+    fn pack(bits: u8, [low, high]: [__m256d; 2], to: &mut [f64; LANES]) {
         let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
         unsafe {
             _mm256_storeu_pd(to.as_mut_ptr(), permuted(low, &PACK[bits_low]));
@@ -179,7 +189,7 @@ impl Machine for Avx2 {
     }
 
     #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+    fn unpack(bits: u8, from: &[f64; LANES]) -> [__m256d; 2] {
         let (bits_low, bits_high) = (usize::from(bits & 15), usize::from(bits >> 4));
         let numbers = unsafe {
             let low = _mm256_loadu_pd(from.as_ptr());
@@ -190,70 +200,73 @@ impl Machine for Avx2 {
                 permuted(high, &UNPACK[bits_high]),
             ]
         };
-        Self::select(Self::from_bits(bits), numbers, Self::splat(0.0))
+        Self::select(Halves::from_bits(bits), numbers, Self::splat(0.0))
     }
 
     #[inline(always)]
-    fn load_quad(values: &[f64; 4]) -> Self::Quad {
-        unsafe { _mm256_loadu_pd(values.as_ptr()) }
-    }
-
-    #[inline(always)]
-    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
-    }
-
-    #[inline(always)]
-    fn splat_quad(value: f64) -> Self::Quad {
-        unsafe { _mm256_set1_pd(value) }
-    }
-
-    #[inline(always)]
-    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_sub_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_mul_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_min_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_max_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn lanes_of([a, b, c, d, e, f, g, h]: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+    fn lanes_of([a, b, c, d, e, f, g, h]: [__m256d; LANES]) -> [[__m256d; 2]; 4] {
         let (low, high) = (transpose([a, b, c, d]), transpose([e, f, g, h]));
         core::array::from_fn(|k| [low[k], high[k]])
     }
 
     #[inline(always)]
-    fn quads_of([x, y, z, w]: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+    fn quads_of([x, y, z, w]: [[__m256d; 2]; 4]) -> [__m256d; LANES] {
         let [a, b, c, d] = transpose([x[0], y[0], z[0], w[0]]);
         let [e, f, g, h] = transpose([x[1], y[1], z[1], w[1]]);
         [a, b, c, d, e, f, g, h]
     }
+}
 
+impl Truths for Halves {
     #[inline(always)]
-    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
-        Plain::write_set_bits(bits, first, to);
+    fn from_bits(bits: u8) -> Self {
+        unsafe {
+            let bits = _mm256_set1_epi64x(i64::from(bits));
+            let each = [
+                _mm256_setr_epi64x(1, 2, 4, 8),
+                _mm256_setr_epi64x(16, 32, 64, 128),
+            ];
+            Self(each.map(|bit| {
+                _mm256_castsi256_pd(_mm256_cmpeq_epi64(_mm256_and_si256(bits, bit), bit))
+            }))
+        }
     }
 
     #[inline(always)]
-    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
-        Plain::write_chosen(bits, of, to);
+    fn to_bits(self) -> u8 {
+        let Self(a) = self;
+        unsafe { (_mm256_movemask_pd(a[0]) | _mm256_movemask_pd(a[1]) << 4) as u8 }
+    }
+}
+
+impl BitAnd for Halves {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitand(self, Self(b): Self) -> Self {
+        let Self(a) = self;
+        Self(both!(_mm256_and_pd(a, b)))
+    }
+}
+
+impl BitOr for Halves {
+    type Output = Self;
+
+    #[inline(always)]
+    fn bitor(self, Self(b): Self) -> Self {
+        let Self(a) = self;
+        Self(both!(_mm256_or_pd(a, b)))
+    }
+}
+
+impl Not for Halves {
+    type Output = Self;
+
+    #[inline(always)]
+    fn not(self) -> Self {
+        let Self(a) = self;
+        let all = unsafe { [_mm256_castsi256_pd(_mm256_set1_epi64x(-1)); 2] };
+        Self(both!(_mm256_xor_pd(a, all)))
     }
 }
 

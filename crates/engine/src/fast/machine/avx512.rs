@@ -2,87 +2,79 @@
 
 use core::arch::x86_64::*;
 
-use super::{LANES, Machine};
+use super::arithmetic::{Arithmetic, LANES, Machine};
+use super::avx2::Four;
 
 /// AVX-512 (F, VL, DQ, BW).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Avx512;
 
 // SAFETY of every block below: see the module above; the instructions have been found before any of this runs.
-impl Machine for Avx512 {
+impl Arithmetic<LANES> for Avx512 {
     type Numbers = __m512d;
-    type Truths = __mmask8;
-    type Quad = __m256d;
 
     #[inline(always)]
-    fn splat(value: f64) -> Self::Numbers {
+    fn splat(value: f64) -> __m512d {
         unsafe { _mm512_set1_pd(value) }
     }
 
     #[inline(always)]
-    fn to_array(values: Self::Numbers) -> [f64; LANES] {
-        let mut array = [0.0; LANES];
-        Self::store(values, &mut array);
-        array
-    }
-
-    #[inline(always)]
-    fn load(values: &[f64; LANES]) -> Self::Numbers {
+    fn load(values: &[f64; LANES]) -> __m512d {
         unsafe { _mm512_loadu_pd(values.as_ptr()) }
     }
 
     #[inline(always)]
-    fn store(values: Self::Numbers, to: &mut [f64; LANES]) {
+    fn store(values: __m512d, to: &mut [f64; LANES]) {
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), values) }
     }
 
     #[inline(always)]
-    fn add(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn add(a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_add_pd(a, b) }
     }
 
     #[inline(always)]
-    fn sub(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn sub(a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_sub_pd(a, b) }
     }
 
     #[inline(always)]
-    fn mul(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn mul(a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_mul_pd(a, b) }
     }
 
     #[inline(always)]
-    fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        unsafe { _mm512_div_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn neg(a: Self::Numbers) -> Self::Numbers {
-        unsafe { _mm512_xor_pd(a, _mm512_set1_pd(-0.0)) }
-    }
-
-    #[inline(always)]
-    fn sqrt(a: Self::Numbers) -> Self::Numbers {
-        unsafe { _mm512_sqrt_pd(a) }
-    }
-
-    #[inline(always)]
-    fn abs(a: Self::Numbers) -> Self::Numbers {
-        unsafe { _mm512_abs_pd(a) }
-    }
-
-    #[inline(always)]
-    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_min_pd(a, b) }
     }
 
     #[inline(always)]
-    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn max(a: __m512d, b: __m512d) -> __m512d {
         unsafe { _mm512_max_pd(a, b) }
+    }
+}
+
+impl Machine for Avx512 {
+    type Quads = Four;
+    type Truths = __mmask8;
+
+    #[inline(always)]
+    fn div(a: __m512d, b: __m512d) -> __m512d {
+        unsafe { _mm512_div_pd(a, b) }
     }
 
     #[inline(always)]
-    fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers {
+    fn sqrt(a: __m512d) -> __m512d {
+        unsafe { _mm512_sqrt_pd(a) }
+    }
+
+    #[inline(always)]
+    fn abs(a: __m512d) -> __m512d {
+        unsafe { _mm512_abs_pd(a) }
+    }
+
+    #[inline(always)]
+    fn rough_reciprocal_sqrt(a: __m512d) -> __m512d {
         unsafe {
             let root = _mm256_sqrt_ps(_mm512_cvtpd_ps(a));
             _mm512_cvtps_pd(_mm256_div_ps(_mm256_set1_ps(1.0), root))
@@ -90,98 +82,33 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn less(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn less(a: __m512d, b: __m512d) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b) }
     }
 
     #[inline(always)]
-    fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn at_most(a: __m512d, b: __m512d) -> __mmask8 {
         unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(a, b) }
     }
 
     #[inline(always)]
-    fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers {
+    fn select(mask: __mmask8, yes: __m512d, no: __m512d) -> __m512d {
         unsafe { _mm512_mask_blend_pd(mask, no, yes) }
     }
 
     #[inline(always)]
-    fn and(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        a & b
-    }
-
-    #[inline(always)]
-    fn or(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        a | b
-    }
-
-    #[inline(always)]
-    fn not(a: Self::Truths) -> Self::Truths {
-        !a
-    }
-
-    #[inline(always)]
-    fn from_bits(bits: u8) -> Self::Truths {
-        bits
-    }
-
-    #[inline(always)]
-    fn to_bits(a: Self::Truths) -> u8 {
-        a
-    }
-
-    #[inline(always)]
-    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+    fn pack(bits: u8, values: __m512d, to: &mut [f64; LANES]) {
         // To a register and from there: straight to memory this is slow on some processors.
         Self::store(unsafe { _mm512_maskz_compress_pd(bits, values) }, to);
     }
 
     #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+    fn unpack(bits: u8, from: &[f64; LANES]) -> __m512d {
         unsafe { _mm512_maskz_expand_pd(bits, Self::load(from)) }
     }
 
     #[inline(always)]
-    fn load_quad(values: &[f64; 4]) -> Self::Quad {
-        unsafe { _mm256_loadu_pd(values.as_ptr()) }
-    }
-
-    #[inline(always)]
-    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
-        unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
-    }
-
-    #[inline(always)]
-    fn splat_quad(value: f64) -> Self::Quad {
-        unsafe { _mm256_set1_pd(value) }
-    }
-
-    #[inline(always)]
-    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_sub_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_mul_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_min_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        unsafe { _mm256_max_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn lanes_of([a, b, c, d, e, f, g, h]: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+    fn lanes_of([a, b, c, d, e, f, g, h]: [__m256d; LANES]) -> [__m512d; 4] {
         // In blocks of 128 bits: [x0 x1][z0 z1][x2 x3][z2 z3] and so on, whose even and odd blocks are then brought
         // together.
         unsafe {
@@ -199,7 +126,7 @@ impl Machine for Avx512 {
     }
 
     #[inline(always)]
-    fn quads_of([x, y, z, w]: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+    fn quads_of([x, y, z, w]: [__m512d; 4]) -> [__m256d; LANES] {
         unsafe {
             let (xy_even, xy_odd) = (_mm512_unpacklo_pd(x, y), _mm512_unpackhi_pd(x, y));
             let (zw_even, zw_odd) = (_mm512_unpacklo_pd(z, w), _mm512_unpackhi_pd(z, w));

@@ -1,13 +1,13 @@
-//! Eight numbers in an array: the meaning of every operation, and the code for machines without wide registers.
+//! Numbers in an array: the meaning of every operation, and the code for machines without wide registers.
 
-use super::{LANES, Machine};
+use super::arithmetic::{Arithmetic, LANES, Machine};
 
 /// Plain code.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Plain;
+pub(super) struct Plain;
 
 #[inline(always)]
-fn zip(a: [f64; LANES], b: [f64; LANES], with: impl Fn(f64, f64) -> f64) -> [f64; LANES] {
+fn zip<const N: usize>(a: [f64; N], b: [f64; N], with: impl Fn(f64, f64) -> f64) -> [f64; N] {
     core::array::from_fn(|lane| with(a[lane], b[lane]))
 }
 
@@ -16,93 +16,86 @@ fn bits(of: impl Fn(usize) -> bool) -> u8 {
     (0..LANES).fold(0, |bits, lane| bits | (u8::from(of(lane)) << lane))
 }
 
-impl Machine for Plain {
-    type Numbers = [f64; LANES];
-    type Truths = u8;
-    type Quad = [f64; 4];
+impl<const N: usize> Arithmetic<N> for Plain {
+    type Numbers = [f64; N];
 
     #[inline(always)]
-    fn splat(value: f64) -> Self::Numbers {
-        [value; LANES]
+    fn splat(value: f64) -> [f64; N] {
+        [value; N]
     }
 
     #[inline(always)]
-    fn to_array(values: Self::Numbers) -> [f64; LANES] {
-        values
-    }
-
-    #[inline(always)]
-    fn load(values: &[f64; LANES]) -> Self::Numbers {
+    fn load(values: &[f64; N]) -> [f64; N] {
         *values
     }
 
     #[inline(always)]
-    fn store(values: Self::Numbers, to: &mut [f64; LANES]) {
+    fn store(values: [f64; N], to: &mut [f64; N]) {
         *to = values;
     }
 
     #[inline(always)]
-    fn add(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn add(a: [f64; N], b: [f64; N]) -> [f64; N] {
         zip(a, b, |a, b| a + b)
     }
 
     #[inline(always)]
-    fn sub(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn sub(a: [f64; N], b: [f64; N]) -> [f64; N] {
         zip(a, b, |a, b| a - b)
     }
 
     #[inline(always)]
-    fn mul(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn mul(a: [f64; N], b: [f64; N]) -> [f64; N] {
         zip(a, b, |a, b| a * b)
     }
 
     #[inline(always)]
-    fn div(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
-        zip(a, b, |a, b| a / b)
-    }
-
-    #[inline(always)]
-    fn neg(a: Self::Numbers) -> Self::Numbers {
-        a.map(|a| -a)
-    }
-
-    #[inline(always)]
-    fn sqrt(a: Self::Numbers) -> Self::Numbers {
-        a.map(f64::sqrt)
-    }
-
-    #[inline(always)]
-    fn abs(a: Self::Numbers) -> Self::Numbers {
-        a.map(f64::abs)
-    }
-
-    #[inline(always)]
-    fn min(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn min(a: [f64; N], b: [f64; N]) -> [f64; N] {
         zip(a, b, |a, b| if a < b { a } else { b })
     }
 
     #[inline(always)]
-    fn max(a: Self::Numbers, b: Self::Numbers) -> Self::Numbers {
+    fn max(a: [f64; N], b: [f64; N]) -> [f64; N] {
         zip(a, b, |a, b| if a > b { a } else { b })
+    }
+}
+
+impl Machine for Plain {
+    type Quads = Self;
+    type Truths = u8;
+
+    #[inline(always)]
+    fn div(a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+        zip(a, b, |a, b| a / b)
     }
 
     #[inline(always)]
-    fn rough_reciprocal_sqrt(a: Self::Numbers) -> Self::Numbers {
+    fn sqrt(a: [f64; LANES]) -> [f64; LANES] {
+        a.map(f64::sqrt)
+    }
+
+    #[inline(always)]
+    fn abs(a: [f64; LANES]) -> [f64; LANES] {
+        a.map(f64::abs)
+    }
+
+    #[inline(always)]
+    fn rough_reciprocal_sqrt(a: [f64; LANES]) -> [f64; LANES] {
         a.map(|a| f64::from(1.0 / (a as f32).sqrt()))
     }
 
     #[inline(always)]
-    fn less(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn less(a: [f64; LANES], b: [f64; LANES]) -> u8 {
         bits(|lane| a[lane] < b[lane])
     }
 
     #[inline(always)]
-    fn at_most(a: Self::Numbers, b: Self::Numbers) -> Self::Truths {
+    fn at_most(a: [f64; LANES], b: [f64; LANES]) -> u8 {
         bits(|lane| a[lane] <= b[lane])
     }
 
     #[inline(always)]
-    fn select(mask: Self::Truths, yes: Self::Numbers, no: Self::Numbers) -> Self::Numbers {
+    fn select(mask: u8, yes: [f64; LANES], no: [f64; LANES]) -> [f64; LANES] {
         core::array::from_fn(|lane| {
             if mask >> lane & 1 == 1 {
                 yes[lane]
@@ -113,32 +106,7 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn and(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        a & b
-    }
-
-    #[inline(always)]
-    fn or(a: Self::Truths, b: Self::Truths) -> Self::Truths {
-        a | b
-    }
-
-    #[inline(always)]
-    fn not(a: Self::Truths) -> Self::Truths {
-        !a
-    }
-
-    #[inline(always)]
-    fn from_bits(bits: u8) -> Self::Truths {
-        bits
-    }
-
-    #[inline(always)]
-    fn to_bits(a: Self::Truths) -> u8 {
-        a
-    }
-
-    #[inline(always)]
-    fn pack(bits: u8, values: Self::Numbers, to: &mut [f64; LANES]) {
+    fn pack(bits: u8, values: [f64; LANES], to: &mut [f64; LANES]) {
         let mut at = 0;
         for (lane, value) in values.into_iter().enumerate() {
             to[at & (LANES - 1)] = value;
@@ -147,7 +115,7 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn unpack(bits: u8, from: &[f64; LANES]) -> Self::Numbers {
+    fn unpack(bits: u8, from: &[f64; LANES]) -> [f64; LANES] {
         let mut at = 0;
         core::array::from_fn(|lane| {
             let set = (bits >> lane) & 1;
@@ -158,70 +126,12 @@ impl Machine for Plain {
     }
 
     #[inline(always)]
-    fn load_quad(values: &[f64; 4]) -> Self::Quad {
-        *values
-    }
-
-    #[inline(always)]
-    fn store_quad(values: Self::Quad, to: &mut [f64; 4]) {
-        *to = values;
-    }
-
-    #[inline(always)]
-    fn splat_quad(value: f64) -> Self::Quad {
-        [value; 4]
-    }
-
-    #[inline(always)]
-    fn add_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        core::array::from_fn(|k| a[k] + b[k])
-    }
-
-    #[inline(always)]
-    fn sub_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        core::array::from_fn(|k| a[k] - b[k])
-    }
-
-    #[inline(always)]
-    fn mul_quads(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        core::array::from_fn(|k| a[k] * b[k])
-    }
-
-    #[inline(always)]
-    fn min_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        core::array::from_fn(|k| if a[k] < b[k] { a[k] } else { b[k] })
-    }
-
-    #[inline(always)]
-    fn max_quad(a: Self::Quad, b: Self::Quad) -> Self::Quad {
-        core::array::from_fn(|k| if a[k] > b[k] { a[k] } else { b[k] })
-    }
-
-    #[inline(always)]
-    fn lanes_of(quads: [Self::Quad; LANES]) -> [Self::Numbers; 4] {
+    fn lanes_of(quads: [[f64; 4]; LANES]) -> [[f64; LANES]; 4] {
         core::array::from_fn(|k| quads.map(|quad| quad[k]))
     }
 
     #[inline(always)]
-    fn quads_of(lanes: [Self::Numbers; 4]) -> [Self::Quad; LANES] {
+    fn quads_of(lanes: [[f64; LANES]; 4]) -> [[f64; 4]; LANES] {
         core::array::from_fn(|lane| lanes.map(|numbers| numbers[lane]))
-    }
-
-    #[inline(always)]
-    fn write_set_bits(bits: u8, first: u32, to: &mut [u32; LANES]) {
-        let mut at = 0;
-        for lane in 0..LANES {
-            to[at & (LANES - 1)] = first + lane as u32;
-            at += usize::from((bits >> lane) & 1);
-        }
-    }
-
-    #[inline(always)]
-    fn write_chosen(bits: u8, of: &[u32; LANES], to: &mut [u32; LANES]) {
-        let mut at = 0;
-        for (lane, &number) in of.iter().enumerate() {
-            to[at & (LANES - 1)] = number;
-            at += usize::from((bits >> lane) & 1);
-        }
     }
 }

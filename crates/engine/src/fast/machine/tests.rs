@@ -15,15 +15,18 @@ impl Work for Everything {
     #[inline(always)]
     fn run<M: Machine>(self) -> Self::Answer {
         let (a, b) = (M::load(&self.a), M::load(&self.b));
-        let mask = M::from_bits(self.mask);
-        let mut stored = [0.0; LANES];
-        M::store(b, &mut stored);
+        let mask = M::Truths::from_bits(self.mask);
+        let array = |numbers| {
+            let mut array = [0.0; LANES];
+            M::store(numbers, &mut array);
+            array
+        };
         let numbers = [
             M::add(a, b),
             M::sub(a, b),
             M::mul(a, b),
             M::div(a, b),
-            M::neg(a),
+            M::mul(a, M::splat(-1.0)),
             M::sqrt(M::abs(a)),
             M::abs(a),
             M::min(a, b),
@@ -31,29 +34,29 @@ impl Work for Everything {
             M::rough_reciprocal_sqrt(M::abs(a)),
             M::select(mask, a, b),
             M::splat(self.a[0]),
-            M::load(&stored),
+            M::load(&array(b)),
         ];
         let truths = [
             M::less(a, b),
             M::at_most(a, b),
-            M::and(mask, M::less(a, b)),
-            M::or(mask, M::less(a, b)),
-            M::not(mask),
+            mask & M::less(a, b),
+            mask | M::less(a, b),
+            !mask,
         ];
-        let quad = |start: usize| M::load_quad(self.a[start..start + 4].first_chunk().unwrap());
+        let quad = |start: usize| M::Quads::load(self.a[start..start + 4].first_chunk().unwrap());
         let quads = core::array::from_fn(|lane| match lane {
-            0 => M::add_quads(quad(0), quad(4)),
-            1 => M::sub_quads(quad(0), quad(4)),
-            2 => M::mul_quads(quad(0), quad(4)),
-            3 => M::min_quad(quad(0), quad(4)),
-            4 => M::max_quad(quad(0), quad(4)),
-            5 => M::splat_quad(self.b[2]),
+            0 => M::Quads::add(quad(0), quad(4)),
+            1 => M::Quads::sub(quad(0), quad(4)),
+            2 => M::Quads::mul(quad(0), quad(4)),
+            3 => M::Quads::min(quad(0), quad(4)),
+            4 => M::Quads::max(quad(0), quad(4)),
+            5 => M::Quads::splat(self.b[2]),
             lane => quad(lane - 4),
         });
         let lanes = M::lanes_of(quads);
         let back = M::quads_of(lanes).map(|quad| {
             let mut values = [0.0; 4];
-            M::store_quad(quad, &mut values);
+            M::Quads::store(quad, &mut values);
             [values, values].as_flattened().try_into().unwrap()
         });
         let mut set = [0; LANES];
@@ -75,13 +78,13 @@ impl Work for Everything {
             numbers
                 .into_iter()
                 .chain(lanes)
-                .map(M::to_array)
+                .map(array)
                 .chain(back)
-                .chain([packed, M::to_array(unpacked)])
+                .chain([packed, array(unpacked)])
                 .map(|numbers: [f64; LANES]| numbers.map(f64::to_bits))
                 .collect(),
             truths
-                .map(M::to_bits)
+                .map(Truths::to_bits)
                 .into_iter()
                 .chain(set[..number].iter().map(|&number| number as u8))
                 .chain(chosen[..number].iter().map(|&number| number as u8))

@@ -1,7 +1,7 @@
 //! Pairs of a grain and a ring of the wall that may touch, packed: only some grains are near the wall, each with rings of
 //! its own.
 
-use super::columns::Columns;
+use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
 
@@ -142,7 +142,7 @@ impl Candidates {
                 z += Lanes::unpack(meet, &self.z, at);
                 at += meet.count() as usize;
             }
-            to.as_mut().store(block, LaneVector::new(x, y, z));
+            to.store(block, LaneVector::new(x, y, z));
         }
     }
 }

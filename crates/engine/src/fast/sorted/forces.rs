@@ -6,60 +6,40 @@ use peristalsis_physics::contact::NormalLaw;
 use rayon::prelude::*;
 
 use super::candidates::Candidates;
-use super::columns::{Columns, ColumnsMut};
-use super::listing::{Partners, Tile};
 use super::pairs::{Block, PairConstants};
-use super::sums::Sums;
+use super::state::Sorted;
+use super::tile::{AT_A_TIME, OF_LIGHT_WORK, OfTile, Partners, TILE, Tile};
 use super::wall::WallTable;
-use super::{AT_A_TIME, OF_LIGHT_WORK, Sorted, TILE};
+use crate::fast::columns::{Columns, ColumnsMut};
 use crate::fast::lanes::LANES;
 use crate::fast::machine::{Machine, Work};
+use crate::fast::sums::Sums;
 use crate::ledger::Tally;
-
-/// The forces that the contacts of a tile's grains exert, window after window, and their sums.
-#[derive(Clone, Debug, Default)]
-pub(super) struct OfTile {
-    force: Columns,
-    tally: Tally,
-    /// Room to write down who touches.
-    touching: Vec<Partners>,
-}
 
 impl Sorted {
     /// Adds up all forces, from zero, and answers their sums.
     pub(super) fn forces<N: NormalLaw, const FULL: bool>(&mut self, law: &N) -> Tally {
-        let Self {
-            pairs,
-            wall,
-            position,
-            velocity,
-            force,
-            tiles,
-            of_tiles,
-            reached_by,
-            instructions,
-            pool,
-            ..
-        } = self;
+        let instructions = self.instructions;
         let one = |(of_tile, tile): (&mut OfTile, &Tile)| {
             CANDIDATES.with_borrow_mut(|candidates| {
                 instructions.run(ForcesOfTile::<N, FULL> {
                     law,
-                    pairs,
-                    wall,
-                    position,
-                    velocity,
+                    pairs: &self.pairs,
+                    wall: &self.wall,
+                    position: &self.position,
+                    velocity: &self.velocity,
                     tile,
                     of_tile,
                     candidates,
                 });
             });
         };
+        let (tiles, of_tiles) = (&self.tiles, &mut self.of_tiles);
         let mut tally = Tally::default();
-        if pool.is_some() {
-            let work = of_tiles.par_iter_mut().zip(&*tiles);
+        if self.pool.is_some() {
+            let work = of_tiles.par_iter_mut().zip(tiles);
             work.with_max_len(AT_A_TIME).for_each(one);
-            let stretches = force.par_tiles().zip(&*reached_by).enumerate();
+            let stretches = self.force.par_tiles().zip(&self.reached_by).enumerate();
             let stretches = stretches.with_max_len(OF_LIGHT_WORK);
             stretches.for_each(|(stretch, (force, reached_by))| {
                 instructions.run(AddUp {
@@ -82,7 +62,7 @@ impl Sorted {
                     reached_by: &all[..tile.windows().len()],
                     tiles: &tiles[number..=number],
                     of_tiles,
-                    force: force.as_mut(),
+                    force: self.force.as_mut(),
                 });
                 tally.merge(&of_tiles[0].tally);
             }
@@ -116,9 +96,7 @@ impl Sorted {
     }
 
     pub(super) fn forget_forces(&mut self) {
-        for column in self.force.each() {
-            column.fill(0.0);
-        }
+        self.force.clear(self.origin.len());
     }
 }
 
@@ -145,23 +123,19 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
     fn run<M: Machine>(self) {
         let Self {
             law,
-            pairs,
             wall,
             position,
             velocity,
             tile,
-            of_tile:
-                OfTile {
-                    force,
-                    tally,
-                    touching,
-                },
             candidates,
+            ..
         } = self;
-        for column in force.each() {
-            column.clear();
-            column.resize(tile.room(), 0.0);
-        }
+        let OfTile {
+            force,
+            tally,
+            touching,
+        } = self.of_tile;
+        force.clear(tile.room());
         if touching.len() < tile.listed() {
             touching.resize(tile.listed(), Partners::default());
         }
@@ -169,7 +143,7 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
         for place in (tile.first..tile.end).step_by(LANES) {
             let block = Block::load(position, velocity, place, tile.end);
             block.add_pairs::<N, FULL>(
-                law, pairs, position, velocity, tile, touching, force, &mut sums,
+                law, self.pairs, position, velocity, tile, touching, force, &mut sums,
             );
         }
         let mut place = tile.first;
@@ -184,7 +158,8 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
             wall.add_up_forces::<M, N, FULL>(law, candidates, &mut sums);
             candidates.add_forces::<M>(force);
         }
-        *tally = sums.tally();
+        *tally = Tally::default();
+        sums.add_to(tally);
     }
 }
 
@@ -203,17 +178,11 @@ impl Work for AddUp<'_> {
 
     #[inline(always)]
     fn run<M: Machine>(self) {
-        let Self {
-            first,
-            reached_by,
-            tiles,
-            of_tiles,
-            force,
-        } = self;
+        let (first, force) = (self.first, self.force);
         let end = first + force.x.len();
-        for &(tile, window) in reached_by {
-            let of_tile = &of_tiles[tile as usize].force;
-            let window = &tiles[tile as usize].windows()[window as usize];
+        for &(tile, window) in self.reached_by {
+            let of_tile = &self.of_tiles[tile as usize].force;
+            let window = &self.tiles[tile as usize].windows()[window as usize];
             let from = window.first.max(first);
             let to = (window.first + window.length).min(end).max(from);
             for (all, of_tile) in [

@@ -2,13 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::Sorted;
-use super::columns::Columns;
-use super::order::{PIECE, Row, Scratch};
+use super::rows::{Key, PIECE, Row, Scratch};
+use super::state::Sorted;
 use crate::bodies::fold;
-
-/// z of a grain, and the place where it stood before.
-pub(super) type Key = (f64, u32);
+use crate::fast::columns::Columns;
 
 impl Sorted {
     /// Notes the keys of all grains strip by strip, folding them back into the tube; in each strip those come first that
@@ -72,18 +69,34 @@ impl Sorted {
                 count[side(z, *length)] += 1;
             }
         });
-        let [left_at_end, within, _] = sum(of_pieces);
-        let (to_end, rest) = keys.split_at_mut(left_at_end);
-        let (to_within, to_beginning) = rest.split_at_mut(within);
-        let pieces = Pieces {
-            length: *length,
-            first: row.start,
-            z: &mut z[row.clone()],
-            turns: &mut turns[row.clone()],
-            counts: of_pieces,
-            keys: [to_end, to_within, to_beginning],
-        };
-        pieces.note();
+        let sum = |side: usize| of_pieces.iter().map(|count| count[side] as usize).sum();
+        let (left_at_end, rest) = keys.split_at_mut(sum(0));
+        let (within, left_at_beginning) = rest.split_at_mut(sum(1));
+        let mut rest = [left_at_end, within, left_at_beginning];
+        let mut room: Vec<[&mut [Key]; 3]> = Vec::with_capacity(of_pieces.len());
+        for count in of_pieces.iter() {
+            room.push(core::array::from_fn(|side| {
+                let (own, others) =
+                    core::mem::take(&mut rest[side]).split_at_mut(count[side] as usize);
+                rest[side] = others;
+                own
+            }));
+        }
+        let pieces = z[row.clone()].par_chunks_mut(PIECE);
+        let pieces = pieces
+            .zip(turns[row.clone()].par_chunks_mut(PIECE))
+            .zip(room);
+        pieces.enumerate().for_each(|(piece, ((z, turns), keys))| {
+            let first = (row.start + piece * PIECE) as u32;
+            let mut keys = keys.map(|keys| keys.iter_mut());
+            for (place, (z, turns)) in (first..).zip(z.iter_mut().zip(turns)) {
+                let key = keys[side(*z, *length)].next();
+                let more;
+                (*z, more) = fold(*z, *length);
+                *turns += more;
+                *key.expect("room for as many as were counted") = (*z, place);
+            }
+        });
         counts.clear();
         counts.push([row.len() as u32; 3]);
     }
@@ -96,77 +109,6 @@ fn side(z: f64, length: f64) -> usize {
         z if z < 0.0 => 2,
         _ => 1,
     }
-}
-
-/// Consecutive pieces of a row whose keys are to be noted, and the room for those of each side.
-struct Pieces<'a> {
-    length: f64,
-    /// Place of the first grain.
-    first: usize,
-    z: &'a mut [f64],
-    turns: &'a mut [i32],
-    /// How many grains of each side the pieces hold.
-    counts: &'a [[u32; 3]],
-    keys: [&'a mut [Key]; 3],
-}
-
-impl Pieces<'_> {
-    /// Notes the keys; halves of many pieces at the same time.
-    fn note(self) {
-        let Self {
-            length,
-            first,
-            z,
-            turns,
-            counts,
-            keys,
-        } = self;
-        if counts.len() <= 1 {
-            let mut keys = keys.map(|keys| keys.iter_mut());
-            for (place, (z, turns)) in (first as u32..).zip(z.iter_mut().zip(turns)) {
-                let key = keys[side(*z, length)].next();
-                let more;
-                (*z, more) = fold(*z, length);
-                *turns += more;
-                *key.expect("room for as many as were counted") = (*z, place);
-            }
-            return;
-        }
-        let (front, back) = counts.split_at(counts.len() / 2);
-        let middle = front.len() * PIECE;
-        let (front_z, back_z) = z.split_at_mut(middle);
-        let (front_turns, back_turns) = turns.split_at_mut(middle);
-        let [(a, d), (b, e), (c, f)] = {
-            let [at_end, within, at_beginning] = keys;
-            let [i, j, k] = sum(front);
-            [
-                at_end.split_at_mut(i),
-                within.split_at_mut(j),
-                at_beginning.split_at_mut(k),
-            ]
-        };
-        let front = Pieces {
-            length,
-            first,
-            z: front_z,
-            turns: front_turns,
-            counts: front,
-            keys: [a, b, c],
-        };
-        let back = Pieces {
-            length,
-            first: first + middle,
-            z: back_z,
-            turns: back_turns,
-            counts: back,
-            keys: [d, e, f],
-        };
-        rayon::join(|| front.note(), || back.note());
-    }
-}
-
-fn sum(counts: &[[u32; 3]]) -> [usize; 3] {
-    core::array::from_fn(|side| counts.iter().map(|count| count[side] as usize).sum())
 }
 
 /// Sorts the keys of strips, which begin at `begin` and end where the last of their counts says.

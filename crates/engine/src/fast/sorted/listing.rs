@@ -7,71 +7,13 @@
 use peristalsis_physics::real::Real;
 use rayon::prelude::*;
 
-use super::columns::Columns;
-use super::order::Row;
+use super::rows::Row;
+use super::state::Sorted;
 use super::strips::{AHEAD, Strips};
-use super::{AT_A_TIME, Sorted, TILE};
+use super::tile::{AT_A_TIME, Partners, TILE, Tile, Window};
+use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::{Machine, Work};
-
-/// A stretch of a strip whose forces are added up together, with the pairs that begin there.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Tile {
-    strip: usize,
-    pub(super) first: usize,
-    pub(super) end: usize,
-    /// The stretches that its forces fall on: its own, and those in the strips ahead.
-    windows: [Window; 1 + AHEAD],
-    /// The partners of its blocks, window after window, block after block.
-    partners: Vec<Partners>,
-    /// Ends of the partners of each block.
-    ends: Vec<u32>,
-    /// Windows that are in use.
-    used: usize,
-}
-
-/// A stretch of places, and the place of its forces among the forces of the tile.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Window {
-    pub(super) first: usize,
-    pub(super) length: usize,
-    pub(super) base: usize,
-}
-
-/// Eight partners of a block.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Partners {
-    /// Their first place.
-    pub(super) start: u32,
-    /// Place of their force among the forces of the tile.
-    pub(super) force: u32,
-}
-
-impl Tile {
-    /// Places, as the tile counts them, over all its windows.
-    pub(super) fn room(&self) -> usize {
-        self.windows()
-            .last()
-            .map_or(0, |last| last.base + last.length)
-    }
-
-    pub(super) fn windows(&self) -> &[Window] {
-        &self.windows[..self.used]
-    }
-
-    /// How many partners are listed.
-    pub(super) fn listed(&self) -> usize {
-        self.partners.len()
-    }
-
-    /// The partners of the block that begins at `place`.
-    #[inline(always)]
-    pub(super) fn partners(&self, place: usize) -> &[Partners] {
-        let block = (place - self.first) / LANES;
-        let begin = if block == 0 { 0 } else { self.ends[block - 1] };
-        &self.partners[begin as usize..self.ends[block] as usize]
-    }
-}
 
 impl Sorted {
     /// Lists all pairs, the grains having just been sorted.

@@ -3,9 +3,10 @@
 use peristalsis_physics::real::Real;
 use rayon::prelude::*;
 
-use super::columns::{Columns, ColumnsMut};
-use super::order::NOWHERE;
-use super::{OF_LIGHT_WORK, Sorted, TILE};
+use super::rows::NOWHERE;
+use super::state::Sorted;
+use super::tile::{Moved, OF_LIGHT_WORK, TILE};
+use crate::fast::columns::ColumnsMut;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::{Machine, Work};
 use crate::integrate::verlet::Verlet;
@@ -30,18 +31,6 @@ pub(super) struct Motion {
     pub(super) body_force: f64,
     /// Longest displacement of a step.
     pub(super) limit: f64,
-}
-
-/// Displacements of a drift.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Moved {
-    /// Least and largest displacement along z since the last sorting \[d\].
-    least: f64,
-    largest: f64,
-    /// Largest squared displacement across the tube in this step \[d^2\].
-    lateral_squared: f64,
-    /// Place in the stretch of a grain that moved too far, and how far.
-    runaway: Option<(usize, f64)>,
 }
 
 impl Sorted {
@@ -111,27 +100,8 @@ impl Sorted {
             largest = largest.max(moved.largest);
             lateral_squared = lateral_squared.max(moved.lateral_squared);
         }
-        self.lateral += lateral_squared.sqrt();
-        if self.order_holds(least, largest) {
-            self.copy_grains();
-        } else {
-            self.sort();
-        }
+        self.follow(least, largest, lateral_squared);
         Ok(())
-    }
-}
-
-impl Columns {
-    fn tiles(&mut self) -> impl Iterator<Item = ColumnsMut<'_>> {
-        let z = self.z.chunks_mut(TILE);
-        let xy = self.x.chunks_mut(TILE).zip(self.y.chunks_mut(TILE));
-        xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
-    }
-
-    pub(super) fn par_tiles(&mut self) -> impl IndexedParallelIterator<Item = ColumnsMut<'_>> {
-        let z = self.z.par_chunks_mut(TILE);
-        let xy = self.x.par_chunks_mut(TILE).zip(self.y.par_chunks_mut(TILE));
-        xy.zip(z).map(|((x, y), z)| ColumnsMut { x, y, z })
     }
 }
 

@@ -3,8 +3,9 @@
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::keys::{Key, put_strips_in_order};
-use super::{Sorted, TILE};
+use super::keys::put_strips_in_order;
+use super::rows::{Key, NOWHERE, PIECE, Row, Scratch};
+use super::state::Sorted;
 use crate::bodies::{Bodies, fold};
 use crate::fast::lanes::LANES;
 
@@ -54,56 +55,7 @@ impl Sorting {
 }
 
 /// The order is made anew when a grain has drifted by so many lengths of the tube: z loses digits far from 0.
-pub(super) const MOST_DRIFT: f64 = 1.0;
-
-/// z of places that hold no grain: out of reach of everything.
-pub(super) const NOWHERE: f64 = 1e30;
-
-/// The places of a strip: its grains in the order of z, between copies of its last and first grains, a period away.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Row {
-    /// Place of the first grain.
-    pub(super) first: usize,
-    pub(super) grains: usize,
-    /// Copies before the grains.
-    before: usize,
-    /// Copies behind them.
-    behind: usize,
-}
-
-impl Row {
-    /// Places of the grains.
-    pub(super) fn own(&self) -> core::ops::Range<usize> {
-        self.first..self.first + self.grains
-    }
-
-    /// Places of grains and copies.
-    pub(super) fn places(&self) -> core::ops::Range<usize> {
-        self.first - self.before..self.first + self.grains + self.behind
-    }
-
-    /// Each copy: which place it is a copy of, its own, and how far it is from there along z.
-    fn copies(&self, length: f64) -> impl Iterator<Item = (usize, usize, f64)> {
-        let (first, end) = (self.first, self.first + self.grains);
-        let before = (first - self.before..first).map(move |to| (to + end - first, to, -length));
-        let behind = (end..end + self.behind).map(move |to| (to + first - end, to, length));
-        before.chain(behind)
-    }
-}
-
-#[derive(Clone, Debug, Default)]
-pub(super) struct Scratch {
-    /// The order that is being made.
-    pub(super) keys: Vec<Key>,
-    /// How many grains of each strip come from beyond the end of the tube, from within, from before its beginning; then
-    /// where the next of them goes.
-    pub(super) counts: Vec<[u32; 3]>,
-    /// The first of these for each piece of the one row of a narrow tube, where there are threads.
-    pub(super) of_pieces: Vec<[u32; 3]>,
-    column: Vec<f64>,
-    order: Vec<u32>,
-    turns: Vec<i32>,
-}
+const MOST_DRIFT: f64 = 1.0;
 
 impl Sorted {
     /// Takes over all grains.
@@ -119,22 +71,15 @@ impl Sorted {
             self.velocity.push(bodies.velocity[grain]);
             self.acceleration.push(bodies.acceleration[grain]);
         };
-        for _ in 0..first {
-            if self.grains > 0 {
-                add(0, NOWHERE);
-            }
+        if self.grains > 0 {
+            (0..first).for_each(|_| add(0, NOWHERE));
         }
         match sorting {
             Some(sorting) => {
-                for (&grain, &z) in sorting.order.iter().zip(&sorting.origin) {
-                    add(grain as usize, z);
-                }
+                let places = sorting.order.iter().zip(&sorting.origin);
+                places.for_each(|(&grain, &z)| add(grain as usize, z));
             }
-            None => {
-                for grain in 0..self.grains {
-                    add(grain, bodies.position[grain].z);
-                }
-            }
+            None => (0..self.grains).for_each(|grain| add(grain, bodies.position[grain].z)),
         }
         let place = if self.grains > 0 { first } else { 0 };
         self.rows = vec![Row {
@@ -183,16 +128,13 @@ impl Sorted {
             least = least.min(unfolded - self.origin[place]);
             largest = largest.max(unfolded - self.origin[place]);
         }
-        self.lateral += lateral_squared.sqrt();
-        if self.order_holds(least, largest) {
-            self.copy_grains();
-        } else {
-            self.sort();
-        }
+        self.follow(least, largest, lateral_squared);
     }
 
-    /// Whether all pairs that can touch are still listed, grains having moved along z by so much at least and at most.
-    pub(super) fn order_holds(&self, least: f64, largest: f64) -> bool {
+    /// Makes the order anew unless all pairs that can touch are still listed, grains having moved along z by so much at
+    /// least and at most since it was made, and across the tube in this step.
+    pub(super) fn follow(&mut self, least: f64, largest: f64, lateral_squared: f64) {
+        self.lateral += lateral_squared.sqrt();
         let spread = largest - least;
         let across = if self.strips.several() {
             2.0 * self.lateral
@@ -200,8 +142,12 @@ impl Sorted {
             0.0
         };
         let drift = largest.max(-least);
-        spread * spread + across * across <= self.skin * self.skin
-            && drift <= MOST_DRIFT * self.length
+        let near = spread * spread + across * across <= self.skin * self.skin;
+        if near && drift <= MOST_DRIFT * self.length {
+            self.copy_grains();
+        } else {
+            self.sort();
+        }
     }
 
     /// Brings the grains back to where the rest of the program looks for them.
@@ -302,7 +248,7 @@ impl Sorted {
         );
         gather(rows, keys, &mut self.turns, 0, turns, places, parallel);
 
-        self.force.resize(places);
+        self.force.clear(places);
         for row in &self.rows {
             for (from, to, _) in row.copies(self.length) {
                 self.order[to] = self.order[from];
@@ -338,9 +284,6 @@ impl Sorted {
         }
     }
 }
-
-/// Grains that a thread brings into order at a time.
-pub(super) const PIECE: usize = 32 * TILE;
 
 /// The stretches of places between the grains of the rows, and before and behind them.
 fn gaps(rows: &[Row], places: usize) -> impl Iterator<Item = core::ops::Range<usize>> {

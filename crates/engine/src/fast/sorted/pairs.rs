@@ -3,11 +3,11 @@
 use peristalsis_physics::contact::NormalLaw;
 use peristalsis_physics::real::{Real, Vector};
 
-use super::columns::Columns;
-use super::listing::{Partners, Tile};
-use super::sums::Sums;
+use super::tile::{Partners, Tile};
+use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask};
 use crate::fast::machine::Machine;
+use crate::fast::sums::Sums;
 
 /// Squared distance \[d^2\] below which two centres count as one, and have no normal.
 pub(super) const COINCIDENT: f64 = 1e-30;
@@ -108,5 +108,24 @@ impl<M: Machine> Block<M> {
             }
         }
         force.add(self.place - tile.first, on_block);
+    }
+}
+
+impl<M: Machine> Sums<M> {
+    /// Adds contacts; lanes without one hold zeros. Sums that only observers read, not the ledger, are left out unless
+    /// `FULL`.
+    #[inline(always)]
+    pub(super) fn add_contact<const FULL: bool>(
+        &mut self,
+        overlap: Lanes<M>,
+        energy: Lanes<M>,
+        lost: Lanes<M>,
+    ) {
+        self.normal_dissipation += lost;
+        self.largest_overlap = self.largest_overlap.max(overlap);
+        if FULL {
+            self.contact_energy += energy;
+            self.total_overlap += overlap;
+        }
     }
 }

@@ -14,9 +14,9 @@ use peristalsis_physics::wall::lattice::approximate_angle;
 
 use super::candidates::Candidates;
 use super::pairs::{Block, COINCIDENT};
-use super::sums::Sums;
 use crate::fast::lanes::{LANES, LaneVector, Lanes};
 use crate::fast::machine::Machine;
+use crate::fast::sums::Sums;
 use crate::wall::Wall;
 
 /// The wall at one step, as the kernel reads it.

@@ -2,60 +2,62 @@
 
 use glam::DVec3;
 
-use crate::fast::lanes::{LaneVector, Lanes};
-use crate::fast::machine::Machine;
+use super::lanes::{LaneVector, Lanes};
+use super::machine::Machine;
 
 /// Vectors in space, a column for each component.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Columns {
-    pub(super) x: Vec<f64>,
-    pub(super) y: Vec<f64>,
-    pub(super) z: Vec<f64>,
+pub(crate) struct Columns {
+    pub(crate) x: Vec<f64>,
+    pub(crate) y: Vec<f64>,
+    pub(crate) z: Vec<f64>,
 }
 
 /// A stretch of [`Columns`] to be written to.
-pub(super) struct ColumnsMut<'a> {
-    pub(super) x: &'a mut [f64],
-    pub(super) y: &'a mut [f64],
-    pub(super) z: &'a mut [f64],
+pub(crate) struct ColumnsMut<'a> {
+    pub(crate) x: &'a mut [f64],
+    pub(crate) y: &'a mut [f64],
+    pub(crate) z: &'a mut [f64],
 }
 
 impl Columns {
-    pub(super) fn each(&mut self) -> [&mut Vec<f64>; 3] {
+    pub(crate) fn each(&mut self) -> [&mut Vec<f64>; 3] {
         [&mut self.x, &mut self.y, &mut self.z]
     }
 
-    pub(super) fn resize(&mut self, length: usize) {
+    /// Makes room for so many vectors, all zero.
+    pub(crate) fn clear(&mut self, length: usize) {
         for column in self.each() {
+            column.clear();
             column.resize(length, 0.0);
         }
     }
 
-    pub(super) fn push(&mut self, vector: DVec3) {
+    pub(crate) fn push(&mut self, vector: DVec3) {
         self.x.push(vector.x);
         self.y.push(vector.y);
         self.z.push(vector.z);
     }
 
-    pub(super) fn get(&self, place: usize) -> DVec3 {
+    pub(crate) fn get(&self, place: usize) -> DVec3 {
         DVec3::new(self.x[place], self.y[place], self.z[place])
     }
 
-    pub(super) fn set(&mut self, place: usize, vector: DVec3) {
+    pub(crate) fn set(&mut self, place: usize, vector: DVec3) {
         self.x[place] = vector.x;
         self.y[place] = vector.y;
         self.z[place] = vector.z;
     }
 
     /// Copies entry `from` to entry `to`, moved by `shift` along z.
-    pub(super) fn copy(&mut self, from: usize, to: usize, shift: f64) {
+    pub(crate) fn copy(&mut self, from: usize, to: usize, shift: f64) {
         self.x[to] = self.x[from];
         self.y[to] = self.y[from];
         self.z[to] = self.z[from] + shift;
     }
 
     #[inline(always)]
-    pub(super) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
+    pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
         LaneVector::new(
             Lanes::load(&self.x, start),
             Lanes::load(&self.y, start),
@@ -64,12 +66,18 @@ impl Columns {
     }
 
     #[inline(always)]
-    pub(super) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
-        self.as_mut().add(start, vector);
+    pub(crate) fn store<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+        self.as_mut().store(start, vector);
     }
 
     #[inline(always)]
-    pub(super) fn as_mut(&mut self) -> ColumnsMut<'_> {
+    pub(crate) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+        let sum = self.load(start) + vector;
+        self.store(start, sum);
+    }
+
+    #[inline(always)]
+    pub(crate) fn as_mut(&mut self) -> ColumnsMut<'_> {
         ColumnsMut {
             x: &mut self.x,
             y: &mut self.y,
@@ -80,7 +88,7 @@ impl Columns {
 
 impl ColumnsMut<'_> {
     #[inline(always)]
-    pub(super) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
+    pub(crate) fn load<M: Machine>(&self, start: usize) -> LaneVector<M> {
         LaneVector::new(
             Lanes::load(self.x, start),
             Lanes::load(self.y, start),
@@ -89,15 +97,9 @@ impl ColumnsMut<'_> {
     }
 
     #[inline(always)]
-    pub(super) fn store<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
+    pub(crate) fn store<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
         vector.x.store(self.x, start);
         vector.y.store(self.y, start);
         vector.z.store(self.z, start);
-    }
-
-    #[inline(always)]
-    pub(super) fn add<M: Machine>(&mut self, start: usize, vector: LaneVector<M>) {
-        let sum = self.load(start) + vector;
-        self.store(start, sum);
     }
 }

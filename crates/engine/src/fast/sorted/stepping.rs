@@ -1,0 +1,149 @@
+//! The kernel from its beginning to the end of an advance.
+
+use peristalsis_physics::contact::NormalLaw;
+
+use super::motion::{Motion, Phase};
+use super::order::Sorting;
+use super::pairs::PairConstants;
+use super::rows::{Row, Scratch};
+use super::state::Sorted;
+use super::tile::OfTile;
+use super::wall::WallTable;
+use crate::bodies::Bodies;
+use crate::fast::columns::Columns;
+use crate::fast::machine::Instructions;
+use crate::integrate::Runaway;
+use crate::ledger::Tally;
+use crate::steps::{Course, Stepper};
+use crate::wall::Wall;
+
+impl Sorted {
+    /// The grains of `bodies`, smooth whatever their law, in the order that `sorting` holds; `None` where this kernel
+    /// does not serve them.
+    pub(crate) fn new(
+        bodies: &Bodies,
+        wall: &Wall,
+        skin: f64,
+        sorting: Option<&Sorting>,
+    ) -> Option<Self> {
+        if !Self::serves_tube(bodies, wall, skin) {
+            return None;
+        }
+        let grains = bodies.grains;
+        let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
+        let strips = Self::strips_of(bodies, wall, skin);
+        let mut sorted = Self {
+            grains,
+            length: wall.length(),
+            skin: strips.skin,
+            mass: bodies.mass.first().copied().unwrap_or(1.0),
+            pairs: PairConstants {
+                reach: diameter,
+                reduced_radius: 0.25 * diameter,
+            },
+            wall: WallTable::new(wall.prescribed()?.lattice(), diameter),
+            strips,
+            rows: Vec::new(),
+            order: Vec::new(),
+            turns: Vec::new(),
+            position: Columns::default(),
+            velocity: Columns::default(),
+            acceleration: Columns::default(),
+            force: Columns::default(),
+            origin: Vec::new(),
+            lateral: 0.0,
+            tiles: Vec::new(),
+            of_tiles: vec![OfTile::default()],
+            reached_by: Vec::new(),
+            moved: Vec::new(),
+            scratch: Scratch::default(),
+            instructions: Instructions::widest(),
+            pool: None,
+        };
+        sorted.load(bodies, sorting);
+        Some(sorted)
+    }
+
+    /// Forces of contacts at rest: takes the positions of `bodies` as they are and answers with their accelerations.
+    pub(crate) fn evaluate<N: NormalLaw>(
+        &mut self,
+        law: &N,
+        wall: &Wall,
+        bodies: &mut Bodies,
+    ) -> Tally {
+        self.take_positions(bodies);
+        self.wall.follow(wall);
+        let tally = self.forces::<N, true>(law);
+        for place in self.rows.iter().flat_map(Row::own) {
+            let grain = self.order[place] as usize;
+            bodies.acceleration[grain] = self.force.get(place) / self.mass;
+        }
+        self.forget_forces();
+        tally
+    }
+
+    /// Advances by `steps` steps; brings `bodies` up to date.
+    pub(crate) fn advance<N: NormalLaw>(
+        &mut self,
+        law: &N,
+        course: &mut Course,
+        bodies: &mut Bodies,
+        (body_force, limit): (f64, f64),
+        steps: u64,
+    ) -> Result<(), Runaway> {
+        let motion = Motion {
+            time_step: course.time_step,
+            body_force,
+            limit,
+        };
+        let pool = self.pool.clone();
+        let mut stepping = Stepping {
+            sorted: self,
+            law,
+            motion,
+            phase: Phase::Drift,
+        };
+        let outcome = match pool {
+            Some(pool) => pool.install(|| course.advance(&mut stepping, steps)),
+            None => course.advance(&mut stepping, steps),
+        };
+        self.store(bodies);
+        outcome
+    }
+}
+
+/// The kernel in the middle of an advance.
+struct Stepping<'a, N> {
+    sorted: &'a mut Sorted,
+    law: &'a N,
+    motion: Motion,
+    phase: Phase,
+}
+
+impl<N: NormalLaw> Stepper for Stepping<'_, N> {
+    fn move_spheres(&mut self) -> Result<(), Runaway> {
+        self.sorted.go(self.phase, self.motion)?;
+        self.phase = Phase::KickAndDrift;
+        Ok(())
+    }
+
+    fn contact_energy(&mut self, wall: &Wall) -> f64 {
+        self.sorted.wall.follow(wall);
+        let stored = self.sorted.forces::<N, true>(self.law).contact_energy;
+        self.sorted.forget_forces();
+        stored
+    }
+
+    fn evaluate(&mut self, wall: &Wall, complete: bool) -> Tally {
+        self.sorted.wall.follow(wall);
+        if complete {
+            self.sorted.forces::<N, true>(self.law)
+        } else {
+            self.sorted.forces::<N, false>(self.law)
+        }
+    }
+
+    fn finish(&mut self) -> Result<(), Runaway> {
+        self.sorted.go(Phase::Kick, self.motion)
+    }
+}

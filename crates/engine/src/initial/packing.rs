@@ -1,0 +1,45 @@
+//! What is to be packed, and how it came out.
+
+use peristalsis_physics::method::InitialState;
+use rand_chacha::ChaCha8Rng;
+use rand_core::Rng;
+
+/// Largest mean overlap of touching grains, in units of the largest diameter, that still counts as fitting.
+pub const LARGEST_MEAN_OVERLAP: f64 = 0.5;
+
+/// The grains to be packed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Packing {
+    /// Number of grains.
+    pub number: usize,
+    /// Least diameter \[d\].
+    pub diameter_min: f64,
+    /// Largest diameter \[d\]; diameters are uniform between the two.
+    pub diameter_max: f64,
+    /// Where the grains are.
+    pub state: InitialState,
+    /// Velocity of all grains along z \[d/t\].
+    pub axial_velocity: f64,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+/// How the packing came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct PackingReport {
+    /// Grains that random insertion placed without overlap; the others were grown into place.
+    pub inserted: usize,
+    /// Iterations of the relaxation; 0 where insertion placed all.
+    pub iterations: usize,
+    /// Mean overlap of the contacts left \[d\].
+    pub mean_overlap: f64,
+    /// Largest overlap \[d\].
+    pub largest_overlap: f64,
+    /// Elastic energy stored \[m d^2/t^2\].
+    pub stored_energy: f64,
+}
+
+/// Uniform in [0, 1), from the upper 53 bits.
+pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
+}
