@@ -1,7 +1,9 @@
 //! An axis: which values it spans, where a value lies on it, and which ticks it bears.
 
-use crate::style::{MAJOR_TICK, MINOR_TICK, TICK_SIZE};
-use crate::text::Text;
+use crate::colour::Colour;
+use crate::drawing::{Anchor, Layer};
+use crate::style::{MAJOR_TICK, MINOR_TICK, TICK_GAP, TICK_SIZE};
+use crate::text::{DIGIT_HEIGHT, Text};
 
 /// How values are spread along an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,6 +29,28 @@ pub(crate) struct Tick {
     pub(crate) value: f64,
     pub(crate) length: f64,
     pub(crate) label: Option<String>,
+}
+
+/// Where the number of a tick stands beside the end of the tick.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Below,
+    Left,
+    Right,
+}
+
+impl Layer {
+    /// Writes the number of a tick, if it has one.
+    pub(crate) fn number(&mut self, (x, y): (f64, f64), side: Side, tick: &Tick, ink: Colour) {
+        let Some(label) = &tick.label else { return };
+        let height = DIGIT_HEIGHT * TICK_SIZE;
+        let (place, anchor) = match side {
+            Side::Below => ((x, y + TICK_GAP + height), Anchor::Middle),
+            Side::Left => ((x - TICK_GAP, y + height / 2.0), Anchor::End),
+            Side::Right => ((x + TICK_GAP, y + height / 2.0), Anchor::Start),
+        };
+        self.text(place, anchor, Text::new(label, TICK_SIZE), ink);
+    }
 }
 
 /// Decades below which a logarithmic axis labels 2 and 5 too.

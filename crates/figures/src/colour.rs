@@ -122,9 +122,7 @@ impl Colour {
 /// Colour of a signed value scaled to -1..1: blue below 0, white at 0, red above; values beyond are clamped.
 pub(crate) fn diverging(value: f64) -> Colour {
     let stepped = (value.clamp(-1.0, 1.0) * DIVERGING_STEPS).round() / DIVERGING_STEPS;
-    let position = (stepped + 1.0) / 2.0 * (DIVERGING.len() - 1) as f64;
-    let below = (position.floor() as usize).min(DIVERGING.len() - 2);
-    DIVERGING[below].towards(DIVERGING[below + 1], position - below as f64)
+    between(&DIVERGING, (stepped + 1.0) / 2.0)
 }
 
 /// Colour of an amount scaled to 0..1: darkest at 0, lightest at 1; values beyond are clamped.

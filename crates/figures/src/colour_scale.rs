@@ -1,8 +1,8 @@
 //! Colours that mean values, and the bar that says which.
 
-use crate::axis::{Axis, Scale, Tick, widest};
+use crate::axis::{Axis, Scale, Side, Tick, widest};
 use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, sequential};
-use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
+use crate::drawing::{Anchor, Drawing, Image, Layer, Reading, Stroke};
 use crate::error::FigureError;
 use crate::geometry::{Path, Point, Rectangle};
 use crate::style::{FRAME_WEIGHT, LABEL_SIZE, MAJOR_TICK, TICK_GAP, TICK_SIZE, TICK_SPACE};
@@ -178,16 +178,12 @@ impl ColourScale {
         let ticks = self.ticks(area.width, MOST_LABELS, |label| {
             Text::new(label, TICK_SIZE).width + ROOM_BETWEEN_LABELS
         });
-        let baseline = area.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
         let mut segments = Vec::new();
         for tick in ticks {
             let x = area.left + area.width * self.axis().fraction(tick.value);
             let length = if tick.length < MAJOR_TICK { 1.0 } else { 2.0 };
             segments.push([area.bottom(), area.bottom() + length].map(|y| Point::new(x, y)));
-            if let Some(label) = &tick.label {
-                let text = Text::new(label, TICK_SIZE);
-                layer.text((x, baseline), Anchor::Middle, text, ink);
-            }
+            layer.number((x, area.bottom()), Side::Below, &tick, ink);
         }
         outline(layer, area, segments, ink);
         let middle = area.top + area.height / 2.0 + DIGIT_HEIGHT * LABEL_SIZE / 2.0;
@@ -227,16 +223,19 @@ impl ColourScale {
             // Ticks inside would be lost in dark colours.
             let length = tick.length * if tick.length < MAJOR_TICK { 0.6 } else { 0.66 };
             segments.push([area.right(), area.right() + length].map(|x| Point::new(x, y)));
-            if let Some(label) = &tick.label {
-                let place = (area.right() + TICK_GAP, y + DIGIT_HEIGHT * TICK_SIZE / 2.0);
-                layer.text(place, Anchor::Start, Text::new(label, TICK_SIZE), BLACK);
-            }
+            layer.number((area.right(), y), Side::Right, tick, BLACK);
         }
         outline(layer, area, segments, BLACK);
         let baseline = area.right() + TICK_GAP + widest(&ticks) + LABEL_SIZE + 1.0;
         let middle = (area.top + area.bottom()) / 2.0;
         let text = Text::fitted(&self.label, LABEL_SIZE, area.height);
-        layer.upward_text((baseline, middle), Anchor::Middle, text, BLACK);
+        layer.read_text(
+            Reading::Upward,
+            (baseline, middle),
+            Anchor::Middle,
+            text,
+            BLACK,
+        );
     }
 
     /// The colours of a bar from its least to its largest value.

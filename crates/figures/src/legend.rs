@@ -68,70 +68,58 @@ const MOST_COLUMNS: usize = 6;
 impl Legend {
     /// Sets the entries in the room across that there is, in as few rows as possible.
     pub(crate) fn new(entries: Vec<Entry>, room: f64) -> Self {
-        let texts: Vec<Text> = entries
-            .iter()
-            .map(|entry| {
-                Text::fitted(
-                    &entry.meaning,
-                    LEGEND_SIZE,
-                    room - SAMPLE_WIDTH - SAMPLE_GAP,
-                )
-            })
-            .collect();
-        let widths: Vec<f64> = texts
-            .iter()
-            .map(|text| SAMPLE_WIDTH + SAMPLE_GAP + text.width)
-            .collect();
+        let text = |it: &str| Text::fitted(it, LEGEND_SIZE, room - SAMPLE_WIDTH - SAMPLE_GAP);
         // Of grids with equally few rows, the one with the fewest columns is the most orderly.
-        let places = (1..=MOST_COLUMNS)
-            .map(|columns| places(&widths, columns, (room + COLUMN_GAP) / columns as f64))
-            .min_by_key(|places| rows_of(places))
-            .unwrap_or_default();
-        Self::set(entries, texts, places, SAMPLE_WIDTH)
+        let grid = |widths: &[f64]| {
+            (1..=MOST_COLUMNS)
+                .map(|columns| places(widths, columns, (room + COLUMN_GAP) / columns as f64))
+                .min_by_key(|places| rows_of(places))
+                .unwrap_or_default()
+        };
+        Self::set(entries, SAMPLE_WIDTH, text, grid)
     }
 
     /// Sets the entries below each other in some columns, each as wide as its entries.
     pub(crate) fn list(entries: Vec<Entry>, columns: usize) -> Self {
-        let texts: Vec<Text> = entries
-            .iter()
-            .map(|entry| Text::new(&entry.meaning, LEGEND_SIZE))
-            .collect();
         let are_marks = entries
             .iter()
             .all(|entry| entry.line.is_none() && entry.band.is_none());
         let sample = if are_marks { MARK_WIDTH } else { SAMPLE_WIDTH };
         let columns = columns.min(MOST_COLUMNS);
-        let places = (0..entries.len())
-            .map(|index| Place {
-                row: index / columns,
-                column: index % columns,
-                span: 1,
-            })
-            .collect();
-        Self::set(entries, texts, places, sample)
+        let place = |index: usize| Place {
+            row: index / columns,
+            column: index % columns,
+            span: 1,
+        };
+        let grid = |widths: &[f64]| (0..widths.len()).map(place).collect();
+        Self::set(entries, sample, |it| Text::new(it, LEGEND_SIZE), grid)
     }
 
-    fn set(entries: Vec<Entry>, texts: Vec<Text>, places: Vec<Place>, sample: f64) -> Self {
-        let widths: Vec<f64> = texts
-            .iter()
-            .map(|text| sample + SAMPLE_GAP + text.width)
-            .collect();
+    /// Sets the entries on the grid that is chosen for their widths.
+    fn set(
+        entries: Vec<Entry>,
+        sample: f64,
+        text: impl Fn(&str) -> Text,
+        grid: impl Fn(&[f64]) -> Vec<Place>,
+    ) -> Self {
+        let texts: Vec<Text> = entries.iter().map(|entry| text(&entry.meaning)).collect();
+        let widths = texts.iter().map(|text| sample + SAMPLE_GAP + text.width);
+        let widths: Vec<f64> = widths.collect();
+        let places = grid(&widths);
         let rows = rows_of(&places);
         let starts = column_starts(&places, &widths);
-        let cells: Vec<Cell> = entries
-            .into_iter()
-            .zip(texts)
-            .zip(places)
-            .map(|((entry, text), place)| Cell {
-                entry,
-                text,
-                row: place.row,
-                start: starts[place.column],
-            })
-            .collect();
+        let cells = entries.into_iter().zip(texts).zip(places);
+        let cells = cells.map(|((entry, text), place)| Cell {
+            entry,
+            text,
+            row: place.row,
+            start: starts[place.column],
+        });
+        let cells: Vec<Cell> = cells.collect();
         let width = cells
             .iter()
-            .fold(0.0, |width: f64, cell| width.max(cell.end(sample)));
+            .map(|cell| cell.end(sample))
+            .fold(0.0, f64::max);
         Self {
             cells,
             rows,

@@ -10,7 +10,7 @@ use crate::text::{DIGIT_HEIGHT, Text};
 
 /// A picture of pixels, such as the tube as it looks, with notes above it, marks along its upper edge, and a scale and a
 /// bar of colours below. No pixel of the picture is hidden, and none is changed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct PictureFigure<'a> {
     /// What is seen, in markup: the title of the SVG, not drawn.
     pub title: &'a str,
@@ -64,43 +64,16 @@ impl Paper {
     /// Its red, green and blue.
     #[must_use]
     pub fn srgb(self) -> [u8; 3] {
-        self.colour().srgb()
+        let [page, ..] = self.colours();
+        page.srgb()
     }
 
-    fn colour(self) -> Colour {
+    /// Colours of the page, of what is written on it, and of what is less important.
+    fn colours(self) -> [Colour; 3] {
         match self {
-            Self::Light => WHITE,
-            Self::Dark => Colour::new(13, 15, 20),
-        }
-    }
-
-    fn ink(self) -> Colour {
-        match self {
-            Self::Light => BLACK,
-            Self::Dark => Colour::new(236, 236, 236),
-        }
-    }
-
-    fn faint_ink(self) -> Colour {
-        match self {
-            Self::Light => Colour::new(90, 90, 90),
-            Self::Dark => Colour::new(165, 168, 175),
-        }
-    }
-}
-
-impl Default for PictureFigure<'_> {
-    fn default() -> Self {
-        Self {
-            title: "",
-            pixels: &[],
-            columns: 0,
-            notes: &[],
-            marks: &[],
-            scale_bar: None,
-            colours: None,
-            paper: Paper::Light,
-            width: Width::DoubleColumn,
+            Self::Light => [WHITE, BLACK, Colour::new(90, 90, 90)],
+            Self::Dark => [(13, 15, 20), (236, 236, 236), (165, 168, 175)]
+                .map(|(red, green, blue)| Colour::new(red, green, blue)),
         }
     }
 }
@@ -138,6 +111,7 @@ impl PictureFigure<'_> {
         if let Some(colours) = self.colours {
             colours.check()?;
         }
+        let [page, ink, faint_ink] = self.paper.colours();
         let scale = (columns as f64 / self.width.points()).max(FEWEST_PIXELS_PER_POINT);
         // The picture begins with a whole pixel of the page.
         let whole = |points: f64| (points * scale).ceil() / scale;
@@ -149,17 +123,17 @@ impl PictureFigure<'_> {
             height: rows as f64 / scale,
         };
         let height = area.bottom() + whole(self.space_below());
-        let mut drawing =
-            Drawing::new(area.width, height, self.title).on_paper(self.paper.colour(), scale);
+        let drawing = Drawing::new(area.width, height, self.title);
+        let mut drawing = drawing.on_paper(page, scale);
         drawing.layer("picture", None).image(Image {
             area,
             columns,
             pixels: self.pixels.to_vec(),
             is_smooth: true,
         });
-        self.draw_notes(drawing.layer("notes", None), area.width);
-        self.draw_marks(drawing.layer("marks", None), area);
-        let free_from = self.draw_scale_bar(drawing.layer("scale", None), area);
+        self.draw_notes(drawing.layer("notes", None), area.width, ink);
+        self.draw_marks(drawing.layer("marks", None), area, faint_ink);
+        let free_from = self.draw_scale_bar(drawing.layer("scale", None), area, ink);
         if let Some(colours) = self.colours {
             let width = BAR_WIDTH.min(BAR_PART * area.width);
             let bar = Rectangle {
@@ -168,7 +142,7 @@ impl PictureFigure<'_> {
                 width,
                 height: BAR_HEIGHT,
             };
-            colours.draw_bar_across(&mut drawing, bar, free_from, self.paper.ink());
+            colours.draw_bar_across(&mut drawing, bar, free_from, ink);
         }
         Ok(drawing)
     }
@@ -196,7 +170,7 @@ impl PictureFigure<'_> {
     }
 
     /// Notes at equal distances: the first from the left edge, the last up to the right one.
-    fn draw_notes(&self, layer: &mut Layer, width: f64) {
+    fn draw_notes(&self, layer: &mut Layer, width: f64, ink: Colour) {
         let baseline = EDGE + DIGIT_HEIGHT * LABEL_SIZE;
         let last = self.notes.len().saturating_sub(1);
         let room = (width - 2.0 * EDGE) / self.notes.len().max(1) as f64;
@@ -207,13 +181,12 @@ impl PictureFigure<'_> {
                 _ if index == last => (width - EDGE, Anchor::End),
                 _ => (width * index as f64 / last as f64, Anchor::Middle),
             };
-            layer.text((x, baseline), anchor, text, self.paper.ink());
+            layer.text((x, baseline), anchor, text, ink);
         }
     }
 
     /// Small triangles that point down to the picture; a word that would stand on another is left out.
-    fn draw_marks(&self, layer: &mut Layer, area: Rectangle) {
-        let ink = self.paper.faint_ink();
+    fn draw_marks(&self, layer: &mut Layer, area: Rectangle, ink: Colour) {
         let tip = area.top - 0.5;
         let mut taken: Vec<(f64, f64)> = Vec::new();
         for mark in self.marks {
@@ -234,11 +207,10 @@ impl PictureFigure<'_> {
     }
 
     /// Draws the scale, and answers where there is room at its right.
-    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle) -> f64 {
+    fn draw_scale_bar(&self, layer: &mut Layer, area: Rectangle, ink: Colour) -> f64 {
         let Some(bar) = self.scale_bar else {
             return EDGE;
         };
-        let ink = self.paper.ink();
         let (left, middle) = (EDGE, area.bottom() + GAP_BELOW + 0.5 * BAR_HEIGHT);
         let right = left + bar.length * area.width;
         let end = 0.5 * BAR_HEIGHT;

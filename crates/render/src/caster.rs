@@ -20,14 +20,6 @@ const MOST_PIXELS: u64 = 1 << 28;
 /// Fineness of shadows: a part of the smallest sphere's radius, but not less than so many pixels.
 const FINENESS: (f32, f32) = (0.13, 1.2);
 
-/// A sphere as the eye sees it.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    centre: Vec3,
-    radius: f32,
-    colour: Colour,
-}
-
 /// Where a ray meets a sphere: its number, how near to the eye, and the place from the sphere's centre.
 type Meeting = Option<(usize, f32, Vec3)>;
 
@@ -47,7 +39,7 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
     }
     let opaque = seen(scene, view, Finish::Opaque);
     let glass = seen(scene, view, Finish::Glass);
-    let light = Light::among(&discs(&opaque), fineness(&opaque, view));
+    let light = Light::among(&opaque, fineness(&opaque, view));
     let rows: Vec<Vec<u8>> = (0..height)
         .into_par_iter()
         .map(|row| {
@@ -59,7 +51,7 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
 }
 
 /// The spheres of a finish that are in the picture or hide light from what is.
-fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
+fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Disc> {
     let half = 0.5 / view.scale as f32 * Vec3::new(view.width as f32, view.height as f32, 0.0);
     scene
         .spheres
@@ -67,7 +59,7 @@ fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
         .filter(|sphere| {
             sphere.finish == finish && sphere.radius > 0.0 && sphere.centre.is_finite()
         })
-        .map(|sphere: &Sphere| Seen {
+        .map(|sphere: &Sphere| Disc {
             centre: view.seen(sphere.centre),
             radius: sphere.radius as f32,
             colour: sphere.colour,
@@ -79,15 +71,7 @@ fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Seen> {
         .collect()
 }
 
-fn discs(spheres: &[Seen]) -> Vec<Disc> {
-    let disc = |sphere: &Seen| Disc {
-        centre: sphere.centre,
-        radius: sphere.radius,
-    };
-    spheres.iter().map(disc).collect()
-}
-
-fn fineness(spheres: &[Seen], view: &View) -> f32 {
+fn fineness(spheres: &[Disc], view: &View) -> f32 {
     let smallest = spheres
         .iter()
         .fold(f32::INFINITY, |least, sphere| least.min(sphere.radius));
@@ -108,7 +92,7 @@ struct Row {
 }
 
 impl Row {
-    fn new(view: &View, row: u32, opaque: &[Seen], glass: &[Seen]) -> Self {
+    fn new(view: &View, row: u32, opaque: &[Disc], glass: &[Disc]) -> Self {
         let pitch = 1.0 / (view.scale * RAYS as f64);
         let across = view.width as usize * RAYS;
         let down = f64::from(view.height) * RAYS as f64;
@@ -116,11 +100,11 @@ impl Row {
             ((0.5 * down - (f64::from(row) * RAYS as f64 + ray as f64 + 0.5)) * pitch) as f32
         };
         let heights: [f32; RAYS] = std::array::from_fn(height);
-        let meets = |sphere: &Seen| {
+        let meets = |sphere: &Disc| {
             sphere.centre.y - sphere.radius <= heights[0]
                 && sphere.centre.y + sphere.radius >= heights[RAYS - 1]
         };
-        let of = |spheres: &[Seen]| {
+        let of = |spheres: &[Disc]| {
             (0..spheres.len())
                 .filter(|&it| meets(&spheres[it]))
                 .collect()
@@ -137,7 +121,7 @@ impl Row {
 
     /// Calls `meet` with ray, height of the sphere's surface over its centre, and place beside it, for each ray at
     /// `height` that meets the sphere.
-    fn for_each_meeting(&self, sphere: &Seen, height: f32, mut meet: impl FnMut(usize, Vec3)) {
+    fn for_each_meeting(&self, sphere: &Disc, height: f32, mut meet: impl FnMut(usize, Vec3)) {
         let dy = height - sphere.centre.y;
         let room = sphere.radius * sphere.radius - dy * dy;
         if room <= 0.0 {
@@ -160,8 +144,8 @@ impl Row {
 /// The pixels of a row as bytes.
 fn draw_row(
     row: &Row,
-    opaque: &[Seen],
-    glass: &[Seen],
+    opaque: &[Disc],
+    glass: &[Disc],
     light: &Light,
     background: Colour,
 ) -> Vec<u8> {
@@ -169,24 +153,9 @@ fn draw_row(
     let mut before: Vec<Meeting> = vec![None; row.across * RAYS];
     for (line, height) in row.heights.iter().enumerate() {
         let rays = line * row.across..(line + 1) * row.across;
-        for &index in &row.opaque {
-            meet(
-                row,
-                &opaque[index],
-                index,
-                *height,
-                &mut nearest[rays.clone()],
-            );
-        }
-        for &index in &row.glass {
-            meet(
-                row,
-                &glass[index],
-                index,
-                *height,
-                &mut before[rays.clone()],
-            );
-        }
+        let (nearest, before) = (&mut nearest[rays.clone()], &mut before[rays]);
+        meet(row, *height, opaque, &row.opaque, nearest);
+        meet(row, *height, glass, &row.glass, before);
     }
     let pixel = |pixel: usize| {
         let ray = |it: usize| it / RAYS * row.across + pixel * RAYS + it % RAYS;
@@ -206,20 +175,23 @@ fn draw_row(
     (0..row.across / RAYS).flat_map(pixel).collect()
 }
 
-/// Keeps the sphere where it is nearer than what the rays have met.
-fn meet(row: &Row, sphere: &Seen, index: usize, height: f32, nearest: &mut [Meeting]) {
-    row.for_each_meeting(sphere, height, |ray, beside| {
-        let depth = sphere.centre.z + beside.z;
-        if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
-            nearest[ray] = Some((index, depth, beside));
-        }
-    });
+/// Keeps those of the spheres, by their numbers, that are nearer than what the rays at a height have met.
+fn meet(row: &Row, height: f32, spheres: &[Disc], numbers: &[usize], nearest: &mut [Meeting]) {
+    for &index in numbers {
+        let sphere = &spheres[index];
+        row.for_each_meeting(sphere, height, |ray, beside| {
+            let depth = sphere.centre.z + beside.z;
+            if nearest[ray].is_none_or(|(_, before, _)| depth > before) {
+                nearest[ray] = Some((index, depth, beside));
+            }
+        });
+    }
 }
 
 /// What each ray of a pixel sees; the light on a sphere is worked out once for all its rays.
 fn behind(
     met: &[Meeting; RAYS_A_PIXEL],
-    opaque: &[Seen],
+    opaque: &[Disc],
     light: &Light,
     background: Colour,
 ) -> [Vec3; RAYS_A_PIXEL] {
@@ -233,17 +205,12 @@ fn behind(
             continue;
         }
         let is_same = |it: usize| met[it].is_some_and(|(other, ..)| other == index);
-        let sum: Vec3 = (first..RAYS_A_PIXEL)
-            .filter(|&it| is_same(it))
-            .filter_map(|it| met[it].map(|(_, _, beside)| beside))
-            .sum();
+        let rays = (first..RAYS_A_PIXEL).filter(|&it| is_same(it));
+        let places = rays.filter_map(|it| met[it].map(|(_, _, beside)| beside));
+        let normal = places.sum::<Vec3>().normalize_or(Vec3::Z);
         let sphere = &opaque[index];
-        let normal = sum.normalize_or(Vec3::Z);
-        let seen = light.shade(
-            sphere.centre + normal * sphere.radius,
-            normal,
-            sphere.colour,
-        );
+        let place = sphere.centre + normal * sphere.radius;
+        let seen = light.shade(place, normal, sphere.colour);
         for it in (first..RAYS_A_PIXEL).filter(|&it| is_same(it)) {
             (colours[it], done[it]) = (seen, true);
         }

@@ -2,16 +2,19 @@
 
 use glam::Vec3;
 
+use crate::colour::Colour;
+
 /// Most cells of a map.
 const MOST_CELLS: f32 = (1 << 18) as f32;
 /// How far a point is lifted off its own surface before it is looked for \[cells\].
 const LIFT: f32 = 1.6;
 
-/// An opaque sphere as the eye sees it.
+/// A sphere as the eye sees it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Disc {
     pub(crate) centre: Vec3,
     pub(crate) radius: f32,
+    pub(crate) colour: Colour,
 }
 
 /// Depths of the nearest surface along one direction.
@@ -125,6 +128,7 @@ mod tests {
         let sphere = Disc {
             centre: Vec3::new(0.3, -0.2, 2.0),
             radius: 0.5,
+            colour: Colour(Vec3::ONE),
         };
         for towards in [
             Vec3::Z,
@@ -153,6 +157,7 @@ mod tests {
         let far = [-1e4, 1e4].map(|x| Disc {
             centre: Vec3::new(x, x, 0.0),
             radius: 0.5,
+            colour: Colour(Vec3::ONE),
         });
         assert!(DepthMap::new(Vec3::Z, &far, 0.01).depth.len() < 2 << 18);
     }

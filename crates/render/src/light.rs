@@ -56,16 +56,13 @@ pub(crate) struct Light {
 impl Light {
     /// The light among opaque discs, as the eye sees them, with shadows as fine as `fineness` \[d\].
     pub(crate) fn among(opaque: &[Disc], fineness: f32) -> Self {
-        let with_shadows = |directions: Vec<(Vec3, f32)>| {
-            directions
-                .into_par_iter()
-                .map(|(towards, weight)| Source {
-                    towards,
-                    weight,
-                    map: DepthMap::new(towards, opaque, fineness),
-                })
-                .collect()
+        let source = |(towards, weight)| Source {
+            towards,
+            weight,
+            map: DepthMap::new(towards, opaque, fineness),
         };
+        let with_shadows =
+            |directions: Vec<(Vec3, f32)>| directions.into_par_iter().map(source).collect();
         Self {
             sky: with_shadows(sky_directions()),
             lamp: with_shadows(lamp_directions()),
@@ -147,6 +144,7 @@ mod tests {
         Disc {
             centre,
             radius: 0.5,
+            colour: WHITE,
         }
     }
 

@@ -55,10 +55,6 @@ impl Picture {
             "the pixel is within the picture"
         );
         let first = 3 * (row as usize * self.width as usize + column as usize);
-        [
-            self.pixels[first],
-            self.pixels[first + 1],
-            self.pixels[first + 2],
-        ]
+        [0, 1, 2].map(|channel| self.pixels[first + channel])
     }
 }

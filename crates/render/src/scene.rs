@@ -55,13 +55,8 @@ pub struct View {
 impl View {
     /// A point as the eye sees it: to the right, up and towards the eye from the picture's middle \[d\].
     pub(crate) fn seen(&self, point: DVec3) -> Vec3 {
-        let from_middle = point - self.middle;
         let towards = self.right.cross(self.up);
-        DVec3::new(
-            from_middle.dot(self.right),
-            from_middle.dot(self.up),
-            from_middle.dot(towards),
-        )
-        .as_vec3()
+        let along = [self.right, self.up, towards].map(|axis| (point - self.middle).dot(axis));
+        DVec3::from_array(along).as_vec3()
     }
 }

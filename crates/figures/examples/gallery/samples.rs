@@ -413,6 +413,7 @@ fn picture() -> Drawn {
         marks: &[mark(0.25, "belly"), mark(0.75, "throat")],
         scale_bar: Some(&scale_bar),
         colours: Some(&ColourScale::new("*v_z*/*c*", -1.0, 1.0).palette(Palette::Diverging)),
+        width: Width::DoubleColumn,
         ..PictureFigure::default()
     }
     .draw()

@@ -85,7 +85,7 @@ impl Check {
             }
             Kind::Band(band) => {
                 self.length("lower curve", band.x.len(), band.lower.len())?;
-                let upper = band.upper_of_pairs();
+                let [upper, _] = band.pairs();
                 self.rows("upper curve", &band.x, &upper)?;
                 let rows = band.x.iter().zip(&upper).zip(&band.lower);
                 let rows = rows.filter(|((x, upper), _)| x.is_finite() && upper.is_finite());

@@ -26,20 +26,14 @@ pub(super) fn pieces(frame: &Frame, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
 }
 
 impl Band {
-    /// The upper curve, not finite where the lower one is not: a row without its partner is in neither.
-    pub(super) fn upper_of_pairs(&self) -> Vec<f64> {
-        pairs(&self.upper, &self.lower)
+    /// The upper and the lower curve, neither finite where the other is not.
+    pub(super) fn pairs(&self) -> [Vec<f64>; 2] {
+        [(&self.upper, &self.lower), (&self.lower, &self.upper)].map(|(bound, other)| {
+            let rows = bound.iter().zip(other);
+            let known = rows.map(|(&row, other)| if other.is_finite() { row } else { f64::NAN });
+            known.collect()
+        })
     }
-
-    /// The lower curve, not finite where the upper one is not.
-    pub(super) fn lower_of_pairs(&self) -> Vec<f64> {
-        pairs(&self.lower, &self.upper)
-    }
-}
-
-fn pairs(bound: &[f64], other: &[f64]) -> Vec<f64> {
-    let known = |(&bound, other): (&f64, &f64)| if other.is_finite() { bound } else { f64::NAN };
-    bound.iter().zip(other).map(known).collect()
 }
 
 /// A curve whose every height holds until the next place.

@@ -1,11 +1,11 @@
 //! One coordinate system on the page: a frame with ticks on all sides, and the map from values to places.
 
-use crate::axis::{Axis, Tick};
+use crate::axis::{Axis, Side, Tick};
 use crate::colour::BLACK;
-use crate::drawing::{Anchor, Drawing, Stroke};
+use crate::drawing::{Anchor, Drawing, Reading, Stroke};
 use crate::geometry::{Path, Point, Rectangle};
-use crate::style::{FRAME_WEIGHT, LABEL_SIZE, TICK_GAP, TICK_SIZE, TICK_SPACE};
-use crate::text::{DIGIT_HEIGHT, Text};
+use crate::style::{FRAME_WEIGHT, LABEL_SIZE, TICK_SPACE};
+use crate::text::Text;
 
 /// A rectangle with two axes.
 #[derive(Clone, Copy, Debug)]
@@ -58,10 +58,8 @@ impl Frame {
             for (edge, inside) in [(area.bottom(), -tick.length), (area.top, tick.length)] {
                 marks.push([edge, edge + inside].map(|y| Point::new(x, y)));
             }
-            if let (true, Some(label)) = (around.has_x_numbers, &tick.label) {
-                let baseline = area.bottom() + TICK_GAP + DIGIT_HEIGHT * TICK_SIZE;
-                let text = Text::new(label, TICK_SIZE);
-                layer.text((x, baseline), Anchor::Middle, text, BLACK);
+            if around.has_x_numbers {
+                layer.number((x, area.bottom()), Side::Below, tick, BLACK);
             }
         }
         for tick in &around.y_ticks {
@@ -69,10 +67,8 @@ impl Frame {
             for (edge, inside) in [(area.left, tick.length), (area.right(), -tick.length)] {
                 marks.push([edge, edge + inside].map(|x| Point::new(x, y)));
             }
-            if let (Some(_), Some(label)) = (around.y_baseline, &tick.label) {
-                let baseline = y + DIGIT_HEIGHT * TICK_SIZE / 2.0;
-                let text = Text::new(label, TICK_SIZE);
-                layer.text((area.left - TICK_GAP, baseline), Anchor::End, text, BLACK);
+            if around.y_baseline.is_some() {
+                layer.number((area.left, y), Side::Left, tick, BLACK);
             }
         }
         let pen = Stroke::solid(BLACK, FRAME_WEIGHT);
@@ -87,7 +83,13 @@ impl Frame {
         if let Some(baseline) = around.y_baseline {
             let middle = area.top + area.height / 2.0;
             let text = Text::fitted(y_name, LABEL_SIZE, area.height);
-            layer.upward_text((baseline, middle), Anchor::Middle, text, BLACK);
+            layer.read_text(
+                Reading::Upward,
+                (baseline, middle),
+                Anchor::Middle,
+                text,
+                BLACK,
+            );
         }
     }
 }

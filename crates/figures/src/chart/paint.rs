@@ -119,7 +119,8 @@ impl<'a> Painter<'a> {
 
     fn draw_band(&mut self, band: &Band, colour: Colour) {
         let layer = self.drawing.layer("bands", Some(self.frame.area));
-        let [uppers, lowers] = [band.upper_of_pairs(), band.lower_of_pairs()]
+        let [uppers, lowers] = band
+            .pairs()
             .map(|bound| pieces(&self.frame, &band.x, &bound));
         for (upper, lower) in uppers.into_iter().zip(lowers) {
             for (above, below) in upper.iter().zip(&lower) {

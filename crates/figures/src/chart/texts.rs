@@ -3,7 +3,7 @@
 use super::layer::{ChartLayer, Corner, Kind, Note, Reference};
 use super::paint::Painter;
 use super::placement::INSET;
-use crate::drawing::Anchor;
+use crate::drawing::{Anchor, Reading};
 use crate::geometry::Rectangle;
 use crate::style::LEGEND_SIZE;
 use crate::text::{DIGIT_HEIGHT, Text};
@@ -71,7 +71,13 @@ impl Painter<'_> {
         let layer = self.drawing.layer("reference labels", None);
         if reference.vertical {
             let baseline = place.left + ABOVE_BASELINE * LEGEND_SIZE;
-            layer.upward_text((baseline, place.bottom()), Anchor::Start, text, colour);
+            layer.read_text(
+                Reading::Upward,
+                (baseline, place.bottom()),
+                Anchor::Start,
+                text,
+                colour,
+            );
         } else {
             let baseline = place.top + ABOVE_BASELINE * LEGEND_SIZE;
             layer.text((place.left, baseline), Anchor::Start, text, colour);

@@ -326,40 +326,33 @@ impl Layer {
     }
 
     /// A line of type with its start, middle or end at a place.
-    pub(crate) fn text(&mut self, (x, y): (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
-        let start = Point::new(x - text.before(anchor), y);
-        self.place_text(start, Reading::Rightward, text, colour);
+    pub(crate) fn text(&mut self, place: (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
+        self.read_text(Reading::Rightward, place, anchor, text, colour);
     }
 
-    /// A line of type that reads upwards.
-    pub(crate) fn upward_text(
+    /// A line of type that reads upwards or to the right.
+    pub(crate) fn read_text(
         &mut self,
+        reading: Reading,
         (x, y): (f64, f64),
         anchor: Anchor,
         text: Text,
         colour: Colour,
     ) {
-        let start = Point::new(x, y + text.before(anchor));
-        self.place_text(start, Reading::Upward, text, colour);
-    }
-
-    fn place_text(&mut self, start: Point, reading: Reading, text: Text, colour: Colour) {
+        let before = match anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => text.width / 2.0,
+            Anchor::End => text.width,
+        };
+        let start = match reading {
+            Reading::Rightward => Point::new(x - before, y),
+            Reading::Upward => Point::new(x, y + before),
+        };
         self.shapes.push(Shape::Text {
             start,
             reading,
             text,
             colour,
         });
-    }
-}
-
-impl Text {
-    /// How much of the line stands before its anchor, in points.
-    fn before(&self, anchor: Anchor) -> f64 {
-        match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => self.width / 2.0,
-            Anchor::End => self.width,
-        }
     }
 }

@@ -4,7 +4,6 @@
 //! web page, or with a prefix of the caller's; windows are nested `svg` elements, which need no name at all.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -17,33 +16,22 @@ use crate::colour::Colour;
 use crate::geometry::{Path, Point, Rectangle, Step};
 use crate::text::{Face, Glyph, Text};
 
-/// Adds formatted text to a string.
-macro_rules! push {
-    ($out:expr, $($arguments:tt)*) => {
-        write!($out, $($arguments)*).expect("writing to a string cannot fail")
-    };
-}
-
 /// The whole document, every `id` in it beginning with a prefix.
 pub(super) fn document(drawing: &Drawing, prefix: &str) -> String {
     let mut out = String::new();
     let [width, height] = [drawing.width, drawing.height].map(number);
-    push!(
-        out,
+    out += &format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{}mm\" height=\"{}mm\" viewBox=\"0 0 {width} {height}\" role=\"img\">\n<title>{}</title>\n",
         number(drawing.width_millimetres()),
         number(drawing.height_millimetres()),
         escape(&drawing.title),
     );
     if !drawing.description.is_empty() {
-        push!(out, "<desc>{}</desc>\n", escape(&drawing.description));
+        out += &format!("<desc>{}</desc>\n", escape(&drawing.description));
     }
     push_definitions(&mut out, &drawing.layers, prefix);
     let paper = drawing.paper.hexadecimal();
-    push!(
-        out,
-        "<rect width=\"{width}\" height=\"{height}\" fill=\"#{paper}\"/>\n"
-    );
+    out += &format!("<rect width=\"{width}\" height=\"{height}\" fill=\"#{paper}\"/>\n");
     for layer in &drawing.layers {
         push_layer(&mut out, layer, prefix);
     }
@@ -67,36 +55,34 @@ fn push_definitions(out: &mut String, layers: &[Layer], prefix: &str) {
             _ => {}
         }
     }
-    out.push_str("<defs>\n");
+    *out += "<defs>\n";
     for (name, colour) in spheres {
-        push!(
-            out,
+        *out += &format!(
             "<radialGradient id=\"{prefix}sphere-{name}\" cx=\"{SPHERE_CENTRE}\" cy=\"{SPHERE_CENTRE}\" r=\"{SPHERE_REACH}\">"
         );
         for (offset, shade) in sphere_shades(colour) {
             let shade = shade.hexadecimal();
-            push!(out, "<stop offset=\"{offset}\" stop-color=\"#{shade}\"/>");
+            *out += &format!("<stop offset=\"{offset}\" stop-color=\"#{shade}\"/>");
         }
-        out.push_str("</radialGradient>\n");
+        *out += "</radialGradient>\n";
     }
     for glyph in glyphs {
         let (name, path) = (glyph_name(glyph), path_data(&glyph.outline()));
-        push!(out, "<path id=\"{prefix}{name}\" d=\"{path}\"/>\n");
+        *out += &format!("<path id=\"{prefix}{name}\" d=\"{path}\"/>\n");
     }
-    out.push_str("</defs>\n");
+    *out += "</defs>\n";
 }
 
 fn push_layer(out: &mut String, layer: &Layer, prefix: &str) {
     let name = layer.name;
     let end = match layer.window {
         None => {
-            push!(out, "<g class=\"{name}\">\n");
+            *out += &format!("<g class=\"{name}\">\n");
             "</g>\n"
         }
         Some(window) => {
             let [x, y, width, height] = box_numbers(window);
-            push!(
-                out,
+            *out += &format!(
                 "<svg class=\"{name}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" viewBox=\"{x} {y} {width} {height}\" overflow=\"hidden\">\n"
             );
             "</svg>\n"
@@ -113,7 +99,7 @@ fn push_layer(out: &mut String, layer: &Layer, prefix: &str) {
                     }
                 };
                 let stroke = stroke.as_ref().map(stroke_attributes).unwrap_or_default();
-                push!(out, "<path d=\"{}\"{fill}{stroke}/>\n", path_data(path));
+                *out += &format!("<path d=\"{}\"{fill}{stroke}/>\n", path_data(path));
             }
             Shape::Image(image) => push_image(out, image),
             Shape::Text {
@@ -137,8 +123,7 @@ fn push_image(out: &mut String, image: &Image) {
     } else {
         " style=\"image-rendering:pixelated\""
     };
-    push!(
-        out,
+    *out += &format!(
         "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\"{style} href=\"data:image/png;base64,{}\"/>\n",
         STANDARD.encode(picture)
     );
@@ -155,8 +140,7 @@ fn push_text(
         Reading::Rightward => "",
         Reading::Upward => " rotate(-90)",
     };
-    push!(
-        out,
+    *out += &format!(
         "<g role=\"img\" aria-label=\"{}\" transform=\"translate({} {}){turn}\"{}>",
         escape(&text.characters),
         number(start.x),
@@ -164,8 +148,7 @@ fn push_text(
         paint("fill", colour)
     );
     for placed in text.inked() {
-        push!(
-            out,
+        *out += &format!(
             "<use href=\"#{prefix}{}\" transform=\"translate({} {}) scale({:.6})\"/>",
             glyph_name(placed.glyph),
             number(placed.x),
@@ -195,8 +178,7 @@ fn path_data(path: &Path) -> String {
             Step::Circle(centre, radius) => {
                 push_step(&mut out, 'M', &[Point::new(centre.x - radius, centre.y)]);
                 let [radius, diameter] = [radius, 2.0 * radius].map(number);
-                push!(
-                    out,
+                out += &format!(
                     "a{radius} {radius} 0 1 0 {diameter} 0a{radius} {radius} 0 1 0-{diameter} 0z"
                 );
             }
@@ -209,7 +191,7 @@ fn path_data(path: &Path) -> String {
 fn push_step(out: &mut String, letter: char, points: &[Point]) {
     for (index, point) in points.iter().enumerate() {
         let before = if index == 0 { letter } else { ' ' };
-        push!(out, "{before}{} {}", number(point.x), number(point.y));
+        *out += &format!("{before}{} {}", number(point.x), number(point.y));
     }
 }
 
@@ -220,7 +202,7 @@ fn box_numbers(area: Rectangle) -> [String; 4] {
 fn paint(property: &str, colour: Colour) -> String {
     let mut out = format!(" {property}=\"#{}\"", colour.hexadecimal());
     if colour.opacity < 1.0 {
-        push!(out, " {property}-opacity=\"{}\"", number(colour.opacity));
+        out += &format!(" {property}-opacity=\"{}\"", number(colour.opacity));
     }
     out
 }
@@ -228,7 +210,7 @@ fn paint(property: &str, colour: Colour) -> String {
 fn stroke_attributes(stroke: &Stroke) -> String {
     let mut out = paint("stroke", stroke.colour);
     let weight = number(stroke.weight);
-    push!(out, " stroke-width=\"{weight}\" stroke-linejoin=\"round\"");
+    out += &format!(" stroke-width=\"{weight}\" stroke-linejoin=\"round\"");
     let lengths: Vec<String> = stroke
         .pattern
         .lengths()
@@ -236,7 +218,7 @@ fn stroke_attributes(stroke: &Stroke) -> String {
         .map(f32::to_string)
         .collect();
     if !lengths.is_empty() {
-        push!(out, " stroke-dasharray=\"{}\"", lengths.join(" "));
+        out += &format!(" stroke-dasharray=\"{}\"", lengths.join(" "));
     }
     out
 }

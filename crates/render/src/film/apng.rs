@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
 
 use super::{Encoder, FilmPlan, Size};
 use crate::error::RenderError;
@@ -13,11 +12,10 @@ pub(super) struct ApngEncoder(png::Writer<BufWriter<File>>);
 
 impl ApngEncoder {
     pub(super) fn new(
-        path: &Path,
+        file: BufWriter<File>,
         plan: FilmPlan,
         (width, height): Size,
     ) -> Result<Self, RenderError> {
-        let file = BufWriter::new(File::create(path).map_err(RenderError::Film)?);
         let mut encoder = png::Encoder::new(file, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);

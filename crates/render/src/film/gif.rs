@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
 
 use color_quant::NeuQuant;
 
@@ -34,11 +33,10 @@ pub(super) struct GifEncoder {
 
 impl GifEncoder {
     pub(super) fn new(
-        path: &Path,
+        file: BufWriter<File>,
         plan: FilmPlan,
         (width, height): Size,
     ) -> Result<Self, RenderError> {
-        let file = BufWriter::new(File::create(path).map_err(RenderError::Film)?);
         let [Ok(across), Ok(down)] = [width, height].map(u16::try_from) else {
             return Err(RenderError::Size {
                 width,

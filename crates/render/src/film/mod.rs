@@ -4,6 +4,8 @@ mod apng;
 mod ffmpeg;
 mod gif;
 
+use std::fs::File;
+use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
 use crate::error::RenderError;
@@ -112,9 +114,14 @@ impl Film {
             Some(begun) => begun,
             begun => {
                 let (path, plan) = (&*self.path, self.plan);
+                let file = || {
+                    File::create(path)
+                        .map(BufWriter::new)
+                        .map_err(RenderError::Film)
+                };
                 let encoder: Box<dyn Encoder> = match self.format {
-                    FilmFormat::Gif => Box::new(gif::GifEncoder::new(path, plan, size)?),
-                    FilmFormat::Apng => Box::new(apng::ApngEncoder::new(path, plan, size)?),
+                    FilmFormat::Gif => Box::new(gif::GifEncoder::new(file()?, plan, size)?),
+                    FilmFormat::Apng => Box::new(apng::ApngEncoder::new(file()?, plan, size)?),
                     FilmFormat::Mp4 | FilmFormat::Webm => {
                         Box::new(ffmpeg::Ffmpeg::new(self.format, path, plan, size)?)
                     }
