@@ -70,6 +70,7 @@ pub enum ProblemKind {
 /// One thing wrong with a configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", paragraph(self))]
+#[must_use]
 pub struct Problem {
     /// What sort of problem.
     pub kind: ProblemKind,
@@ -157,21 +158,18 @@ impl Problem {
     }
 
     /// Names the key.
-    #[must_use]
     pub fn key(mut self, key: impl Into<String>) -> Self {
         self.key = Some(key.into());
         self
     }
 
     /// Says what is allowed, or how to mend it.
-    #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
     /// Adds a place and what to say of it.
-    #[must_use]
     pub fn at(mut self, origin: &Origin, message: impl Into<String>) -> Self {
         if self.labels.is_empty() {
             self.order = (origin.source.kind, origin.span.start);

@@ -170,22 +170,35 @@ impl Schedule {
 mod tests {
     use super::*;
 
+    fn width(form: ScheduleForm) -> Schedule {
+        Schedule {
+            parameter: ScheduledParameter::Width,
+            form,
+            before: 2.5,
+        }
+    }
+
+    fn steps(steps: &[(f64, f64)]) -> Schedule {
+        let steps = steps.to_vec();
+        width(ScheduleForm::Steps { steps })
+    }
+
+    fn assert_values(schedule: &Schedule, values: &[(f64, f64)]) {
+        for (time, value) in values {
+            assert_eq!(schedule.value(*time), *value, "at {time}");
+        }
+    }
+
     #[test]
     fn a_ramp_is_linear_between_its_ends() {
-        let form = ScheduleForm::Ramp {
+        let ramp = width(ScheduleForm::Ramp {
             from: 3.0,
             to: 2.0,
             start: 1.0,
             end: 5.0,
-        };
-        let ramp = Schedule {
-            parameter: ScheduledParameter::Width,
-            form,
-            before: 2.5,
-        };
-        for (time, value) in [(0.0, 3.0), (1.0, 3.0), (3.0, 2.5), (5.0, 2.0), (9.0, 2.0)] {
-            assert_eq!(ramp.value(time), value, "at {time}");
-        }
+        });
+        let values = [(0.0, 3.0), (1.0, 3.0), (3.0, 2.5), (5.0, 2.0), (9.0, 2.0)];
+        assert_values(&ramp, &values);
         assert_eq!(ramp.knots(), [(1.0, 3.0), (5.0, 2.0)]);
         assert_eq!(ramp.range(9.0), (2.0, 3.0));
         assert_eq!(ramp.range(3.0), (2.5, 3.0), "it ends under way");
@@ -194,73 +207,39 @@ mod tests {
     #[test]
     fn a_course_goes_from_value_to_value() {
         let knots = vec![(1.0, 3.0), (2.0, 4.0), (6.0, 2.0)];
-        let course = Schedule {
-            parameter: ScheduledParameter::Width,
-            form: ScheduleForm::Course {
-                knots: knots.clone(),
-            },
-            before: 2.5,
-        };
-        for (time, value) in [(0.0, 3.0), (1.5, 3.5), (2.0, 4.0), (5.0, 2.5), (9.0, 2.0)] {
-            assert_eq!(course.value(time), value, "at {time}");
-        }
+        let course = width(ScheduleForm::Course {
+            knots: knots.clone(),
+        });
+        let values = [(0.0, 3.0), (1.5, 3.5), (2.0, 4.0), (5.0, 2.5), (9.0, 2.0)];
+        assert_values(&course, &values);
         assert_eq!(course.knots(), knots);
     }
 
     #[test]
     fn a_schedule_goes_on_by_ramps_and_jumps() {
-        let steps = Schedule {
-            parameter: ScheduledParameter::Width,
-            form: ScheduleForm::Steps {
-                steps: vec![(1.0, 3.0)],
-            },
-            before: 2.5,
-        };
+        let steps = steps(&[(1.0, 3.0)]);
         assert_eq!(steps.going_on(0.5, 2.0, 2.8), None, "under way");
         assert_eq!(steps.going_on(2.0, 1.5, 2.8), None, "backwards");
         let ramped = steps.going_on(2.0, 4.0, 2.0).unwrap();
         let jumped = ramped.going_on(5.0, 5.0, 2.9).unwrap();
         let thought_better = jumped.going_on(5.0, 5.0, 2.7).unwrap();
-        for (time, value) in [
-            (0.0, 2.5),
-            (1.0, 3.0),
-            (3.0, 2.5),
-            (4.5, 2.0),
-            (5.0, 2.7),
-            (9.0, 2.7),
-        ] {
-            assert_eq!(thought_better.value(time), value, "at {time}");
-        }
+        assert_values(&thought_better, &[(0.0, 2.5), (1.0, 3.0), (3.0, 2.5)]);
+        assert_values(&thought_better, &[(4.5, 2.0), (5.0, 2.7), (9.0, 2.7)]);
         assert_eq!(jumped.value(5.0), 2.9);
         assert_eq!(jumped.knots().len(), thought_better.knots().len());
     }
 
     #[test]
     fn steps_hold_from_their_time_on() {
-        let form = ScheduleForm::Steps {
-            steps: vec![(1.0, 3.0), (2.0, 4.0)],
-        };
-        let steps = Schedule {
-            parameter: ScheduledParameter::Width,
-            form,
-            before: 2.5,
-        };
-        for (time, value) in [(0.0, 2.5), (1.0, 3.0), (1.5, 3.0), (2.0, 4.0), (7.0, 4.0)] {
-            assert_eq!(steps.value(time), value, "at {time}");
-        }
-        assert_eq!(
-            steps.knots(),
-            [(1.0, 2.5), (1.0, 3.0), (2.0, 3.0), (2.0, 4.0)]
-        );
+        let two = steps(&[(1.0, 3.0), (2.0, 4.0)]);
+        let values = [(0.0, 2.5), (1.0, 3.0), (1.5, 3.0), (2.0, 4.0), (7.0, 4.0)];
+        assert_values(&two, &values);
+        let knots = [(1.0, 2.5), (1.0, 3.0), (2.0, 3.0), (2.0, 4.0)];
+        assert_eq!(two.knots(), knots);
         for (periods, range) in [(0.5, (2.5, 2.5)), (1.0, (2.5, 3.0)), (9.0, (2.5, 4.0))] {
-            assert_eq!(steps.range(periods), range, "up to {periods}");
+            assert_eq!(two.range(periods), range, "up to {periods}");
         }
-        let at_once = Schedule {
-            form: ScheduleForm::Steps {
-                steps: vec![(0.0, 3.0)],
-            },
-            ..steps
-        };
+        let at_once = steps(&[(0.0, 3.0)]);
         assert_eq!(at_once.range(9.0), (3.0, 3.0), "its own value never holds");
     }
 }

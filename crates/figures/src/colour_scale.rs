@@ -22,6 +22,7 @@ pub enum Palette {
 
 /// Which value has which colour; values beyond the ends have the colours of the ends.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct ColourScale {
     label: String,
     least: f64,
@@ -65,21 +66,18 @@ impl ColourScale {
     }
 
     /// The same with equal steps of colour for equal ratios.
-    #[must_use]
     pub fn logarithmic(mut self) -> Self {
         self.scale = Scale::Logarithmic;
         self
     }
 
     /// The same in the colours of another palette.
-    #[must_use]
     pub fn palette(mut self, palette: Palette) -> Self {
         self.palette = palette;
         self
     }
 
     /// The same with ends that say so, where some of the values between a least and a largest lie beyond them.
-    #[must_use]
     pub(crate) fn showing(mut self, found: (f64, f64)) -> Self {
         self.found = found;
         self

@@ -113,20 +113,15 @@ impl SnapshotFigure<'_> {
         let is_one_extent = extents.windows(2).all(|pair| pair[0] == pair[1]);
         let mut panels = Vec::new();
         for (index, part) in parts.iter().enumerate() {
-            let label = part.snapshot.label;
-            let header = match (is_one_extent, &*extents[index]) {
-                (true, _) | (_, "") => label.to_owned(),
-                (false, extent) => format!("{label}  ({extent})"),
-            };
+            let own_extent = if is_one_extent { "" } else { &*extents[index] };
+            let header = with_extent(part.snapshot.label, own_extent);
             let rows = (part.snapshot.length / row - 1e-9).ceil().max(1.0) as usize;
             for number in 0..rows {
                 let is_last = index + 1 == parts.len() && number + 1 == rows;
-                let name = match (is_last, &*extents[0]) {
-                    (false, _) => String::new(),
-                    (true, extent) if is_one_extent && !extent.is_empty() => {
-                        format!("*z*/*d*  ({extent})")
-                    }
-                    (true, _) => "*z*/*d*".to_owned(),
+                let common_extent = if is_one_extent { &*extents[0] } else { "" };
+                let name = match is_last {
+                    true => with_extent("*z*/*d*", common_extent),
+                    false => String::new(),
                 };
                 let title = if number == 0 { &*header } else { "" };
                 let from = row * number as f64;
@@ -167,6 +162,13 @@ impl Snapshot<'_> {
             number(self.length),
             number(self.period)
         )
+    }
+}
+
+fn with_extent(name: &str, extent: &str) -> String {
+    match extent {
+        "" => name.to_owned(),
+        extent => format!("{name}  ({extent})"),
     }
 }
 
@@ -222,15 +224,13 @@ impl<'a> Part<'a> {
 
     /// Mean diameter of the grains; without grains, of the wall spheres; without either, 1.
     fn diameter(&self) -> f64 {
-        let walls = if self.grains.is_empty() {
-            self.spheres.len()
-        } else {
-            0
-        };
-        let counted = || self.all().skip(self.spheres.len() - walls);
-        match counted().count() {
+        let mut diameters: Vec<f64> = self.all().map(|sphere| sphere.diameter).collect();
+        if !self.grains.is_empty() {
+            diameters.drain(..self.spheres.len());
+        }
+        match diameters.len() {
             0 => 1.0,
-            count => counted().map(|sphere| sphere.diameter).sum::<f64>() / count as f64,
+            count => diameters.iter().sum::<f64>() / count as f64,
         }
     }
 

@@ -8,6 +8,7 @@ use crate::drawing::Pattern;
 /// A row with a coordinate that is not finite is left out; an error that is not finite is unknown and has no bar. Each
 /// point takes some 60 bytes of an SVG, with its error bar 140: ten thousand are a file of a megabyte.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Points {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
@@ -26,6 +27,7 @@ pub struct Points {
 ///
 /// It is thinned to what can be seen, so that a curve of any length takes a few dozen kilobytes of an SVG.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[must_use]
 pub struct Line {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
@@ -40,6 +42,7 @@ pub struct Line {
 ///
 /// On a logarithmic axis a lower curve at or below 0 is drawn to the axis.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Band {
     pub(super) name: String,
     pub(super) x: Vec<f64>,
@@ -52,6 +55,7 @@ pub struct Band {
 ///
 /// A height that is not finite leaves its bar out; one of 0 on a logarithmic axis has no bar.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Bars {
     pub(super) name: String,
     pub(super) edges: Vec<f64>,
@@ -83,6 +87,7 @@ pub(crate) struct Spheres {
 
 /// A straight line from side to side at one value, with a label where it covers least.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Reference {
     pub(super) value: f64,
     pub(super) vertical: bool,
@@ -93,6 +98,7 @@ pub struct Reference {
 
 /// A shaded interval of x, from the bottom to the top of the panel.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Window {
     pub(super) name: String,
     pub(super) from: f64,
@@ -102,6 +108,7 @@ pub struct Window {
 
 /// A line of text in a corner of the panel.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Note {
     pub(super) text: String,
     pub(super) corner: Corner,
@@ -151,42 +158,36 @@ impl Points {
     }
 
     /// Errors of x, the same to both sides.
-    #[must_use]
     pub fn x_errors(mut self, errors: &[f64]) -> Self {
         self.x_errors = errors.to_vec();
         self
     }
 
     /// Errors of y, the same to both sides.
-    #[must_use]
     pub fn y_errors(mut self, errors: &[f64]) -> Self {
         self.y_errors = errors.to_vec();
         self
     }
 
     /// Which rows are lower limits only, such as transition times that were not seen: open, with an arrow upwards.
-    #[must_use]
     pub fn lower_limits(mut self, limits: &[bool]) -> Self {
         self.lower_limits = limits.to_vec();
         self
     }
 
     /// What the legend says of the lower limits, in markup; nothing unless given.
-    #[must_use]
     pub fn limit_name(mut self, name: &str) -> Self {
         name.clone_into(&mut self.limit_name);
         self
     }
 
     /// Markers with a white inside.
-    #[must_use]
     pub fn open(mut self) -> Self {
         self.open = true;
         self
     }
 
     /// A thin line from point to point that guides the eye.
-    #[must_use]
     pub fn joined(mut self) -> Self {
         self.joined = true;
         self
@@ -222,21 +223,18 @@ impl Line {
     }
 
     /// Each value holds until the next x, as in a survival curve.
-    #[must_use]
     pub fn stepped(mut self) -> Self {
         self.stepped = true;
         self
     }
 
     /// Pattern of the line.
-    #[must_use]
     pub fn pattern(mut self, pattern: Pattern) -> Self {
         self.pattern = pattern;
         self
     }
 
     /// Weight in points, 1 unless given; a heavy line below a light one keeps both readable where they coincide.
-    #[must_use]
     pub fn weight(mut self, weight: f64) -> Self {
         self.weight = weight;
         self
@@ -310,14 +308,12 @@ impl Reference {
     }
 
     /// What is written along the line, in markup.
-    #[must_use]
     pub fn label(mut self, label: &str) -> Self {
         label.clone_into(&mut self.label);
         self
     }
 
     /// Pattern of the line, dotted unless given.
-    #[must_use]
     pub fn pattern(mut self, pattern: Pattern) -> Self {
         self.pattern = pattern;
         self
@@ -353,14 +349,12 @@ macro_rules! coloured {
         $(impl $kind {
             /// Number of the series, which decides the colour, and the marker of points; without it, the layers of a
             /// panel are counted from 0.
-            #[must_use]
             pub fn series(mut self, number: usize) -> Self {
                 self.look.series = Some(number);
                 self
             }
 
             /// A colour in place of the series' own.
-            #[must_use]
             pub fn tint(mut self, tint: Tint) -> Self {
                 self.look.tint = Some(tint);
                 self

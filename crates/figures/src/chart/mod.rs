@@ -61,6 +61,7 @@ use placement::Obstacles;
 
 /// A figure of one or several panels.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct ChartFigure {
     title: String,
     description: String,
@@ -121,28 +122,24 @@ impl ChartFigure {
     }
 
     /// A line above the figure, in markup.
-    #[must_use]
     pub fn title(mut self, title: &str) -> Self {
         title.clone_into(&mut self.title);
         self
     }
 
     /// What can be seen, in words for those who do not see it.
-    #[must_use]
     pub fn description(mut self, description: &str) -> Self {
         description.clone_into(&mut self.description);
         self
     }
 
     /// Width on the journal's page.
-    #[must_use]
     pub fn width(mut self, width: Width) -> Self {
         self.width = width;
         self
     }
 
     /// Height of the frame of each panel in millimetres; without it, a fraction of its width.
-    #[must_use]
     pub fn panel_height(mut self, millimetres: f64) -> Self {
         self.panel_height = Some(millimetres);
         self
@@ -150,35 +147,30 @@ impl ChartFigure {
 
     /// Panels of places: one length on both axes of the first panel, whose height all have, no letters, and the bar of
     /// colours below.
-    #[must_use]
     pub(crate) fn equal_scales(mut self) -> Self {
         (self.equal_scales, self.has_letters, self.has_bar_below) = (true, false, true);
         self
     }
 
     /// Panels in a column have one horizontal axis, with numbers below the lowest.
-    #[must_use]
     pub fn share_x(mut self) -> Self {
         self.shares_x = true;
         self
     }
 
     /// Panels in a row have one vertical axis, with numbers at the left of the first.
-    #[must_use]
     pub fn share_y(mut self) -> Self {
         self.shares_y = true;
         self
     }
 
     /// Where the legend stands.
-    #[must_use]
     pub fn legend(mut self, legend: LegendPlace) -> Self {
         self.legend = legend;
         self
     }
 
     /// What the colours of fields and of [`Tint::Value`] mean, drawn as a bar at the right of the panels.
-    #[must_use]
     pub fn colour_scale(mut self, scale: ColourScale) -> Self {
         self.colour_scale = Some(scale);
         self

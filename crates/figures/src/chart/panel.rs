@@ -11,6 +11,7 @@ use crate::error::FigureError;
 /// Whatever the order in which layers are added, fields lie at the bottom, then windows, bands, bars, reference lines,
 /// curves, points and notes, each kind in its order.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct ChartPanel {
     pub(super) title: String,
     pub(super) x: AxisWish,
@@ -44,49 +45,42 @@ impl ChartPanel {
     }
 
     /// A line above the panel, in markup.
-    #[must_use]
     pub fn title(mut self, title: &str) -> Self {
         title.clone_into(&mut self.title);
         self
     }
 
     /// Scale of the horizontal axis.
-    #[must_use]
     pub fn x_scale(mut self, scale: Scale) -> Self {
         self.x.scale = scale;
         self
     }
 
     /// Scale of the vertical axis.
-    #[must_use]
     pub fn y_scale(mut self, scale: Scale) -> Self {
         self.y.scale = scale;
         self
     }
 
     /// Range of the horizontal axis; an end that is left open, as in `0.0..`, follows the data.
-    #[must_use]
     pub fn x_range(mut self, range: impl RangeBounds<f64>) -> Self {
         self.x = self.x.within(&range);
         self
     }
 
     /// Range of the vertical axis; an end that is left open, as in `0.0..`, follows the data.
-    #[must_use]
     pub fn y_range(mut self, range: impl RangeBounds<f64>) -> Self {
         self.y = self.y.within(&range);
         self
     }
 
     /// Adds a layer.
-    #[must_use]
     pub fn with(mut self, layer: impl Into<ChartLayer>) -> Self {
         self.layers.push(layer.into());
         self
     }
 
     /// Adds layers one after the other.
-    #[must_use]
     pub fn with_all(mut self, layers: impl IntoIterator<Item = impl Into<ChartLayer>>) -> Self {
         self.layers.extend(layers.into_iter().map(Into::into));
         self

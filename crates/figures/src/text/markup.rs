@@ -78,35 +78,19 @@ mod tests {
     #[test]
     fn italics_and_scripts_are_read() {
         let letters = letters("*J*_{max}^2x");
-        assert_eq!(
-            letters[0],
-            Letter {
-                character: 'J',
-                italic: true,
-                level: Level::Base
-            }
-        );
-        assert!(
-            letters[1..4]
-                .iter()
-                .all(|letter| letter.level == Level::Subscript && !letter.italic)
-        );
-        assert_eq!(
-            letters[4],
-            Letter {
-                character: '2',
-                italic: false,
-                level: Level::Superscript
-            }
-        );
-        assert_eq!(
-            letters[5],
-            Letter {
-                character: 'x',
-                italic: false,
-                level: Level::Base
-            }
-        );
+        let found: Vec<_> = letters
+            .iter()
+            .map(|it| (it.character, it.italic, it.level))
+            .collect();
+        let expected = [
+            ('J', true, Level::Base),
+            ('m', false, Level::Subscript),
+            ('a', false, Level::Subscript),
+            ('x', false, Level::Subscript),
+            ('2', false, Level::Superscript),
+            ('x', false, Level::Base),
+        ];
+        assert_eq!(found, expected);
     }
 
     #[test]
