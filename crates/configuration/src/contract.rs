@@ -11,10 +11,10 @@ use crate::suggestion;
 /// Checks a layer against the schema; all problems in one go.
 pub(crate) fn check(table: &Table, problems: &mut Problems) {
     Contract {
-        known: schema::known_keys(),
+        known: &schema::KNOWN_KEYS,
         problems,
     }
-    .table(table, schema::cached(), "");
+    .table(table, &schema::SCHEMA, "");
 }
 
 /// Checks a document of another kind against its own JSON schema: unknown keys, types, names and ranges, with the same

@@ -1,6 +1,6 @@
 //! Layers over one another: alternatives that exclude each other, and keys that a choice above makes meaningless.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use peristalsis_physics::contact::{Normal, NormalLaw};
 use peristalsis_physics::wall::ElasticNetwork;
@@ -12,7 +12,7 @@ use crate::schema::{self, Choice};
 use crate::units;
 
 /// A key whose value decides which other keys have a meaning.
-pub(crate) struct Switch {
+struct Switch {
     key: String,
     /// Keys that belong to some of its values, with these values.
     owned: Vec<(String, Vec<String>)>,
@@ -52,17 +52,14 @@ impl Switch {
 }
 
 /// Every switch of the vocabulary.
-pub(crate) fn switches() -> &'static [Switch] {
-    static SWITCHES: OnceLock<Vec<Switch>> = OnceLock::new();
-    SWITCHES.get_or_init(|| {
-        let mut switches: Vec<Switch> = schema::choices().iter().map(switch_of).collect();
-        switches.push(Switch::new("initial.state", &["initial.axial_velocity"]));
-        let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
-        schedule.owns("ramp", "drive.ramp_periods");
-        switches.push(schedule);
-        switches
-    })
-}
+static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
+    let mut switches: Vec<Switch> = schema::CHOICES.iter().map(switch_of).collect();
+    switches.push(Switch::new("initial.state", &["initial.axial_velocity"]));
+    let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
+    schedule.owns("ramp", "drive.ramp_periods");
+    switches.push(schedule);
+    switches
+});
 
 /// The switch of a choice: the keys of its values, the alternatives to them, and what goes with them in other tables.
 fn switch_of(choice: &Choice) -> Switch {
@@ -107,7 +104,7 @@ fn unit_of_elasticity(law: &str) -> String {
 
 /// Whether a key has a meaning where the switches stand as they do in a table; a switch that is not set has no value.
 pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
-    !switches().iter().any(|switch| {
+    !SWITCHES.iter().any(|switch| {
         let chosen = document::text(table, &switch.key);
         switch.meaningless(chosen).any(|(owned, _)| owned == key)
     })
@@ -130,7 +127,7 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
             }
         }
     }
-    for switch in switches() {
+    for switch in &*SWITCHES {
         drop_meaningless(base, &layer, switch);
     }
     // A schedule is one thing: half of an old one under half of a new one has no meaning.
@@ -202,7 +199,7 @@ pub fn join(overrides: Vec<Table>) -> Table {
 
 /// Refuses keys that belong to another value of a switch than the one chosen.
 pub(crate) fn check_switches(table: &Table, problems: &mut Problems) {
-    for switch in switches() {
+    for switch in &*SWITCHES {
         let Some(choice) = document::entry(table, &switch.key) else {
             continue;
         };

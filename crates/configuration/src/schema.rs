@@ -1,6 +1,6 @@
 //! The JSON schema of a configuration, made from the keys and tidied for TOML.
 
-use std::sync::OnceLock;
+use std::sync::LazyLock;
 
 use peristalsis_physics::contact::Normal;
 use schemars::JsonSchema;
@@ -17,13 +17,10 @@ use crate::presets::PRESETS;
 /// what a file may hold; what values must be together is the reader's to check.
 #[must_use]
 pub fn schema() -> Value {
-    cached().clone()
+    SCHEMA.clone()
 }
 
-pub(crate) fn cached() -> &'static Value {
-    static SCHEMA: OnceLock<Value> = OnceLock::new();
-    SCHEMA.get_or_init(build)
-}
+pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(build);
 
 /// The schema of a type as schemars has it.
 pub(crate) fn of<T: JsonSchema>() -> Value {
@@ -55,15 +52,12 @@ pub(crate) struct ChosenValue {
 }
 
 /// The choices of the vocabulary: the law of contact, and what of the wall is prescribed.
-pub(crate) fn choices() -> &'static [Choice] {
-    static CHOICES: OnceLock<[Choice; 2]> = OnceLock::new();
-    CHOICES.get_or_init(|| {
-        [
-            choice("contact", &of::<Normal>()),
-            choice("drive", &of::<Control>()),
-        ]
-    })
-}
+pub(crate) static CHOICES: LazyLock<[Choice; 2]> = LazyLock::new(|| {
+    [
+        choice("contact", &of::<Normal>()),
+        choice("drive", &of::<Control>()),
+    ]
+});
 
 /// A choice from the schema of an enum with a tag.
 fn choice(table: &'static str, schema: &Value) -> Choice {
@@ -106,15 +100,12 @@ pub(crate) fn texts(list: &Value) -> impl Iterator<Item = &str> {
 }
 
 /// Full names of the keys that stand in every configuration, whatever is chosen.
-pub(crate) fn required() -> &'static [String] {
-    static REQUIRED: OnceLock<Vec<String>> = OnceLock::new();
-    REQUIRED.get_or_init(|| required_of(&of::<Keys>()))
-}
+pub(crate) static REQUIRED: LazyLock<Vec<String>> = LazyLock::new(|| required_of(&of::<Keys>()));
 
 fn required_of(keys: &Value) -> Vec<String> {
     let mut required = Vec::new();
     for table in texts(&keys["required"]) {
-        let chosen = choices().iter().find(|choice| choice.table == table);
+        let chosen = CHOICES.iter().find(|choice| choice.table == table);
         required.extend(chosen.map(|choice| format!("{table}.{}", choice.key)));
         let plain = texts(&keys["properties"][table]["required"]);
         required.extend(plain.map(|key| format!("{table}.{key}")));
@@ -124,7 +115,7 @@ fn required_of(keys: &Value) -> Vec<String> {
 
 fn build() -> Value {
     let mut schema = of::<Keys>();
-    for choice in choices() {
+    for choice in &*CHOICES {
         lay_out(&mut schema["properties"][choice.table], choice);
     }
     tidy(&mut schema);
@@ -266,10 +257,7 @@ fn split(key: &str) -> (&str, &str) {
 }
 
 /// Full names of all keys and tables, from the schema.
-pub(crate) fn known_keys() -> &'static [String] {
-    static KEYS: OnceLock<Vec<String>> = OnceLock::new();
-    KEYS.get_or_init(|| keys_of(cached()))
-}
+pub(crate) static KNOWN_KEYS: LazyLock<Vec<String>> = LazyLock::new(|| keys_of(&SCHEMA));
 
 /// Full names of all keys and tables of a schema.
 pub(crate) fn keys_of(schema: &Value) -> Vec<String> {
@@ -315,7 +303,7 @@ mod tests {
     #[test]
     fn every_key_is_described_and_every_number_has_a_unit_and_a_range() {
         let mut found = Vec::new();
-        leaves(cached(), "", &mut found);
+        leaves(&SCHEMA, "", &mut found);
         assert!(found.len() > 50, "{} keys", found.len());
         for (path, leaf) in found {
             let description = leaf["description"].as_str().unwrap_or_default();
@@ -330,9 +318,9 @@ mod tests {
 
     #[test]
     fn nothing_is_nullable_and_no_table_is_open() {
-        let text = cached().to_string();
+        let text = SCHEMA.to_string();
         assert!(!text.contains("null"), "{text}");
-        let schema = cached();
+        let schema = &*SCHEMA;
         assert_eq!(schema["additionalProperties"], json!(false));
         for table in [
             "grains", "contact", "tube", "drive", "wall", "initial", "run", "observe", "units",
@@ -346,7 +334,7 @@ mod tests {
 
     #[test]
     fn names_defaults_and_known_keys() {
-        let schema = cached();
+        let schema = &*SCHEMA;
         let sliding = &schema["properties"]["contact"]["properties"]["sliding"];
         let names: Vec<&Value> = sliding["oneOf"]
             .as_array()
@@ -370,7 +358,7 @@ mod tests {
             "drive.schedule.form",
             "preset",
         ] {
-            assert!(known_keys().iter().any(|known| known == key), "{key}");
+            assert!(KNOWN_KEYS.iter().any(|known| known == key), "{key}");
         }
     }
 }

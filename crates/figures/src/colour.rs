@@ -15,65 +15,22 @@ pub(crate) const BLACK: Colour = Colour::new(0, 0, 0);
 pub(crate) const WHITE: Colour = Colour::new(255, 255, 255);
 pub(crate) const GREY: Colour = Colour::new(128, 128, 128);
 
-/// Okabe and Ito's blue.
-pub(crate) const BLUE: Colour = Colour::new(0, 114, 178);
-/// Okabe and Ito's sky blue.
-pub(crate) const SKY: Colour = Colour::new(86, 180, 233);
-/// Okabe and Ito's vermillion.
-pub(crate) const VERMILLION: Colour = Colour::new(213, 94, 0);
-/// Okabe and Ito's orange.
-pub(crate) const ORANGE: Colour = Colour::new(230, 159, 0);
-/// Okabe and Ito's bluish green.
-pub(crate) const GREEN: Colour = Colour::new(0, 158, 115);
-/// Okabe and Ito's reddish purple.
-pub(crate) const PURPLE: Colour = Colour::new(204, 121, 167);
-
-/// Motion along the wave.
-pub(crate) const ALONG: Colour = Colour::new(178, 24, 43);
-/// Motion against the wave.
-pub(crate) const AGAINST: Colour = Colour::new(33, 102, 172);
-
 /// Blue for -1 through white at 0 to red at 1, in equal steps of the argument (after ColorBrewer's RdBu).
-const DIVERGING: [Colour; 9] = [
-    Colour::new(12, 66, 130),
-    Colour::new(40, 112, 178),
-    Colour::new(98, 164, 207),
-    Colour::new(172, 210, 229),
-    Colour::new(250, 250, 250),
-    Colour::new(251, 205, 180),
-    Colour::new(236, 142, 112),
-    Colour::new(204, 64, 66),
-    Colour::new(134, 8, 36),
+const DIVERGING: [u32; 9] = [
+    0x0c4282, 0x2870b2, 0x62a4cf, 0xacd2e5, 0xfafafa, 0xfbcdb4, 0xec8e70, 0xcc4042, 0x860824,
 ];
 
 /// Dark violet through green to yellow, lighter all the way, in equal steps of the argument (viridis, van der Walt and
 /// Smith 2015, dedicated to the public domain).
-const SEQUENTIAL: [Colour; 11] = [
-    Colour::new(68, 1, 84),
-    Colour::new(72, 36, 117),
-    Colour::new(65, 68, 135),
-    Colour::new(53, 95, 141),
-    Colour::new(42, 120, 142),
-    Colour::new(33, 145, 140),
-    Colour::new(34, 168, 132),
-    Colour::new(68, 191, 112),
-    Colour::new(122, 209, 81),
-    Colour::new(189, 223, 38),
-    Colour::new(253, 231, 37),
+const SEQUENTIAL: [u32; 11] = [
+    0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a884, 0x44bf70, 0x7ad151,
+    0xbddf26, 0xfde725,
 ];
 
 /// Light, blue, dark, red and light again in equal steps of the argument, as light at 1 as at 0 (after twilight, Bechtold
 /// 2018, dedicated to the public domain).
-const CYCLIC: [Colour; 9] = [
-    Colour::new(226, 217, 226),
-    Colour::new(154, 186, 201),
-    Colour::new(97, 119, 186),
-    Colour::new(93, 60, 156),
-    Colour::new(47, 20, 54),
-    Colour::new(118, 34, 79),
-    Colour::new(178, 86, 82),
-    Colour::new(207, 166, 143),
-    Colour::new(226, 217, 226),
+const CYCLIC: [u32; 9] = [
+    0xe2d9e2, 0x9abac9, 0x6177ba, 0x5d3c9c, 0x2f1436, 0x76224f, 0xb25652, 0xcfa68f, 0xe2d9e2,
 ];
 
 /// Steps of the diverging map on either side of 0: few enough that the spheres of a snapshot share their shadings.
@@ -87,6 +44,12 @@ impl Colour {
             blue,
             opacity: 1.0,
         }
+    }
+
+    /// From six hexadecimal digits.
+    pub(crate) const fn hex(digits: u32) -> Self {
+        let [_, red, green, blue] = digits.to_be_bytes();
+        Self::new(red, green, blue)
     }
 
     pub(crate) const fn faint(self, opacity: f64) -> Self {
@@ -136,10 +99,11 @@ pub(crate) fn cyclic(value: f64) -> Colour {
 }
 
 /// Colour at a fraction of the way through colours in equal steps.
-fn between(colours: &[Colour], fraction: f64) -> Colour {
+fn between(colours: &[u32], fraction: f64) -> Colour {
     let position = fraction.clamp(0.0, 1.0) * (colours.len() - 1) as f64;
     let below = (position.floor() as usize).min(colours.len() - 2);
-    colours[below].towards(colours[below + 1], position - below as f64)
+    let [from, to] = [below, below + 1].map(|index| Colour::hex(colours[index]));
+    from.towards(to, position - below as f64)
 }
 
 #[cfg(test)]
@@ -167,7 +131,7 @@ mod tests {
         assert!((0..40).all(|step| lightness(step) < lightness(step + 1)));
         assert_eq!(
             (sequential(-1.0), sequential(2.0)),
-            (SEQUENTIAL[0], SEQUENTIAL[10])
+            (Colour::hex(SEQUENTIAL[0]), Colour::hex(SEQUENTIAL[10]))
         );
     }
 

@@ -224,13 +224,13 @@ fn check_given(table: &Table, sources: &Sources<'_>, problems: &mut Problems) {
 /// The keys that are needed and not given, alternatives as one.
 fn missing(table: &Table) -> Vec<String> {
     let given = |key: &str| document::entry(table, key).is_some();
-    let mut missing = schema::required().to_vec();
+    let mut missing = schema::REQUIRED.to_vec();
     missing.retain(|key| !given(key));
     let groups = ALTERNATIVES.iter().filter(|group| {
         layers::has_meaning(table, group[0]) && !group.iter().any(|key| given(key))
     });
     missing.extend(groups.map(|group| list(group, "or")));
-    for choice in schema::choices() {
+    for choice in &*schema::CHOICES {
         let chosen = document::text(table, &format!("{}.{}", choice.table, choice.key));
         let values = choice.values.iter();
         let needed = values
@@ -249,7 +249,7 @@ fn preset_names() -> Vec<&'static str> {
 /// Schema of a key by its full name.
 fn schema_of(key: &str) -> &'static serde_json::Value {
     key.split('.')
-        .fold(schema::cached(), |schema, name| &schema["properties"][name])
+        .fold(&schema::SCHEMA, |schema, name| &schema["properties"][name])
 }
 
 /// What the parts of the resolution share: where the keys stand, and the problems found.

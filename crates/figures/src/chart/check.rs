@@ -1,6 +1,7 @@
 //! Whether the layers of a panel can be drawn, and what they span.
 
 use super::layer::{Bars, ChartLayer, Field, Kind, Points, error_ends};
+use super::paint::ARROW;
 use super::panel::{ChartPanel, MARGIN};
 use crate::axis::{Scale, extent};
 use crate::error::{FigureError, finite, positive};
@@ -13,8 +14,6 @@ pub(super) struct Checked {
     /// Free space at both ends of the horizontal axis, and below and above, as fractions of the axes.
     pub(super) x_free: f64,
     pub(super) y_free: (f64, f64),
-    /// Some points are lower limits, whose arrows need room.
-    pub(super) has_limits: bool,
 }
 
 /// The values on one axis, which layers are checked against.
@@ -25,8 +24,12 @@ struct Values {
 }
 
 impl Checked {
-    /// Checks a panel of a chart, which may have a scale of colours.
-    pub(super) fn new(panel: &ChartPanel, coloured: bool) -> Result<Self, FigureError> {
+    /// Checks a panel of a height on the page, of a chart that may have a scale of colours.
+    pub(super) fn new(
+        panel: &ChartPanel,
+        height: f64,
+        coloured: bool,
+    ) -> Result<Self, FigureError> {
         let values = |axis, scale| Values {
             axis,
             scale,
@@ -55,14 +58,19 @@ impl Checked {
         let stands = has(|kind| matches!(kind, Kind::Bars(_))) && y.0 == 0.0;
         let fills = has(|kind| matches!(kind, Kind::Field(_)));
         let free = if fills { 0.0 } else { MARGIN };
+        // Arrows of lower limits need room.
+        let has_arrows =
+            has(|kind| matches!(kind, Kind::Points(points) if points.lower_limits.contains(&true)));
+        let above = if has_arrows {
+            free.max((ARROW + 3.0) / height).min(0.4)
+        } else {
+            free
+        };
         Ok(Self {
             x: extent(check.x.found),
             y,
             x_free: free,
-            y_free: (if stands { 0.0 } else { free }, free),
-            has_limits: has(
-                |kind| matches!(kind, Kind::Points(points) if points.lower_limits.contains(&true)),
-            ),
+            y_free: (if stands { 0.0 } else { free }, above),
         })
     }
 }

@@ -2,7 +2,6 @@
 
 use super::check::Checked;
 use super::frame::{Frame, Surround};
-use super::paint::ARROW;
 use super::panel::AxisWish;
 use super::{ChartFigure, HEADER_SPACE};
 use crate::axis::{Axis, Tick, extent, widest};
@@ -207,10 +206,10 @@ fn space_below(figure: &ChartFigure, index: usize) -> f64 {
 
 /// The axes of all panels, those that are shared over the data of all that share them.
 fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
-    let checked: Vec<Checked> = figure
-        .panels
-        .iter()
-        .map(|panel| Checked::new(panel, figure.colour_scale.is_some()))
+    let is_coloured = figure.colour_scale.is_some();
+    let panels = figure.panels.iter();
+    let checked: Vec<Checked> = panels
+        .map(|panel| Checked::new(panel, height, is_coloured))
         .collect::<Result<_, _>>()?;
     if checked.is_empty() {
         return Err(FigureError::EmptySeries {
@@ -230,17 +229,9 @@ fn axes(figure: &ChartFigure, height: f64) -> Result<Vec<Axes>, FigureError> {
             let x = shared("x", &column, |it| (&figure.panels[it].x, checked[it].x))?;
             let y = shared("y", &row, |it| (&figure.panels[it].y, checked[it].y))?;
             // All that share an axis must have the same free space on it.
-            let (mut below, mut above, mut x_free) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-            for other in row.iter().map(|&other| checked[other]) {
-                below = below.min(other.y_free.0);
-                above = above.max(other.y_free.1);
-                if other.has_limits {
-                    above = above.max((ARROW + 3.0) / height).min(0.4);
-                }
-            }
-            for &other in &column {
-                x_free = x_free.max(checked[other].x_free);
-            }
+            let (below, _) = extent(row.iter().map(|&it| checked[it].y_free.0));
+            let (_, above) = extent(row.iter().map(|&it| checked[it].y_free.1));
+            let (_, x_free) = extent(column.iter().map(|&it| checked[it].x_free));
             Ok(Axes {
                 x: x.0.axis("x", x.1, (x_free, x_free))?,
                 y: y.0.axis("y", y.1, (below, above))?,

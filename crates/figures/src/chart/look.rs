@@ -1,8 +1,6 @@
 //! How the layers of a chart look: colours and markers.
 
-use crate::colour::{
-    AGAINST, ALONG, BLACK, BLUE, Colour, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION,
-};
+use crate::colour::{BLACK, Colour, GREY};
 use crate::colour_scale::ColourScale;
 use crate::geometry::{Path, Point};
 
@@ -69,16 +67,16 @@ impl Look {
     pub(super) fn colour(self, number: usize, scale: Option<&ColourScale>) -> Colour {
         let number = self.series.unwrap_or(number);
         match self.tint.unwrap_or(TINTS[number % TINTS.len()]) {
-            Tint::Blue => BLUE,
-            Tint::Vermillion => VERMILLION,
-            Tint::Green => GREEN,
-            Tint::Purple => PURPLE,
-            Tint::Orange => ORANGE,
-            Tint::Sky => SKY,
+            Tint::Blue => Colour::new(0, 114, 178),
+            Tint::Vermillion => Colour::new(213, 94, 0),
+            Tint::Green => Colour::new(0, 158, 115),
+            Tint::Purple => Colour::new(204, 121, 167),
+            Tint::Orange => Colour::new(230, 159, 0),
+            Tint::Sky => Colour::new(86, 180, 233),
             Tint::Black => BLACK,
             Tint::Grey => GREY,
-            Tint::Along => ALONG,
-            Tint::Against => AGAINST,
+            Tint::Along => Colour::new(178, 24, 43),
+            Tint::Against => Colour::new(33, 102, 172),
             Tint::Value(value) => scale.map_or(GREY, |scale| scale.colour(value)),
         }
     }
