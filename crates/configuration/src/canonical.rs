@@ -36,7 +36,6 @@ impl Configuration {
     ///
     /// Of alternatives it states number, width, strain_rate and periods (duration for a static wave); the others and
     /// all derived values stand in the table `[resolved]`, which the reader ignores.
-    #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::from(
             "# The configuration of a run with every value resolved. It can be run again as it stands.\n",
@@ -64,14 +63,12 @@ impl Configuration {
     ///
     /// The same for configurations that differ in the length of the run, in what is measured, in the order of keys, or in
     /// the alternative given where it resolves to the same bits.
-    #[must_use]
     pub fn physics_hash(&self) -> [u8; 32] {
         self.hash("peristalsis physics 1\n", Entry::determines_the_trajectory)
     }
 
     /// SHA-256 of every resolved value: that of [`Configuration::physics_hash`] with the length of the run and what is
     /// measured.
-    #[must_use]
     pub fn run_hash(&self) -> [u8; 32] {
         self.hash("peristalsis run 1\n", |_| true)
     }

@@ -69,7 +69,6 @@ impl Default for Grains {
 impl Grains {
     /// Mean of the cubed diameter over uniformly distributed diameters \[d^3\]:
     /// (d_min + d_max) (d_min^2 + d_max^2)/4
-    #[must_use]
     pub fn mean_cubed_diameter(&self) -> f64 {
         let (least, most) = (self.diameter_min, self.diameter_max);
         (least + most) * (least * least + most * most) / 4.0
@@ -99,19 +98,16 @@ pub struct Tube {
 
 impl Tube {
     /// Length L = (waves) lambda \[d\].
-    #[must_use]
     pub fn length(&self) -> f64 {
         f64::from(self.waves) * self.wavelength
     }
 
     /// Wall spheres in the whole tube.
-    #[must_use]
     pub fn wall_spheres(&self) -> u64 {
         u64::from(self.spheres_per_ring) * u64::from(self.rings_per_wave) * u64::from(self.waves)
     }
 
     /// Distances of lattice neighbours in the straight tube \[d\]: those in a ring, and those in rings side by side.
-    #[must_use]
     pub fn neighbour_distances(&self) -> [f64; 2] {
         let spacing = self.wavelength / f64::from(self.rings_per_wave);
         let half_turn = PI / f64::from(self.spheres_per_ring);
@@ -122,7 +118,6 @@ impl Tube {
 
     /// Mean distance of lattice neighbours in the straight tube \[d\]: a sphere has two neighbours in its ring and four
     /// in the rings beside it.
-    #[must_use]
     pub fn mean_neighbour_distance(&self) -> f64 {
         let [in_ring, between] = self.neighbour_distances();
         (2.0 * in_ring + 4.0 * between) / 6.0
@@ -160,13 +155,11 @@ pub struct Drive {
 
 impl Drive {
     /// Period of the wave T = lambda/c \[t\]; `None` for a static wave.
-    #[must_use]
     pub fn period(&self) -> Option<f64> {
         (self.strain_rate > 0.0).then(|| 1.0 / self.strain_rate)
     }
 
     /// A parameter's own value, which its schedule may lead elsewhere; `None` for the amplitude of the other control.
-    #[must_use]
     pub fn own(&self, parameter: ScheduledParameter) -> Option<f64> {
         match (parameter, self.control) {
             (ScheduledParameter::StrainRate, _) => Some(self.strain_rate),
@@ -182,7 +175,6 @@ impl Drive {
     }
 
     /// The schedule of a parameter, if it has one.
-    #[must_use]
     pub fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
         self.schedules
             .iter()
@@ -296,7 +288,6 @@ impl Default for Run {
 
 impl Run {
     /// Steps of the whole run.
-    #[must_use]
     pub fn steps(&self) -> u64 {
         self.samples * self.steps_per_sample
     }
@@ -333,7 +324,6 @@ impl Default for Observe {
 
 impl Configuration {
     /// Volume fraction of a straight tube: rho = N d^3/(6 a^2 L), d^3 averaged.
-    #[must_use]
     pub fn volume_fraction(&self) -> f64 {
         let Tube { radius, .. } = self.tube;
         self.grains.number as f64 * self.grains.mean_cubed_diameter()
@@ -341,7 +331,6 @@ impl Configuration {
     }
 
     /// Number density n = N d*^3/(pi a^2 L), d* the largest diameter.
-    #[must_use]
     pub fn number_density(&self) -> f64 {
         let largest = self.grains.diameter_max;
         let volume = PI * self.tube.radius * self.tube.radius * self.tube.length();
@@ -349,14 +338,12 @@ impl Configuration {
     }
 
     /// Speed of the wave c \[d t^-1\].
-    #[must_use]
     pub fn wave_speed(&self) -> f64 {
         self.drive.strain_rate * self.tube.wavelength
     }
 
     /// The same run under a constant drive that is as hard on the grains as the schedules ever become: the least width, the
     /// largest force amplitude and the fastest wave that the run reaches. Without schedules it is the run itself.
-    #[must_use]
     pub fn at_its_hardest(&self) -> Self {
         let mut hardest = self.clone();
         let periods = self.run.periods.unwrap_or(0.0);
@@ -378,14 +365,12 @@ impl Configuration {
     }
 
     /// Mean mass of a grain, from the mean of its cubed diameter \[m\].
-    #[must_use]
     pub fn mean_grain_mass(&self) -> f64 {
         self.grains.mean_cubed_diameter()
     }
 
     /// Pressure rise over one wavelength that the wave has to pump against \[m d^-1 t^-2\]: the weight of the grains of a
     /// wavelength under the body force g over the section of the straight tube, Dp = -N m g lambda/(L pi a^2).
-    #[must_use]
     pub fn pressure_rise(&self) -> f64 {
         let Tube {
             radius, wavelength, ..
@@ -396,7 +381,6 @@ impl Configuration {
     }
 
     /// Amplitude b = a - w/2 of the wall's radius \[d\]; `None` under stress control.
-    #[must_use]
     pub fn amplitude(&self) -> Option<f64> {
         match self.drive.control {
             Control::Strain { width } => Some(self.tube.radius - 0.5 * width),

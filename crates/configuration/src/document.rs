@@ -52,7 +52,6 @@ pub enum Node {
 
 impl Node {
     /// The kind of value in words.
-    #[must_use]
     pub fn description(&self) -> &'static str {
         match self {
             Self::Table(_) => "a table",
@@ -67,7 +66,6 @@ impl Node {
 }
 
 /// Parses a file, to be checked and resolved by someone else; invalid TOML becomes a problem and an empty table.
-#[must_use]
 pub fn parse_file(file: SourceFile<'_>, problems: &mut Problems) -> Table {
     parse(
         &Source::new(SourceKind::File, file.name, file.text),
@@ -199,7 +197,6 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
 }
 
 /// The entry at a dotted path.
-#[must_use]
 pub fn entry<'a>(table: &'a Table, path: &str) -> Option<&'a Entry> {
     match path.split_once('.') {
         None => table.get(path),
@@ -250,7 +247,6 @@ pub(crate) fn text<'a>(table: &'a Table, path: &str) -> Option<&'a str> {
 }
 
 /// A table that holds one value at the end of a dotted path: a layer that sets one key. `key` is where the path stands.
-#[must_use]
 pub fn setting(path: &str, key: &Origin, item: Item) -> Table {
     let (name, item) = match path.split_once('.') {
         None => (path, item),

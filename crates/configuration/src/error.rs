@@ -28,7 +28,6 @@ impl ConfigurationError {
     }
 
     /// The problems, at least one.
-    #[must_use]
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
@@ -113,7 +112,6 @@ impl Label {
     }
 
     /// Line and column of the place, both from 1.
-    #[must_use]
     pub fn line_and_column(&self) -> (usize, usize) {
         line_and_column(&self.source_text, self.span.start)
     }

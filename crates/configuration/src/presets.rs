@@ -31,7 +31,6 @@ pub const PRESETS: &[Preset] = &[
 ];
 
 /// The preset of a name.
-#[must_use]
 pub fn preset(name: &str) -> Option<&'static Preset> {
     PRESETS.iter().find(|preset| preset.name == name)
 }

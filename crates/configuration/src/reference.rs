@@ -9,7 +9,6 @@ use crate::schema::joined;
 /// allowed, and its default.
 ///
 /// `leave_out` names tables that are described elsewhere. Rows are in the order of their names.
-#[must_use]
 pub fn reference(schema: &Value, leave_out: &[&str]) -> String {
     let mut pages = String::new();
     section(&mut pages, "", schema, leave_out);

@@ -53,7 +53,6 @@ pub enum ScheduleForm {
 
 impl Schedule {
     /// A course that has been at `value` up to now.
-    #[must_use]
     pub fn resting(parameter: ScheduledParameter, value: f64) -> Self {
         Self {
             parameter,
@@ -69,7 +68,6 @@ impl Schedule {
     ///
     /// `None` where the schedule has not come to rest by `start`, or `end` is before it: what has been goes on to be
     /// exactly what it was.
-    #[must_use]
     pub fn going_on(&self, start: f64, end: f64, value: f64) -> Option<Self> {
         let mut knots = self.knots();
         let &(rest, resting) = knots.last()?;
@@ -89,14 +87,12 @@ impl Schedule {
     }
 
     /// When it comes to rest, in periods.
-    #[must_use]
     pub fn rest(&self) -> f64 {
         self.knots().last().map_or(0.0, |knot| knot.0)
     }
 
     /// The course as knots (time in periods, value): linear between knots, constant before the first and after the last;
     /// of two knots at one time the later holds from then on.
-    #[must_use]
     pub fn knots(&self) -> Vec<(f64, f64)> {
         match &self.form {
             ScheduleForm::Ramp {
@@ -119,7 +115,6 @@ impl Schedule {
     }
 
     /// Least and largest value from the start to a time in periods.
-    #[must_use]
     pub fn range(&self, periods: f64) -> (f64, f64) {
         let knots = self.knots();
         let within = knots
@@ -133,7 +128,6 @@ impl Schedule {
     }
 
     /// Value at a time in periods.
-    #[must_use]
     pub fn value(&self, periods: f64) -> f64 {
         match &self.form {
             ScheduleForm::Ramp {

@@ -15,7 +15,6 @@ use crate::presets::PRESETS;
 ///
 /// Every key has a description with its unit, its default, its range or its names; no other key is allowed. It says
 /// what a file may hold; what values must be together is the reader's to check.
-#[must_use]
 pub fn schema() -> Value {
     SCHEMA.clone()
 }

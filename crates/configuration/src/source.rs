@@ -63,13 +63,11 @@ pub struct Origin {
 
 impl Origin {
     /// The bytes of the source's text that it covers.
-    #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
 
     /// The text at this place.
-    #[must_use]
     pub fn text(&self) -> &str {
         self.source.text.get(self.span.clone()).unwrap_or("")
     }

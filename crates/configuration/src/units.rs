@@ -33,20 +33,17 @@ pub(crate) fn key(elasticity: Elasticity) -> &'static str {
 
 impl Units {
     /// d \[m\].
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.grain_diameter
     }
 
     /// m \[kg\].
-    #[must_use]
     pub fn mass(&self) -> f64 {
         let diameter = self.grain_diameter;
         PI / 6.0 * self.density * diameter * diameter * diameter
     }
 
     /// t \[s\].
-    #[must_use]
     pub fn time(&self) -> f64 {
         let contact = self.contact_elasticity;
         match self.elasticity {
@@ -58,25 +55,21 @@ impl Units {
     }
 
     /// d/t \[m s^-1\].
-    #[must_use]
     pub fn velocity(&self) -> f64 {
         self.length() / self.time()
     }
 
     /// m/(d t^2) \[Pa\].
-    #[must_use]
     pub fn pressure(&self) -> f64 {
         self.mass() / (self.length() * self.time() * self.time())
     }
 
     /// m d^2/t^3 \[W\].
-    #[must_use]
     pub fn power(&self) -> f64 {
         self.mass() * self.velocity() * self.velocity() / self.time()
     }
 
     /// m/t \[kg s^-1\].
-    #[must_use]
     pub fn mass_flow(&self) -> f64 {
         self.mass() / self.time()
     }

@@ -90,7 +90,6 @@ impl ColourScale {
     }
 
     /// Red, green and blue of a value as bytes of sRGB; grey where it is not a number.
-    #[must_use]
     pub fn srgb(&self, value: f64) -> [u8; 3] {
         let colour = if value.is_nan() {
             GREY

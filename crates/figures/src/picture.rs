@@ -62,7 +62,6 @@ pub enum Paper {
 
 impl Paper {
     /// Its red, green and blue.
-    #[must_use]
     pub fn srgb(self) -> [u8; 3] {
         let [page, ..] = self.colours();
         page.srgb()

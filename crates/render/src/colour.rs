@@ -10,7 +10,6 @@ pub struct Colour(pub(crate) Vec3);
 
 impl Colour {
     /// A colour by its sRGB bytes.
-    #[must_use]
     pub fn srgb(red: u8, green: u8, blue: u8) -> Self {
         let channel = |byte: u8| {
             let value = f32::from(byte) / 255.0;
@@ -24,7 +23,6 @@ impl Colour {
     }
 
     /// The bytes of the colour in sRGB (IEC 61966-2-1).
-    #[must_use]
     pub fn to_srgb(self) -> [u8; 3] {
         // A NaN becomes 0 by the conversion to a whole number.
         let place = |value: f32| (value.clamp(0.0, 1.0) * (STEPS - 1) as f32 + 0.5) as usize;

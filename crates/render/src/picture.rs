@@ -13,7 +13,6 @@ impl Picture {
     ///
     /// # Panics
     /// Where their number is not three a pixel.
-    #[must_use]
     pub fn new(width: u32, height: u32, pixels: Vec<u8>) -> Self {
         assert!(
             pixels.len() as u64 == 3 * u64::from(width) * u64::from(height),
@@ -27,19 +26,16 @@ impl Picture {
     }
 
     /// Pixels across.
-    #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
     /// Pixels down.
-    #[must_use]
     pub fn height(&self) -> u32 {
         self.height
     }
 
     /// All bytes, row by row from the top.
-    #[must_use]
     pub fn pixels(&self) -> &[u8] {
         &self.pixels
     }
@@ -48,7 +44,6 @@ impl Picture {
     ///
     /// # Panics
     /// Where there is no such pixel.
-    #[must_use]
     pub fn pixel(&self, column: u32, row: u32) -> [u8; 3] {
         assert!(
             column < self.width && row < self.height,

@@ -39,7 +39,7 @@ fn width(
     let diameter = 2.0 * tube.radius;
     let Some(amplitude) = amplitude else {
         if width > diameter {
-            context.refuse(
+            return context.refuse(
                 ProblemKind::Inconsistent,
                 &["drive.width", "tube.radius"],
                 format!(
@@ -47,12 +47,11 @@ fn width(
                 ),
                 format!("0 <= drive.width <= 2 tube.radius = {diameter}; {diameter} is a straight tube"),
             );
-            return None;
         }
         return Some(width + 0.0);
     };
     if amplitude > tube.radius {
-        context.refuse(
+        return context.refuse(
             ProblemKind::Inconsistent,
             &["drive.amplitude", "tube.radius"],
             format!(
@@ -64,7 +63,6 @@ fn width(
                 tube.radius
             ),
         );
-        return None;
     }
     Some(2.0 * (tube.radius - amplitude))
 }

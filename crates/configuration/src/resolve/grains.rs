@@ -15,7 +15,7 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     let mut grains = keys.grains;
     let (diameter_min, diameter_max) = (grains.diameter_min, grains.diameter_max);
     if diameter_min > diameter_max {
-        context.refuse(
+        return context.refuse(
             ProblemKind::Inconsistent,
             &["grains.diameter_min", "grains.diameter_max"],
             format!(
@@ -24,7 +24,6 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
             "diameters are uniform between diameter_min and diameter_max; give both (each is 1 if missing)"
                 .into(),
         );
-        return None;
     }
     let square = tube.radius * tube.radius;
     let length = tube.length();
@@ -42,13 +41,12 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
     let within = number <= limits::MOST_GRAINS as f64;
     if !within {
         let key = context.written(NUMBERS);
-        context.refuse(
+        return context.refuse(
             ProblemKind::OutOfRange,
             &[key],
             format!("{key} makes {number} grains in this tube, which is beyond reach"),
             format!("at most {} grains", limits::MOST_GRAINS),
         );
-        return None;
     }
     grains.number = number as u64;
     Some(grains)

@@ -275,8 +275,14 @@ impl Context<'_> {
         found.copied().unwrap_or(keys[0])
     }
 
-    /// A problem with the values of some keys together, the first being to blame.
-    fn refuse(&mut self, kind: ProblemKind, keys: &[&str], message: String, help: String) {
+    /// Notes a problem with the values of some keys together, the first being to blame; always `None`.
+    fn refuse<T>(
+        &mut self,
+        kind: ProblemKind,
+        keys: &[&str],
+        message: String,
+        help: String,
+    ) -> Option<T> {
         let mut places: Vec<(&str, Origin)> = keys
             .iter()
             .filter_map(|key| Some((*key, self.origin(key)?)))
@@ -288,6 +294,7 @@ impl Context<'_> {
             problem = problem.at(origin, format!("{key} = {}", shown(origin)));
         }
         self.problems.push(problem);
+        None
     }
 }
 
@@ -348,7 +355,7 @@ fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel>
     }
     let (kinetic_friction, static_friction) = (friction.kinetic_friction, friction.static_friction);
     if kinetic_friction > static_friction {
-        context.refuse(
+        return context.refuse(
             ProblemKind::Inconsistent,
             &["contact.kinetic_friction", "contact.static_friction"],
             format!(
@@ -358,7 +365,6 @@ fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel>
                 "kinetic friction is at most the static one: set contact.kinetic_friction to at most {static_friction} (both to 0 for frictionless grains)"
             ),
         );
-        return None;
     }
     let friction = (static_friction > 0.0).then_some(friction);
     Some(ContactModel { normal, friction })

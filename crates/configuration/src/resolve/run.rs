@@ -43,7 +43,7 @@ pub(super) fn run(
     let within = samples * steps_per_sample <= limits::MOST_STEPS as f64;
     if !within {
         let length = context.written(LENGTHS);
-        context.refuse(
+        return context.refuse(
             ProblemKind::OutOfRange,
             &[length, "run.time_step"],
             format!(
@@ -55,7 +55,6 @@ pub(super) fn run(
                 limits::MOST_STEPS as f64
             ),
         );
-        return None;
     }
     let neighbour_skin = if context.given("run.neighbour_skin") {
         keys.neighbour_skin
@@ -90,14 +89,13 @@ fn timing(
     let Some(period) = drive.period() else {
         if !context.given("run.duration") {
             let rate = context.written(RATES);
-            context.refuse(
+            return context.refuse(
                 ProblemKind::Inconsistent,
                 &["run.periods", rate],
                 format!("{rate} = 0 is a static wave, which has no period to count in"),
                 "give run.duration instead of run.periods (--set run.duration=100 replaces the preset's periods)"
                     .into(),
             );
-            return None;
         }
         let (duration, samples) = (keys.duration, SAMPLES_OF_A_STATIC_RUN as f64);
         return Some(Timing {
@@ -112,7 +110,7 @@ fn timing(
     let samples = rounded_up(given * per_period).max(1.0);
     if !(samples <= limits::MOST_SAMPLES as f64 && period.is_finite()) {
         let length = context.written(LENGTHS);
-        context.refuse(
+        return context.refuse(
             ProblemKind::OutOfRange,
             &[length, "observe.samples_per_period"],
             format!("a run of {samples:e} samples is beyond reach"),
@@ -121,7 +119,6 @@ fn timing(
                 limits::MOST_SAMPLES as f64
             ),
         );
-        return None;
     }
     let periods = samples / per_period;
     Some(Timing {

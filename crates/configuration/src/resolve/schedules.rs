@@ -24,13 +24,12 @@ pub(super) fn schedules(
     context: &mut Context<'_>,
 ) -> Option<Vec<Schedule>> {
     if keys.ramp_periods.is_some() && keys.schedule.is_none() {
-        context.refuse(
+        return context.refuse(
             ProblemKind::Inconsistent,
             &["drive.ramp_periods"],
             "drive.ramp_periods is given without a ramp".into(),
             "add drive.schedule = \"ramp\", or remove drive.ramp_periods".into(),
         );
-        return None;
     }
     let tables = match keys.schedule.as_ref() {
         None | Some(ScheduleKeys::Named(ScheduleName::Sudden)) => return Some(Vec::new()),
@@ -71,21 +70,21 @@ pub(super) fn schedules(
 }
 
 fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTableKeys> {
-    if keys.ramp_periods.is_none() {
-        context.refuse(
+    let Some(end) = keys.ramp_periods else {
+        return context.refuse(
             ProblemKind::Missing,
             &[KEY],
             "drive.schedule = \"ramp\" needs drive.ramp_periods".into(),
             "drive.ramp_periods = 2 lets the amplitude grow from nothing within two periods".into(),
         );
-    }
+    };
     Some(ScheduleTableKeys {
         form: ScheduleFormName::Ramp,
         parameter: None,
         from: None,
         to: None,
         start: None,
-        end: Some(keys.ramp_periods?),
+        end: Some(end),
         at: None,
         values: None,
     })

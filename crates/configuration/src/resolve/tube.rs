@@ -11,7 +11,7 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
     // Three factors below 2^20 each: no overflow in 64 bits.
     let spheres = tube.wall_spheres();
     if spheres > limits::MOST_WALL_SPHERES {
-        context.refuse(
+        context.refuse::<()>(
             ProblemKind::OutOfRange,
             &["tube.waves", "tube.rings_per_wave", "tube.spheres_per_ring"],
             format!("a tube of {spheres} wall spheres is beyond reach"),
@@ -24,10 +24,10 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
 }
 
 /// Alternate rings are turned: the pattern closes at the seam of an even number of rings.
-fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
+fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) -> Option<()> {
     let rings = tube.rings_per_wave;
     if rings.is_multiple_of(2) {
-        return;
+        return Some(());
     }
     let neighbours = |number: u32| match number {
         1 => "2".to_owned(),
@@ -55,7 +55,7 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
                 neighbours(rings)
             ),
         ),
-        Control::Stress { .. } => {}
+        Control::Stress { .. } => Some(()),
     }
 }
 
@@ -65,7 +65,7 @@ pub(super) fn check_length(tube: &Tube, reach: f64, context: &mut Context<'_>) {
     if length > 2.0 * reach {
         return;
     }
-    context.refuse(
+    context.refuse::<()>(
         ProblemKind::Inconsistent,
         &["tube.wavelength", "tube.waves"],
         format!(

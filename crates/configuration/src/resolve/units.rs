@@ -57,6 +57,5 @@ pub(super) fn units(
         "length, mass and time follow from units.grain_diameter (m), units.density (kg/m^3) and units.stiffness (N/m; \
          contact.law = \"linear\") or units.young_modulus (Pa; \"hertz\"): give all three"
             .into(),
-    );
-    None
+    )
 }

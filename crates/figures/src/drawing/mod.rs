@@ -232,7 +232,6 @@ impl Drawing {
     }
 
     /// Pixels across and down of [`Drawing::png`].
-    #[must_use]
     pub fn size(&self) -> [u32; 2] {
         [self.width, self.height].map(|length| (length * self.pixels_per_point).round() as u32)
     }

@@ -26,7 +26,6 @@ pub enum FilmFormat {
 
 impl FilmFormat {
     /// How names of its files end.
-    #[must_use]
     pub fn extension(self) -> &'static str {
         match self {
             Self::Gif => "gif",
