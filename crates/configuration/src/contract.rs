@@ -47,7 +47,7 @@ impl Contract<'_> {
                 self.item(&entry.item, inner, &full);
                 continue;
             }
-            let help = match suggestion::nearest_key(&full, self.known) {
+            let help = match suggestion::nearest(&full, self.known.iter().map(String::as_str)) {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("known here: {}", names_of(properties)),
             };

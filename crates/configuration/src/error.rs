@@ -99,18 +99,6 @@ pub struct Label {
 }
 
 impl Label {
-    pub(crate) fn new(origin: &Origin, message: impl Into<String>) -> Self {
-        let text = &origin.source.text;
-        let [start, end] =
-            [origin.span.start, origin.span.end].map(|byte| text.floor_char_boundary(byte));
-        Self {
-            source_name: Arc::clone(&origin.source.name),
-            source_text: Arc::clone(text),
-            span: start..end.max(start),
-            message: message.into(),
-        }
-    }
-
     /// Line and column of the place, both from 1.
     pub fn line_and_column(&self) -> (usize, usize) {
         line_and_column(&self.source_text, self.span.start)
@@ -172,7 +160,14 @@ impl Problem {
         if self.labels.is_empty() {
             self.order = (origin.source.kind, origin.span.start);
         }
-        self.labels.push(Label::new(origin, message));
+        let Origin { source, span } = origin;
+        let [start, end] = [span.start, span.end].map(|byte| source.text.floor_char_boundary(byte));
+        self.labels.push(Label {
+            source_name: Arc::clone(&source.name),
+            source_text: Arc::clone(&source.text),
+            span: start..end.max(start),
+            message: message.into(),
+        });
         self
     }
 }

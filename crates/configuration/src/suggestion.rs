@@ -31,46 +31,23 @@ fn tolerance(word: &str) -> usize {
 /// A word no user meant: longer than any name by far. Distances to it would only cost time.
 const LONGEST_WORD: usize = 64;
 
-/// The candidate nearest to `word`, if one is near.
-pub(crate) fn nearest<'a>(
-    word: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
-    if word.len() > LONGEST_WORD {
-        return None;
-    }
-    candidates
-        .into_iter()
-        .map(|candidate| (edit_distance(word, candidate), candidate))
-        .filter(|(distance, _)| *distance <= tolerance(word))
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
-/// The known key nearest to an unknown one: by its last name, in its own table before others.
+/// The known key nearest to an unknown one, if one is near: by its last name, in its own table before others.
 ///
-/// `path` is the unknown key's full path, `known` the full paths of all keys.
-pub(crate) fn nearest_key<'a>(path: &str, known: &'a [String]) -> Option<&'a str> {
+/// `path` is the unknown key's full path, `known` the full paths of all keys; or a word and the words that there are.
+pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let split = |path: &'a str| path.rsplit_once('.').unwrap_or(("", path));
     let (table, name) = path.rsplit_once('.').unwrap_or(("", path));
     if name.len() > LONGEST_WORD {
         return None;
     }
-    known
-        .iter()
-        .map(|candidate| {
-            let (other_table, other_name) = candidate
-                .rsplit_once('.')
-                .unwrap_or(("", candidate.as_str()));
-            let distance = edit_distance(name, other_name);
-            (
-                2 * distance + usize::from(table != other_table),
-                distance,
-                candidate.as_str(),
-            )
-        })
-        .filter(|(_, distance, _)| *distance <= tolerance(name))
-        .min_by_key(|(rank, _, _)| *rank)
-        .map(|(_, _, candidate)| candidate)
+    let distances = known.into_iter().map(|candidate| {
+        let (other_table, other_name) = split(candidate);
+        let is_elsewhere = table != other_table;
+        (edit_distance(name, other_name), is_elsewhere, candidate)
+    });
+    let near = distances.filter(|(distance, ..)| *distance <= tolerance(name));
+    let nearest = near.min_by_key(|(distance, is_elsewhere, _)| (*distance, *is_elsewhere));
+    nearest.map(|(.., candidate)| candidate)
 }
 
 #[cfg(test)]
@@ -87,21 +64,20 @@ mod tests {
 
     #[test]
     fn own_table_first_then_others_then_nothing() {
-        let known: Vec<String> = [
+        let known = [
             "drive.width",
             "tube.waves",
             "wall.drag",
             "drive.strain_rate",
-        ]
-        .map(Into::into)
-        .into();
-        assert_eq!(nearest_key("drive.widht", &known), Some("drive.width"));
-        assert_eq!(nearest_key("width", &known), Some("drive.width"));
-        assert_eq!(
-            nearest_key("tube.strain_rat", &known),
-            Some("drive.strain_rate")
-        );
-        assert_eq!(nearest_key("tube.colour", &known), None);
+        ];
+        for (path, expected) in [
+            ("drive.widht", Some("drive.width")),
+            ("width", Some("drive.width")),
+            ("tube.strain_rat", Some("drive.strain_rate")),
+            ("tube.colour", None),
+        ] {
+            assert_eq!(nearest(path, known), expected, "{path}");
+        }
         assert_eq!(nearest("jamed", ["rest", "jammed"]), Some("jammed"));
     }
 }

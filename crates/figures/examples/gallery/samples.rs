@@ -20,7 +20,6 @@ pub(crate) fn all() -> Vec<(&'static str, Drawing)> {
         ("flow", flow(120)),
         ("widths", widths()),
         ("times", times()),
-        ("jump", jump()),
         ("panels", panels()),
         ("hysteresis", hysteresis()),
         ("histogram", histogram()),
@@ -155,25 +154,6 @@ fn times() -> Drawn {
     }
     let reference = Reference::vertical(2.9).label("*w*_{max}");
     ChartFigure::new(panel.with(reference.pattern(Pattern::Dashed))).draw()
-}
-
-/// Stationary flow with its jump, and a Newtonian fluid for comparison.
-fn jump() -> Drawn {
-    let mut noise = noise(8);
-    let mut panel = panel(Quantity::Width, Quantity::FlowRateRatio).y_range(0.0..=1.08);
-    for (series, critical) in [2.76, 2.83, 2.63].into_iter().enumerate() {
-        let widths = spaced(2.3, 3.0, 15);
-        let ratios = map(&widths, |w| {
-            let level = if w < critical { 0.96 } else { 0.24 };
-            level - 0.15 * (w - critical) + 0.012 * noise()
-        });
-        let name = format!("*w*_{{c}} = {critical}");
-        let points = Points::new(&name, &widths, &ratios).y_errors(&[0.02; 15]);
-        panel = panel.with(points.series(series).joined());
-    }
-    let fine = spaced(2.3, 3.0, 60);
-    let fluid = Line::new("Newtonian fluid", &fine, &map(&fine, |w| 0.2 * (3.0 - w)));
-    ChartFigure::new(panel.with(fluid.tint(Tint::Black).pattern(Pattern::Dashed))).draw()
 }
 
 /// Four small panels with both axes shared, on which ticks are hardest.

@@ -163,7 +163,7 @@ impl Spaces {
         };
         let mut left: Vec<f64> = (0..columns).map(names).collect();
         let right = match &figure.colour_scale {
-            Some(scale) if !figure.has_bar_below => scale.space(height),
+            Some(scale) if !figure.equal_scales => scale.space(height),
             _ => RIGHT_MARGIN,
         };
         // The numbers at the ends of a horizontal axis reach over it, nearly alike for nearly equal widths.

@@ -60,7 +60,7 @@ use paint::Painter;
 use placement::Obstacles;
 
 /// A figure of one or several panels.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 #[must_use]
 pub struct ChartFigure {
     title: String,
@@ -72,10 +72,8 @@ pub struct ChartFigure {
     equal_scales: bool,
     shares_x: bool,
     shares_y: bool,
-    has_letters: bool,
     legend: LegendPlace,
     colour_scale: Option<ColourScale>,
-    has_bar_below: bool,
 }
 
 /// Where the meanings of the layers are written.
@@ -105,19 +103,9 @@ impl ChartFigure {
     pub fn grid(columns: usize, panels: impl IntoIterator<Item = ChartPanel>) -> Self {
         let panels: Vec<ChartPanel> = panels.into_iter().collect();
         Self {
-            title: String::new(),
-            description: String::new(),
             columns: columns.clamp(1, panels.len().max(1)),
-            has_letters: panels.len() > 1,
             panels,
-            width: Width::SingleColumn,
-            panel_height: None,
-            equal_scales: false,
-            shares_x: false,
-            shares_y: false,
-            legend: LegendPlace::Inside,
-            colour_scale: None,
-            has_bar_below: false,
+            ..Self::default()
         }
     }
 
@@ -148,7 +136,7 @@ impl ChartFigure {
     /// Panels of places: one length on both axes of the first panel, whose height all have, no letters, and the bar of
     /// colours below.
     pub(crate) fn equal_scales(mut self) -> Self {
-        (self.equal_scales, self.has_letters, self.has_bar_below) = (true, false, true);
+        self.equal_scales = true;
         self
     }
 
@@ -203,7 +191,7 @@ impl ChartFigure {
         let below = self.draw_panels(&mut drawing, &layout, scale.as_ref());
         let mut bottom = layout.bottom;
         if let Some(scale) = &scale {
-            if self.has_bar_below {
+            if self.equal_scales {
                 bottom += scale.draw_bar_below(&mut drawing, layout.span(), bottom);
             } else {
                 scale.draw_bar_beside(&mut drawing, layout.span());
@@ -275,7 +263,8 @@ impl ChartFigure {
     /// Letter and title of a panel.
     fn header(&self, number: usize) -> String {
         let title = &self.panels[number].title;
-        match (self.has_letters, title.is_empty()) {
+        let has_letter = self.panels.len() > 1 && !self.equal_scales;
+        match (has_letter, title.is_empty()) {
             (false, _) => title.clone(),
             (true, true) => format!("({})", letter(number)),
             (true, false) => format!("({})  {title}", letter(number)),

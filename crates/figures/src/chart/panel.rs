@@ -20,7 +20,7 @@ pub struct ChartPanel {
 }
 
 /// What is wanted of an axis.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct AxisWish {
     pub(super) label: String,
     pub(super) scale: Scale,
@@ -91,9 +91,7 @@ impl AxisWish {
     fn new(label: &str) -> Self {
         Self {
             label: label.to_owned(),
-            scale: Scale::Linear,
-            least: None,
-            largest: None,
+            ..Self::default()
         }
     }
 
