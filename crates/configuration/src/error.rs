@@ -21,10 +21,10 @@ impl ConfigurationError {
     /// # Errors
     /// The problems.
     pub fn all(problems: Vec<Problem>) -> Result<(), Self> {
-        match problems.is_empty() {
-            true => Ok(()),
-            false => Err(Self { problems }),
+        if problems.is_empty() {
+            return Ok(());
         }
+        Err(Self { problems })
     }
 
     /// The problems, at least one.

@@ -1,5 +1,6 @@
 //! Layers over one another: alternatives that exclude each other, and keys that a choice above makes meaningless.
 
+use std::collections::BTreeMap;
 use std::sync::LazyLock;
 
 use peristalsis_physics::contact::{Normal, NormalLaw};
@@ -12,42 +13,36 @@ use crate::schema::{self, Choice};
 use crate::units;
 
 /// A key whose value decides which other keys have a meaning.
+#[derive(Default)]
 struct Switch {
     key: String,
     /// Keys that belong to some of its values, with these values.
-    owned: Vec<(String, Vec<String>)>,
+    owned: BTreeMap<String, Vec<String>>,
     /// Keys that are dropped whenever a higher layer changes the switch.
     reset: &'static [&'static str],
 }
 
 impl Switch {
     fn new(key: impl Into<String>, reset: &'static [&'static str]) -> Self {
+        let key = key.into();
         Self {
-            key: key.into(),
-            owned: Vec::new(),
+            key,
             reset,
+            ..Self::default()
         }
     }
 
     /// Notes that a key belongs to a value.
     fn owns(&mut self, value: &str, key: impl Into<String>) {
-        let key = key.into();
-        match self.owned.iter_mut().find(|(owned, _)| *owned == key) {
-            Some((_, values)) => values.push(value.to_owned()),
-            None => self.owned.push((key, vec![value.to_owned()])),
-        }
+        let values = self.owned.entry(key.into()).or_default();
+        values.push(value.to_owned());
     }
 
     /// Keys, each with the values that it belongs to, that have no meaning under a choice.
-    fn meaningless<'a>(
-        &'a self,
-        chosen: Option<&'a str>,
-    ) -> impl Iterator<Item = (&'a str, &'a [String])> {
-        let owned = self
-            .owned
-            .iter()
-            .map(|(key, values)| (key.as_str(), values.as_slice()));
-        owned.filter(move |(_, values)| !values.iter().any(|value| Some(value.as_str()) == chosen))
+    fn meaningless(&self, chosen: Option<&str>) -> impl Iterator<Item = (&String, &Vec<String>)> {
+        let has_chosen = move |values: &[String]| values.iter().any(|it| Some(&**it) == chosen);
+        let owned = self.owned.iter();
+        owned.filter(move |(_, values)| !has_chosen(values))
     }
 }
 
@@ -113,18 +108,17 @@ pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
 /// Lays `layer` over `base`.
 pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) {
     for group in ALTERNATIVES {
-        let given: Vec<&str> = group
-            .iter()
-            .copied()
-            .filter(|key| document::entry(&layer, key).is_some())
-            .collect();
-        if given.len() > 1 {
-            refuse_two(&layer, &given, group, problems);
+        let given = group.iter().copied();
+        let given = given.filter_map(|key| Some((key, document::entry(&layer, key)?)));
+        let given: Vec<(&str, &Entry)> = given.collect();
+        if given.is_empty() {
+            continue;
         }
-        if !given.is_empty() {
-            for key in group {
-                document::remove(base, key);
-            }
+        if given.len() > 1 {
+            problems.push(conflict(&given, group));
+        }
+        for key in group {
+            document::remove(base, key);
         }
     }
     for switch in &*SWITCHES {
@@ -137,23 +131,20 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
     merge(base, layer);
 }
 
-fn refuse_two(layer: &Table, given: &[&str], group: &[&str], problems: &mut Problems) {
-    let mut entries: Vec<(&str, &Entry)> = given
-        .iter()
-        .filter_map(|key| Some((*key, document::entry(layer, key)?)))
-        .collect();
-    entries.sort_by_key(|(_, entry)| entry.key.span.start);
-    let message = format!(
-        "{} exclude one another; exactly one is given",
-        list(given, "and")
-    );
+/// The problem of several keys of a group of alternatives.
+fn conflict(given: &[(&str, &Entry)], group: &[&str]) -> Problem {
+    let names: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
+    let names = list(&names, "and");
+    let message = format!("{names} exclude one another; exactly one is given");
+    let mut given = given.to_vec();
+    given.sort_by_key(|(_, entry)| entry.key.span.start);
     let mut problem = Problem::new(ProblemKind::Conflict, message)
-        .key(entries[0].0)
+        .key(given[0].0)
         .help(format!("keep one of {}", list(group, "or")));
-    for (key, entry) in &entries {
+    for (key, entry) in given {
         problem = problem.at(&entry.key, format!("{key} is given here"));
     }
-    problems.push(problem);
+    problem
 }
 
 /// Takes out of `base` what a choice in `layer` leaves without meaning.

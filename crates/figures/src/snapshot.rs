@@ -119,13 +119,10 @@ impl SnapshotFigure<'_> {
             for number in 0..rows {
                 let is_last = index + 1 == parts.len() && number + 1 == rows;
                 let common_extent = if is_one_extent { &*extents[0] } else { "" };
-                let name = match is_last {
-                    true => with_extent("*z*/*d*", common_extent),
-                    false => String::new(),
-                };
+                let name = is_last.then(|| with_extent("*z*/*d*", common_extent));
                 let title = if number == 0 { &*header } else { "" };
                 let from = row * number as f64;
-                let panel = ChartPanel::new(&name, "*x*/*d*")
+                let panel = ChartPanel::new(&name.unwrap_or_default(), "*x*/*d*")
                     .title(title)
                     .x_range(from..=from + row)
                     .y_range(-reach * (1.0 + MARGIN)..=reach * (1.0 + MARGIN));

@@ -246,17 +246,20 @@ mod tests {
 
     const WHITE: [u8; 3] = [255; 3];
 
+    fn on_white(spheres: Vec<Sphere>) -> Scene {
+        let background = Colour::srgb(255, 255, 255);
+        Scene {
+            spheres,
+            background,
+        }
+    }
+
     #[test]
     fn the_nearer_sphere_is_seen_and_nothing_beside_them() {
         let (red, blue) = (Colour::srgb(200, 30, 30), Colour::srgb(30, 30, 200));
         for (red_depth, expected) in [(1.0, 0), (-1.0, 2)] {
-            let scene = Scene {
-                spheres: vec![
-                    sphere(0.0, red_depth, red, Finish::Opaque),
-                    sphere(0.0, 0.0, blue, Finish::Opaque),
-                ],
-                background: Colour::srgb(255, 255, 255),
-            };
+            let red = sphere(0.0, red_depth, red, Finish::Opaque);
+            let scene = on_white(vec![red, sphere(0.0, 0.0, blue, Finish::Opaque)]);
             let picture = render(&scene, &front(60)).unwrap();
             let middle = picture.pixel(30, 20);
             assert!(middle[expected] > 2 * middle[2 - expected], "{middle:?}");
@@ -270,10 +273,7 @@ mod tests {
     #[test]
     fn glass_lets_what_is_behind_through() {
         let (red, grey) = (Colour::srgb(200, 30, 30), Colour::srgb(180, 180, 180));
-        let mut scene = Scene {
-            spheres: vec![sphere(0.0, 0.0, red, Finish::Opaque)],
-            background: Colour::srgb(255, 255, 255),
-        };
+        let mut scene = on_white(vec![sphere(0.0, 0.0, red, Finish::Opaque)]);
         let plain = render(&scene, &front(60)).unwrap();
         scene.spheres.push(sphere(0.3, 2.0, grey, Finish::Glass));
         let veiled = render(&scene, &front(60)).unwrap();
@@ -288,10 +288,7 @@ mod tests {
     #[test]
     fn spheres_shade_their_neighbours() {
         let white = Colour::srgb(230, 230, 230);
-        let mut scene = Scene {
-            spheres: vec![sphere(0.0, 0.0, white, Finish::Opaque)],
-            background: Colour::srgb(255, 255, 255),
-        };
+        let mut scene = on_white(vec![sphere(0.0, 0.0, white, Finish::Opaque)]);
         let alone = render(&scene, &front(60)).unwrap();
         scene.spheres.push(sphere(1.0, 0.0, white, Finish::Opaque));
         let beside = render(&scene, &front(60)).unwrap();
@@ -312,12 +309,8 @@ mod tests {
         assert_eq!(picture.pixels(), [1, 2, 3].repeat(120));
         for (width, height) in [(0, 4), (1 << 20, 1 << 20)] {
             (view.width, view.height) = (width, height);
-            assert!(
-                render(&scene, &view)
-                    .unwrap_err()
-                    .to_string()
-                    .contains("pixels")
-            );
+            let refused = render(&scene, &view).unwrap_err().to_string();
+            assert!(refused.contains("pixels"), "{refused}");
         }
     }
 }

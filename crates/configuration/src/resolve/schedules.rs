@@ -1,7 +1,7 @@
 //! Schedules of the drive: by name or as tables, each checked at all times.
 
 use super::Context;
-use crate::canonical::name;
+use crate::canonical;
 use crate::configuration::{Control, Drive, Tube};
 use crate::document;
 use crate::error::{Problem, ProblemKind};
@@ -37,10 +37,9 @@ pub(super) fn schedules(
         Some(ScheduleKeys::One(table)) => vec![table.clone()],
         Some(ScheduleKeys::Several(tables)) => tables.clone(),
     };
-    let is_list = matches!(keys.schedule, Some(ScheduleKeys::Several(_)));
-    let place = |index: usize, part: &str| match is_list {
-        true => format!("{KEY}[{index}]{part}"),
-        false => format!("{KEY}{part}"),
+    let name = |index: usize| match &keys.schedule {
+        Some(ScheduleKeys::Several(_)) => format!("{KEY}[{index}]"),
+        _ => KEY.to_owned(),
     };
     if tables.is_empty() {
         return refuse(context, drive, &[KEY.into()], "the list is empty");
@@ -54,14 +53,14 @@ pub(super) fn schedules(
         match (Scope { drive, tube }).schedule(table) {
             Ok(schedule) => schedules.push((schedule, index)),
             Err(Refusal { part, message }) => {
-                return refuse(context, drive, &[place(index, &part)], &message);
+                return refuse(context, drive, &[name(index) + &part], &message);
             }
         }
     }
     schedules.sort_by_key(|(schedule, _)| schedule.parameter);
     for pair in schedules.windows(2) {
         if pair[0].0.parameter == pair[1].0.parameter {
-            let places = [place(pair[1].1, ""), place(pair[0].1, "")];
+            let places = [name(pair[1].1), name(pair[0].1)];
             return refuse(context, drive, &places, "two schedules for one parameter");
         }
     }
@@ -202,7 +201,7 @@ impl Scope<'_> {
     /// A value as written, in the unit of the resolved parameter.
     fn resolved(&self, value: f64, part: &str, target: &Target) -> Result<f64, Refusal> {
         if value > target.most {
-            let (name, most) = (name(target.written), target.most);
+            let (name, most) = (canonical::name(target.written), target.most);
             return refusal(part, format!("{name} = {value} is above {most}"));
         }
         Ok(match target.written {

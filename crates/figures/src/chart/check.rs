@@ -106,9 +106,10 @@ impl Check {
             Kind::Spheres(_) => Ok(()),
             Kind::Reference(reference) => {
                 let value = finite("value of a reference line", reference.value)?;
-                let axis = match reference.vertical {
-                    true => &mut self.x,
-                    false => &mut self.y,
+                let axis = if reference.vertical {
+                    &mut self.x
+                } else {
+                    &mut self.y
                 };
                 axis.push(&self.series, 0, value)
             }

@@ -53,22 +53,23 @@ fn segments(drawing: &Drawing, name: &str) -> Vec<[Point; 2]> {
     points.chunks(2).map(|ends| [ends[0], ends[1]]).collect()
 }
 
-fn close(found: (f64, f64), expected: (f64, f64)) -> bool {
-    (found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9
+/// Places on the page have these values, and there are no others.
+fn assert_values(drawing: &Drawing, found: &[Point], expected: &[(f64, f64)]) {
+    let value = ruler(drawing);
+    assert_eq!(found.len(), expected.len(), "{found:?}");
+    for (place, expected) in found.iter().zip(expected) {
+        let found = value(*place);
+        let is_close = (found.0 - expected.0).abs() < 1e-9 && (found.1 - expected.1).abs() < 1e-9;
+        assert!(is_close, "{found:?}, not {expected:?}");
+    }
 }
 
 #[test]
 fn points_stand_at_their_values_and_gaps_are_left_out() {
-    let drawing = figure(panel().with(Points::new(
-        "a",
-        &[1.0, f64::NAN, 5.0, 12.0],
-        &[2.0, 3.0, 10.0, 4.0],
-    )));
-    let value = ruler(&drawing);
-    let found = marks(&drawing);
-    let places: Vec<(f64, f64)> = found[0].1.iter().map(|&place| value(place)).collect();
-    assert_eq!(places.len(), 2, "neither the gap nor the point outside");
-    assert!(close(places[0], (1.0, 2.0)) && close(places[1], (5.0, 10.0)));
+    let (x, y) = ([1.0, f64::NAN, 5.0, 12.0], [2.0, 3.0, 10.0, 4.0]);
+    let drawing = figure(panel().with(Points::new("a", &x, &y)));
+    // Neither the gap nor the point outside.
+    assert_values(&drawing, &marks(&drawing)[0].1, &[(1.0, 2.0), (5.0, 10.0)]);
 }
 
 #[test]
@@ -77,12 +78,8 @@ fn errors_reach_below_and_above() {
         .y_errors(&[3.0])
         .x_errors(&[f64::NAN]);
     let drawing = figure(panel().with(points));
-    let value = ruler(&drawing);
-    let bars: Vec<[(f64, f64); 2]> = segments(&drawing, "error bars")
-        .into_iter()
-        .map(|bar| bar.map(&value))
-        .collect();
-    assert!(close(bars[0][0], (4.0, 2.0)) && close(bars[0][1], (4.0, 8.0)));
+    let bars = segments(&drawing, "error bars");
+    assert_values(&drawing, &bars[0], &[(4.0, 2.0), (4.0, 8.0)]);
     assert_eq!(bars.len(), 3, "an unknown error has neither bar nor cap");
 }
 
@@ -101,18 +98,11 @@ fn a_lower_limit_is_open_and_has_an_arrow_upwards() {
 #[test]
 fn arrows_of_lower_limits_stay_in_the_panel() {
     let points = Points::new("a", &[2.0, 4.0], &[3.0, 5.0]).lower_limits(&[false, true]);
-    let drawing = figure(
-        ChartPanel::new("x", "y")
-            .y_scale(Scale::Logarithmic)
-            .with(points),
-    );
+    let panel = ChartPanel::new("x", "y").y_scale(Scale::Logarithmic);
+    let drawing = figure(panel.with(points));
     let (_, _, _, top) = outline(&drawing);
-    assert!(
-        segments(&drawing, "error bars")
-            .iter()
-            .flatten()
-            .all(|end| end.y > top)
-    );
+    let bars = segments(&drawing, "error bars");
+    assert!(bars.iter().flatten().all(|end| end.y > top));
 }
 
 #[test]
@@ -171,12 +161,8 @@ fn a_legend_without_room_goes_below_the_figure() {
     let y: Vec<f64> = (0..=200).map(|index| f64::from(index % 2) * 10.0).collect();
     let drawing = figure(panel().with(Line::new("noise", &x, &y)));
     let (_, bottom, ..) = outline(&drawing);
-    assert!(
-        drawing
-            .texts("legend")
-            .iter()
-            .all(|(start, _)| start.y > bottom)
-    );
+    let texts = drawing.texts("legend");
+    assert!(texts.iter().all(|(start, _)| start.y > bottom));
 }
 
 #[test]
@@ -197,25 +183,14 @@ fn steps_and_bars_hold_their_heights() {
             .with(Line::new("", &[1.0, 4.0, 6.0], &[8.0, 3.0, 3.0]).stepped())
             .with(Bars::new("", &[0.0, 1.0, 2.0], &[2.0, 5.0])),
     );
-    let value = ruler(&drawing);
-    let points = drawing.paths("lines")[0].points();
-    assert!(close(value(points[1]), (4.0, 8.0)) && close(value(points[2]), (4.0, 3.0)));
-    let points = drawing.paths("bars")[0].points();
-    let corners = [
-        (0.0, 0.0),
-        (0.0, 2.0),
-        (1.0, 2.0),
-        (1.0, 5.0),
-        (2.0, 5.0),
-        (2.0, 0.0),
-    ];
-    assert_eq!(points.len(), corners.len());
-    assert!(
-        points
-            .iter()
-            .zip(corners)
-            .all(|(&point, corner)| close(value(point), corner))
+    let steps = &drawing.paths("lines")[0].points()[1..3];
+    assert_values(&drawing, steps, &[(4.0, 8.0), (4.0, 3.0)]);
+    let (x, y) = (
+        [0.0, 0.0, 1.0, 1.0, 2.0, 2.0],
+        [0.0, 2.0, 2.0, 5.0, 5.0, 0.0],
     );
+    let corners: Vec<(f64, f64)> = x.into_iter().zip(y).collect();
+    assert_values(&drawing, &drawing.paths("bars")[0].points(), &corners);
 }
 
 #[test]
@@ -223,32 +198,19 @@ fn a_row_that_is_not_finite_cuts_the_curve() {
     let x = [0.0, 1.0, 2.0, f64::INFINITY, 4.0];
     let y = [1.0, f64::NAN, 3.0, 4.0, 5.0];
     let drawing = figure(panel().with(Line::new("", &x, &y)));
-    let value = ruler(&drawing);
-    let pieces: Vec<Vec<Point>> = drawing
-        .paths("lines")
-        .iter()
-        .map(|it| it.points())
-        .collect();
-    let heights = pieces.iter().flatten().map(|&place| value(place).1);
-    assert_eq!(pieces.iter().map(Vec::len).collect::<Vec<_>>(), [1, 1, 1]);
-    assert!(
-        heights
-            .zip([1.0, 3.0, 5.0])
-            .all(|(found, expected)| (found - expected).abs() < 1e-9)
-    );
+    let pieces = drawing.paths("lines");
+    assert_eq!(pieces.len(), 3);
+    for (piece, place) in pieces.iter().zip([(0.0, 1.0), (2.0, 3.0), (4.0, 5.0)]) {
+        assert_values(&drawing, &piece.points(), &[place]);
+    }
 }
 
 #[test]
 fn a_band_runs_forth_above_and_back_below() {
     let band = Band::new("", &[1.0, 2.0], &[1.5, 2.75], &[2.5, 3.25]);
     let drawing = figure(panel().with(band));
-    let value = ruler(&drawing);
     let corners = [(1.0, 2.5), (2.0, 3.25), (2.0, 2.75), (1.0, 1.5)];
-    let found = drawing.paths("bands")[0].points();
-    assert_eq!(found.len(), corners.len());
-    for (point, corner) in found.into_iter().zip(corners) {
-        assert!(close(value(point), corner), "{corner:?}");
-    }
+    assert_values(&drawing, &drawing.paths("bands")[0].points(), &corners);
 }
 
 #[test]
