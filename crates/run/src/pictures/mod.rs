@@ -102,11 +102,8 @@ fn title(configuration: &Configuration) -> String {
 
 /// What sets a run apart from most: its waveform, its body force.
 fn particular(configuration: &Configuration) -> Option<String> {
-    let waveform = match configuration.drive.waveform {
-        Waveform::Sine => None,
-        Waveform::Bolus => Some("bolus".to_owned()),
-        Waveform::Roller => Some("roller".to_owned()),
-    };
+    let waveform = configuration.drive.waveform;
+    let waveform = (waveform != Waveform::Sine).then(|| format!("{waveform:?}").to_lowercase());
     let force = configuration.drive.body_force;
     let force = (force != 0.0).then(|| format!("*g* = {force}").replace('-', "−"));
     let words: Vec<String> = waveform.into_iter().chain(force).collect();
