@@ -4,8 +4,10 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
-use peristalsis_run::{Span, Window};
+use peristalsis_engine::Instructions;
+use peristalsis_run::{Span, TrajectoryFormat, Window};
 
+use crate::choice::{INSTRUCTIONS, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
 use crate::commands::study::{StudyCommand, time_span};
@@ -67,17 +69,6 @@ pub(crate) struct ConfigurationArguments {
     pub(crate) overrides: Vec<String>,
 }
 
-/// Instructions that the fast kernels can be held to; the results are the same bits.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(crate) enum InstructionSet {
-    /// 512-bit registers
-    Avx512,
-    /// 256-bit registers
-    Avx2,
-    /// what every processor of the kind has
-    Plain,
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
@@ -89,8 +80,8 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Instructions to compute with; the default is the widest that the machine has.
-    #[arg(long, value_name = "SET", value_enum)]
-    pub(crate) instructions: Option<InstructionSet>,
+    #[arg(long, value_name = "SET", value_parser = one_of(INSTRUCTIONS))]
+    pub(crate) instructions: Option<Instructions>,
     /// Go on with a run that was stopped, to the same bits as if it had not been.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "preset", "overrides", "out"])]
     pub(crate) resume: Option<PathBuf>,
@@ -107,17 +98,6 @@ pub(crate) struct RunArguments {
     pub(crate) quiet: bool,
 }
 
-/// Formats of trajectories.
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-pub(crate) enum FrameFormat {
-    /// General Simulation Data: OVITO, freud, Python's gsd
-    Gsd,
-    /// VTK polydata with contacts: ParaView, PyVista
-    Vtp,
-    /// LAMMPS dump text: OVITO, VMD
-    Lammps,
-}
-
 /// Which frames a run leaves beside its record.
 #[derive(Debug, Args)]
 pub(crate) struct FrameArguments {
@@ -125,11 +105,11 @@ pub(crate) struct FrameArguments {
     #[arg(
         long,
         value_name = "FORMAT,...",
-        value_enum,
+        value_parser = one_of(TRAJECTORIES),
         value_delimiter = ',',
         hide_possible_values = true
     )]
-    pub(crate) trajectory: Vec<FrameFormat>,
+    pub(crate) trajectory: Vec<TrajectoryFormat>,
     /// Time between two frames, in periods or, as in 2.5t, in time; a tenth of a period unless given.
     #[arg(long, value_name = "SPAN", requires = "trajectory")]
     pub(crate) trajectory_every: Option<Span>,
@@ -147,12 +127,12 @@ pub(crate) struct TrajectoryArguments {
     #[arg(
         long = "format",
         value_name = "FORMAT,...",
-        value_enum,
+        value_parser = one_of(TRAJECTORIES),
         value_delimiter = ',',
         default_value = "gsd",
         hide_possible_values = true
     )]
-    pub(crate) formats: Vec<FrameFormat>,
+    pub(crate) formats: Vec<TrajectoryFormat>,
     /// How long to go on from the saved state, in periods or, as in 40t, in time; 0 is the state alone.
     #[arg(long, value_name = "SPAN", default_value = "0")]
     pub(crate) duration: Span,

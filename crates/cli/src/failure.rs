@@ -88,153 +88,38 @@ impl Failure {
         }
     }
 
-    fn exit_code(&self) -> u8 {
+    /// The exit code, and what to do.
+    fn advice(&self) -> Advice {
         match self {
-            Self::Configuration(_)
-            | Self::Read { .. }
-            | Self::Usage { .. }
-            | Self::DoesNotFit { .. }
-            | Self::Viewer(
+            Self::Configuration(_) => (BAD_INPUT, None),
+            Self::Read { .. } => wrong(
+                "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one",
+            ),
+            Self::Usage { help, .. } => wrong(help),
+            Self::DoesNotFit { .. } => wrong(FEWER_GRAINS),
+            Self::Run(error) => of_run(error),
+            Self::Trajectory {
+                source: RunError::Format(FormatError::NotATrajectory { .. }),
+                ..
+            } => failed(FOREIGN_FRAMES),
+            Self::Trajectory { folder, .. } => failed(format!(
+                "nothing that was measured is lost: make room, then go on with: peristalsis run --resume {}",
+                folder.display()
+            )),
+            Self::Study(error) => of_study(error),
+            Self::Claim(error) => of_claim(error),
+            Self::Viewer(ViewerError::Listen { .. }) => {
+                failed("name another port with --port, or leave it out to get a free one")
+            }
+            Self::Viewer(
                 ViewerError::Trajectory(_)
                 | ViewerError::ForeignTrajectory { .. }
                 | ViewerError::NotRows { .. }
                 | ViewerError::Claims { .. },
-            ) => BAD_INPUT,
-            Self::Run(error) => match error {
-                RunError::HoldsAnotherRun { .. }
-                | RunError::Folder { .. }
-                | RunError::NothingToResume { .. }
-                | RunError::State { .. }
-                | RunError::Trajectory { .. }
-                | RunError::Picture { .. }
-                | RunError::Render(RenderError::NoFfmpeg { .. } | RenderError::Speed { .. })
-                | RunError::Format(FormatError::UnreadableTrajectory { .. })
-                | RunError::TooManyGrains { .. }
-                | RunError::NoMemory { .. }
-                | RunError::Configuration(_)
-                | RunError::Engine(
-                    EngineError::DoesNotFit { .. } | EngineError::InvalidParameter { .. },
-                ) => BAD_INPUT,
-                _ => FAILED,
-            },
-            Self::Study(error) => match error {
-                StudyError::Configuration(_)
-                | StudyError::Read { .. }
-                | StudyError::NoStore { .. }
-                | StudyError::OtherStudy { .. }
-                | StudyError::NoSuchRun { .. }
-                | StudyError::NotRows { .. }
-                | StudyError::Trial(_) => BAD_INPUT,
-                _ => FAILED,
-            },
-            Self::Claim(
-                ClaimError::NoSuchExperiment { .. }
-                | ClaimError::Folder { .. }
-                | ClaimError::Read { .. }
-                | ClaimError::NoPlace { .. },
-            ) => BAD_INPUT,
-            Self::Write { .. }
-            | Self::Trajectory { .. }
-            | Self::Claim(_)
-            | Self::Viewer(_)
-            | Self::Signals(_)
-            | Self::Output(_) => FAILED,
-        }
-    }
-
-    fn help(&self) -> Option<String> {
-        match self {
-            Self::Usage { help, .. } => Some(help.clone()),
-            Self::Run(RunError::HoldsAnotherRun { .. }) => {
-                Some("name another folder with --out, or go on with that run with --resume".to_owned())
+            ) => (BAD_INPUT, None),
+            Self::Write { .. } | Self::Viewer(_) | Self::Signals(_) | Self::Output(_) => {
+                (FAILED, None)
             }
-            Self::Run(RunError::State { path, source }) => Some(of_state(path, source)),
-            Self::Run(RunError::Trajectory { help, .. }) => Some((*help).to_owned()),
-            Self::Run(RunError::Picture { help, .. }) => Some(help.clone()),
-            Self::Run(RunError::Render(RenderError::NoFfmpeg { .. })) => Some(
-                "install ffmpeg or name it in the variable FFMPEG, or take a film that needs none: --format gif, --format apng"
-                    .to_owned(),
-            ),
-            Self::Run(RunError::Format(FormatError::UnreadableTrajectory { .. })) => Some(
-                "name a GSD trajectory that this program wrote, or let the frames be computed: --from state, --from start"
-                    .to_owned(),
-            ),
-            Self::Trajectory {
-                source: RunError::Format(FormatError::NotATrajectory { .. }),
-                ..
-            }
-            | Self::Run(RunError::Format(FormatError::NotATrajectory { .. })) => Some(
-                "put its files back, or go on without: move the folder's trajectory.toml and trajectory files away"
-                    .to_owned(),
-            ),
-            Self::Trajectory { folder, .. } => Some(format!(
-                "nothing that was measured is lost: make room, then go on with: peristalsis run --resume {}",
-                folder.display()
-            )),
-            Self::Read { .. } => Some(
-                "FILE is a text file in TOML, UTF-8; `peristalsis presets frictionless` prints one"
-                    .to_owned(),
-            ),
-            Self::DoesNotFit { .. }
-            | Self::Run(
-                RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }),
-            ) => Some(
-                "take fewer grains (grains.number, grains.volume_fraction, grains.number_density) or a wider tube \
-                 (drive.width, tube.radius)"
-                    .to_owned(),
-            ),
-            Self::Run(RunError::NoMemory { .. }) => Some(
-                "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)"
-                    .to_owned(),
-            ),
-            Self::Run(RunError::NothingToResume { folder, reason })
-                if folder.join("config.toml").is_file() && !reason.contains("complete") =>
-            {
-                Some(format!(
-                    "begin it anew in another folder: peristalsis run {} --out DIR",
-                    folder.join("config.toml").display()
-                ))
-            }
-            Self::Run(error @ RunError::Engine(EngineError::Diverged { .. })) => {
-                error.against_divergence().map(str::to_owned)
-            }
-            Self::Claim(ClaimError::NoSuchExperiment { kind, known, .. }) => {
-                Some(format!("{kind}s: {}", known.join(", ")))
-            }
-            Self::Claim(ClaimError::NoPlace { block, .. }) => Some(format!(
-                "put the lines <!-- validate {block} --> and <!-- /validate --> where the results are to stand"
-            )),
-            Self::Claim(ClaimError::Folder { .. }) => {
-                Some("name another folder with --out".to_owned())
-            }
-            Self::Viewer(ViewerError::Listen { .. }) => {
-                Some("name another port with --port, or leave it out to get a free one".to_owned())
-            }
-            Self::Claim(ClaimError::Format(_) | ClaimError::Figure(_)) => {
-                Some("nothing that was finished is lost: mend the disk and call again".to_owned())
-            }
-            Self::Study(StudyError::OtherStudy { .. }) => {
-                Some("name another folder with --store, or give the study its old `name`".to_owned())
-            }
-            Self::Study(StudyError::NoStore { .. }) => Some(
-                "a store is the folder that `peristalsis study run FILE --store DIR` made".to_owned(),
-            ),
-            Self::Study(error) if error.is_closed() => Some(
-                "nothing that was finished is lost: make the store writable for this user, or work in a copy of it"
-                    .to_owned(),
-            ),
-            Self::Study(
-                StudyError::Io { .. }
-                | StudyError::Format(_)
-                | StudyError::Index { .. }
-                | StudyError::Run {
-                    source: RunError::Format(_),
-                    ..
-                },
-            ) => {
-                Some("nothing that was finished is lost: mend the disk and call again".to_owned())
-            }
-            _ => None,
         }
     }
 
@@ -246,6 +131,7 @@ impl Failure {
         } else {
             Renderer::plain()
         };
+        let (code, help) = self.advice();
         match self {
             Self::Configuration(error)
             | Self::Run(RunError::Configuration(error))
@@ -255,14 +141,110 @@ impl Failure {
                 }
             }
             other => {
-                let (message, help) = (other.to_string(), other.help());
+                let message = other.to_string();
                 say(&renderer.render(&[with_help(
                     Group::with_title(Level::ERROR.primary_title(&message)),
                     help.as_deref(),
                 )]));
             }
         }
-        ExitCode::from(self.exit_code())
+        ExitCode::from(code)
+    }
+}
+
+/// An exit code, and what to do.
+type Advice = (u8, Option<String>);
+
+fn wrong(help: impl Into<String>) -> Advice {
+    (BAD_INPUT, Some(help.into()))
+}
+
+fn failed(help: impl Into<String>) -> Advice {
+    (FAILED, Some(help.into()))
+}
+
+const FEWER_GRAINS: &str = "take fewer grains (grains.number, grains.volume_fraction, grains.number_density) or a wider \
+                            tube (drive.width, tube.radius)";
+const FOREIGN_FRAMES: &str = "put its files back, or go on without: move the folder's trajectory.toml and trajectory files away";
+const MEND: &str = "nothing that was finished is lost: mend the disk and call again";
+
+fn of_run(error: &RunError) -> Advice {
+    match error {
+        RunError::HoldsAnotherRun { .. } => {
+            wrong("name another folder with --out, or go on with that run with --resume")
+        }
+        RunError::State { path, source } => wrong(of_state(path, source)),
+        RunError::Trajectory { help, .. } => wrong(*help),
+        RunError::Picture { help, .. } => wrong(help),
+        RunError::Render(RenderError::NoFfmpeg { .. }) => wrong(
+            "install ffmpeg or name it in the variable FFMPEG, or take a film that needs none: --format gif, --format apng",
+        ),
+        RunError::Format(FormatError::UnreadableTrajectory { .. }) => wrong(
+            "name a GSD trajectory that this program wrote, or let the frames be computed: --from state, --from start",
+        ),
+        RunError::Format(FormatError::NotATrajectory { .. }) => failed(FOREIGN_FRAMES),
+        RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
+            wrong(FEWER_GRAINS)
+        }
+        RunError::NoMemory { .. } => wrong(
+            "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",
+        ),
+        RunError::NothingToResume { folder, reason }
+            if folder.join("config.toml").is_file() && !reason.contains("complete") =>
+        {
+            wrong(format!(
+                "begin it anew in another folder: peristalsis run {} --out DIR",
+                folder.join("config.toml").display()
+            ))
+        }
+        RunError::Folder { .. }
+        | RunError::NothingToResume { .. }
+        | RunError::Render(RenderError::Speed { .. })
+        | RunError::Configuration(_)
+        | RunError::Engine(EngineError::InvalidParameter { .. }) => (BAD_INPUT, None),
+        _ => (FAILED, error.against_divergence().map(str::to_owned)),
+    }
+}
+
+fn of_study(error: &StudyError) -> Advice {
+    match error {
+        StudyError::OtherStudy { .. } => {
+            wrong("name another folder with --store, or give the study its old `name`")
+        }
+        StudyError::NoStore { .. } => {
+            wrong("a store is the folder that `peristalsis study run FILE --store DIR` made")
+        }
+        StudyError::Configuration(_)
+        | StudyError::Read { .. }
+        | StudyError::NoSuchRun { .. }
+        | StudyError::NotRows { .. }
+        | StudyError::Trial(_) => (BAD_INPUT, None),
+        error if error.is_closed() => failed(
+            "nothing that was finished is lost: make the store writable for this user, or work in a copy of it",
+        ),
+        StudyError::Io { .. }
+        | StudyError::Format(_)
+        | StudyError::Index { .. }
+        | StudyError::Run {
+            source: RunError::Format(_),
+            ..
+        } => failed(MEND),
+        _ => (FAILED, None),
+    }
+}
+
+fn of_claim(error: &ClaimError) -> Advice {
+    match error {
+        ClaimError::NoSuchExperiment { kind, known, .. } => {
+            wrong(format!("{kind}s: {}", known.join(", ")))
+        }
+        ClaimError::NoPlace { block, .. } => wrong(format!(
+            "put the lines <!-- validate {block} --> and <!-- /validate --> where the results are to stand"
+        )),
+        ClaimError::Folder { .. } => wrong("name another folder with --out"),
+        ClaimError::Read { .. } => (BAD_INPUT, None),
+        ClaimError::Format(_) | ClaimError::Figure(_) => failed(MEND),
+        _ => (FAILED, None),
     }
 }
 

@@ -6,6 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod choice;
 mod commands;
 mod failure;
 mod progress;

@@ -22,7 +22,8 @@ pub(crate) fn is_reserved(key: &str) -> bool {
 ///
 /// Two columns of reals are equal if they agree bit for bit, so 0.0 differs from -0.0; any NaN equals any other, since
 /// all of them mean "missing".
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize)]
+#[serde(untagged)]
 pub enum Values {
     /// Double-precision numbers; NaN is a missing value.
     Real(Vec<f64>),

@@ -1,6 +1,6 @@
 //! The drive of a run at any time, by its configuration, and the rows of its time series.
 
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
+use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use serde::Serialize;
@@ -16,30 +16,38 @@ pub(crate) struct Row {
     pub(crate) flow_rate_ratio: f64,
     pub(crate) bottleneck: f64,
     /// Width or force amplitude.
-    pub(crate) amplitude: f64,
-    pub(crate) strain_rate: f64,
+    pub(crate) amplitude: Option<f64>,
+    pub(crate) strain_rate: Option<f64>,
+}
+
+/// What belongs to each parameter that may have a slider; `None` for a parameter that cannot be changed.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Sliders<T> {
+    pub(crate) width: Option<T>,
+    pub(crate) force_amplitude: Option<T>,
+    pub(crate) strain_rate: Option<T>,
+    pub(crate) friction: Option<T>,
 }
 
 /// Present values of the driven parameters.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Driven {
-    pub(crate) width: Option<f64>,
-    pub(crate) force_amplitude: Option<f64>,
-    pub(crate) strain_rate: Option<f64>,
-    pub(crate) friction: Option<f64>,
-}
+pub(crate) type Driven = Sliders<f64>;
 
 impl Driven {
     pub(crate) fn of(run: &Run) -> Self {
+        Self::by(run.configuration(), |parameter| run.driven(parameter))
+    }
+
+    /// The values that the schedules lead to.
+    pub(crate) fn by(
+        configuration: &Configuration,
+        value: impl Fn(ScheduledParameter) -> Option<f64>,
+    ) -> Self {
+        let friction = configuration.contact.friction;
         Self {
-            width: run.driven(ScheduledParameter::Width),
-            force_amplitude: run.driven(ScheduledParameter::ForceAmplitude),
-            strain_rate: run.driven(ScheduledParameter::StrainRate),
-            friction: run
-                .configuration()
-                .contact
-                .friction
-                .map(|it| it.kinetic_friction),
+            width: value(ScheduledParameter::Width),
+            force_amplitude: value(ScheduledParameter::ForceAmplitude),
+            strain_rate: value(ScheduledParameter::StrainRate),
+            friction: friction.map(|it| it.kinetic_friction),
         }
     }
 }
@@ -68,19 +76,14 @@ impl Timeline<'_> {
         bottleneck: f64,
     ) -> Row {
         let clock = self.clock(time);
-        let amplitude = match self.0.drive.control {
-            Control::Strain { width } => self.value(ScheduledParameter::Width, width, clock),
-            Control::Stress {
-                force_amplitude, ..
-            } => self.value(ScheduledParameter::ForceAmplitude, force_amplitude, clock),
-        };
+        let driven = self.driven(clock);
         Row {
             number,
             clock,
             flow_rate_ratio,
             bottleneck,
-            amplitude,
-            strain_rate: self.strain_rate(clock),
+            amplitude: driven.width.or(driven.force_amplitude),
+            strain_rate: driven.strain_rate,
         }
     }
 
@@ -96,35 +99,11 @@ impl Timeline<'_> {
 
     /// The driven parameters at a time in periods.
     pub(crate) fn driven(self, clock: f64) -> Driven {
-        let (width, force_amplitude) = match self.0.drive.control {
-            Control::Strain { width } => (
-                Some(self.value(ScheduledParameter::Width, width, clock)),
-                None,
-            ),
-            Control::Stress {
-                force_amplitude, ..
-            } => (
-                None,
-                Some(self.value(ScheduledParameter::ForceAmplitude, force_amplitude, clock)),
-            ),
-        };
-        Driven {
-            width,
-            force_amplitude,
-            strain_rate: Some(self.strain_rate(clock)),
-            friction: self.0.contact.friction.map(|it| it.kinetic_friction),
-        }
-    }
-
-    fn strain_rate(self, clock: f64) -> f64 {
-        let constant = self.0.drive.strain_rate;
-        self.value(ScheduledParameter::StrainRate, constant, clock)
-    }
-
-    fn value(self, parameter: ScheduledParameter, constant: f64, clock: f64) -> f64 {
-        let mut schedules = self.0.drive.schedules.iter();
-        let known = schedules.find(|it| it.parameter == parameter);
-        known.map_or(constant, |schedule| schedule.value(clock))
+        Driven::by(self.0, |parameter| {
+            let own = self.0.drive.own(parameter)?;
+            let schedule = self.0.drive.schedule(parameter);
+            Some(schedule.map_or(own, |schedule| schedule.value(clock)))
+        })
     }
 }
 

@@ -5,7 +5,7 @@ use peristalsis_engine::Wall;
 use peristalsis_run::{Configuration, VERSION};
 use serde::Serialize;
 
-use crate::timeline::{Driven, Row, Timeline};
+use crate::timeline::{Driven, Row, Sliders, Timeline};
 use crate::within::Within;
 
 /// The tube and the ranges of its sliders.
@@ -52,38 +52,26 @@ pub(crate) struct Recorded {
     pub(crate) lost_frames: u64,
 }
 
-/// Least and largest value of each slider; `None` for a parameter that cannot be changed.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(crate) struct Ranges {
-    width: Option<(f64, f64)>,
-    force_amplitude: Option<(f64, f64)>,
-    strain_rate: Option<(f64, f64)>,
-    friction: Option<(f64, f64)>,
-}
+/// Least and largest values.
+pub(crate) type Ranges = Sliders<(f64, f64)>;
 
 impl Ranges {
     fn of(configuration: &Configuration) -> Self {
-        let radius = configuration.tube.radius;
+        let own = Driven::by(configuration, |parameter| {
+            configuration.drive.own(parameter)
+        });
+        let widest = 2.0 * configuration.tube.radius;
         let diameter = configuration.wall.sphere_diameter;
-        let (width, force_amplitude) = match configuration.drive.control {
-            // From a throat that a grain just does not pass to a straight tube.
-            Control::Strain { width } => {
-                let least = (1.6 * diameter).min(width).min(2.0 * radius);
-                (Some((least, 2.0 * radius)), None)
-            }
-            Control::Stress {
-                force_amplitude, ..
-            } => (None, Some((0.0, (2.5 * force_amplitude).max(0.008)))),
-        };
-        let strain_rate = configuration.drive.strain_rate;
+        // From a throat that a grain just does not pass to a straight tube.
+        let narrowest = |width: f64| (1.6 * diameter).min(width).min(widest);
+        let moving = own.strain_rate.filter(|rate| *rate > 0.0);
         Self {
-            width,
-            force_amplitude,
-            strain_rate: (strain_rate > 0.0).then_some((0.1 * strain_rate, 4.0 * strain_rate)),
-            friction: configuration
-                .contact
-                .friction
-                .map(|it| (0.01, it.kinetic_friction.max(1.0))),
+            width: own.width.map(|width| (narrowest(width), widest)),
+            force_amplitude: own
+                .force_amplitude
+                .map(|force| (0.0, (2.5 * force).max(0.008))),
+            strain_rate: moving.map(|rate| (0.1 * rate, 4.0 * rate)),
+            friction: own.friction.map(|kinetic| (0.01, kinetic.max(1.0))),
         }
     }
 }

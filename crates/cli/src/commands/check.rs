@@ -6,7 +6,7 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{print, print_json, significant};
+use crate::commands::{print_report, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -16,12 +16,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let configuration = configuration(&arguments.configuration)?;
     let estimate = estimate(&configuration, request(&arguments.frames).as_ref())
         .map_err(|error| locate(error, &arguments.configuration))?;
-    if arguments.json {
-        print_json(&estimate)?;
-    } else {
-        print(&in_words(&estimate))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    print_report(arguments.json, &estimate, || in_words(&estimate))
 }
 
 fn in_words(estimate: &Estimate) -> String {

@@ -14,6 +14,7 @@ pub(crate) mod validate;
 pub(crate) mod view;
 
 use std::io::Write;
+use std::process::ExitCode;
 
 use peristalsis_run::Warning;
 use serde::Serialize;
@@ -36,6 +37,32 @@ fn print(text: &str) -> Result<(), Failure> {
 fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let value = serde_json::to_value(value).expect("reports have texts for keys");
     print(&format!("{value:#}\n"))
+}
+
+/// Prints a report on standard output: as JSON, or in words.
+fn print_report(
+    as_json: bool,
+    report: &impl Serialize,
+    in_words: impl FnOnce() -> String,
+) -> Result<ExitCode, Failure> {
+    if as_json {
+        print_json(report)?;
+    } else {
+        print(&in_words())?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// The exit code of work that came to its end, well or not.
+fn code_of(is_well: bool) -> ExitCode {
+    ExitCode::from(u8::from(!is_well))
+}
+
+/// Says something on standard error, unless asked to be quiet.
+fn tell(is_quiet: bool, text: &str) {
+    if !is_quiet {
+        say(text);
+    }
 }
 
 /// Prints a warning on standard error: no progress, so that it is said in quiet runs as well.

@@ -9,9 +9,10 @@ use peristalsis_reproduce::{
 };
 use peristalsis_study::{Effort, Ending};
 
+use super::study::processors;
 use super::study::progress::{Display, Whole};
 use crate::arguments::ReproduceArguments;
-use crate::commands::{print, say};
+use crate::commands::{code_of, print, tell};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::stop::Stop;
@@ -29,11 +30,7 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     };
     let claims = chosen(CLAIMS, &arguments.only)?;
     let reproduction = Reproduction::prepare(&arguments.out, size, &claims, STUDIES)?;
-    let tell = |text: &str| {
-        if !arguments.quiet {
-            say(text);
-        }
-    };
+    let tell = |text: &str| tell(arguments.quiet, text);
     let is_default = !arguments.quick && !arguments.full;
     tell(&format!(
         "{} claim{}, {} design{}, in {}",
@@ -50,9 +47,8 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     if !arguments.import.is_empty() {
         tell(&imported(&reproduction.import(&arguments.import)?));
     }
-    let processors = std::thread::available_parallelism().map_or(1, |number| number.get());
     let effort = Effort {
-        workers: arguments.workers.map_or(processors, usize::from),
+        workers: arguments.workers.map_or_else(processors, usize::from),
         checkpoint_interval: CHECKPOINT_INTERVAL,
         limit: arguments.limit,
     };
@@ -89,11 +85,7 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
             }
         }
     }
-    Ok(if is_well {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(code_of(is_well))
 }
 
 /// Whether every claim could be examined, every study worked on, and no run failed.

@@ -11,9 +11,9 @@ use peristalsis_run::{
     overlap_warning, warnings,
 };
 
-use crate::arguments::{InstructionSet, RunArguments};
+use crate::arguments::RunArguments;
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{print, say, warn};
+use crate::commands::{print, say, tell, warn};
 use crate::failure::Failure;
 use crate::progress::{Display, seconds};
 use crate::sources::{configuration, locate, name};
@@ -69,7 +69,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         warn(&warning);
     }
     if let Some(report) = &summary.trajectory {
-        tell(arguments, &format!("trajectory: {}", in_one_line(report)));
+        tell(
+            arguments.quiet,
+            &format!("trajectory: {}", in_one_line(report)),
+        );
     }
     // Where the disk is full, what could not be written first is what to speak of.
     if !matches!(ending, Ending::Unwritten(_)) {
@@ -82,14 +85,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         }),
         Ending::Complete => {
             tell(
-                arguments,
+                arguments.quiet,
                 &format!("written to {}", folder.path().display()),
             );
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped(code) => {
             tell(
-                arguments,
+                arguments.quiet,
                 &format!(
                     "stopped {}; what there is is in {folder}\ngo on with: peristalsis run --resume {folder}",
                     how_far(&run, &summary),
@@ -100,7 +103,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         }
         Ending::Failed(error) => {
             tell(
-                arguments,
+                arguments.quiet,
                 &format!(
                     "what was measured, and the state, are in {}",
                     folder.path().display()
@@ -113,19 +116,13 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
 
 /// The instructions asked for.
 fn instructions(arguments: &RunArguments) -> Result<Instructions, Failure> {
-    let wanted = match arguments.instructions {
-        None => return Ok(Instructions::widest()),
-        Some(InstructionSet::Avx512) => Instructions::Avx512,
-        Some(InstructionSet::Avx2) => Instructions::Avx2,
-        Some(InstructionSet::Plain) => Instructions::Plain,
-    };
-    if wanted.available() {
-        Ok(wanted)
-    } else {
-        Err(Failure::usage(
+    match arguments.instructions {
+        None => Ok(Instructions::widest()),
+        Some(wanted) if wanted.available() => Ok(wanted),
+        Some(_) => Err(Failure::usage(
             "this machine does not have the instructions that --instructions asks for",
             "leave it out: the widest that there are is the default",
-        ))
+        )),
     }
 }
 
@@ -147,7 +144,7 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     }
     if configuration.grains.number > SLOW_PACKING {
         tell(
-            arguments,
+            arguments.quiet,
             &format!("packing {} grains", configuration.grains.number),
         );
     }
@@ -262,13 +259,6 @@ fn advance(run: &mut Run, record: &mut Record, stop: &Stop, display: &mut Displa
         }
     }
     Ending::Complete
-}
-
-/// Says something on standard error, unless asked to be quiet.
-fn tell(arguments: &RunArguments, text: &str) {
-    if !arguments.quiet {
-        say(text);
-    }
 }
 
 /// How far a run came: in periods, or in time where the wave stands still.

@@ -6,7 +6,7 @@ use clap::Args;
 use peristalsis_configuration::reference;
 use serde_json::Value;
 
-use crate::commands::{print, print_json};
+use crate::commands::print_report;
 use crate::failure::Failure;
 
 /// How a schema is printed.
@@ -29,10 +29,7 @@ pub(crate) fn study_schema(arguments: SchemaArguments) -> Result<ExitCode, Failu
 
 /// `elsewhere` is a table that the tables of keys leave out.
 fn show(arguments: SchemaArguments, schema: &Value, elsewhere: &str) -> Result<ExitCode, Failure> {
-    if arguments.markdown {
-        print(&reference(schema, &[elsewhere]))?;
-    } else {
-        print_json(schema)?;
-    }
-    Ok(ExitCode::SUCCESS)
+    print_report(!arguments.markdown, schema, || {
+        reference(schema, &[elsewhere])
+    })
 }

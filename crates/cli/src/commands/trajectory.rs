@@ -3,12 +3,12 @@
 use std::process::ExitCode;
 
 use peristalsis_run::{
-    Run, RunError, RunFolder, Trajectory, TrajectoryFormat, TrajectoryPlan, TrajectoryReport,
-    TrajectoryRequest, Window,
+    Run, RunError, RunFolder, Trajectory, TrajectoryPlan, TrajectoryReport, TrajectoryRequest,
+    Window,
 };
 
-use crate::arguments::{FrameArguments, FrameFormat, TrajectoryArguments};
-use crate::commands::{print, print_json};
+use crate::arguments::{FrameArguments, TrajectoryArguments};
+use crate::commands::print_report;
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -20,7 +20,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let stop = Stop::watch()?;
     let (folder, mut run) = RunFolder::open(&arguments.folder)?;
     let request = TrajectoryRequest {
-        formats: formats(&arguments.formats),
+        formats: arguments.formats.clone(),
         every: arguments.every,
         window: Window {
             from: None,
@@ -42,11 +42,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let ending = go_on(&mut run, &mut frames, &stop);
     frames.synchronize()?;
     let report = frames.report();
-    if arguments.json {
-        print_json(&report)?;
-    } else {
-        print(&format!("{}\n", in_words(&report)))?;
-    }
+    print_report(arguments.json, &report, || in_words(&report) + "\n")?;
     ending
 }
 
@@ -65,22 +61,13 @@ fn go_on(run: &mut Run, frames: &mut Trajectory, stop: &Stop) -> Result<ExitCode
 /// What the options ask for, if they ask for a trajectory.
 pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
     (!arguments.trajectory.is_empty()).then(|| TrajectoryRequest {
-        formats: formats(&arguments.trajectory),
+        formats: arguments.trajectory.clone(),
         every: arguments.trajectory_every,
         window: arguments.trajectory_window.unwrap_or(Window {
             from: None,
             to: None,
         }),
     })
-}
-
-fn formats(arguments: &[FrameFormat]) -> Vec<TrajectoryFormat> {
-    let formats = arguments.iter().map(|format| match format {
-        FrameFormat::Gsd => TrajectoryFormat::Gsd,
-        FrameFormat::Vtp => TrajectoryFormat::Vtp,
-        FrameFormat::Lammps => TrajectoryFormat::Lammps,
-    });
-    formats.collect()
 }
 
 /// What was written, in a line.

@@ -7,7 +7,7 @@ use peristalsis_reproduce::textbook::{CASES, Case, Validation, chosen};
 use peristalsis_reproduce::{ClaimError, Examination, Size};
 
 use crate::arguments::ValidateArguments;
-use crate::commands::{print, say};
+use crate::commands::{code_of, print, tell};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::stop::Stop;
@@ -25,11 +25,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
     if let Some(document) = &arguments.write {
         Validation::check_places(document, &cases)?;
     }
-    let tell = |text: &str| {
-        if !arguments.quiet {
-            say(text);
-        }
-    };
+    let tell = |text: &str| tell(arguments.quiet, text);
     tell(&format!(
         "{} case{}, {}, in {}",
         cases.len(),
@@ -70,11 +66,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
         print(&format!("{}\n", lines.join("\n")))?;
         print(&format!("results: {}\n", arguments.out.display()))?;
     }
-    Ok(if validation.passed() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(code_of(validation.passed()))
 }
 
 /// A case in one line.

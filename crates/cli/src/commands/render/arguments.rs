@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use peristalsis_run::{
-    Aspect, Eye, Field, FilmFormat, Look, Paper, Place, Span, WallLook, Window, Writing,
-};
+use peristalsis_run::{Aspect, Eye, Field, Look, Paper, Place, Span, WallLook, Window, Writing};
+
+use crate::choice::{EYES, FIELDS, FORMATS, Format, PAPERS, WALLS, one_of};
 
 /// From where a tube is looked at.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -18,56 +18,6 @@ pub(crate) enum ViewName {
     SpaceTime,
 }
 
-/// What the grains are coloured by.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum FieldName {
-    /// v_z/c: blue against the wave, white at rest, red along it
-    AxialVelocity,
-    /// |v|/c
-    Speed,
-    /// d_i
-    Diameter,
-    /// way along the wave since the first frame, in wavelengths
-    AxialDisplacement,
-    /// speed of the surface by rotation, in c
-    AngularVelocity,
-    /// (z - c t)/lambda
-    Phase,
-    /// spheres that a grain touches
-    Coordination,
-    /// mean normal stress by the forces of contacts; not from a trajectory
-    Pressure,
-}
-
-/// How the wall looks from the side.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum WallName {
-    /// cut open
-    Cut,
-    /// its front of glass
-    Glass,
-    /// not drawn
-    None,
-}
-
-/// What stands still.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum EyeName {
-    /// the tube
-    Tube,
-    /// the wave
-    Wave,
-}
-
-/// The page.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum PaperName {
-    /// white
-    Light,
-    /// nearly black
-    Dark,
-}
-
 /// Where instants are taken from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Origin {
@@ -77,43 +27,6 @@ pub(crate) enum Origin {
     State,
     /// the run computed anew
     Start,
-}
-
-/// What is made.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// picture
-    Png,
-    /// picture with its writing as vectors
-    Svg,
-    /// film that plays everywhere
-    Gif,
-    /// film as animated PNG, in every colour
-    Apng,
-    /// film; needs ffmpeg
-    Mp4,
-    /// film; needs ffmpeg
-    Webm,
-}
-
-impl Format {
-    pub(crate) fn film(self) -> Option<FilmFormat> {
-        match self {
-            Self::Png | Self::Svg => None,
-            Self::Gif => Some(FilmFormat::Gif),
-            Self::Apng => Some(FilmFormat::Apng),
-            Self::Mp4 => Some(FilmFormat::Mp4),
-            Self::Webm => Some(FilmFormat::Webm),
-        }
-    }
-
-    pub(crate) fn extension(self) -> &'static str {
-        match self.film() {
-            Some(film) => film.extension(),
-            None if self == Self::Svg => "svg",
-            None => "png",
-        }
-    }
 }
 
 #[derive(Debug, Args)]
@@ -132,20 +45,20 @@ pub(crate) struct RenderArguments {
     #[arg(
         long,
         value_name = "FIELD",
-        value_enum,
+        value_parser = one_of(FIELDS),
         default_value = "axial-velocity",
         alias = "color"
     )]
-    pub(crate) colour: FieldName,
+    pub(crate) colour: Field,
     /// Values of the first and the last colour; those that suit the field unless given.
     #[arg(long, value_name = "FROM:TO", value_parser = range, allow_hyphen_values = true)]
     pub(crate) range: Option<(f64, f64)>,
     /// How the wall looks from the side.
-    #[arg(long, value_name = "LOOK", value_enum, default_value = "cut")]
-    pub(crate) wall: WallName,
+    #[arg(long, value_name = "LOOK", value_parser = one_of(WALLS), default_value = "cut")]
+    pub(crate) wall: WallLook,
     /// What stands still in a film from the side.
-    #[arg(long, value_name = "WHAT", value_enum, default_value = "tube")]
-    pub(crate) eye: EyeName,
+    #[arg(long, value_name = "WHAT", value_parser = one_of(EYES), default_value = "tube")]
+    pub(crate) eye: Eye,
     /// Where a section is, as z in d; the middle of the tube unless given.
     #[arg(long, value_name = "Z", conflicts_with = "phase")]
     pub(crate) place: Option<f64>,
@@ -159,8 +72,8 @@ pub(crate) struct RenderArguments {
     #[arg(long, value_name = "PIXELS")]
     pub(crate) width: Option<u32>,
     /// The page.
-    #[arg(long, value_name = "PAPER", value_enum, default_value = "light")]
-    pub(crate) paper: PaperName,
+    #[arg(long, value_name = "PAPER", value_parser = one_of(PAPERS), default_value = "light")]
+    pub(crate) paper: Paper,
     /// No time, scale, marks or colours around the picture.
     #[arg(long)]
     pub(crate) bare: bool,
@@ -168,7 +81,7 @@ pub(crate) struct RenderArguments {
     #[arg(long)]
     pub(crate) film: bool,
     /// What is made; by the ending of --out unless given.
-    #[arg(long, value_name = "FORMAT", value_enum)]
+    #[arg(long, value_name = "FORMAT", value_parser = one_of(FORMATS))]
     pub(crate) format: Option<Format>,
     /// Where the instants are from.
     #[arg(long, value_name = "ORIGIN", value_enum)]
@@ -216,32 +129,13 @@ impl RenderArguments {
         let usual = WIDTHS[usize::from(is_film)] / if aspect == Aspect::Side { 1 } else { 2 };
         Look {
             aspect,
-            field: match self.colour {
-                FieldName::AxialVelocity => Field::AxialVelocity,
-                FieldName::Speed => Field::Speed,
-                FieldName::Diameter => Field::Diameter,
-                FieldName::AxialDisplacement => Field::AxialDisplacement,
-                FieldName::AngularVelocity => Field::AngularVelocity,
-                FieldName::Phase => Field::Phase,
-                FieldName::Coordination => Field::Coordination,
-                FieldName::Pressure => Field::Pressure,
-            },
+            field: self.colour,
             range: self.range,
-            wall: match self.wall {
-                WallName::Cut => WallLook::Cut,
-                WallName::Glass => WallLook::Glass,
-                WallName::None => WallLook::Hidden,
-            },
-            eye: match self.eye {
-                EyeName::Tube => Eye::Laboratory,
-                EyeName::Wave => Eye::Wave,
-            },
+            wall: self.wall,
+            eye: self.eye,
             waves: self.waves,
             width: self.width.unwrap_or(usual),
-            paper: match self.paper {
-                PaperName::Light => Paper::Light,
-                PaperName::Dark => Paper::Dark,
-            },
+            paper: self.paper,
             writing: if self.bare {
                 Writing::None
             } else {

@@ -15,7 +15,8 @@ use peristalsis_run::{
 use serde_json::json;
 
 pub(crate) use self::arguments::RenderArguments;
-use self::arguments::{Format, Origin, ViewName};
+use self::arguments::{Origin, ViewName};
+use crate::choice::Format;
 use crate::commands::{print, say};
 use crate::failure::Failure;
 use crate::progress::Display;
@@ -59,12 +60,11 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
 
 /// What is to be made.
 fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
-    use clap::ValueEnum;
     let by_name =
         |path: &PathBuf| {
             let ending = path.extension().and_then(|ending| ending.to_str());
-            let known = ending.and_then(|ending| Format::from_str(ending, true).ok());
-            known.ok_or_else(|| usage(
+            let known = ending.and_then(Format::by_ending);
+            known.ok_or_else(|| Failure::usage(
             format!("{}: no picture or film is known by this ending", path.display()),
             "endings: .png, .svg, .gif, .apng, .mp4, .webm; or name the format with --format",
         ))
@@ -72,11 +72,11 @@ fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
     let format = match (arguments.format, &arguments.out) {
         (Some(format), _) => format,
         (None, Some(out)) => by_name(out)?,
-        (None, None) if arguments.film => Format::Gif,
+        (None, None) if arguments.film => Format::Film(FilmFormat::Gif),
         (None, None) => Format::Png,
     };
     if arguments.film && format.film().is_none() {
-        return Err(usage(
+        return Err(Failure::usage(
             format!("{} is no format of films", format.extension()),
             "films: gif, apng, and with ffmpeg mp4, webm",
         ));
@@ -86,7 +86,7 @@ fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
 
 /// Refuses what goes together with no picture.
 fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
-    let refused = |reason: &str, help: &str| Err(usage(reason.to_owned(), help));
+    let refused = |reason: &str, help: &str| Err(Failure::usage(reason, help));
     let is_film = format.film().is_some();
     if arguments.view == ViewName::SpaceTime && is_film {
         return refused(
@@ -138,10 +138,6 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
     Ok(())
 }
 
-fn usage(message: String, help: &str) -> Failure {
-    Failure::usage(message, help)
-}
-
 /// The trajectory that is asked for or, where that is left open, lies in the run's folder.
 fn trajectory(arguments: &RenderArguments, field: Field) -> Result<Option<PathBuf>, Failure> {
     let path = match (&arguments.trajectory, arguments.from) {
@@ -153,8 +149,8 @@ fn trajectory(arguments: &RenderArguments, field: Field) -> Result<Option<PathBu
         (None, _) => return Ok(None),
     };
     if field == Field::Pressure {
-        return Err(usage(
-            "a GSD trajectory holds no forces of contacts, of which pressure is made".to_owned(),
+        return Err(Failure::usage(
+            "a GSD trajectory holds no forces of contacts, of which pressure is made",
             "take --from state or --from start, or another field",
         ));
     }
@@ -174,8 +170,8 @@ fn still(
         || (arguments.from.is_none() && arguments.trajectory.is_none() && arguments.at.is_none());
     if is_of_state {
         if arguments.at.is_some() {
-            return Err(usage(
-                "the saved state is of one instant only".to_owned(),
+            return Err(Failure::usage(
+                "the saved state is of one instant only",
                 "leave --at out, or take --from trajectory or --from start",
             ));
         }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use peristalsis_study::{Identity, Specification, State, Store, Verification};
 
 use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
-use crate::commands::{print, say};
+use crate::commands::{code_of, print, say};
 use crate::failure::Failure;
 
 /// Lets runs be computed again.
@@ -40,22 +40,14 @@ pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
         }
     }
     print(&format!("{begun} runs will be computed again\n"))?;
-    Ok(if begun == runs.len() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(code_of(begun == runs.len()))
 }
 
 /// Checks all hashes.
 pub(crate) fn verify(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
     let found = Store::open(&arguments.store)?.verify()?;
     print(&in_words(&found))?;
-    Ok(if found.quarantined.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(code_of(found.quarantined.is_empty()))
 }
 
 /// Makes the index again.
@@ -96,11 +88,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     for file in &exported.files {
         print(&format!("{}\n", file.display()))?;
     }
-    Ok(if exported.quarantined.is_empty() {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    })
+    Ok(code_of(exported.quarantined.is_empty()))
 }
 
 /// Writes the archive.

@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
+use peristalsis_study::Specification;
 
 use crate::commands::schema::{SchemaArguments, study_schema};
 use crate::failure::Failure;
@@ -220,9 +221,15 @@ pub(crate) fn study(command: &StudyCommand) -> Result<ExitCode, Failure> {
     }
 }
 
-/// The store of a study where none is named.
-fn usual_store(name: &str) -> PathBuf {
-    PathBuf::from("stores").join(name)
+/// The store that was named, or else the usual one of a study.
+fn store_path(named: &Option<PathBuf>, study: &Specification) -> PathBuf {
+    let usual = || PathBuf::from("stores").join(&study.name);
+    named.clone().unwrap_or_else(usual)
+}
+
+/// Processors of this machine.
+pub(crate) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, |number| number.get())
 }
 
 /// Reads a time such as 30m, 1.5h, 90s or 250ms.

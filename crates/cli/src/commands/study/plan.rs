@@ -3,9 +3,10 @@
 use std::process::ExitCode;
 
 use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estimate};
+use serde_json::json;
 
-use super::{PlanArguments, usual_store};
-use crate::commands::{print, print_json};
+use super::{PlanArguments, processors, store_path};
+use crate::commands::print_report;
 use crate::failure::Failure;
 use crate::progress::seconds;
 
@@ -14,11 +15,7 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let study = Specification::read(&arguments.file)?;
     let plan = study.plan();
     let estimate = study_estimate(&study, plan)?;
-    let store = arguments
-        .store
-        .clone()
-        .unwrap_or_else(|| usual_store(&study.name));
-    let finished = match Store::open(&store) {
+    let finished = match Store::open(&store_path(&arguments.store, &study)) {
         Err(_) if arguments.store.is_none() => 0,
         Err(error) => return Err(error.into()),
         Ok(store) => {
@@ -29,30 +26,22 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
                 .count()
         }
     };
-    if arguments.json {
-        let runs: Vec<_> = plan
-            .sorted_runs()
-            .iter()
-            .map(|run| {
-                serde_json::json!({
-                    "identity": run.identity.to_string(),
-                    "point": plan.point(run).in_words(),
-                    "replicate": run.replicate,
-                })
-            })
-            .collect();
-        let report = serde_json::json!({
-            "name": study.name,
-            "title": study.title,
-            "estimate": estimate,
-            "finished": finished,
-            "runs": runs,
-        });
-        print_json(&report)?;
-    } else {
-        print(&in_words(&study, &estimate, finished))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    let runs = plan.sorted_runs().into_iter().map(|run| {
+        json!({
+            "identity": run.identity.to_string(),
+            "point": plan.point(&run).in_words(),
+            "replicate": run.replicate,
+        })
+    });
+    let report = json!({
+        "name": study.name,
+        "title": study.title,
+        "estimate": estimate,
+        "finished": finished,
+        "runs": runs.collect::<Vec<_>>(),
+    });
+    let words = || in_words(&study, &estimate, finished);
+    print_report(arguments.json, &report, words)
 }
 
 fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) -> String {
@@ -77,7 +66,7 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
         "steps             {:.3e} ({:.3e} of a grain)",
         estimate.steps as f64, estimate.grain_steps
     ));
-    let processors = std::thread::available_parallelism().map_or(1, |number| number.get());
+    let processors = processors();
     let share = estimate.processor_seconds / estimate.runs.min(processors).max(1) as f64;
     lines.push(format!(
         "expected time     {} of one processor, {} of {processors}{}",

@@ -5,9 +5,9 @@ use std::process::ExitCode;
 use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
 
 use super::progress::Display;
-use super::status::{in_words, report};
-use super::{RunArguments, usual_store};
-use crate::commands::{print, print_json, say};
+use super::status::print_status;
+use super::{RunArguments, processors, store_path};
+use crate::commands::tell;
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -15,14 +15,10 @@ use crate::stop::Stop;
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let study = Specification::read(&arguments.file)?;
-    let path = arguments
-        .store
-        .clone()
-        .unwrap_or_else(|| usual_store(&study.name));
+    let path = store_path(&arguments.store, &study);
     let store = Store::create(&path, &study)?;
-    let processors = std::thread::available_parallelism().map_or(1, |number| number.get());
     let effort = Effort {
-        workers: arguments.workers.map_or(processors, usize::from),
+        workers: arguments.workers.map_or_else(processors, usize::from),
         checkpoint_interval: arguments.checkpoint_every,
         limit: arguments.limit,
     };
@@ -38,16 +34,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     display.finish();
     let ending = ending?;
     let survey = store.survey()?;
-    if arguments.json {
-        print_json(&report(&store, &survey))?;
-    } else {
-        print(&in_words(&store, &survey))?;
-    }
-    let tell = |text: String| {
-        if !arguments.quiet {
-            say(&text);
-        }
-    };
+    print_status(arguments.json, &store, &survey)?;
+    let tell = |text: String| tell(arguments.quiet, &text);
     let again = || {
         format!(
             "go on with: peristalsis study run {} --store {}",

@@ -7,7 +7,7 @@ use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
-use crate::commands::{print, print_json};
+use crate::commands::{print, print_report};
 use crate::failure::Failure;
 
 /// Runs that are named in words; more are counted.
@@ -17,12 +17,16 @@ const NAMED: usize = 10;
 pub(crate) fn status(arguments: &StatusArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;
-    if arguments.json {
-        print_json(&report(&store, &survey))?;
-    } else {
-        print(&in_words(&store, &survey))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    print_status(arguments.json, &store, &survey)
+}
+
+/// Prints the status, as JSON or for a person.
+pub(super) fn print_status(
+    as_json: bool,
+    store: &Store,
+    survey: &Survey,
+) -> Result<ExitCode, Failure> {
+    print_report(as_json, &report(store, survey), || in_words(store, survey))
 }
 
 /// Where the flow changes its kind, of the runs that have ended.
@@ -33,7 +37,7 @@ fn estimates(survey: &Survey) -> Vec<Bracket> {
 }
 
 /// The status as JSON.
-pub(super) fn report(store: &Store, survey: &Survey) -> Value {
+fn report(store: &Store, survey: &Survey) -> Value {
     let estimates: Vec<Value> = estimates(survey)
         .iter()
         .map(|bracket| {
@@ -73,7 +77,7 @@ pub(super) fn report(store: &Store, survey: &Survey) -> Value {
 }
 
 /// The status for a person.
-pub(super) fn in_words(store: &Store, survey: &Survey) -> String {
+fn in_words(store: &Store, survey: &Survey) -> String {
     let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
     let counts: Vec<String> = survey
         .counts()

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use peristalsis_study::{Specification, Store};
 
-use super::{SubmitArguments, usual_store};
+use super::{SubmitArguments, store_path};
 use crate::commands::print;
 use crate::failure::Failure;
 
@@ -33,10 +33,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
         ));
     }
     let study = Specification::read(&arguments.file)?;
-    let store = arguments
-        .store
-        .clone()
-        .unwrap_or_else(|| usual_store(&study.name));
+    let store = store_path(&arguments.store, &study);
     // So that a study that cannot run is refused here, and no two tasks make it.
     drop(Store::create(&store, &study)?);
     let program = std::env::current_exe().map_err(unreadable(Path::new("this program")))?;

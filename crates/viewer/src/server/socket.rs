@@ -7,8 +7,8 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, close_code};
 use futures_util::{SinkExt, StreamExt};
 use tokio::sync::{broadcast, oneshot};
 
+use super::session::{Request, Session};
 use crate::message::{Command, Notice, problem};
-use crate::session::{Request, Session};
 
 /// Time after which a client that takes no frame is disconnected.
 const SLOW: Duration = Duration::from_secs(30);

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use crate::ViewerError;
+use super::error::ViewerError;
 
 /// The findings beside the report of `peristalsis reproduce`.
 const CLAIMS: &str = "claims.json";

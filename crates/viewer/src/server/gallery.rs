@@ -8,13 +8,13 @@ use peristalsis_engine::Instructions;
 use peristalsis_run::Run;
 use serde_json::{Value, json};
 
-use crate::ViewerError;
-use crate::figure::Figure;
-use crate::recording::Recording;
-use crate::recording_host::RecordingHost;
-use crate::run_host::RunHost;
-use crate::session::{Request, Session, Subscribers, refuse_all};
-use crate::study::{Study, StudyRun};
+use super::error::ViewerError;
+use super::figure::Figure;
+use super::recording::Recording;
+use super::recording_host::RecordingHost;
+use super::run_host::RunHost;
+use super::session::{Request, Session, Subscribers, refuse_all};
+use super::study::{Study, StudyRun};
 use crate::tube::{Labels, Saves};
 
 /// Runs that stay open at a time.

@@ -1,6 +1,6 @@
 //! Access to the viewer: with the token, and from a page of the viewer itself.
 
-use crate::ViewerError;
+use super::error::ViewerError;
 
 /// The secret part of the viewer's address: 128 random bits.
 #[derive(Clone, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use tokio::sync::{broadcast, oneshot, watch};
 
-use crate::ViewerError;
+use super::error::ViewerError;
 use crate::message::{Command, problem};
 
 /// Requests that wait for the run, at most.

@@ -2,9 +2,9 @@
 
 use std::sync::mpsc::Receiver;
 
+use super::recording::Recording;
+use super::session::{Request, Subscribers};
 use crate::message::problem;
-use crate::recording::Recording;
-use crate::session::{Request, Subscribers};
 use crate::within::Within;
 
 /// A recording and its clients, each of which plays it at its own pace.

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use peristalsis_run::Run;
 
-use crate::session::{Request, Subscribers};
+use super::session::{Request, Subscribers};
 use crate::tube::{FRAME, Labels, Tube};
 
 /// A run and its clients.

@@ -10,7 +10,7 @@ use peristalsis_run::{TrajectoryFormat, label};
 use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, Store, refine};
 use serde::Serialize;
 
-use crate::ViewerError;
+use super::error::ViewerError;
 use crate::within::{Sibling, Within};
 
 /// J/Jmax in time, in the folder of a run of a store.
@@ -74,28 +74,8 @@ struct ShownColumn<'a> {
     label: Option<&'static str>,
     unit: &'a str,
     description: &'a str,
-    values: ShownValues<'a>,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(untagged)]
-enum ShownValues<'a> {
     /// NaN, a missing number, is null.
-    Reals(&'a [f64]),
-    Integers(&'a [i64]),
-    Texts(&'a [String]),
-    Booleans(&'a [bool]),
-}
-
-impl<'a> From<&'a Values> for ShownValues<'a> {
-    fn from(values: &'a Values) -> Self {
-        match values {
-            Values::Real(values) => Self::Reals(values),
-            Values::Integer(values) => Self::Integers(values),
-            Values::Text(values) => Self::Texts(values),
-            Values::Boolean(values) => Self::Booleans(values),
-        }
-    }
+    values: &'a Values,
 }
 
 impl Study {
@@ -235,7 +215,7 @@ impl Study {
                     label: label(column.name.rsplit('.').next().unwrap_or_default()),
                     unit: &column.unit,
                     description: &column.description,
-                    values: (&column.values).into(),
+                    values: &column.values,
                 })
                 .collect(),
             runs: self.numbers_of_rows(),

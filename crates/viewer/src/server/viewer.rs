@@ -22,17 +22,17 @@ use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 use tokio::sync::Semaphore;
 
-use crate::ViewerError;
-use crate::assets::asset;
-use crate::figure::Figure;
-use crate::gallery::{Closed, Gallery};
-use crate::guard::{Token, is_loopback, is_own};
-use crate::recording::Recording;
-use crate::recording_host::RecordingHost;
-use crate::run_host::RunHost;
-use crate::session::Session;
-use crate::socket::serve_client;
-use crate::study::Study;
+use super::assets::asset;
+use super::error::ViewerError;
+use super::figure::Figure;
+use super::gallery::{Closed, Gallery};
+use super::guard::{Token, is_loopback, is_own};
+use super::recording::Recording;
+use super::recording_host::RecordingHost;
+use super::run_host::RunHost;
+use super::session::Session;
+use super::socket::serve_client;
+use super::study::Study;
 use crate::tube::{Labels, Saves};
 
 /// Connections at a time that have not become a client's; more wait.

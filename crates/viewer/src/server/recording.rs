@@ -9,7 +9,7 @@ use peristalsis_formats::trajectory::gsd::GsdReader;
 use peristalsis_observe::Sample;
 use peristalsis_run::walls;
 
-use crate::ViewerError;
+use super::error::ViewerError;
 use crate::frame::{Head, of_recording};
 use crate::timeline::{Row, Timeline, thin};
 use crate::welcome::{Recorded, Welcome};

@@ -1,0 +1,123 @@
+//! Options of which each value has a name: tables of the values that the crates below know.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use peristalsis_engine::Instructions;
+use peristalsis_run::Field::{
+    AngularVelocity, AxialDisplacement, AxialVelocity, Coordination, Diameter, Phase, Pressure,
+    Speed,
+};
+use peristalsis_run::FilmFormat::{Apng, Gif, Mp4, Webm};
+use peristalsis_run::TrajectoryFormat::{Gsd, Lammps, Vtp};
+use peristalsis_run::{Eye, Field, FilmFormat, Paper, TrajectoryFormat, WallLook};
+
+/// A value of an option: its name, the value itself, and its meaning in a few words.
+type Choice<T> = (&'static str, T, &'static str);
+
+/// What is made of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Format {
+    Png,
+    Svg,
+    Film(FilmFormat),
+}
+
+impl Format {
+    /// The format of the files that end so.
+    pub(crate) fn by_ending(ending: &str) -> Option<Self> {
+        value_of(FORMATS, &ending.to_ascii_lowercase())
+    }
+
+    pub(crate) fn film(self) -> Option<FilmFormat> {
+        match self {
+            Self::Film(film) => Some(film),
+            Self::Png | Self::Svg => None,
+        }
+    }
+
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Png => "png",
+            Self::Svg => "svg",
+            Self::Film(film) => film.extension(),
+        }
+    }
+}
+
+pub(crate) const FORMATS: &[Choice<Format>] = &[
+    ("png", Format::Png, "picture"),
+    ("svg", Format::Svg, "picture with its writing as vectors"),
+    ("gif", Format::Film(Gif), "film that plays everywhere"),
+    ("apng", Format::Film(Apng), ANIMATED),
+    ("mp4", Format::Film(Mp4), "film; needs ffmpeg"),
+    ("webm", Format::Film(Webm), "film; needs ffmpeg"),
+];
+const ANIMATED: &str = "film as animated PNG, in every colour";
+
+/// What the grains are coloured by.
+pub(crate) const FIELDS: &[Choice<Field>] = &[
+    ("axial-velocity", AxialVelocity, BY_VELOCITY),
+    ("speed", Speed, "|v|/c"),
+    ("diameter", Diameter, "d_i"),
+    ("axial-displacement", AxialDisplacement, BY_DISPLACEMENT),
+    ("angular-velocity", AngularVelocity, BY_ROTATION),
+    ("phase", Phase, "(z - c t)/lambda"),
+    ("coordination", Coordination, "spheres that a grain touches"),
+    ("pressure", Pressure, BY_PRESSURE),
+];
+const BY_VELOCITY: &str = "v_z/c: blue against the wave, white at rest, red along it";
+const BY_DISPLACEMENT: &str = "way along the wave since the first frame, in wavelengths";
+const BY_ROTATION: &str = "speed of the surface by rotation, in c";
+const BY_PRESSURE: &str = "mean normal stress by the forces of contacts; not from a trajectory";
+
+/// How the wall looks from the side.
+pub(crate) const WALLS: &[Choice<WallLook>] = &[
+    ("cut", WallLook::Cut, "cut open"),
+    ("glass", WallLook::Glass, "its front of glass"),
+    ("none", WallLook::Hidden, "not drawn"),
+];
+
+/// What stands still.
+pub(crate) const EYES: &[Choice<Eye>] = &[
+    ("tube", Eye::Laboratory, "the tube"),
+    ("wave", Eye::Wave, "the wave"),
+];
+
+pub(crate) const PAPERS: &[Choice<Paper>] = &[
+    ("light", Paper::Light, "white"),
+    ("dark", Paper::Dark, "nearly black"),
+];
+
+/// Formats of trajectories; the help of their options names them.
+pub(crate) const TRAJECTORIES: &[Choice<TrajectoryFormat>] = &[
+    (
+        "gsd",
+        Gsd,
+        "General Simulation Data: OVITO, freud, Python's gsd",
+    ),
+    ("vtp", Vtp, "VTK polydata with contacts: ParaView, PyVista"),
+    ("lammps", Lammps, "LAMMPS dump text: OVITO, VMD"),
+];
+
+/// Instructions that the fast kernels can be held to; the results are the same bits.
+pub(crate) const INSTRUCTIONS: &[Choice<Instructions>] = &[
+    ("avx512", Instructions::Avx512, "512-bit registers"),
+    ("avx2", Instructions::Avx2, "256-bit registers"),
+    ("plain", Instructions::Plain, EVERYWHERE),
+];
+const EVERYWHERE: &str = "what every processor of the kind has";
+
+fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {
+    let known = choices.iter().find(|(known, ..)| *known == name);
+    known.map(|(_, value, _)| *value)
+}
+
+/// The parser of an option that takes one of these values by its name.
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
+    choices: &'static [Choice<T>],
+) -> impl TypedValueParser<Value = T> {
+    let names = choices
+        .iter()
+        .map(|(name, _, meaning)| PossibleValue::new(*name).help(*meaning));
+    PossibleValuesParser::new(names)
+        .map(|name| value_of(choices, &name).expect("only known names are parsed"))
+}
