@@ -36,3 +36,14 @@ pub use value_kind::ValueKind;
 pub fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+/// Reads the table in a file, as Parquet where its name ends so and as CSV elsewhere.
+///
+/// # Errors
+/// [`FormatError`] where there is no such table.
+pub fn read_table(path: &std::path::Path) -> Result<Table, FormatError> {
+    match path.extension().and_then(|ending| ending.to_str()) {
+        Some("parquet") => parquet::read(path),
+        _ => csv::read(path),
+    }
+}

@@ -1,5 +1,7 @@
 //! The study files behind the claims, as they stand in `studies/` of this repository.
 
+use peristalsis_study::{Specification, StudyError};
+
 /// The size of a design, or of a textbook case.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
@@ -77,6 +79,19 @@ impl StudyFile {
     #[must_use]
     pub fn text(&self, size: Size) -> &'static str {
         size.choose(self.quick, self.full)
+    }
+
+    /// What the study file says.
+    ///
+    /// # Errors
+    /// [`StudyError`] where the file is wrong.
+    pub fn specification(&self, size: Size) -> Result<Specification, StudyError> {
+        Specification::from_toml(self.path, self.text(size), |name| {
+            Err(StudyError::Read {
+                path: name.into(),
+                source: std::io::Error::other("a study of the claims builds on a preset"),
+            })
+        })
     }
 
     /// The study of this name.

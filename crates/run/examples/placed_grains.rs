@@ -12,7 +12,6 @@ use std::io::{BufWriter, Write};
 use std::process::ExitCode;
 
 use glam::DVec3;
-use peristalsis_configuration::Sources;
 use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_run::{Configuration, assemble, walls};
 
@@ -48,11 +47,7 @@ impl Request {
     }
 
     fn simulation(&self) -> Result<Simulation, Box<dyn Error>> {
-        let configuration = Configuration::from_sources(&Sources {
-            file: None,
-            preset: Some(&self.preset),
-            overrides: &self.settings,
-        })?;
+        let configuration = Configuration::from_preset(&self.preset, &self.settings)?;
         let (packed, _) = assemble(&configuration)?;
         let Some(path) = &self.from else {
             return Ok(packed);

@@ -1,6 +1,6 @@
 //! What can go wrong in a run.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use peristalsis_engine::EngineError;
 
@@ -106,6 +106,24 @@ pub enum RunError {
 }
 
 impl RunError {
+    /// That a figure of this name cannot be drawn.
+    pub fn of_figure(
+        figure: &'static str,
+    ) -> impl FnOnce(peristalsis_figures::FigureError) -> Self {
+        move |source| Self::Figure { figure, source }
+    }
+
+    /// [`RunError::HoldsAnotherRun`] where a folder has a file of one of these names.
+    pub(crate) fn if_one_is_in(folder: &Path, names: &[&str]) -> Result<(), Self> {
+        let is_there = |name: &&&str| folder.join(name).symlink_metadata().is_ok();
+        names.iter().find(is_there).map_or(Ok(()), |found| {
+            Err(Self::HoldsAnotherRun {
+                folder: folder.to_owned(),
+                found: (*found).to_owned(),
+            })
+        })
+    }
+
     /// What to do about a run that diverged; `None` for other errors.
     #[must_use]
     pub fn against_divergence(&self) -> Option<&'static str> {

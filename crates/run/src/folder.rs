@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use peristalsis_configuration::{Configuration, SourceFile, Sources};
+use peristalsis_configuration::Configuration;
 use peristalsis_formats::{FormatError, atomic, csv, parquet};
 
 use crate::error::RunError;
@@ -86,14 +86,8 @@ impl RunFolder {
                 source: std::io::ErrorKind::NotADirectory.into(),
             });
         }
-        for name in [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, WAVES, STATE] {
-            if path.join(name).symlink_metadata().is_ok() {
-                return Err(RunError::HoldsAnotherRun {
-                    folder: path.to_owned(),
-                    found: name.to_owned(),
-                });
-            }
-        }
+        let names = [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, WAVES, STATE];
+        RunError::if_one_is_in(path, &names)?;
         Trajectory::check(path)
     }
 
@@ -128,14 +122,7 @@ impl RunFolder {
         let name = folder.file(CONFIGURATION);
         let text = std::fs::read_to_string(&name)
             .map_err(|error| missing(format!("{CONFIGURATION}: {error}")))?;
-        let configuration = Configuration::from_sources(&Sources {
-            file: Some(SourceFile {
-                name: &name.display().to_string(),
-                text: &text,
-            }),
-            preset: None,
-            overrides: &[],
-        })?;
+        let configuration = Configuration::from_toml(&name.display().to_string(), &text)?;
         let path = folder.file(STATE);
         let state = std::fs::read(&path).map_err(|error| missing(format!("{STATE}: {error}")))?;
         let run = Run::from_checkpoint(configuration, &state).map_err(|source| {
@@ -175,10 +162,7 @@ impl RunFolder {
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
         for (name, drawing) in pictures::draw_all(run, summary)? {
             atomic::write(&self.file(&format!("{name}.svg")), drawing.svg().as_bytes())?;
-            let png = drawing.png().map_err(|source| RunError::Figure {
-                figure: name,
-                source,
-            })?;
+            let png = drawing.png().map_err(RunError::of_figure(name))?;
             atomic::write(&self.file(&format!("{name}.png")), &png)?;
         }
         Ok(())

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use peristalsis_configuration::{Configuration, SourceFile, Sources};
+use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{EngineError, Instructions, Simulation, Snapshot, SnapshotView};
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
@@ -35,8 +35,8 @@ pub struct Run {
 }
 
 /// Everything that a run needs to go on with the same bits.
-#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct RunState {
+#[derive(Clone, Debug, serde::Deserialize)]
+struct RunState {
     snapshot: Snapshot,
     packing: PackingReport,
     recorder: Recorder,
@@ -44,7 +44,7 @@ pub struct RunState {
     elapsed: Duration,
 }
 
-/// A [`RunState`] that borrows from its run: written down, it gives the same bytes, without a copy.
+/// A [`RunState`] to be written down, which borrows from its run.
 #[derive(Clone, Debug, serde::Serialize)]
 struct RunStateView<'a> {
     snapshot: SnapshotView<'a>,
@@ -92,11 +92,8 @@ impl Run {
         })
     }
 
-    /// Goes on from a state that [`Run::state`] gave for the same configuration.
-    ///
-    /// # Errors
-    /// [`RunError::Engine`] where the state does not fit the configuration.
-    pub fn resume(configuration: Configuration, state: RunState) -> Result<Self, RunError> {
+    /// Goes on from a state of the same configuration.
+    fn resume(configuration: Configuration, state: RunState) -> Result<Self, RunError> {
         let simulation = Simulation::restore(
             state.snapshot,
             walls(&configuration),
@@ -124,8 +121,8 @@ impl Run {
     /// Goes on from a checkpoint that [`Run::write_checkpoint`] wrote for the same configuration.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the checkpoint is damaged, another's or of another version of the physics, and as
-    /// [`Run::resume`].
+    /// [`RunError::Format`] where the checkpoint is damaged, another's or of another version of the physics;
+    /// [`RunError::Engine`] where the state does not fit the configuration.
     pub fn from_checkpoint(configuration: Configuration, bytes: &[u8]) -> Result<Self, RunError> {
         let identity = checkpoint_identity(&configuration);
         let state = checkpoint::decode(&identity, bytes)?;
@@ -163,35 +160,16 @@ impl Run {
     ///
     /// # Errors
     /// [`RunError::Format`] where the bytes are damaged, something else or of another version of the physics, and as
-    /// [`Run::resume`].
+    /// [`Run::from_checkpoint`].
     pub fn from_snapshot(bytes: &[u8]) -> Result<Self, RunError> {
         let (text, state): (String, RunState) = checkpoint::decode(&SNAPSHOT, bytes)?;
-        let configuration = Configuration::from_sources(&Sources {
-            file: Some(SourceFile {
-                name: "snapshot",
-                text: &text,
-            }),
-            preset: None,
-            overrides: &[],
-        })?;
+        let configuration = Configuration::from_toml("snapshot", &text)?;
         Self::resume(configuration, state)
     }
 
     /// Lets the run end before its time. The rule is no part of the state: give it again after a restart.
     pub fn stop_when(&mut self, stopping: Stopping) {
         self.stopping = Some(stopping);
-    }
-
-    /// The state, to go on from later.
-    #[must_use]
-    pub fn state(&self) -> RunState {
-        RunState {
-            snapshot: self.simulation.snapshot(),
-            packing: self.packing,
-            recorder: self.recorder.clone(),
-            orientations: self.orientations.clone(),
-            elapsed: self.elapsed,
-        }
     }
 
     /// The state, to be written down at once.

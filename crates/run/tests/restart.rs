@@ -8,8 +8,8 @@
 mod common;
 
 use peristalsis_run::{
-    Run, RunFolder, RunState, Status, Summary, Written, profile_table, snapshot_table,
-    timeseries_table, waves_table,
+    Run, RunFolder, Status, Summary, Written, profile_table, snapshot_table, timeseries_table,
+    waves_table,
 };
 
 const STRAIN: &[&str] = &[
@@ -77,8 +77,8 @@ fn a_state_goes_on_to_the_same_bits() {
             while parts.progress().samples < stop {
                 parts.advance().unwrap();
             }
-            let state: RunState = parts.state();
-            parts = Run::resume(configuration.clone(), state).unwrap();
+            let state = parts.to_checkpoint().unwrap();
+            parts = Run::from_checkpoint(configuration.clone(), &state).unwrap();
         }
         let parts = finish(parts);
         let tables = |run: &Run| {

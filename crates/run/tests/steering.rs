@@ -3,19 +3,11 @@
 mod common;
 
 use common::configuration;
-use peristalsis_configuration::{ScheduledParameter, SourceFile, Sources};
+use peristalsis_configuration::ScheduledParameter;
 use peristalsis_run::{Configuration, Run, RunError, RunFolder};
 
 fn read_back(text: &str) -> Configuration {
-    Configuration::from_sources(&Sources {
-        file: Some(SourceFile {
-            name: "config.toml",
-            text,
-        }),
-        preset: None,
-        overrides: &[],
-    })
-    .unwrap_or_else(|error| panic!("{error}\n{text}"))
+    Configuration::from_toml("config.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 fn begin(preset: &str, settings: &[&str]) -> Run {

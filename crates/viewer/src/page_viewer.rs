@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use peristalsis_configuration::{Configuration, Sources};
+use peristalsis_configuration::Configuration;
 use peristalsis_run::Run;
 use serde::Deserialize;
 
@@ -77,12 +77,8 @@ impl PageViewer {
 
 fn begin(request: &str, clock: fn() -> f64) -> Result<Tube, String> {
     let request: TubeRequest = serde_json::from_str(request).map_err(|error| error.to_string())?;
-    let configuration = Configuration::from_sources(&Sources {
-        file: None,
-        preset: Some(&request.preset),
-        overrides: &request.settings,
-    })
-    .map_err(|error| error.to_string())?;
+    let configuration = Configuration::from_preset(&request.preset, &request.settings)
+        .map_err(|error| error.to_string())?;
     let run = Run::new(configuration).map_err(|error| error.to_string())?;
     Ok(Tube::for_page(run, request.preset, clock))
 }

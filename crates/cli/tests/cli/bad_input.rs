@@ -1,7 +1,7 @@
 //! Bad input: exit code 2, a message with the place and the allowed values, nothing on standard output, nothing made or
 //! changed. What is wrong with which key is the matter of `configuration`.
 
-use crate::Place;
+use crate::{Outcome, Place};
 
 /// A strain-controlled tube; the lines are counted below.
 const TUBE: &str = r#"[grains]
@@ -24,23 +24,23 @@ periods = 4
 
 /// Runs or checks a file that must be refused, and that leaves nothing behind.
 #[track_caller]
-fn refused(command: &[&str], text: &[u8], parts: &[&str]) {
+fn refused(command: &str, text: &[u8], parts: &[&str]) {
     let place = Place::new();
     place.write("tube.toml", text);
     let before = place.inventory();
-    let outcome = place.call(command).expect_code(2).says(parts);
+    let outcome = place.refuses(command, parts);
     assert_eq!(outcome.stdout, "");
     assert_eq!(place.inventory(), before);
 }
 
-const RUN: &[&str] = &["run", "tube.toml", "--out", "new/results"];
-const CHECK: &[&str] = &["check", "tube.toml"];
+const RUN: &str = "run tube.toml --out new/results";
+const CHECK: &str = "check tube.toml";
 
 #[test]
 fn the_file_itself_is_right() {
     let place = Place::new();
     place.write("tube.toml", TUBE);
-    place.call(CHECK).expect_code(0);
+    place.does(CHECK);
 }
 
 #[test]
@@ -76,11 +76,8 @@ fn a_wrong_override_is_its_own_place() {
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {
-        let shown = format!("--set {setting}");
-        place
-            .run_small(&["--out", "results", "--set", setting])
-            .expect_code(2)
-            .says(&[&shown, part]);
+        let call = format!("run SMALL --out results --set {setting}");
+        place.refuses(&call, &[&format!("--set {setting}"), part]);
     }
     assert!(place.inventory().is_empty());
 }
@@ -121,14 +118,11 @@ fn files_that_are_not_toml_or_not_text_or_not_there() {
     let place = Place::new();
     for command in ["run", "check"] {
         for (arguments, parts) in [
-            (
-                &[command, "absent.toml"][..],
-                &["absent.toml", "No such file"][..],
-            ),
-            (&[command, "."], &["cannot read .", "TOML"]),
-            (&[command], &["FILE", "--preset", "frictionless-fine"]),
+            (" absent.toml", &["absent.toml", "No such file"][..]),
+            (" .", &["cannot read .", "TOML"]),
+            ("", &["FILE", "--preset", "frictionless-fine"]),
         ] {
-            place.call(arguments).expect_code(2).says(parts);
+            place.refuses(&format!("{command}{arguments}"), parts);
         }
     }
     assert!(place.inventory().is_empty());
@@ -137,23 +131,24 @@ fn files_that_are_not_toml_or_not_text_or_not_there() {
 #[test]
 fn presets_and_arguments_that_do_not_exist() {
     let place = Place::new();
-    place
-        .call(["run", "--preset", "frictionles"])
-        .expect_code(2)
-        .says(&["frictionles", "did you mean frictionless?"]);
-    place
-        .call(["presets", "nothing"])
-        .expect_code(2)
-        .says(&["no preset `nothing`", "frictionless-fine"]);
-    for arguments in [
-        &["run", "--no-such-flag"][..],
-        &["walk"],
-        &["run", "a.toml", "b.toml"],
-        &["run", "--resume", "a", "--out", "b"],
-        &["presets", "frictional", "--json"],
-        &[],
+    place.refuses(
+        "run --preset frictionles",
+        &["frictionles", "did you mean frictionless?"],
+    );
+    place.refuses(
+        "presets nothing",
+        &["no preset `nothing`", "frictionless-fine"],
+    );
+    for line in [
+        "run --no-such-flag",
+        "walk",
+        "run a.toml b.toml",
+        "run --resume a --out b",
+        "presets frictional --json",
     ] {
-        place.call(arguments).expect_code(2);
+        place.refuses(line, &[]);
     }
+    let without_words = place.command([""; 0]).output().unwrap();
+    Outcome::of(without_words).expect_code(2);
     assert!(place.inventory().is_empty());
 }

@@ -6,11 +6,10 @@ use serde_json::Value;
 
 use crate::Place;
 
-fn check(arguments: &[&str]) -> Value {
+/// What `check --json` with these words answers.
+fn check(words: &str) -> Value {
     let place = Place::new();
-    let outcome = place
-        .call(["check", "--json"].iter().chain(arguments))
-        .expect_code(0);
+    let outcome = place.does(&format!("check --json {words}"));
     assert!(place.inventory().is_empty());
     outcome.json()
 }
@@ -37,7 +36,7 @@ fn close(value: &Value, expected: f64) {
 
 #[test]
 fn the_numbers_are_those_of_the_tube() {
-    let estimate = check(&["--preset", "frictionless"]);
+    let estimate = check("--preset frictionless");
     // N = round(6 * 0.15 * 1.5^2 * 100) = round(202.5)
     assert_eq!(estimate["grains"], 203);
     assert_eq!(estimate["wall_spheres"], 12 * 14 * 10);
@@ -60,7 +59,7 @@ fn the_numbers_are_those_of_the_tube() {
 
 #[test]
 fn the_numbers_of_the_elastic_tube() {
-    let estimate = check(&["--preset", "frictional"]);
+    let estimate = check("--preset frictional");
     assert_eq!(estimate["grains"], 1093);
     assert_eq!(estimate["wall_spheres"], 22 * 23 * 2);
     close(&estimate["number_density"], 1093.0 / (PI * 12.25 * 40.0));
@@ -70,17 +69,22 @@ fn the_numbers_of_the_elastic_tube() {
 
 #[test]
 fn a_person_reads_the_same_numbers() {
-    let outcome = Place::new()
-        .call(["check", "--preset", "frictionless"])
-        .expect_code(0)
-        .shows(&["203", "1680 spheres", "40 periods of 20 t", "expected time"]);
+    let outcome = Place::new().does("check --preset frictionless").shows(&[
+        "203",
+        "1680 spheres",
+        "40 periods of 20 t",
+        "expected time",
+    ]);
     assert_eq!(outcome.stderr, "");
 }
 
 #[test]
 fn presets_and_examples_give_no_warning() {
     for preset in ["frictionless", "frictionless-fine", "frictional"] {
-        assert!(warned(&check(&["--preset", preset])).is_empty(), "{preset}");
+        assert!(
+            warned(&check(&format!("--preset {preset}"))).is_empty(),
+            "{preset}"
+        );
     }
     let examples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples");
     for entry in std::fs::read_dir(examples).unwrap() {
@@ -89,7 +93,7 @@ fn presets_and_examples_give_no_warning() {
             .extension()
             .is_some_and(|extension| extension == "toml")
         {
-            let estimate = check(&[path.to_str().unwrap()]);
+            let estimate = check(path.to_str().unwrap());
             assert!(warned(&estimate).is_empty(), "{}", path.display());
         }
     }
@@ -97,47 +101,37 @@ fn presets_and_examples_give_no_warning() {
 
 #[test]
 fn each_warning_comes_when_it_is_due_and_alone() {
-    for (setting, nearly, key) in [
-        // A contact lasts 2.22, a fifteenth of it is 0.148; a run of 20 samples a period halves steps of 0.3 and 0.25.
+    // A contact lasts 2.22, a fifteenth of it is 0.148; a run of 20 samples a period halves steps of 0.3 and 0.25. The fine
+    // lattice stays tight also where the wave opens the tube wide.
+    for (preset, doubtful, nearly, key) in [
         (
-            &["run.time_step=0.2"][..],
+            "frictionless",
+            "run.time_step=0.2",
             "run.time_step=0.125",
             "run.time_step",
         ),
         (
-            &["tube.rings_per_wave=10"][..],
+            "frictionless",
+            "tube.rings_per_wave=10",
             "tube.rings_per_wave=16",
             "tube.rings_per_wave",
         ),
         (
-            &["drive.width=0.99", "grains.number=5"][..],
-            "drive.width=1.01",
+            "frictionless-fine",
+            "grains.number=5 drive.width=0.99",
+            "grains.number=5 drive.width=1.01",
             "drive.width",
         ),
     ] {
-        // The fine lattice stays tight also where the wave opens the tube wide.
-        let preset = if key == "drive.width" {
-            "frictionless-fine"
-        } else {
-            "frictionless"
-        };
-        let with = |settings: &[&str]| {
-            let mut arguments = vec!["--preset", preset];
-            for setting in settings {
-                arguments.extend(["--set", setting]);
-            }
-            check(&arguments)
-        };
-        assert_eq!(warned(&with(setting)), [key]);
-        let mut harmless = setting.to_vec();
-        harmless[0] = nearly;
-        assert!(warned(&with(&harmless)).is_empty(), "{nearly}");
+        let with = |settings: &str| check(&format!("--preset {preset} {settings}"));
+        assert_eq!(warned(&with(doubtful)), [key]);
+        assert!(warned(&with(nearly)).is_empty(), "{nearly}");
     }
 }
 
 #[test]
 fn a_step_so_long_that_the_trial_diverges_is_a_warning_not_a_failure() {
-    let estimate = check(&["--preset", "frictionless", "--set", "run.time_step=1"]);
+    let estimate = check("--preset frictionless run.time_step=1");
     assert!(warned(&estimate).contains(&"run.time_step"));
     assert_eq!(estimate["steps"], 800);
 }
@@ -146,42 +140,27 @@ fn a_step_so_long_that_the_trial_diverges_is_a_warning_not_a_failure() {
 fn a_run_repeats_the_warnings() {
     let place = Place::new();
     place
-        .run_small(&["--out", "results", "--set", "run.time_step=0.2"])
-        .expect_code(0)
+        .does("run SMALL --out results run.time_step=0.2")
         .says(&["warning: run.time_step", "too long for a contact"]);
 }
 
 #[test]
 fn a_static_wave_has_no_period() {
-    let settings = "--preset frictionless --set drive.strain_rate=0 --set run.duration=50";
-    let estimate = check(&settings.split(' ').collect::<Vec<_>>());
+    let estimate = check("--preset frictionless drive.strain_rate=0 run.duration=50");
     assert_eq!(estimate["period"], Value::Null);
     close(&estimate["duration"], 50.0);
     assert_eq!(estimate["steps"], 1000);
 }
 
 /// Glass beads of 1 mm on springs of 1 N/m: m = 1.309e-6 kg, t = 1.1441 ms.
-const BEADS: [&str; 6] = [
-    "--set",
-    "units.grain_diameter=1e-3",
-    "--set",
-    "units.density=2500",
-    "--set",
-    "units.stiffness=1",
-];
+const BEADS: &str = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1";
 
 #[test]
 fn units_in_si_are_told_and_the_words_say_them_too() {
     let mass = PI / 6.0 * 2500.0 * 1e-9;
     let time = mass.sqrt();
-    let arguments = [
-        "--preset",
-        "frictionless",
-        "--set",
-        "drive.body_force=-0.002",
-    ];
-    let arguments = [&arguments[..], &BEADS].concat();
-    let si = &check(&arguments)["si"];
+    let words = format!("--preset frictionless drive.body_force=-0.002 {BEADS}");
+    let si = &check(&words)["si"];
     close(&si["unit_mass_kg"], mass);
     close(&si["unit_time_s"], time);
     close(&si["unit_pressure_pa"], 1000.0);
@@ -198,28 +177,22 @@ fn units_in_si_are_told_and_the_words_say_them_too() {
         &si["pressure_rise_pa"],
         203.0 * 0.002 * 10.0 / (100.0 * PI * 2.25) * 1000.0,
     );
-    let place = Place::new();
-    let said = place
-        .call(["check"].iter().chain(&arguments))
-        .expect_code(0)
-        .stdout;
-    assert!(said.contains("in SI") && said.contains("Pa"), "{said}");
-    assert_eq!(check(&["--preset", "frictionless"])["si"], Value::Null);
+    let told = Place::new().does(&format!("check {words}"));
+    told.shows(&["in SI", "Pa"]);
+    assert_eq!(check("--preset frictionless")["si"], Value::Null);
 }
 
 #[test]
 fn unphysical_softness_is_warned_of_with_what_to_do() {
-    let message = |arguments: &[&str]| {
-        let estimate = check(&[&["--preset", "frictionless"], arguments, &BEADS].concat());
-        let warnings = estimate["warnings"].as_array().unwrap().clone();
-        warnings
-            .iter()
-            .filter(|warning| warning["key"] == "units.stiffness")
-            .map(|warning| warning["message"].as_str().unwrap().to_owned())
+    let message = |settings: &str| {
+        warnings(&format!("--preset frictionless {settings}{BEADS}"))
+            .into_iter()
+            .filter(|(key, _)| key == "units.stiffness")
+            .map(|(_, message)| message)
             .find(|message| !message.contains("in a short trial"))
     };
     // c = 0.5: xi = 0.5/sqrt(2), far above a tenth; k (0.3536/0.1)^2 = 12.5 N/m would do at 43.70 Hz, and 12.56 at 43.8.
-    let soft = message(&[]).unwrap();
+    let soft = message("").unwrap();
     for part in [
         "35 %",
         "1.26e1 N/m",
@@ -229,18 +202,11 @@ fn unphysical_softness_is_warned_of_with_what_to_do() {
         assert!(soft.contains(part), "{part} is not in {soft}");
     }
     // c = 0.1: xi = 0.0707.
-    assert_eq!(message(&["--set", "drive.strain_rate=0.01"]), None);
+    assert_eq!(message("drive.strain_rate=0.01 "), None);
     // A thousandth of a Hertz: 1e3/(1.144e-3 0.05) steps, and xi = 1.144e-6 10/sqrt(2) d: (8.0901e-6/0.01)^2 = 6.545e-7
     // N/m.
-    let hard = message(&[
-        "--set",
-        "units.wave_frequency=1e-3",
-        "--set",
-        "observe.samples_per_period=100000",
-        "--set",
-        "grains.number=5",
-    ])
-    .unwrap();
+    let slow = "units.wave_frequency=1e-3 observe.samples_per_period=100000 grains.number=5 ";
+    let hard = message(slow).unwrap();
     assert!(
         hard.contains("1.7e7 steps") && hard.contains("6.55e-7 N/m"),
         "{hard}"
@@ -248,8 +214,8 @@ fn unphysical_softness_is_warned_of_with_what_to_do() {
 }
 
 /// Keys and messages of what `check` warns of.
-fn warnings(arguments: &[&str]) -> Vec<(String, String)> {
-    let estimate = check(arguments);
+fn warnings(words: &str) -> Vec<(String, String)> {
+    let estimate = check(words);
     let text = |value: &Value| value.as_str().unwrap().to_owned();
     let warnings = estimate["warnings"].as_array().unwrap().iter();
     warnings
@@ -259,59 +225,40 @@ fn warnings(arguments: &[&str]) -> Vec<(String, String)> {
 
 #[test]
 fn a_schedule_is_warned_of_for_what_it_leads_to() {
-    for (preset, settings, key, part) in [
+    for (words, key, part) in [
         (
-            "frictionless-fine",
-            &[
-                "drive.schedule={form='ramp', from=2.75, to=0.99, end=2}",
-                "grains.number=5",
-            ][..],
+            "frictionless-fine drive.schedule={form='ramp',from=2.75,to=0.99,end=2} grains.number=5",
             "drive.schedule",
             "closes on itself",
         ),
         (
-            "frictionless-fine",
-            &["drive.schedule={form='ramp', parameter='strain_rate', from=0.05, to=0.2, end=2}"],
+            "frictionless-fine drive.schedule={form='ramp',parameter='strain_rate',from=0.05,to=0.2,end=2}",
             "tube.rings_per_wave",
             "as fast as the wave",
         ),
         (
-            "frictional",
-            &[
-                "drive.schedule={form='ramp', from=0.004, to=50, end=2}",
-                "tube.waves=2",
-            ],
+            "frictional drive.schedule={form='ramp',from=0.004,to=50,end=2} tube.waves=2",
             "run.time_step",
             "diverged",
         ),
         (
-            "frictionless",
-            &[
-                "drive.schedule=ramp",
-                "drive.ramp_periods=100",
-                "run.periods=10",
-            ],
+            "frictionless drive.schedule=ramp drive.ramp_periods=100 run.periods=10",
             "drive.schedule",
             "until 100 periods, and the run ends after 10",
         ),
     ] {
-        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-        let arguments: Vec<&str> = ["--preset", preset].into_iter().chain(settings).collect();
-        let found = warnings(&arguments);
-        assert!(
-            found
-                .iter()
-                .any(|(of, message)| of == key && message.contains(part)),
-            "{arguments:?}: {found:?}"
-        );
+        let found = warnings(&format!("--preset {words}"));
+        let is_found = found
+            .iter()
+            .any(|(of, message)| of == key && message.contains(part));
+        assert!(is_found, "{words}: {found:?}");
     }
 }
 
 #[test]
 fn the_fastest_wave_of_a_schedule_is_the_one_in_si() {
-    let led = "drive.schedule={form='ramp', parameter='strain_rate', from=0.01, to=0.1, end=4}";
-    let arguments = [&["--preset", "frictionless", "--set", led][..], &BEADS].concat();
-    let si = &check(&arguments)["si"];
+    let led = "drive.schedule={form='ramp',parameter='strain_rate',from=0.01,to=0.1,end=4}";
+    let si = &check(&format!("--preset frictionless {led} {BEADS}"))["si"];
     let time = (PI / 6.0 * 2500.0 * 1e-9).sqrt();
     close(&si["wave_frequency_hz"], 0.05 / time);
     close(&si["fastest_wave_frequency_hz"], 0.1 / time);
@@ -322,36 +269,17 @@ fn the_fastest_wave_of_a_schedule_is_the_one_in_si() {
 
 #[test]
 fn small_numbers_in_si_keep_their_digits() {
-    let slow = [
-        "--preset",
-        "frictionless",
-        "--set",
-        "drive.strain_rate=1e-6",
-    ];
-    let settings = ["--set", "units.stiffness=1e-4", "--set", "run.periods=1"];
-    let more = ["--set", "run.time_step=1"];
-    let arguments = [&slow[..], &BEADS[..4], &settings, &more].concat();
-    let said = Place::new()
-        .call(["check"].iter().chain(&arguments))
-        .expect_code(0)
-        .stdout;
+    let slow = "check --preset frictionless drive.strain_rate=1e-6 run.periods=1 run.time_step=1";
+    let units = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1e-4";
+    let told = Place::new().does(&format!("{slow} {units}"));
     // 1e-6/(0.11441 s)
-    assert!(said.contains("a wave of 8.740e-6 Hz"), "{said}");
+    told.shows(&["a wave of 8.740e-6 Hz"]);
 }
 
 #[test]
 fn a_tube_that_is_overfilled_is_warned_of_by_the_overlaps_that_a_trial_shows() {
-    let settings = [
-        "--preset",
-        "frictionless",
-        "--set",
-        "grains.volume_fraction=0.5",
-        "--set",
-        "drive.strain_rate=0.001",
-        "--set",
-        "tube.waves=2",
-    ];
-    let found = warnings(&[&settings[..], &BEADS].concat());
+    let settings = "grains.volume_fraction=0.5 drive.strain_rate=0.001 tube.waves=2";
+    let found = warnings(&format!("--preset frictionless {settings} {BEADS}"));
     let (key, message) = &found[0];
     assert_eq!(key, "units.stiffness");
     assert!(

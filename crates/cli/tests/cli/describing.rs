@@ -7,7 +7,7 @@ const PRESETS: [&str; 3] = ["frictionless", "frictionless-fine", "frictional"];
 #[test]
 fn the_schema_is_one_and_refuses_what_the_program_refuses() {
     let place = Place::new();
-    let outcome = place.call(["schema"]).expect_code(0);
+    let outcome = place.does("schema");
     assert_eq!(outcome.stderr, "");
     jsonschema::meta::validate(&outcome.json()).expect("it follows the schema of schemas");
     let schema = jsonschema::validator_for(&outcome.json()).unwrap();
@@ -22,7 +22,7 @@ fn the_schema_is_one_and_refuses_what_the_program_refuses() {
         );
         place.write("tube.toml", format!("preset = \"frictionless\"\n{text}"));
         place
-            .call(["check", "tube.toml"])
+            .call("check tube.toml")
             .expect_code(if is_right { 0 } else { 2 });
     }
 }
@@ -30,25 +30,22 @@ fn the_schema_is_one_and_refuses_what_the_program_refuses() {
 #[test]
 fn presets_are_listed_and_printed() {
     let place = Place::new();
-    let listed = place.call(["presets"]).expect_code(0).stdout;
+    let listed = place.does("presets").stdout;
     let names: Vec<&str> = listed
         .lines()
         .map(|line| line.split_whitespace().next().unwrap())
         .collect();
     assert_eq!(names, PRESETS);
-    let json = place.call(["presets", "--json"]).expect_code(0).json();
+    let json = place.does("presets --json").json();
     for (entry, name) in json.as_array().unwrap().iter().zip(PRESETS) {
         assert_eq!(entry["name"], name);
         assert!(entry["summary"].as_str().unwrap().ends_with('.'));
     }
     for name in PRESETS {
-        let text = place.call(["presets", name]).expect_code(0).stdout;
+        let text = place.does(&format!("presets {name}")).stdout;
         place.write("copy.toml", &text);
-        let of = |source: &[&str]| {
-            let check = place.call(["check", "--json"].iter().chain(source));
-            check.expect_code(0).json()
-        };
-        let (copy, preset) = (of(&["copy.toml"]), of(&["--preset", name]));
+        let of = |source: &str| place.does(&format!("check --json {source}")).json();
+        let (copy, preset) = (of("copy.toml"), of(&format!("--preset {name}")));
         for key in ["grains", "wall_spheres", "steps", "duration"] {
             assert_eq!(copy[key], preset[key], "{name}: {key}");
         }
@@ -58,7 +55,7 @@ fn presets_are_listed_and_printed() {
 #[test]
 fn help_version_and_completions() {
     let place = Place::new();
-    let help = place.call(["--help"]).expect_code(0).stdout;
+    let help = place.does("--help").stdout;
     for word in [
         "run",
         "check",
@@ -69,13 +66,13 @@ fn help_version_and_completions() {
     ] {
         assert!(help.contains(word), "{word}");
     }
-    let version = place.call(["--version"]).expect_code(0).stdout;
+    let version = place.does("--version").stdout;
     assert_eq!(
         version,
         format!("peristalsis {}\n", env!("CARGO_PKG_VERSION"))
     );
     for shell in ["bash", "zsh", "fish"] {
-        let script = place.call(["completions", shell]).expect_code(0).stdout;
+        let script = place.does(&format!("completions {shell}")).stdout;
         assert!(script.contains("preset"), "{shell}");
     }
     assert!(place.inventory().is_empty());
@@ -84,10 +81,7 @@ fn help_version_and_completions() {
 #[test]
 fn the_newtonian_fluid() {
     let place = Place::new();
-    let report = place
-        .call(["newtonian", "--width", "2", "--json"])
-        .expect_code(0)
-        .json();
+    let report = place.does("newtonian --width 2 --json").json();
     // phi = 1/3, phi^2 = 1/9: Q = phi^2 (16 - phi^2)/(2 (2 + 3 phi^2)) pi a^2 c; J/Jmax = Q/(1 + phi^2/2)
     let square = 1.0 / 9.0;
     let flow_rate = square * (16.0 - square) / (2.0 * (2.0 + 3.0 * square));
@@ -104,13 +98,10 @@ fn the_newtonian_fluid() {
     // Trapping begins at phi = 4 - sqrt(14) = 0.258.
     assert!(report["trapped_volume_fraction"].as_f64().unwrap() > 0.0);
     place
-        .call(["newtonian", "--width", "2"])
-        .expect_code(0)
+        .does("newtonian --width 2")
         .shows(&["0.35840", "a bolus on the axis"]);
     for width in ["4", "-1", "nan"] {
-        place
-            .call(["newtonian", &format!("--width={width}")])
-            .expect_code(2)
-            .says(&["width", "0 <= width <= 2 radius"]);
+        let call = format!("newtonian --width={width}");
+        place.refuses(&call, &["width", "0 <= width <= 2 radius"]);
     }
 }

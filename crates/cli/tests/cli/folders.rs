@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Place, SMALL};
+use crate::Place;
 
 const FILES: [&str; 13] = [
     "config.toml",
@@ -32,7 +32,7 @@ fn names(folder: &Path) -> Vec<String> {
 #[test]
 fn nested_relative_folders_are_made_and_filled() {
     let place = Place::new();
-    place.run_small(&["--out", "a/b/c", "--csv"]).expect_code(0);
+    place.does("run SMALL --out a/b/c --csv");
     assert_eq!(names(&place.path("a/b/c")), FILES);
     let figure = std::fs::read(place.path("a/b/c/flow.png")).unwrap();
     assert!(figure.starts_with(b"\x89PNG\r\n\x1a\n"));
@@ -43,10 +43,8 @@ fn nested_relative_folders_are_made_and_filled() {
 #[test]
 fn an_elastic_wall_has_a_figure_of_its_own() {
     let place = Place::new();
-    let settings = ["grains.number=20", "run.periods=0.05", "run.seed=3"];
     place
-        .run_preset("frictional", "results", &settings)
-        .expect_code(0);
+        .does("run --preset frictional --out results grains.number=20 run.periods=0.05 run.seed=3");
     for name in ["wall.svg", "wall.png"] {
         assert!(place.path("results").join(name).is_file(), "{name}");
     }
@@ -60,8 +58,8 @@ fn without_out_each_run_gets_a_folder_of_its_own() {
         "preset = \"frictionless\"\ngrains.number = 5\nrun.periods = 1\n",
     );
     for _ in 0..2 {
-        place.run_small(&[]).expect_code(0);
-        place.call(["run", "narrow.toml"]).expect_code(0);
+        place.does("run SMALL");
+        place.does("run narrow.toml");
     }
     let expected = ["frictionless-1", "frictionless-2", "narrow-1", "narrow-2"];
     assert_eq!(names(&place.path("runs")), expected);
@@ -72,7 +70,7 @@ fn an_empty_folder_and_a_folder_with_other_things_are_used_as_they_are() {
     let place = Place::new();
     std::fs::create_dir(place.path("results")).unwrap();
     place.write("results/notes.txt", "keep me");
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place.does("run SMALL --out results");
     assert_eq!(
         std::fs::read_to_string(place.path("results/notes.txt")).unwrap(),
         "keep me"
@@ -83,17 +81,17 @@ fn an_empty_folder_and_a_folder_with_other_things_are_used_as_they_are() {
 #[test]
 fn a_folder_that_holds_another_run_stays_as_it_is() {
     let place = Place::new();
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place.does("run SMALL --out results");
     let before = place.inventory();
-    place
-        .run_small(&["--out", "results", "--set", "run.seed=2"])
-        .expect_code(2)
-        .says(&[
+    place.refuses(
+        "run SMALL --out results run.seed=2",
+        &[
             "results holds another run",
             "nothing was changed",
             "--out",
             "--resume",
-        ]);
+        ],
+    );
     assert_eq!(place.inventory(), before);
     // Any one of a run's files is enough to show that there was one.
     for name in [
@@ -108,10 +106,7 @@ fn a_folder_that_holds_another_run_stays_as_it_is() {
         std::fs::create_dir(place.path("results")).unwrap();
         place.write(&format!("results/{name}"), "of another run");
         let before = place.inventory();
-        place
-            .run_small(&["--out", "results"])
-            .expect_code(2)
-            .says(&["holds another run", name]);
+        place.refuses("run SMALL --out results", &["holds another run", name]);
         assert_eq!(place.inventory(), before);
     }
 }
@@ -128,9 +123,8 @@ fn folders_that_cannot_be_made() {
         ("file/far/below", "directory"),
         (long.as_str(), "name too long"),
     ] {
-        let outcome = place.run_small(&["--out", folder]).expect_code(2);
+        let outcome = place.refuses(&format!("run SMALL --out {folder}"), &["cannot write to"]);
         let message = outcome.message().to_lowercase();
-        assert!(message.contains("cannot write to"), "{message}");
         assert!(message.contains(reason), "{message}");
         // Parents that were made on the way are taken away again.
         assert_eq!(place.inventory(), before, "{folder}");
@@ -141,14 +135,14 @@ fn folders_that_cannot_be_made() {
 #[test]
 fn a_file_system_that_takes_no_files() {
     let place = Place::new();
-    place
-        .run_small(&["--out", "/proc/peristalsis"])
-        .expect_code(2)
-        .says(&["cannot write to /proc/peristalsis"]);
-    place
-        .run_small(&["--out", "/proc/self"])
-        .expect_code(2)
-        .says(&["cannot write to /proc/self"]);
+    place.refuses(
+        "run SMALL --out /proc/peristalsis",
+        &["cannot write to /proc/peristalsis"],
+    );
+    place.refuses(
+        "run SMALL --out /proc/self",
+        &["cannot write to /proc/self"],
+    );
 }
 
 #[cfg(unix)]
@@ -164,10 +158,8 @@ fn a_folder_without_permission_to_write() {
         return;
     }
     for out in ["closed", "closed/below"] {
-        place
-            .run_small(&["--out", out])
-            .expect_code(2)
-            .says(&["cannot write to", "Permission denied"]);
+        let call = format!("run SMALL --out {out}");
+        place.refuses(&call, &["cannot write to", "Permission denied"]);
         assert!(names(&folder).is_empty());
     }
 }
@@ -175,23 +167,20 @@ fn a_folder_without_permission_to_write() {
 #[test]
 fn what_cannot_be_resumed() {
     let place = Place::new();
-    place
-        .call(["run", "--resume", "absent"])
-        .expect_code(2)
-        .says(&["absent holds no run that can be continued", "config.toml"]);
-    place.run_small(&["--out", "whole"]).expect_code(0);
+    place.refuses(
+        "run --resume absent",
+        &["absent holds no run that can be continued", "config.toml"],
+    );
+    place.does("run SMALL --out whole");
     let before = place.inventory();
-    place
-        .call(["run", "--resume", "whole"])
-        .expect_code(2)
-        .says(&["no run that can be continued", "complete"]);
+    place.refuses(
+        "run --resume whole",
+        &["no run that can be continued", "complete"],
+    );
     assert_eq!(place.inventory(), before);
 
     std::fs::remove_file(place.path("whole/state.checkpoint")).unwrap();
-    place
-        .call(["run", "--resume", "whole"])
-        .expect_code(2)
-        .says(&["state.checkpoint"]);
+    place.refuses("run --resume whole", &["state.checkpoint"]);
 }
 
 /// A header of a checkpoint with other bytes from a place on, and the checksum that belongs to it.
@@ -206,16 +195,9 @@ fn doctored(state: &[u8], at: usize, bytes: &[u8]) -> Vec<u8> {
 #[test]
 fn a_state_that_is_damaged_or_of_another_run_is_refused() {
     let place = Place::new();
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place.does("run SMALL --out results");
     // The state of another seed.
-    place
-        .call(
-            ["run"]
-                .iter()
-                .chain(SMALL)
-                .chain(&["--out", "other", "--set", "run.seed=2"]),
-        )
-        .expect_code(0);
+    place.does("run SMALL --out other run.seed=2");
     let state = place.path("results/state.checkpoint");
     let bytes = std::fs::read(&state).unwrap();
     let other = std::fs::read(place.path("other/state.checkpoint")).unwrap();
@@ -273,9 +255,9 @@ fn a_state_that_is_damaged_or_of_another_run_is_refused() {
         std::fs::write(&state, damaged).unwrap();
         let before = place.inventory();
         for command in [
-            &["run", "--resume", "results"][..],
-            &["render", "results"],
-            &["trajectory", "results"],
+            "run --resume results",
+            "render results",
+            "trajectory results",
         ] {
             let outcome = place.call(command);
             assert_eq!(outcome.code, Some(2), "{name}: {outcome:?}");
@@ -289,34 +271,27 @@ fn a_state_that_is_damaged_or_of_another_run_is_refused() {
         assert_eq!(place.inventory(), before, "{name}");
     }
     // What the help says works.
-    place
-        .call(["run", "results/config.toml", "--out", "again"])
-        .expect_code(0);
+    place.does("run results/config.toml --out again");
     std::fs::write(&state, bytes).unwrap();
-    place
-        .call(["run", "--resume", "results"])
-        .expect_code(2)
-        .says(&["it is complete"]);
+    place.refuses("run --resume results", &["it is complete"]);
 }
 
 #[test]
 fn a_run_that_was_killed_before_it_saved_a_state_can_be_begun_anew() {
     let place = Place::new();
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place.does("run SMALL --out results");
     for entry in std::fs::read_dir(place.path("results")).unwrap() {
         let path = entry.unwrap().path();
         if !path.ends_with("config.toml") {
             std::fs::remove_file(path).unwrap();
         }
     }
-    place
-        .call(["run", "--resume", "results"])
-        .expect_code(2)
-        .says(&[
+    place.refuses(
+        "run --resume results",
+        &[
             "state.checkpoint",
             "peristalsis run results/config.toml --out DIR",
-        ]);
-    place
-        .call(["run", "results/config.toml", "--out", "again"])
-        .expect_code(0);
+        ],
+    );
+    place.does("run results/config.toml --out again");
 }

@@ -37,16 +37,24 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 /// A tube that runs within milliseconds.
-const SMALL: &[&str] = &[
-    "--preset",
-    "frictionless",
-    "--set",
-    "grains.number=20",
-    "--set",
-    "tube.waves=2",
-    "--set",
-    "run.periods=4",
-];
+const SMALL: &str = "--preset frictionless grains.number=20 tube.waves=2 run.periods=4";
+
+/// The words of a line for the program: `SMALL` stands for the small tube, and each setting, such as `run.seed=2`, gets
+/// its `--set`.
+fn words(line: &str) -> Vec<&str> {
+    let words = line.split(' ').flat_map(|word| match word {
+        "SMALL" => SMALL.split(' ').collect(),
+        word => vec![word],
+    });
+    let is_setting = |word: &str| {
+        let (key, _) = word.split_once('=').unwrap_or_default();
+        key.starts_with(|first: char| first.is_ascii_lowercase()) && key.contains('.')
+    };
+    words
+        .flat_map(|word| [is_setting(word).then_some("--set"), Some(word)])
+        .flatten()
+        .collect()
+}
 
 /// The program, without what a caller's environment may say about colours.
 fn program() -> Command {
@@ -152,22 +160,21 @@ impl Place {
         command
     }
 
-    fn call<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>) -> Outcome {
-        Outcome::of(self.command(arguments).output().unwrap())
+    /// The program with the [`words`] of a line.
+    fn call(&self, line: &str) -> Outcome {
+        Outcome::of(self.command(words(line)).output().unwrap())
     }
 
-    /// The program with arguments and with settings, each behind a `--set`.
-    fn call_with(&self, arguments: &[&str], settings: &[&str]) -> Outcome {
-        let settings = settings.iter().flat_map(|setting| ["--set", setting]);
-        self.call(arguments.iter().copied().chain(settings))
+    /// A call that ends well.
+    #[track_caller]
+    fn does(&self, line: &str) -> Outcome {
+        self.call(line).expect_code(0)
     }
 
-    /// `peristalsis run` of a preset into a folder, its summary as JSON on standard output.
-    fn run_preset(&self, preset: &str, folder: &str, settings: &[&str]) -> Outcome {
-        self.call_with(
-            &["run", "--preset", preset, "--out", folder, "--json"],
-            settings,
-        )
+    /// A call that is refused as bad input, with a message that holds each part.
+    #[track_caller]
+    fn refuses(&self, line: &str, parts: &[&str]) -> Outcome {
+        self.call(line).expect_code(2).says(parts)
     }
 
     /// Whether files of a name are the same in two folders, to the byte.
@@ -178,11 +185,6 @@ impl Place {
                 folders.map(|folder| std::fs::read(self.path(folder).join(name)).unwrap());
             assert!(one == other, "{name} differs");
         }
-    }
-
-    /// `peristalsis run` of the small tube with more arguments.
-    fn run_small(&self, arguments: &[&str]) -> Outcome {
-        self.call(["run"].iter().chain(SMALL).chain(arguments))
     }
 
     /// Every file below, with content and time of change; folders with neither.

@@ -5,7 +5,7 @@ use std::os::unix::ffi::OsStrExt;
 use std::process::Stdio;
 
 use crate::study::quick;
-use crate::{Outcome, Place, SMALL};
+use crate::{Outcome, Place, words};
 
 /// A name of a file with bytes that no text has.
 fn odd(name: &str) -> OsString {
@@ -15,12 +15,13 @@ fn odd(name: &str) -> OsString {
 }
 
 /// Calls the program with arguments of which those that begin with `@` are odd names.
-fn call(place: &Place, line: &str, more: &[&str]) -> Outcome {
-    let arguments = line.split(' ').chain(more.iter().copied());
-    let arguments = arguments.map(|argument| match argument.strip_prefix('@') {
-        Some(name) => odd(name),
-        None => argument.into(),
-    });
+fn call(place: &Place, line: &str) -> Outcome {
+    let arguments = words(line)
+        .into_iter()
+        .map(|argument| match argument.strip_prefix('@') {
+            Some(name) => odd(name),
+            None => argument.into(),
+        });
     let output = place.command(arguments).output().unwrap();
     // What is no text is shown with marks in its place.
     Outcome {
@@ -35,26 +36,24 @@ fn runs_pictures_and_trajectories() {
     let place = Place::new();
     let text = "preset = \"frictionless\"\ngrains.number = 20\ntube.waves = 2\nrun.periods = 1\n";
     std::fs::write(place.folder.path().join(odd("tube.toml")), text).unwrap();
-    call(&place, "check @tube.toml", &[]).expect_code(0);
-    call(&place, "run @tube.toml", &[]).expect_code(0);
-    let trajectory = ["--trajectory=gsd,vtp,lammps"];
-    call(&place, "run @tube.toml --out @run", &trajectory).expect_code(0);
-    call(&place, "run --out @small", SMALL).expect_code(0);
-    call(&place, "run --resume @run", &[])
-        .expect_code(2)
-        .says(&["it is complete"]);
-    call(&place, "run @tube.toml --out @run", &[])
-        .expect_code(2)
-        .says(&["holds another run"]);
-    call(&place, "trajectory @small --duration 0.5", &[]).expect_code(0);
+    call(&place, "check @tube.toml").expect_code(0);
+    call(&place, "run @tube.toml").expect_code(0);
     call(
         &place,
-        "render @run --width 64 --bare --out @picture.png",
-        &[],
+        "run @tube.toml --out @run --trajectory=gsd,vtp,lammps",
     )
     .expect_code(0);
-    call(&place, "render @run --width 64 --at 0.5", &[]).expect_code(0);
-    call(&place, "render @run --out @picture", &[])
+    call(&place, "run --out @small SMALL").expect_code(0);
+    call(&place, "run --resume @run")
+        .expect_code(2)
+        .says(&["it is complete"]);
+    call(&place, "run @tube.toml --out @run")
+        .expect_code(2)
+        .says(&["holds another run"]);
+    call(&place, "trajectory @small --duration 0.5").expect_code(0);
+    call(&place, "render @run --width 64 --bare --out @picture.png").expect_code(0);
+    call(&place, "render @run --width 64 --at 0.5").expect_code(0);
+    call(&place, "render @run --out @picture")
         .expect_code(2)
         .says(&["known by this ending", "help:"]);
     for name in ["run", "picture.png"] {
@@ -66,27 +65,21 @@ fn runs_pictures_and_trajectories() {
 fn studies() {
     let place = Place::new();
     std::fs::write(place.folder.path().join(odd("study.toml")), quick()).unwrap();
-    let workers = ["--workers", "1"];
-    call(&place, "study plan @study.toml", &[]).expect_code(0);
-    call(&place, "study run @study.toml --store @store", &workers).expect_code(0);
-    call(&place, "study status @store", &[])
+    call(&place, "study plan @study.toml").expect_code(0);
+    call(&place, "study run @study.toml --store @store --workers 1").expect_code(0);
+    call(&place, "study status @store")
         .expect_code(0)
         .shows(&["4 done"]);
-    call(&place, "study verify @store", &[]).expect_code(0);
-    call(&place, "study scan @store", &[]).expect_code(0);
-    call(&place, "study export @store --out @tables --series", &[]).expect_code(0);
-    call(&place, "study pack @store @runs.tar", &[]).expect_code(0);
-    call(
-        &place,
-        "study run @study.toml --store @other",
-        &["--for", "1ms"],
-    )
-    .expect_code(0);
-    call(&place, "study import @other @runs.tar", &[]).expect_code(0);
-    call(&place, "study status @other", &[])
+    call(&place, "study verify @store").expect_code(0);
+    call(&place, "study scan @store").expect_code(0);
+    call(&place, "study export @store --out @tables --series").expect_code(0);
+    call(&place, "study pack @store @runs.tar").expect_code(0);
+    call(&place, "study run @study.toml --store @other --for 1ms").expect_code(0);
+    call(&place, "study import @other @runs.tar").expect_code(0);
+    call(&place, "study status @other")
         .expect_code(0)
         .shows(&["4 done"]);
-    call(&place, "study status @nowhere", &[])
+    call(&place, "study status @nowhere")
         .expect_code(2)
         .says(&["no store of a study", "help:"]);
 }
@@ -94,8 +87,11 @@ fn studies() {
 #[test]
 fn reports() {
     let place = Place::new();
-    let briefly = ["--only", "F2", "--for", "1s", "--workers", "1"];
-    call(&place, "reproduce --out @report", &briefly).expect_code(0);
+    call(
+        &place,
+        "reproduce --out @report --only F2 --for 1s --workers 1",
+    )
+    .expect_code(0);
     let page = place.folder.path().join(odd("report")).join("report.html");
     assert!(page.is_file());
 }
@@ -103,8 +99,7 @@ fn reports() {
 #[test]
 fn what_is_viewed_and_where_states_are_saved() {
     let place = Place::new();
-    let made = ["--trajectory=gsd"];
-    call(&place, "run --out @run", &[SMALL, &made].concat()).expect_code(0);
+    call(&place, "run --out @run SMALL --trajectory=gsd").expect_code(0);
     for live in [None, Some("--live")] {
         let arguments = [OsString::from("view"), odd("run")];
         let mut child = place

@@ -5,16 +5,7 @@ use crate::Place;
 /// A finished run with frames every quarter of a period.
 fn place() -> Place {
     let place = Place::new();
-    place
-        .run_small(&[
-            "--out",
-            "results",
-            "--trajectory",
-            "gsd",
-            "--trajectory-every",
-            "0.25",
-        ])
-        .expect_code(0);
+    place.does("run SMALL --out results --trajectory gsd --trajectory-every 0.25");
     place
 }
 
@@ -27,14 +18,10 @@ fn a_finished_run_is_drawn_from_every_side() {
     let place = place();
     let before = place.inventory();
     place
-        .call(["render", "results", "--width", "300"])
-        .expect_code(0)
+        .does("render results --width 300")
         .shows(&["300 x ", "results/tube-side.png"]);
     let section = "render results --view section --phase 0.25 --width 64 --bare --out section.png";
-    place
-        .call(section.split(' '))
-        .expect_code(0)
-        .shows(&["64 x 64 pixels: section.png"]);
+    place.does(&section).shows(&["64 x 64 pixels: section.png"]);
     for options in [
         "--view space-time",
         "--format svg --colour coordination --wall glass --paper dark",
@@ -42,7 +29,7 @@ fn a_finished_run_is_drawn_from_every_side() {
         "--from start --colour pressure --range 0:0.5 --at 0.5 --out pressure.png",
     ] {
         let call = format!("render results --width 200 {options}");
-        place.call(call.split(' ')).expect_code(0);
+        place.does(&call);
     }
     for file in [
         "results/tube-side.png",
@@ -80,7 +67,7 @@ fn films_have_a_frame_for_each_instant_wherever_it_comes_from() {
         ("--film --trajectory results/trajectory.gsd --every 1", 5),
     ] {
         let call = format!("render results --width 160 --json -q {options} --out film.gif");
-        let made = place.call(call.split(' ')).expect_code(0).json();
+        let made = place.does(&call).json();
         assert_eq!(made["frames"], frames, "{options}");
         assert_eq!(made["files"][0], "film.gif");
         let bytes = bytes(&place, "film.gif");
@@ -90,8 +77,7 @@ fn films_have_a_frame_for_each_instant_wherever_it_comes_from() {
         assert!(controls.count() >= frames, "{options}");
     }
     place
-        .call("render results --width 160 --out film.apng --window 0:1".split(' '))
-        .expect_code(0)
+        .does("render results --width 160 --out film.apng --window 0:1")
         .says(&["100 %", "frame 5 of 5"])
         .shows(&["5 frames of 160 x ", "film.apng"]);
     let film = bytes(&place, "film.apng");
@@ -143,16 +129,16 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
         ("render results --from state --at 2", "one instant"),
         ("render results --waves 0", "positive number of waves"),
     ] {
-        let outcome = place.call(call.split(' ')).expect_code(2);
+        let outcome = place.call(&call).expect_code(2);
         let message = outcome.message();
         assert!(message.contains(expected), "{call}: {message}");
     }
     // Without a trajectory.
     std::fs::remove_file(place.path("results/trajectory.gsd")).unwrap();
-    place
-        .call("render results --film --from trajectory".split(' '))
-        .expect_code(2)
-        .says(&["holds no trajectory.gsd", "--from state, --from start"]);
+    place.refuses(
+        "render results --film --from trajectory",
+        &["holds no trajectory.gsd", "--from state, --from start"],
+    );
     let mut after = place.inventory();
     after.retain(|name, _| before.contains_key(name));
     assert_eq!(after.len() + 1, before.len());

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::{Outcome, Place, read_json};
 
 /// A claim, its studies, and how long to work on them: nothing ends in so short a time.
-const BRIEFLY: [&str; 5] = ["reproduce", "--only", "F2", "--for", "1s"];
+const BRIEFLY: &str = "reproduce --only F2 --for 1s";
 
 fn claims(out: &Path) -> Vec<Value> {
     read_json(&out.join("claims.json"))["claims"]
@@ -20,8 +20,7 @@ fn claims(out: &Path) -> Vec<Value> {
 fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
     let place = Place::new();
     let outcome = place
-        .call(BRIEFLY)
-        .expect_code(0)
+        .does(BRIEFLY)
         .says(&[
             "1 claim, quick design (--full has enough runs for verdicts), in reproduction",
             "study 1 of",
@@ -53,9 +52,7 @@ fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
     let before = checkpoints();
     assert!(before > 0);
     // As JSON, in the other size, without a word.
-    let outcome = place
-        .call(BRIEFLY.iter().chain(&["--full", "--json", "--quiet"]))
-        .expect_code(0);
+    let outcome = place.does(&format!("{BRIEFLY} --full --json --quiet"));
     assert_eq!(outcome.stderr, "");
     let printed: Value = outcome.json();
     assert_eq!(printed, read_json(&out.join("claims.json")));
@@ -81,62 +78,45 @@ values = [2.4, 2.9]
 fn tables_are_looked_through_for_runs_of_the_studies() {
     let place = Place::new();
     place.write("study.toml", FOREIGN);
-    place.call(["study", "run", "study.toml"]).expect_code(0);
-    place
-        .call(["study", "export", "stores/foreign", "--out", "tables"])
-        .expect_code(0);
-    place
-        .call(BRIEFLY.iter().chain(&["--import", "tables"]))
-        .expect_code(0)
-        .says(&[
-            "2 tables of finished runs",
-            "tables/foreign-timing.csv is left out",
-            "divergence-fine: 0 of",
-        ]);
+    place.does("study run study.toml");
+    place.does("study export stores/foreign --out tables");
+    place.does(&format!("{BRIEFLY} --import tables")).says(&[
+        "2 tables of finished runs",
+        "tables/foreign-timing.csv is left out",
+        "divergence-fine: 0 of",
+    ]);
     // Named, it must be a table of runs.
-    place
-        .call(BRIEFLY.iter().chain(&["--import", "study.toml"]))
-        .expect_code(2)
-        .says(&["study.toml"]);
-    place
-        .call(BRIEFLY.iter().chain(&["--import", "nowhere"]))
-        .expect_code(2)
-        .says(&["nowhere"]);
-    place
-        .call(
-            BRIEFLY
-                .iter()
-                .chain(&["--import", "tables/foreign-timing.csv"]),
-        )
-        .expect_code(2)
-        .says(&["holds no rows of finished runs"]);
+    for (name, part) in [
+        ("study.toml", "study.toml"),
+        ("nowhere", "nowhere"),
+        (
+            "tables/foreign-timing.csv",
+            "holds no rows of finished runs",
+        ),
+    ] {
+        place.refuses(&format!("{BRIEFLY} --import {name}"), &[part]);
+    }
 }
 
 #[test]
 fn what_cannot_be_done_is_said_before_anything_is_made() {
     let place = Place::new();
     let before = place.inventory();
-    place
-        .call(["reproduce", "--only", "F2,F99"])
-        .expect_code(2)
-        .says(&["there is no claim \"F99\"", "claims: F1, F2,"]);
-    place
-        .call(["reproduce", "--quick", "--full"])
-        .expect_code(2)
-        .says(&["cannot be used with"]);
-    place
-        .call(["reproduce", "--for", "30"])
-        .expect_code(2)
-        .says(&["such as 30m"]);
+    place.refuses(
+        "reproduce --only F2,F99",
+        &["there is no claim \"F99\"", "claims: F1, F2,"],
+    );
+    place.refuses("reproduce --quick --full", &["cannot be used with"]);
+    place.refuses("reproduce --for 30", &["such as 30m"]);
     assert_eq!(place.inventory(), before);
     place.write("file", "");
-    place
-        .call(BRIEFLY.iter().chain(&["--out", "file/below"]))
-        .expect_code(2)
-        .says(&[
+    place.refuses(
+        &format!("{BRIEFLY} --out file/below"),
+        &[
             "cannot write to file/below",
             "name another folder with --out",
-        ]);
+        ],
+    );
 }
 
 #[cfg(unix)]

@@ -2,16 +2,16 @@
 
 use serde_json::Value;
 
-use crate::{Place, SMALL, read_json};
+use crate::{Place, read_json};
 
+/// Glass beads of 1 mm on springs of 1 N/m.
+const BEADS: &str = "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1";
 const TABLES: &[&str] = &["timeseries.parquet", "profile.parquet", "waves.parquet"];
 
 #[test]
 fn the_summary_alone_is_on_standard_output() {
     let place = Place::new();
-    let outcome = place
-        .run_small(&["--out", "results", "--json", "--set", "run.seed=7"])
-        .expect_code(0);
+    let outcome = place.does("run SMALL --out results --json run.seed=7");
     let summary = outcome.json();
     assert_eq!(summary, read_json(&place.path("results/summary.json")));
     assert_eq!(summary["grains"], 20);
@@ -37,16 +37,9 @@ fn the_summary_alone_is_on_standard_output() {
 #[test]
 fn a_transition_is_a_number() {
     let place = Place::new();
-    let settings = [
-        "drive.width=2.5",
-        "drive.strain_rate=0.1",
-        "tube.waves=2",
-        "run.periods=30",
-    ];
-    let outcome = place
-        .run_preset("frictionless-fine", "results", &settings)
-        .expect_code(0);
-    let summary = outcome.json();
+    let settings = "drive.width=2.5 drive.strain_rate=0.1 tube.waves=2 run.periods=30";
+    let run = format!("run --preset frictionless-fine --out results --json {settings}");
+    let summary = place.does(&run).json();
     let time = summary["transition_time"].as_f64().unwrap();
     assert!(time > 20.0 && time < 200.0, "{time}");
     assert_eq!(summary["censored"], false);
@@ -67,9 +60,7 @@ fn a_setting_replaces_the_alternative_of_preset_and_file() {
         ("run.duration=40", "run.periods", 2.0),
     ] {
         let folder = key.replace('.', "-");
-        place
-            .call(["run", "tube.toml", "--set", setting, "--out", &folder])
-            .expect_code(0);
+        place.does(&format!("run tube.toml {setting} --out {folder}"));
         let record = std::fs::read_to_string(place.path(&folder).join("config.toml")).unwrap();
         let record: toml::Table = toml::from_str(&record).unwrap();
         let (table, name) = key.split_once('.').unwrap();
@@ -96,29 +87,17 @@ fn the_record_of_a_run_runs_again_to_the_same_bits() {
     for (preset, settings) in [
         (
             "frictionless",
-            &[
-                "grains.number=20",
-                "tube.waves=2",
-                "run.periods=4",
-                "initial.state=jammed",
-                "drive.wave_speed=0.7",
-                "grains.diameter_min=0.9",
-            ][..],
+            "grains.number=20 tube.waves=2 run.periods=4 initial.state=jammed drive.wave_speed=0.7 \
+             grains.diameter_min=0.9",
         ),
         (
             "frictional",
-            &[
-                "grains.number=50",
-                "run.periods=0.2",
-                "run.integrator=adams_bashforth",
-                "run.seed=4",
-            ],
+            "grains.number=50 run.periods=0.2 run.integrator=adams_bashforth run.seed=4",
         ),
     ] {
         let again = format!("{preset}-again");
-        let record = format!("{preset}/config.toml");
-        place.run_preset(preset, preset, settings).expect_code(0);
-        place.call(["run", &record, "--out", &again]).expect_code(0);
+        place.does(&format!("run --preset {preset} --out {preset} {settings}"));
+        place.does(&format!("run {preset}/config.toml --out {again}"));
         place.assert_same([preset, &again], TABLES);
     }
 }
@@ -127,9 +106,7 @@ fn the_record_of_a_run_runs_again_to_the_same_bits() {
 fn another_seed_is_another_run() {
     let place = Place::new();
     for (folder, seed) in [("one", "run.seed=1"), ("two", "run.seed=2")] {
-        place
-            .run_small(&["--out", folder, "--set", seed])
-            .expect_code(0);
+        place.does(&format!("run SMALL --out {folder} {seed}"));
     }
     let [one, two] =
         ["one", "two"].map(|folder| read_json(&place.path(folder).join("summary.json")));
@@ -141,15 +118,11 @@ fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
     let place = Place::new();
     for (preset, periods) in [("frictionless", "4"), ("frictional", "0.2")] {
         for direction in ["forward", "backward"] {
-            let settings = [
-                "initial.state=jammed",
-                "grains.number=40",
-                "tube.waves=2",
-                &format!("run.periods={periods}"),
-                &format!("drive.direction={direction}"),
-            ];
             let folder = format!("{preset}-{direction}");
-            let outcome = place.run_preset(preset, &folder, &settings).expect_code(0);
+            let outcome = place.does(&format!(
+                "run --preset {preset} --out {folder} --json initial.state=jammed grains.number=40 tube.waves=2 \
+                 run.periods={periods} drive.direction={direction}"
+            ));
             let ratio = outcome.json()["flow_rate_ratio"].as_f64().unwrap();
             assert!(ratio > 0.5, "{folder}: {ratio}");
         }
@@ -159,16 +132,9 @@ fn flow_is_positive_along_the_wave_whichever_way_it_runs() {
 #[test]
 fn pumping_and_si_are_in_the_summary() {
     let place = Place::new();
-    let settings = [
-        "drive.body_force=-0.001",
-        "drive.width=2.4",
-        "initial.state=jammed",
-        "units.grain_diameter=1e-3",
-        "units.density=2500",
-        "units.stiffness=1",
-    ];
-    let run = [&["run"], SMALL, &["--out", "results", "--json"]].concat();
-    let summary = place.call_with(&run, &settings).expect_code(0).json();
+    let pumping = "drive.body_force=-0.001 drive.width=2.4 initial.state=jammed";
+    let run = format!("run SMALL --out results --json {pumping} {BEADS}");
+    let summary = place.does(&run).json();
     let number = |pointer: &str| {
         summary
             .pointer(pointer)
@@ -208,16 +174,9 @@ fn pumping_and_si_are_in_the_summary() {
 #[test]
 fn softness_that_the_run_shows_and_how_pressures_are_averaged_are_said() {
     let place = Place::new();
-    let settings = [
-        "drive.body_force=-0.01",
-        "units.grain_diameter=1e-3",
-        "units.density=2500",
-        "units.stiffness=1",
-    ];
-    let run = [&["run"], SMALL, &["--out", "results"]].concat();
+    let run = format!("run SMALL --out results drive.body_force=-0.01 {BEADS}");
     place
-        .call_with(&run, &settings)
-        .expect_code(0)
+        .does(&run)
         .says(&["warning: units.stiffness: grains overlapped by up to"])
         .shows(&[
             "averaged over 1/50 of a wavelength",
@@ -234,21 +193,13 @@ fn softness_that_the_run_shows_and_how_pressures_are_averaged_are_said() {
 #[test]
 fn an_efficiency_is_null_where_nothing_is_pumped() {
     let place = Place::new();
-    let settings = [
-        "drive.body_force=-0.01",
-        "drive.wave_speed=0",
-        "run.duration=20",
-        "grains.number=20",
-        "tube.waves=2",
-    ];
-    let arguments = ["run", "--preset", "frictionless", "--out", "still"];
+    let settings =
+        "drive.body_force=-0.01 drive.wave_speed=0 run.duration=20 grains.number=20 tube.waves=2";
     place
-        .call_with(&arguments, &settings)
-        .expect_code(0)
+        .does(&format!("run --preset frictionless --out still {settings}"))
         .shows(&["efficiency – ("]);
     place
-        .run_small(&["--out", "helped", "--set", "drive.body_force=0.01"])
-        .expect_code(0)
+        .does("run SMALL --out helped drive.body_force=0.01")
         .shows(&["the grains do not go against the body force"]);
     for folder in ["still", "helped"] {
         let summary = read_json(&place.path(folder).join("summary.json"));
@@ -260,10 +211,8 @@ fn an_efficiency_is_null_where_nothing_is_pumped() {
 #[test]
 fn a_wall_that_diverges_is_named_as_the_wall() {
     let place = Place::new();
-    let settings = ["wall.drag=1e3", "tube.waves=2", "grains.number=100"];
-    let arguments = ["run", "--preset", "frictional", "--out", "results"];
     place
-        .call_with(&arguments, &settings)
+        .call("run --preset frictional --out results wall.drag=1e3 tube.waves=2 grains.number=100")
         .expect_code(1)
         .says(&["wall sphere ", "wall.drag", "wall.sphere_mass"]);
 }

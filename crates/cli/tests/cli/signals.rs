@@ -3,24 +3,16 @@
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
 
-use crate::{Place, read_json};
+use crate::{Place, read_json, words};
 
 /// A run of a second or two, of which a tenth is done when its first line of progress comes.
-const LONG: &[&str] = &[
-    "--preset",
-    "frictionless-fine",
-    "--set",
-    "drive.width=2.6",
-    "--set",
-    "drive.strain_rate=0.1",
-    "--set",
-    "run.periods=150",
-];
+const LONG: &str =
+    "run --preset frictionless-fine drive.width=2.6 drive.strain_rate=0.1 run.periods=150";
 
 /// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
-fn interrupted(place: &Place, arguments: &[&str], signal: &str) -> (Option<i32>, String) {
+fn interrupted(place: &Place, line: &str, signal: &str) -> (Option<i32>, String) {
     let mut child = place
-        .command(["run"].iter().chain(arguments))
+        .command(words(line))
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
@@ -41,9 +33,8 @@ fn interrupted(place: &Place, arguments: &[&str], signal: &str) -> (Option<i32>,
 #[test]
 fn an_interrupted_run_goes_on_to_the_same_bits() {
     let place = Place::new();
-    let frames = ["--trajectory", "gsd,vtp", "--trajectory-every", "3.3"];
-    let arguments = [LONG, &frames, &["--csv", "--out", "stopped"]].concat();
-    let (code, said) = interrupted(&place, &arguments, "INT");
+    let run = format!("{LONG} --trajectory gsd,vtp --trajectory-every 3.3 --csv --out");
+    let (code, said) = interrupted(&place, &format!("{run} stopped"), "INT");
     assert_eq!(code, Some(130), "{said}");
     assert!(said.contains("stopped after"), "{said}");
     assert!(
@@ -72,18 +63,8 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
     };
     assert_eq!(rows("stopped"), (periods * 20.0).round() as usize);
 
-    place
-        .call(["run", "--resume", "stopped", "--csv"])
-        .expect_code(0);
-    place
-        .call(
-            ["run"]
-                .iter()
-                .chain(LONG)
-                .chain(&frames)
-                .chain(&["--csv", "--out", "through"]),
-        )
-        .expect_code(0);
+    place.does("run --resume stopped --csv");
+    place.does(&format!("{run} through"));
     assert_eq!(rows("stopped"), 150 * 20);
     place.assert_same(
         ["stopped", "through"],
@@ -112,7 +93,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
 fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
     for (signal, expected) in [("TERM", 143), ("USR1", 138)] {
         let place = Place::new();
-        let (code, said) = interrupted(&place, &[LONG, &["--out", "stopped"]].concat(), signal);
+        let (code, said) = interrupted(&place, &format!("{LONG} --out stopped"), signal);
         assert_eq!(code, Some(expected), "{said}");
         assert!(said.contains("stopped after"), "{said}");
         assert_eq!(
@@ -125,16 +106,9 @@ fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
 #[test]
 fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
     let place = Place::new();
-    let settings = [
-        "grains.number=20",
-        "tube.waves=2",
-        "run.periods=1",
-        "run.time_step=1e-9",
-    ];
-    let more = settings.iter().flat_map(|setting| ["--set", setting]);
-    let run = ["run", "--preset", "frictionless", "--out", "stopped"];
+    let slow = "SMALL run.periods=1 run.time_step=1e-9";
     let mut child = place
-        .command(run.into_iter().chain(more))
+        .command(words(&format!("run --out stopped {slow}")))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -155,7 +129,5 @@ fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
     assert_eq!(summary["status"], "interrupted");
     assert!(place.path("stopped/state.checkpoint").is_file());
     // And a trial of it does not wait for its first sample.
-    place
-        .call_with(&["check", "--preset", "frictionless"], &settings)
-        .expect_code(0);
+    place.does(&format!("check {slow}"));
 }

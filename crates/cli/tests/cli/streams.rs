@@ -1,9 +1,8 @@
 //! What goes to which stream, and streams that end early.
 
-use std::io::Read;
-use std::process::Stdio;
+use std::process::{Child, Stdio};
 
-use crate::{Outcome, Place, SMALL, read_json};
+use crate::{Outcome, Place, read_json, words};
 
 fn plain(text: &str) -> bool {
     text.chars()
@@ -13,7 +12,7 @@ fn plain(text: &str) -> bool {
 #[test]
 fn progress_on_a_pipe_is_plain_lines_on_standard_error() {
     let place = Place::new();
-    let outcome = place.run_small(&["--out", "results"]).expect_code(0);
+    let outcome = place.does("run SMALL --out results");
     assert!(plain(&outcome.stderr), "{:?}", outcome.stderr);
     assert!(plain(&outcome.stdout), "{:?}", outcome.stdout);
     let lines: Vec<&str> = outcome
@@ -34,77 +33,52 @@ fn progress_on_a_pipe_is_plain_lines_on_standard_error() {
 #[test]
 fn quiet_is_quiet_and_errors_are_not() {
     let place = Place::new();
-    let outcome = place.run_small(&["--out", "results", "-q"]).expect_code(0);
+    let outcome = place.does("run SMALL --out results -q");
     assert_eq!(outcome.stderr, "");
-    let outcome = place.run_small(&["--out", "results", "-q"]).expect_code(2);
+    let outcome = place.call("run SMALL --out results -q").expect_code(2);
     assert!(plain(&outcome.stderr), "{:?}", outcome.stderr);
     outcome.says(&["holds another run"]);
     // A warning is no progress.
     let outcome = place
-        .run_small(&["--out", "doubtful", "-q", "--set", "run.time_step=0.2"])
-        .expect_code(0)
+        .does("run SMALL --out doubtful -q run.time_step=0.2")
         .says(&["warning: run.time_step"]);
     assert_eq!(outcome.stderr.lines().count(), 1, "{}", outcome.stderr);
     let summary = read_json(&place.path("doubtful/summary.json"));
     assert_eq!(summary["warnings"][0]["key"], "run.time_step");
 }
 
+/// Starts the program with pipes to read what it says.
+fn spawn(place: &Place, line: &str) -> Child {
+    let mut command = place.command(words(line));
+    let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+    piped.spawn().unwrap()
+}
+
 #[test]
 fn readers_of_standard_output_may_go_away() {
     let place = Place::new();
-    for arguments in [
-        &["schema"][..],
-        &["presets", "frictional"],
-        &["check", "--preset", "frictionless"],
+    for line in [
+        "schema",
+        "presets frictional",
+        "check --preset frictionless",
+        "run SMALL --out results --json",
     ] {
-        let mut child = place
-            .command(arguments)
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap();
+        let mut child = spawn(&place, line);
         drop(child.stdout.take());
         Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     }
-    let mut command = place.command(
-        ["run"]
-            .iter()
-            .chain(SMALL)
-            .chain(&["--out", "results", "--json"]),
-    );
-    let mut child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    drop(child.stdout.take());
-    Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     assert!(place.path("results/summary.json").is_file());
 }
 
 #[test]
 fn readers_of_standard_error_may_go_away() {
     let place = Place::new();
-    let mut command = place.command(
-        ["run"]
-            .iter()
-            .chain(SMALL)
-            .chain(&["--out", "results", "--json"]),
-    );
-    let mut child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = spawn(&place, "run SMALL --out results --json");
     drop(child.stderr.take());
     let outcome = Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     assert_eq!(outcome.json()["status"], "complete");
     // An error that nobody reads keeps its exit code.
-    let mut child = place
-        .command(["check"])
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = spawn(&place, "check");
     drop(child.stderr.take());
     Outcome::of(child.wait_with_output().unwrap()).expect_code(2);
 }
@@ -116,19 +90,13 @@ fn standard_output_that_takes_nothing_is_a_failure() {
         .write(true)
         .open("/dev/full")
         .unwrap();
-    let mut child = Place::new()
+    let child = Place::new()
         .command(["schema"])
         .stdout(full)
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    let mut said = String::new();
-    child
-        .stderr
-        .take()
-        .unwrap()
-        .read_to_string(&mut said)
-        .unwrap();
-    assert_eq!(child.wait().unwrap().code(), Some(1), "{said}");
-    assert!(said.contains("cannot write to standard output"), "{said}");
+    Outcome::of(child.wait_with_output().unwrap())
+        .expect_code(1)
+        .says(&["cannot write to standard output"]);
 }

@@ -1,21 +1,12 @@
 //! Trajectories: asked for beside a run, foretold by `check`, gone on with, and written from a saved state.
 
-use crate::{Place, SMALL, read_json};
+use crate::{Place, read_json};
 
 #[test]
 fn a_run_says_what_it_wrote() {
     let place = Place::new();
     let outcome = place
-        .run_small(&[
-            "--out",
-            "results",
-            "--json",
-            "--trajectory",
-            "gsd,vtp",
-            "--trajectory",
-            "lammps",
-        ])
-        .expect_code(0)
+        .does("run SMALL --out results --json --trajectory gsd,vtp --trajectory lammps")
         .says(&[
             "trajectory: 41 frames, one every 40 steps",
             "results/trajectory.gsd",
@@ -43,9 +34,7 @@ fn a_run_says_what_it_wrote() {
     );
 
     // Whether there is a trajectory changes nothing else.
-    let plain = place
-        .run_small(&["--out", "plain", "--json"])
-        .expect_code(0);
+    let plain = place.does("run SMALL --out plain --json");
     assert!(plain.json().get("trajectory").is_none());
     place.assert_same(
         ["results", "plain"],
@@ -56,55 +45,41 @@ fn a_run_says_what_it_wrote() {
 #[test]
 fn what_cannot_be_is_refused_before_anything_is_made() {
     let place = Place::new();
-    for (arguments, says) in [
-        (&["--trajectory", "xyz"][..], "gsd, vtp, lammps"),
-        (&["--trajectory-every", "1"], "--trajectory <FORMAT"),
-        (&["--trajectory-window", "1:2"], "--trajectory <FORMAT"),
+    for (options, says) in [
+        ("--trajectory xyz", "gsd, vtp, lammps"),
+        ("--trajectory-every 1", "--trajectory <FORMAT"),
+        ("--trajectory-window 1:2", "--trajectory <FORMAT"),
+        ("--trajectory gsd --trajectory-every often", "such as 0.1"),
+        ("--trajectory gsd --trajectory-every 0", "a longer interval"),
+        ("--trajectory gsd --trajectory-window 3", "FROM:TO"),
         (
-            &["--trajectory", "gsd", "--trajectory-every", "often"],
-            "such as 0.1",
-        ),
-        (
-            &["--trajectory", "gsd", "--trajectory-every", "0"],
-            "a longer interval",
-        ),
-        (
-            &["--trajectory", "gsd", "--trajectory-window", "3"],
-            "FROM:TO",
-        ),
-        (
-            &["--trajectory", "gsd", "--trajectory-window", "7:9"],
+            "--trajectory gsd --trajectory-window 7:9",
             "none of its frames",
         ),
     ] {
-        place.run_small(arguments).expect_code(2).says(&[says]);
+        place.refuses(&format!("run SMALL {options}"), &[says]);
     }
     assert!(place.inventory().is_empty());
     place.write("trajectory.gsd", "another's");
-    place
-        .run_small(&["--out", "."])
-        .expect_code(2)
-        .says(&["holds another run", "trajectory.gsd"]);
+    place.refuses(
+        "run SMALL --out .",
+        &["holds another run", "trajectory.gsd"],
+    );
 }
 
 #[test]
 fn check_foretells_the_size() {
     let place = Place::new();
-    let arguments = ["--trajectory", "gsd,lammps", "--trajectory-every", "0.05"];
-    let check = |more: &[&str]| {
-        let all = ["check"].iter().chain(SMALL).chain(&arguments).chain(more);
-        place.call(all).expect_code(0)
-    };
-    check(&[]).shows(&[
+    let small = "SMALL --trajectory gsd,lammps --trajectory-every 0.05";
+    place.does(&format!("check {small}")).shows(&[
         "trajectory.gsd of 81 frames, one every 20 steps: about",
         " MB",
     ]);
-    let foretold = check(&["--json"]).json();
+    let foretold = place.does(&format!("check {small} --json")).json();
     assert_eq!(foretold["trajectory"]["frames"], 81);
     let bytes = foretold["trajectory"]["bytes"].as_array().unwrap();
     assert_eq!(bytes[0][0], "gsd");
-    let run = [&arguments[..], &["--out", "results"]].concat();
-    place.run_small(&run).expect_code(0);
+    place.does(&format!("run {small} --out results"));
     for (entry, file) in bytes.iter().zip(["trajectory.gsd", "trajectory.lammpstrj"]) {
         let found = place.path("results").join(file).metadata().unwrap().len() as f64;
         let ratio = found / entry[1].as_f64().unwrap();
@@ -115,18 +90,10 @@ fn check_foretells_the_size() {
 #[test]
 fn frames_from_the_state_of_a_finished_run() {
     let place = Place::new();
-    place.run_small(&["--out", "results"]).expect_code(0);
+    place.does("run SMALL --out results");
     let before = place.inventory();
     place
-        .call([
-            "trajectory",
-            "results",
-            "--format",
-            "gsd,lammps",
-            "--out",
-            "state",
-        ])
-        .expect_code(0)
+        .does("trajectory results --format gsd,lammps --out state")
         .shows(&["1 frame,", "state/trajectory.gsd"]);
     let lammps = |folder: &str| {
         std::fs::read_to_string(place.path(folder).join("trajectory.lammpstrj")).unwrap()
@@ -134,35 +101,14 @@ fn frames_from_the_state_of_a_finished_run() {
     let state = lammps("state");
     assert!(state.contains("ITEM: TIMESTEP\n1600\n"), "{}", &state[..80]);
     let report = place
-        .call([
-            "trajectory",
-            "results",
-            "--format",
-            "lammps",
-            "--duration",
-            "0.5",
-            "--every",
-            "2t",
-            "--out",
-            "on",
-            "--json",
-        ])
-        .expect_code(0)
+        .does("trajectory results --format lammps --duration 0.5 --every 2t --out on --json")
         .json();
     assert_eq!(report["frames"], 6);
     assert_eq!(report["interval_steps"], 40);
     let on = lammps("on");
     assert!(on.starts_with(&state) && on.contains("ITEM: TIMESTEP\n1800\n"));
     // They are the frames that a longer run has there.
-    let longer = [
-        "--set",
-        "run.periods=4.5",
-        "--out",
-        "longer",
-        "--trajectory",
-        "lammps",
-    ];
-    place.run_small(&longer).expect_code(0);
+    place.does("run SMALL run.periods=4.5 --out longer --trajectory lammps");
     let whole = lammps("longer");
     let from = whole.find("ITEM: TIME\n80.0\n").unwrap();
     assert!(on.ends_with(&whole[from..]));
@@ -170,12 +116,9 @@ fn frames_from_the_state_of_a_finished_run() {
         assert_eq!(place.inventory()[&name], content, "{}", name.display());
     }
 
-    place
-        .call(["trajectory", "results", "--out", "on"])
-        .expect_code(2)
-        .says(&["holds another run", "--out"]);
-    place
-        .call(["trajectory", "nowhere"])
-        .expect_code(2)
-        .says(&["nowhere holds no run"]);
+    place.refuses(
+        "trajectory results --out on",
+        &["holds another run", "--out"],
+    );
+    place.refuses("trajectory nowhere", &["nowhere holds no run"]);
 }

@@ -7,19 +7,7 @@ fn cases_are_run_written_and_put_into_a_document() {
     let place = Place::new();
     let document = "before\n<!-- validate summary -->\nold\n<!-- /validate -->\n<!-- validate chain -->\n<!-- /validate -->\nafter\n";
     std::fs::write(place.path("document.md"), document).unwrap();
-    let outcome = place
-        .call([
-            "validate",
-            "--quick",
-            "--only",
-            "chain",
-            "--out",
-            "out",
-            "--write",
-            "document.md",
-            "--json",
-        ])
-        .expect_code(0);
+    let outcome = place.does("validate --quick --only chain --out out --write document.md --json");
     let found = outcome.json();
     let cases = found["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 1);
@@ -38,21 +26,11 @@ fn cases_are_run_written_and_put_into_a_document() {
 fn what_cannot_be_validated_is_said_before_the_work() {
     let place = Place::new();
     std::fs::write(place.path("document.md"), "no places\n").unwrap();
-    place
-        .call(["validate", "--only", "chains"])
-        .expect_code(2)
-        .says(&["chains", "slip-to-roll"]);
-    place
-        .call([
-            "validate",
-            "--quick",
-            "--only",
-            "chain",
-            "--write",
-            "document.md",
-        ])
-        .expect_code(2)
-        .says(&["document.md", "<!-- validate"]);
+    place.refuses("validate --only chains", &["chains", "slip-to-roll"]);
+    place.refuses(
+        "validate --quick --only chain --write document.md",
+        &["document.md", "<!-- validate"],
+    );
     assert_eq!(
         std::fs::read_to_string(place.path("document.md")).unwrap(),
         "no places\n"

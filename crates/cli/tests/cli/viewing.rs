@@ -4,12 +4,12 @@ use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
 use std::process::{Command, Stdio};
 
-use crate::Place;
+use crate::{Place, words};
 
 /// Views, asks for the page, and stops; answers the page.
-fn page_of(place: &Place, arguments: &[&str]) -> String {
+fn page_of(place: &Place, source: &str) -> String {
     let mut child = place
-        .command(["view"].iter().chain(arguments))
+        .command(words(&format!("view {source}")))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
@@ -42,32 +42,20 @@ fn page_of(place: &Place, arguments: &[&str]) -> String {
 fn presets_files_and_folders_are_served() {
     let place = Place::new();
     place.write("narrow.toml", "preset = \"frictionless\"\ntube.waves = 2\n");
-    place
-        .call([
-            "run",
-            "narrow.toml",
-            "--set",
-            "run.periods=1",
-            "--trajectory=gsd",
-            "--out",
-            "done",
-        ])
-        .expect_code(0);
-    let trajectory = ["trajectory", "done", "--duration=0.5"];
-    place.call(trajectory).expect_code(0);
-    let views: [&[&str]; 7] = [
-        &["frictionless", "--set", "tube.waves=2"],
-        &["narrow.toml"],
-        &["done"],
-        &["done", "--live"],
-        &["done", "--from-state"],
-        &["done/trajectory.gsd"],
-        &["done/from-state/trajectory.gsd"],
-    ];
-    for arguments in views {
-        let page = page_of(&place, arguments);
-        assert!(page.starts_with("HTTP/1.1 200"), "{arguments:?}: {page}");
-        assert!(page.contains("viewer.js"), "{arguments:?}: {page}");
+    place.does("run narrow.toml run.periods=1 --trajectory=gsd --out done");
+    place.does("trajectory done --duration=0.5");
+    for source in [
+        "frictionless tube.waves=2",
+        "narrow.toml",
+        "done",
+        "done --live",
+        "done --from-state",
+        "done/trajectory.gsd",
+        "done/from-state/trajectory.gsd",
+    ] {
+        let page = page_of(&place, source);
+        assert!(page.starts_with("HTTP/1.1 200"), "{source}: {page}");
+        assert!(page.contains("viewer.js"), "{source}: {page}");
     }
     assert!(!place.path("saved-states").exists());
 }
@@ -78,10 +66,8 @@ fn stores_tables_and_reproductions_are_served() {
     let study = "name = \"small\"\npreset = \"frictionless\"\n[base]\ntube.waves = 2\nrun.periods = 1\n\
         [[axes]]\nkey = \"drive.width\"\nvalues = [2.5, 2.8]\n";
     place.write("small.toml", study);
-    let run = ["study", "run", "small.toml", "--store", "all/stores/small"];
-    place.call(run).expect_code(0);
-    let export = ["study", "export", "all/stores/small", "--out", "tables"];
-    place.call(export).expect_code(0);
+    place.does("study run small.toml --store all/stores/small");
+    place.does("study export all/stores/small --out tables");
     for source in [
         "all/stores/small",
         "all",
@@ -89,17 +75,16 @@ fn stores_tables_and_reproductions_are_served() {
         "tables/small.csv",
         "tables",
     ] {
-        let page = page_of(&place, &[source]);
+        let page = page_of(&place, source);
         assert!(page.starts_with("HTTP/1.1 200"), "{source}: {page}");
         assert!(page.contains("study.js"), "{source}: {page}");
     }
     for option in ["--live", "--from-state", "--set=drive.width=2.7"] {
-        let refused = place.call(["view", "all/stores/small", option]);
-        refused.expect_code(2).says(&["is a study", "for a run"]);
+        let call = format!("view all/stores/small {option}");
+        place.refuses(&call, &["is a study", "for a run"]);
     }
     place.write("times.csv", "time,ratio\n0.5,1\n");
-    let other = place.call(["view", "times.csv"]);
-    other.expect_code(2).says(&["times", "identity"]);
+    place.refuses("view times.csv", &["times", "identity"]);
 }
 
 #[test]
@@ -110,20 +95,17 @@ fn what_cannot_be_viewed_is_refused() {
     std::fs::create_dir(place.path("damaged")).unwrap();
     place.write("damaged/config.toml", "preset = \"frictionless\"\n");
     place.write("damaged/trajectory.gsd", "no GSD at all");
-    for (arguments, part) in [
-        (["view", "frictionles", "--port=0"], "frictionles"),
-        (
-            ["view", "frictionless", "--set=drive.width=9"],
-            "drive.width",
-        ),
-        (["view", "frictionless", "--port=70000"], "70000"),
-        (["view", "empty", "--port=0"], "config.toml"),
-        (["view", "none.gsd", "--port=0"], "none.gsd"),
-        (["view", "alone.gsd", "--port=0"], "config.toml"),
-        (["view", "alone.gsd", "--live"], "played, not computed"),
-        (["view", "empty", "--set=drive.width=2.7"], "--set"),
-        (["view", "damaged", "--port=0"], "begin like a GSD file"),
+    for (source, part) in [
+        ("frictionles --port=0", "frictionles"),
+        ("frictionless drive.width=9", "drive.width"),
+        ("frictionless --port=70000", "70000"),
+        ("empty --port=0", "config.toml"),
+        ("none.gsd --port=0", "none.gsd"),
+        ("alone.gsd --port=0", "config.toml"),
+        ("alone.gsd --live", "played, not computed"),
+        ("empty drive.width=2.7", "--set"),
+        ("damaged --port=0", "begin like a GSD file"),
     ] {
-        place.call(arguments).expect_code(2).says(&[part]);
+        place.refuses(&format!("view {source}"), &[part]);
     }
 }

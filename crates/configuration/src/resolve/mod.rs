@@ -33,6 +33,19 @@ impl Configuration {
         Self::from_sources_and(sources, &[])
     }
 
+    /// The configuration of a preset with settings over it, such as `drive.width=2.7`.
+    ///
+    /// # Errors
+    ///
+    /// As [`Configuration::from_sources`].
+    pub fn from_preset(name: &str, settings: &[impl ToString]) -> Result<Self, ConfigurationError> {
+        Self::from_sources(&Sources {
+            file: None,
+            preset: Some(name),
+            overrides: &settings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        })
+    }
+
     /// As [`Configuration::from_sources`], with more layers over them, the last one on top: tables of a document that
     /// states several configurations, such as a study.
     ///

@@ -1,6 +1,6 @@
 //! F1: slow unjammed flow at large widths, a transition to fast jammed flow at small ones.
 
-use peristalsis_configuration::{Configuration, Sources};
+use peristalsis_configuration::Configuration;
 use peristalsis_run::{Run, RunError, snapshot_stack};
 
 use super::prelude::*;
@@ -185,12 +185,8 @@ fn snapshots() -> Result<ReportFigure> {
             "drive.strain_rate=0.1".to_owned(),
             "run.periods=60".to_owned(),
         ];
-        let configuration = Configuration::from_sources(&Sources {
-            file: None,
-            preset: Some("frictionless-fine"),
-            overrides: &overrides,
-        })
-        .map_err(RunError::from)?;
+        let configuration =
+            Configuration::from_preset("frictionless-fine", &overrides).map_err(RunError::from)?;
         let mut run = Run::new(configuration)?;
         while !run.is_complete() {
             run.advance()?;

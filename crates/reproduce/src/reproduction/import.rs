@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use peristalsis_formats::{csv, parquet};
+use peristalsis_formats::read_table;
 use peristalsis_study::{Identity, Row, State, Store, StudyError};
 
 use super::Reproduction;
@@ -86,11 +86,7 @@ impl Rows {
             path: path.to_owned(),
             reason,
         };
-        let table = match path.extension().and_then(|extension| extension.to_str()) {
-            Some("parquet") => parquet::read(path),
-            _ => csv::read(path),
-        }
-        .map_err(|error| not_rows(error.to_string()))?;
+        let table = read_table(path).map_err(|error| not_rows(error.to_string()))?;
         let rows = Row::all_of(&table).map_err(not_rows)?;
         Ok(Self {
             path: path.to_owned(),

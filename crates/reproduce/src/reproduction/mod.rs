@@ -171,12 +171,7 @@ impl Reproduction {
                 .iter()
                 .find(|study| study.name == *name)
                 .ok_or_else(|| ClaimError::NoSuchStudy((*name).to_owned()))?;
-            let study = Specification::from_toml(file.path, file.text(size), |name| {
-                Err(StudyError::Read {
-                    path: name.into(),
-                    source: std::io::Error::other("a study of the claims builds on a preset"),
-                })
-            })?;
+            let study = file.specification(size)?;
             let store = Store::create(&stores.join(file.name), &study);
             works.push(Work {
                 file: *file,

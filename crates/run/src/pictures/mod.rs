@@ -37,12 +37,8 @@ pub(crate) fn draw_all(
     let configuration = run.configuration();
     let mut drawings = Vec::new();
     let mut add = |name: &'static str, drawing: Result<Drawing, FigureError>| {
-        drawing
-            .map(|drawing| drawings.push((name, drawing)))
-            .map_err(|source| RunError::Figure {
-                figure: name,
-                source,
-            })
+        drawings.push((name, drawing.map_err(RunError::of_figure(name))?));
+        Ok::<_, RunError>(())
     };
     let has_ratios = run
         .recorder()
@@ -271,8 +267,5 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
         .panel_height(SPACE_TIME_HEIGHT)
         .width(Width::DoubleColumn)
         .draw()
-        .map_err(|source| RunError::Figure {
-            figure: "space-time",
-            source,
-        })
+        .map_err(RunError::of_figure("space-time"))
 }

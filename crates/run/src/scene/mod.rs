@@ -254,10 +254,7 @@ impl PictureScene {
             },
         }
         .draw()
-        .map_err(|source| RunError::Figure {
-            figure: "the picture",
-            source,
-        })
+        .map_err(RunError::of_figure("the picture"))
     }
 
     /// The bare picture of an instant.

@@ -76,8 +76,6 @@ pub(super) fn axial_dispersion(late: &[Sample], dispersion: &AxialDispersion) ->
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_configuration::Sources;
-
     use super::*;
 
     fn samples(value: impl Fn(f64) -> Sample) -> Vec<Sample> {
@@ -88,13 +86,8 @@ mod tests {
 
     #[test]
     fn only_a_pump_that_pumps_has_an_efficiency() {
-        let overrides = ["drive.body_force=-0.001".to_owned()];
-        let configuration = Configuration::from_sources(&Sources {
-            file: None,
-            preset: Some("frictionless"),
-            overrides: &overrides,
-        })
-        .unwrap();
+        let settings = ["drive.body_force=-0.001"];
+        let configuration = Configuration::from_preset("frictionless", &settings).unwrap();
         let pumping = |useful_power: f64, wall_power: f64| {
             let late = samples(|_| Sample {
                 body_power: -useful_power,

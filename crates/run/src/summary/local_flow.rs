@@ -79,7 +79,7 @@ fn middle_of_flat(profile: &[ProfileBin], extreme: usize) -> Option<usize> {
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_configuration::{Configuration, Sources};
+    use peristalsis_configuration::Configuration;
 
     use super::*;
     use crate::run::Run;
@@ -164,18 +164,13 @@ mod tests {
             ("frictionless", "sine", None),
             ("frictional", "roller", None),
         ] {
-            let overrides = [
-                format!("drive.waveform={waveform}"),
-                "grains.number=20".to_owned(),
-                "tube.waves=2".to_owned(),
-                "run.periods=0.2".to_owned(),
+            let settings = [
+                &format!("drive.waveform={waveform}"),
+                "grains.number=20",
+                "tube.waves=2",
+                "run.periods=0.2",
             ];
-            let configuration = Configuration::from_sources(&Sources {
-                file: None,
-                preset: Some(preset),
-                overrides: &overrides,
-            })
-            .unwrap();
+            let configuration = Configuration::from_preset(preset, &settings).unwrap();
             let mut run = Run::new(configuration).unwrap();
             while !run.is_complete() {
                 run.advance().unwrap();

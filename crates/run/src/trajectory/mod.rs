@@ -91,15 +91,8 @@ impl Trajectory {
     /// [`RunError::HoldsAnotherRun`] where one is there already.
     pub fn check(folder: &Path) -> Result<(), RunError> {
         let names = TrajectoryFormat::ALL.map(TrajectoryFormat::file_name);
-        for name in names.into_iter().chain([PLAN]) {
-            if folder.join(name).symlink_metadata().is_ok() {
-                return Err(RunError::HoldsAnotherRun {
-                    folder: folder.to_owned(),
-                    found: name.to_owned(),
-                });
-            }
-        }
-        Ok(())
+        RunError::if_one_is_in(folder, &names)?;
+        RunError::if_one_is_in(folder, &[PLAN])
     }
 
     /// Goes on with the trajectory in the folder of a run, without its frames after the run's present step; `None` where

@@ -49,8 +49,7 @@ pub(super) fn warnings(configuration: &Configuration) -> Vec<Warning> {
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_configuration::Sources;
-
+    use super::*;
     use crate::warnings::warnings;
 
     #[test]
@@ -63,18 +62,10 @@ mod tests {
             ("wall.spring_stiffness=0", Some("wall.spring_stiffness")),
             ("wall.keep.azimuthal=0", Some("wall.keep.azimuthal")),
         ] {
-            let overrides = [setting.to_owned()];
-            let configuration = peristalsis_configuration::Configuration::from_sources(&Sources {
-                file: None,
-                preset: Some("frictional"),
-                overrides: &overrides,
-            })
-            .unwrap();
-            let found: Vec<&str> = warnings(&configuration)
-                .iter()
-                .map(|warning| warning.key)
-                .collect();
-            assert_eq!(found, Vec::from_iter(expected), "{setting}");
+            let configuration = Configuration::from_preset("frictional", &[setting]).unwrap();
+            let found = warnings(&configuration);
+            let keys = found.iter().map(|warning| warning.key);
+            assert!(keys.eq(expected), "{setting}: {found:?}");
         }
     }
 }

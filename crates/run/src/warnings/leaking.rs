@@ -92,7 +92,6 @@ fn energy_to_pass(law: impl NormalLaw, lattice: &Lattice, radius: f64, diameter:
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_configuration::Sources;
     use peristalsis_physics::contact::LinearSpringDashpot;
 
     use super::*;
@@ -139,13 +138,8 @@ mod tests {
             ("frictionless-fine", 0.1, false),
             ("frictionless-fine", 0.2, true),
         ] {
-            let overrides = [format!("drive.strain_rate={strain_rate}")];
-            let configuration = Configuration::from_sources(&Sources {
-                file: None,
-                preset: Some(preset),
-                overrides: &overrides,
-            })
-            .unwrap();
+            let settings = [format!("drive.strain_rate={strain_rate}")];
+            let configuration = Configuration::from_preset(preset, &settings).unwrap();
             let found = warnings(&configuration)
                 .into_iter()
                 .any(|warning| warning.message.contains("gives way"));

@@ -191,18 +191,11 @@ fn three_digits(value: f64, towards: fn(f64) -> f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_configuration::Sources;
-
     use super::*;
     use crate::warnings::warnings;
 
     fn configuration(preset: &str, overrides: &[String]) -> Configuration {
-        Configuration::from_sources(&Sources {
-            file: None,
-            preset: Some(preset),
-            overrides,
-        })
-        .unwrap()
+        Configuration::from_preset(preset, overrides).unwrap()
     }
 
     fn said(preset: &str, overrides: &[String]) -> Option<String> {

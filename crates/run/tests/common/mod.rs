@@ -2,19 +2,13 @@
 
 #![allow(dead_code, reason = "each test takes what it needs")]
 
-use peristalsis_configuration::Sources;
 use peristalsis_engine::Kernel;
 use peristalsis_run::{Configuration, Run, Status, Summary};
 
 /// The configuration of a preset with settings over it.
 pub(crate) fn configuration(preset: &str, settings: &[&str]) -> Configuration {
-    let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    Configuration::from_sources(&Sources {
-        file: None,
-        preset: Some(preset),
-        overrides: &overrides,
-    })
-    .unwrap_or_else(|error| panic!("{settings:?}: {error}"))
+    Configuration::from_preset(preset, settings)
+        .unwrap_or_else(|error| panic!("{settings:?}: {error}"))
 }
 
 /// What a whole run came to.

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use peristalsis_formats::{atomic, csv, hexadecimal, parquet};
+use peristalsis_formats::{atomic, csv, hexadecimal, read_table};
 use sha2::{Digest, Sha256};
 
 use super::{Entry, IMPORTED, State, Store, done, set_aside};
@@ -99,10 +99,7 @@ impl Store {
 
 /// The rows in a table of a file, whose ending says how it is written.
 fn rows_of(path: &Path) -> Result<Vec<Row>, StudyError> {
-    let table = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("parquet") => parquet::read(path)?,
-        _ => csv::read(path)?,
-    };
+    let table = read_table(path)?;
     if table.rows() == 0 {
         return Ok(Vec::new());
     }

@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-use peristalsis_configuration::{Configuration, Sources};
+use peristalsis_configuration::Configuration;
 use peristalsis_run::Run;
 use peristalsis_viewer::{Options, Viewer};
 use serde_json::Value;
@@ -21,13 +21,7 @@ const LONG: Duration = Duration::from_secs(30);
 
 /// A preset with settings over it.
 pub(crate) fn configuration(preset: &str, settings: &[&str]) -> Configuration {
-    let overrides: Vec<String> = settings.iter().map(ToString::to_string).collect();
-    Configuration::from_sources(&Sources {
-        file: None,
-        preset: Some(preset),
-        overrides: &overrides,
-    })
-    .unwrap()
+    Configuration::from_preset(preset, settings).unwrap()
 }
 
 /// A viewer in a thread of its own; stopped when dropped.

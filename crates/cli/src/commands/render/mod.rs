@@ -307,10 +307,9 @@ fn make_film(
 
 /// The pixels of a page.
 fn picture(drawing: &Drawing) -> Result<Picture, RunError> {
-    let raster = drawing.raster().map_err(|source| RunError::Figure {
-        figure: "the picture",
-        source,
-    })?;
+    let raster = drawing
+        .raster()
+        .map_err(RunError::of_figure("the picture"))?;
     Ok(Picture::new(raster.width, raster.height, raster.pixels))
 }
 
@@ -320,13 +319,9 @@ fn finish_picture(
     format: Format,
     drawing: &Drawing,
 ) -> Result<ExitCode, Failure> {
-    let figure_error = |source| RunError::Figure {
-        figure: "the picture",
-        source,
-    };
     let bytes = match format {
         Format::Svg => drawing.svg().into_bytes(),
-        _ => drawing.png().map_err(figure_error)?,
+        _ => drawing.png().map_err(RunError::of_figure("the picture"))?,
     };
     atomic::write(out, &bytes).map_err(RunError::from)?;
     let [width, height] = drawing.size();

@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use peristalsis_formats::{FormatError, Table, csv, parquet};
+use peristalsis_formats::read_table;
 use peristalsis_reproduce::{Size, StudyFile};
-use peristalsis_study::{Specification, StudyError};
+use peristalsis_study::StudyError;
 use peristalsis_viewer::{Figure, Study, ViewerError};
 
 use super::CONFIGURATION;
@@ -95,36 +95,18 @@ fn is_table(path: &Path) -> bool {
 
 /// The runs of a table can be watched where it is of a study behind the claims, whose design this program knows.
 fn of_table(path: &Path) -> Result<Study, Failure> {
-    let table = read(path).map_err(StudyError::from)?;
+    let table = read_table(path).map_err(StudyError::from)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = table.metadata().get("peristalsis.study");
-    let designs = match StudyFile::named(name.map_or(&stem, |name| name.as_str())) {
-        Some(file) => vec![design(file, Size::Full)?, design(file, Size::Quick)?],
-        None => Vec::new(),
-    };
-    let mut best = Study::of_table(&stem, table.clone(), None).map_err(failure)?;
-    for design in &designs {
-        let study = Study::of_table(&stem, table.clone(), Some(design)).map_err(failure)?;
-        if study.watchable() > best.watchable() {
-            best = study;
+    let of_table = |design| Study::of_table(&stem, table.clone(), design).map_err(failure);
+    let mut best = of_table(None)?;
+    if let Some(file) = StudyFile::named(name.map_or(&stem, |name| name.as_str())) {
+        for size in [Size::Full, Size::Quick] {
+            let study = of_table(Some(&file.specification(size)?))?;
+            if study.watchable() > best.watchable() {
+                best = study;
+            }
         }
     }
     Ok(best)
-}
-
-fn read(path: &Path) -> Result<Table, FormatError> {
-    if path.extension().is_some_and(|ending| ending == "csv") {
-        csv::read(path)
-    } else {
-        parquet::read(path)
-    }
-}
-
-fn design(file: &StudyFile, size: Size) -> Result<Specification, StudyError> {
-    Specification::from_toml(file.path, file.text(size), |named| {
-        Err(StudyError::Read {
-            path: named.into(),
-            source: std::io::ErrorKind::NotFound.into(),
-        })
-    })
 }

@@ -3,21 +3,16 @@
 use serde_json::Value;
 
 use super::{STUDY, place_of, quick, tables};
-use crate::{Outcome, Place};
+use crate::{Outcome, Place, words};
 
 fn finished() -> Place {
     let place = place_of(&quick());
-    place
-        .call(["study", "run", "study.toml", "--store", "store"])
-        .expect_code(0);
+    place.does("study run study.toml --store store");
     place
 }
 
 fn status(place: &Place) -> Value {
-    place
-        .call(["study", "status", "store", "--json"])
-        .expect_code(0)
-        .json()
+    place.does("study status store --json").json()
 }
 
 /// Identity of the first run of the status.
@@ -34,9 +29,7 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
         "{STUDY}[refine]\nkey = \"drive.width\"\ntolerance = 0.1\n"
     ));
     let before = place.inventory();
-    let outcome = place
-        .call(["study", "plan", "study.toml", "--json"])
-        .expect_code(0);
+    let outcome = place.does("study plan study.toml --json");
     let plan = outcome.json();
     let estimate = &plan["estimate"];
     assert_eq!(estimate["points"], 4);
@@ -48,10 +41,11 @@ fn a_plan_counts_runs_steps_time_and_disk_and_makes_nothing() {
     assert_eq!(estimate["grain_steps"], 12.0 * 14_000.0 * 100.0);
     assert!(estimate["processor_seconds"].as_f64().unwrap() > 0.0);
     assert_eq!(plan["runs"].as_array().unwrap().len(), 12);
-    place
-        .call(["study", "plan", "study.toml"])
-        .expect_code(0)
-        .shows(&["12: 4 points, 3 replicates each", "42 runs more", "disk"]);
+    place.does("study plan study.toml").shows(&[
+        "12: 4 points, 3 replicates each",
+        "42 runs more",
+        "disk",
+    ]);
     assert_eq!(place.inventory(), before);
 }
 
@@ -61,8 +55,7 @@ fn examples_are_studies() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let plan = Place::new()
-            .call(["study", "plan", path.to_str().unwrap(), "--json"])
-            .expect_code(0)
+            .does(&format!("study plan {} --json", path.display()))
             .json();
         assert_eq!(plan["estimate"]["warnings"].as_array().unwrap().len(), 0);
         assert_eq!(plan["name"], path.file_stem().unwrap().to_str().unwrap());
@@ -73,8 +66,7 @@ fn examples_are_studies() {
 fn the_disk_of_a_plan_is_about_that_of_the_store() {
     let place = finished();
     let plan = place
-        .call(["study", "plan", "study.toml", "--store", "store", "--json"])
-        .expect_code(0)
+        .does("study plan study.toml --store store --json")
         .json();
     assert_eq!(plan["finished"], 4);
     let used: u64 = std::fs::read_dir(place.path("store/runs"))
@@ -97,19 +89,15 @@ fn the_disk_of_a_plan_is_about_that_of_the_store() {
 fn a_study_runs_tells_and_exports() {
     let place = place_of(&quick());
     let outcome = place
-        .call(["study", "run", "study.toml"])
-        .expect_code(0)
+        .does("study run study.toml")
         .shows(&["tested in stores/tested", "4 runs: 4 done"])
         .says(&["4 of 4 runs done, 100 % of the work", "all runs are done"]);
     assert!(!outcome.stderr.contains('\r'));
     // The second time there is nothing to do.
     place
-        .call(["study", "run", "study.toml", "--json", "--quiet"])
-        .expect_code(0)
+        .does("study run study.toml --json --quiet")
         .shows(&["\"done\": 4"]);
-    let outcome = place
-        .call(["study", "export", "stores/tested", "--out", "out"])
-        .expect_code(0);
+    let outcome = place.does("study export stores/tested --out out");
     assert_eq!(
         outcome.stdout,
         "out/tested.parquet\nout/tested.csv\nout/tested-timing.csv\n"
@@ -152,37 +140,27 @@ fn what_is_wrong_with_a_study_is_said_with_its_place_and_nothing_is_made() {
         let place = place_of(&quick().replace(from, to));
         let before = place.inventory();
         for command in ["plan", "run"] {
-            let outcome = place.call(["study", command, "study.toml"]).expect_code(2);
+            let outcome = place.refuses(&format!("study {command} study.toml"), parts);
             assert_eq!(outcome.stdout, "");
-            outcome.says(parts);
         }
         assert_eq!(place.inventory(), before);
     }
     let place = finished();
-    place
-        .call(["study", "run", "missing.toml"])
-        .expect_code(2)
-        .says(&["cannot read missing.toml"]);
-    place
-        .call(["study", "status", "nowhere"])
-        .expect_code(2)
-        .says(&["no store", "study run"]);
+    place.refuses("study run missing.toml", &["cannot read missing.toml"]);
+    place.refuses("study status nowhere", &["no store", "study run"]);
     place.write("other.toml", quick().replace("\"tested\"", "\"other\""));
-    place
-        .call(["study", "run", "other.toml", "--store", "store"])
-        .expect_code(2)
-        .says(&["holds the study `tested`, not `other`", "--store"]);
-    place
-        .call(["study", "run", "study.toml", "--for", "soon"])
-        .expect_code(2)
-        .says(&["such as 30m"]);
+    place.refuses(
+        "study run other.toml --store store",
+        &["holds the study `tested`, not `other`", "--store"],
+    );
+    place.refuses("study run study.toml --for soon", &["such as 30m"]);
 }
 
 #[test]
 fn why_says_what_has_become_of_a_run() {
     let place = finished();
     let run = first(&place);
-    let why = |run: &str| place.call(["study", "why", "store", run]);
+    let why = |run: &str| place.call(&format!("study why store {run}"));
     why(&run[..8]).expect_code(0).shows(&[
         &run,
         "drive.width 2.4, from rest, replicate 0",
@@ -194,8 +172,7 @@ fn why_says_what_has_become_of_a_run() {
     // A study that has moved on no longer knows it.
     place.write("study.toml", quick().replace("[2.4, 2.9]", "[2.6]"));
     place
-        .call(["study", "run", "study.toml", "--store", "store"])
-        .expect_code(0)
+        .does("study run study.toml --store store")
         .shows(&["4 finished runs are not part of the study"]);
     why(&run).expect_code(0).shows(&[
         "not part of the study as it stands",
@@ -207,9 +184,7 @@ fn why_says_what_has_become_of_a_run() {
         "study.toml",
         quick().replace("settled_periods = 30", "settled_periods = 5"),
     );
-    place
-        .call(["study", "run", "study.toml", "--store", "store"])
-        .expect_code(0);
+    place.does("study run study.toml --store store");
     why(&run).expect_code(0).shows(&[
         "nearest     drive.width 2.4",
         "changed     stop.settled_periods: 30, now 5\n",
@@ -223,28 +198,24 @@ fn damage_is_told_by_verify_and_mended_by_run() {
     let run = first(&place);
     let path = place.path("store/runs").join(&run).join("summary.json");
     std::fs::write(&path, "{}").unwrap();
+    place.call("study verify store").expect_code(1).shows(&[
+        &run,
+        "summary.json has 2 bytes",
+        "moved aside",
+    ]);
+    place.does(&format!("study why store {run}")).shows(&[
+        "quarantined",
+        "store/quarantine",
+        "computed again",
+    ]);
     place
-        .call(["study", "verify", "store"])
-        .expect_code(1)
-        .shows(&[&run, "summary.json has 2 bytes", "moved aside"]);
-    place
-        .call(["study", "why", "store", &run])
-        .expect_code(0)
-        .shows(&["quarantined", "store/quarantine", "computed again"]);
-    place
-        .call(["study", "export", "store", "--out", "partial"])
-        .expect_code(0)
+        .does("study export store --out partial")
         .says(&["1 runs of the study are not finished"]);
-    place
-        .call(["study", "run", "study.toml", "--store", "store"])
-        .expect_code(0);
+    place.does("study run study.toml --store store");
     assert!(tables(&place, "store") == before);
-    place.call(["study", "verify", "store"]).expect_code(0);
+    place.does("study verify store");
     std::fs::remove_file(place.path("store/index.sqlite")).unwrap();
-    place
-        .call(["study", "scan", "store"])
-        .expect_code(0)
-        .shows(&["4 finished runs"]);
+    place.does("study scan store").shows(&["4 finished runs"]);
 }
 
 #[test]
@@ -252,18 +223,17 @@ fn failed_runs_make_the_exit_code_and_can_be_retried() {
     // Grains that do not fit.
     let text = quick().replace("grains.number = 20", "grains.number = 3000");
     let place = place_of(&text.replace("2.9", "2.5"));
-    let run = || place.call(["study", "run", "study.toml", "--store", "store"]);
+    let run = || place.call("study run study.toml --store store");
     run()
         .expect_code(1)
         .shows(&["4 failed", "failed"])
         .says(&["4 runs failed", "study why"]);
     assert_eq!(status(&place)["counts"]["failed"], 4);
     place
-        .call(["study", "retry", "store", "--failed"])
-        .expect_code(0)
+        .does("study retry store --failed")
         .shows(&["4 runs will be computed again"]);
     place
-        .call(["study", "retry", "store", &first(&place)])
+        .call(&format!("study retry store {}", first(&place)))
         .expect_code(1)
         .says(&["left as it is"]);
     run().expect_code(1);
@@ -273,49 +243,28 @@ fn failed_runs_make_the_exit_code_and_can_be_retried() {
 fn finished_runs_travel_by_table_and_by_archive() {
     let place = finished();
     let before = tables(&place, "store");
+    place.refuses(
+        "study pack store study.toml",
+        &["study.toml is no name of an archive", ".tar"],
+    );
     place
-        .call(["study", "pack", "store", "study.toml"])
-        .expect_code(2)
-        .says(&["study.toml is no name of an archive", ".tar"]);
-    place
-        .call(["study", "pack", "store", "runs.tar"])
-        .expect_code(0)
+        .does("study pack store runs.tar")
         .shows(&["4 finished runs in runs.tar"]);
     place
-        .call([
-            "study",
-            "import",
-            "packed",
-            "runs.tar",
-            "--study",
-            "study.toml",
-        ])
-        .expect_code(0)
+        .does("study import packed runs.tar --study study.toml")
         .shows(&["4 of 4 runs taken"]);
     assert!(tables(&place, "packed") == before);
     place
-        .call([
-            "study",
-            "import",
-            "rows",
-            "store-tables/tested.csv",
-            "--study",
-            "study.toml",
-        ])
-        .expect_code(0)
+        .does("study import rows store-tables/tested.csv --study study.toml")
         .shows(&["4 rows taken"]);
-    place
-        .call(["study", "run", "study.toml", "--store", "rows"])
-        .expect_code(0);
+    place.does("study run study.toml --store rows");
     assert!(tables(&place, "rows")[..2] == before[..2]);
-    place
-        .call(["study", "import", "rows", "study.toml"])
-        .expect_code(1);
+    place.call("study import rows study.toml").expect_code(1);
 }
 
 #[test]
 fn the_schema_is_printed() {
-    let schema = Place::new().call(["study", "schema"]).expect_code(0).json();
+    let schema = Place::new().does("study schema").json();
     jsonschema::meta::validate(&schema).unwrap();
     assert!(schema["properties"]["base"]["properties"]["drive"].is_object());
 }
@@ -370,18 +319,7 @@ fn time_that_is_up_stops_it_as_well() {
             .replace("[stop]\nsettled_periods = 30", ""),
     );
     place
-        .call([
-            "study",
-            "run",
-            "study.toml",
-            "--store",
-            "store",
-            "--for",
-            "300ms",
-            "--workers",
-            "1",
-        ])
-        .expect_code(0)
+        .does("study run study.toml --store store --for 300ms --workers 1")
         .says(&["time is up, every run is saved"])
         .shows(&["1 checkpointed", "11 pending"]);
 }
@@ -389,25 +327,11 @@ fn time_that_is_up_stops_it_as_well() {
 #[test]
 fn a_script_for_slurm_goes_to_the_cluster_and_runs_the_study() {
     let place = place_of(&quick());
-    let outcome = place
-        .call([
-            "study",
-            "submit",
-            "study.toml",
-            "--slurm",
-            "--store",
-            "my store",
-            "--tasks",
-            "3",
-            "--processors",
-            "2",
-            "--time",
-            "90m",
-            "--partition",
-            "long",
-            "--option=--mem=1G",
-        ])
-        .expect_code(0);
+    let mut call = words(
+        "study submit study.toml --slurm --tasks 3 --processors 2 --time 90m --partition long",
+    );
+    call.extend(["--option=--mem=1G", "--store", "my store"]);
+    let outcome = Outcome::of(place.command(call).output().unwrap()).expect_code(0);
     let name = outcome.stdout.split_whitespace().next().unwrap().to_owned();
     let script = std::fs::read_to_string(place.path(&name)).unwrap();
     for line in [
@@ -436,7 +360,8 @@ fn a_script_for_slurm_goes_to_the_cluster_and_runs_the_study() {
         task.status.success() && words.contains("all runs are done"),
         "{words}"
     );
-    place.call(["study", "status", "my store"]).expect_code(0);
+    let status = place.command(["study", "status", "my store"]).output();
+    Outcome::of(status.unwrap()).expect_code(0);
 }
 
 #[test]
@@ -449,21 +374,12 @@ fn a_script_that_could_not_work_is_not_written() {
         (&["--option=mem"], "not one option"),
         (&["--tasks", "0"], "1..=10000"),
     ] {
-        let mut call = vec![
-            "study",
-            "submit",
-            "study.toml",
-            "--slurm",
-            "--store",
-            "store",
-        ];
+        let mut call = words("study submit study.toml --slurm --store store");
         call.extend(options);
-        place.call(call).expect_code(2).says(&[message]);
+        let refused = place.command(call).output().unwrap();
+        Outcome::of(refused).expect_code(2).says(&[message]);
     }
-    place
-        .call(["study", "submit", "study.toml"])
-        .expect_code(2)
-        .says(&["--slurm"]);
+    place.refuses("study submit study.toml", &["--slurm"]);
     let left = place.inventory();
     assert_eq!(left.len(), 1, "the study alone: {:?}", left.keys());
 }

@@ -49,9 +49,7 @@ fn place_of(text: &str) -> Place {
 /// The science tables of a store in this place: rows as CSV and Parquet, and time series.
 fn tables(place: &Place, store: &str) -> [Vec<u8>; 3] {
     let out = format!("{store}-tables");
-    place
-        .call(["study", "export", store, "--out", &out, "--series"])
-        .expect_code(0);
+    place.does(&format!("study export {store} --out {out} --series"));
     let file = |name: &str| -> PathBuf { place.path(&out).join(name) };
     ["tested.csv", "tested.parquet", "tested-series.parquet"]
         .map(|name| std::fs::read(file(name)).unwrap())

@@ -7,7 +7,8 @@ use std::sync::OnceLock;
 use std::time::Duration;
 
 use super::{STUDY, place_of, quick, tables};
-use crate::{Outcome, Place};
+use crate::limits::with_small_files;
+use crate::{Outcome, Place, words};
 
 /// Numbers that look random and are the same every time.
 struct Numbers(u64);
@@ -23,21 +24,11 @@ impl Numbers {
     }
 }
 
-const RUN: [&str; 9] = [
-    "study",
-    "run",
-    "study.toml",
-    "--store",
-    "store",
-    "--checkpoint-every",
-    "20ms",
-    "--workers",
-    "2",
-];
+const RUN: &str = "study run study.toml --store store --checkpoint-every 20ms --workers 2";
 
 fn start(place: &Place) -> Child {
     place
-        .command(RUN)
+        .command(words(RUN))
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()
@@ -47,7 +38,7 @@ fn start(place: &Place) -> Child {
 /// The tables of this study when nothing disturbs it.
 fn undisturbed(text: &str) -> [Vec<u8>; 3] {
     let place = place_of(text);
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     tables(&place, "store")
 }
 
@@ -79,10 +70,7 @@ fn assert_whole(place: &Place, runs: usize) {
     let verified = format!(
         "{runs} finished runs whose hashes check, 0 imported, 0 with a checkpoint, 0 failed"
     );
-    place
-        .call(["study", "verify", "store"])
-        .expect_code(0)
-        .shows(&[&verified]);
+    place.does("study verify store").shows(&[&verified]);
     assert!(!place.path("store/quarantine").exists());
     let timing = std::fs::read_to_string(place.path("store-tables/tested-timing.csv")).unwrap();
     let identities: BTreeSet<&str> = timing.lines().skip(1).collect();
@@ -153,7 +141,7 @@ fn a_process_that_slept_too_long_finds_its_run_taken_and_does_no_harm() {
         // The first may find that its index was pulled from under it; the store is whole in any case.
         child.wait_with_output().unwrap();
     }
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     assert!(tables(&place, "store") == *usual_tables());
 }
 
@@ -185,7 +173,7 @@ fn bits_that_flip_between_kills_are_found_and_mended() {
         }
     }
     assert!(flipped >= 4, "only {flipped} flips");
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     assert!(tables(&place, "store") == *usual_tables());
 }
 
@@ -225,20 +213,17 @@ impl SmallDisk {
     }
 
     fn resize(&self, size: &str) {
-        let status = Command::new("mount")
-            .args(["-o", &format!("remount,size={size}")])
-            .arg(&self.folder)
-            .status();
-        assert!(status.unwrap().success());
+        self.remount(&format!("remount,size={size}"));
     }
-}
 
-impl SmallDisk {
     /// Lets nothing be written any more, or again.
     fn close(&self, closed: bool) {
-        let mode = if closed { "remount,ro" } else { "remount,rw" };
+        self.remount(if closed { "remount,ro" } else { "remount,rw" });
+    }
+
+    fn remount(&self, options: &str) {
         let mut command = Command::new("mount");
-        let status = command.args(["-o", mode]).arg(&self.folder).status();
+        let status = command.args(["-o", options]).arg(&self.folder).status();
         assert!(status.unwrap().success());
     }
 }
@@ -256,17 +241,11 @@ fn a_disk_that_is_full_ends_the_work_and_loses_nothing() {
         println!("skipped: this user may mount no file system");
         return;
     };
-    let run = RUN.map(|argument| {
-        if argument == "store" {
-            "disk/store"
-        } else {
-            argument
-        }
-    });
+    let run = RUN.replace("--store store", "--store disk/store");
     let mut full = 0;
     for size in ["400k", "600k", "900k", "1300k"] {
         disk.resize(size);
-        let outcome = place.call(run);
+        let outcome = place.call(&run);
         if outcome.code == Some(0) {
             continue;
         }
@@ -277,7 +256,7 @@ fn a_disk_that_is_full_ends_the_work_and_loses_nothing() {
     }
     assert!(full >= 2, "the disk was full {full} times");
     disk.resize("64m");
-    place.call(run).expect_code(0);
+    place.does(&run);
     assert!(tables(&place, "disk/store") == *usual_tables());
 }
 
@@ -288,37 +267,22 @@ fn a_store_that_cannot_be_written_to_can_be_looked_at() {
         println!("skipped: this user may mount no file system");
         return;
     };
-    let run = RUN.map(|argument| match argument {
-        "store" => "disk/store",
-        other => other,
-    });
-    place.call(run).expect_code(0);
+    let run = RUN.replace("--store store", "--store disk/store");
+    place.does(&run);
     let expected = tables(&place, "disk/store");
     std::fs::remove_dir_all(place.path("disk/store-tables")).unwrap();
     let before = files_below(&place.path("disk"));
     disk.close(true);
-    place
-        .call(["study", "status", "disk/store"])
-        .expect_code(0)
-        .shows(&["4 done"]);
+    place.does("study status disk/store").shows(&["4 done"]);
     let identity = std::fs::read_dir(place.path("disk/store/runs"))
         .unwrap()
         .next();
     let identity = identity.unwrap().unwrap().file_name();
     let identity = identity.to_str().unwrap();
     place
-        .call(["study", "why", "disk/store", identity])
-        .expect_code(0)
+        .does(&format!("study why disk/store {identity}"))
         .shows(&["done"]);
-    let export = [
-        "study",
-        "export",
-        "disk/store",
-        "--out",
-        "tables",
-        "--series",
-    ];
-    place.call(export).expect_code(0);
+    place.does("study export disk/store --out tables --series");
     for (name, bytes) in ["tested.csv", "tested.parquet", "tested-series.parquet"]
         .iter()
         .zip(&expected)
@@ -327,10 +291,10 @@ fn a_store_that_cannot_be_written_to_can_be_looked_at() {
     }
     // What has to write says that it cannot, and what to do.
     for command in [
-        &run[..],
-        &["study", "scan", "disk/store"],
-        &["study", "verify", "disk/store"],
-        &["study", "retry", "disk/store", identity],
+        &run,
+        "study scan disk/store",
+        "study verify disk/store",
+        &format!("study retry disk/store {identity}"),
     ] {
         place
             .call(command)
@@ -339,14 +303,14 @@ fn a_store_that_cannot_be_written_to_can_be_looked_at() {
     }
     assert_eq!(files_below(&place.path("disk")), before);
     disk.close(false);
-    place.call(run).expect_code(0);
+    place.does(&run);
     assert!(tables(&place, "disk/store") == expected);
 }
 
 #[test]
 fn files_from_the_future_are_as_good_as_others() {
     let place = place_of(&quick());
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     let expected = tables(&place, "store");
     // The clock was set back by ten years, after the store was made.
     let later = std::time::SystemTime::now() + Duration::from_secs(315_000_000);
@@ -354,8 +318,8 @@ fn files_from_the_future_are_as_good_as_others() {
         let file = std::fs::File::options().write(true).open(path).unwrap();
         file.set_modified(later).unwrap();
     }
-    place.call(RUN).expect_code(0).says(&["all runs are done"]);
-    place.call(["study", "verify", "store"]).expect_code(0);
+    place.does(RUN).says(&["all runs are done"]);
+    place.does("study verify store");
     assert!(!place.path("store/quarantine").exists());
     assert!(tables(&place, "store") == expected);
 }
@@ -381,11 +345,10 @@ to = 2.999
 step = 0.0005
 "#;
     let place = place_of(text);
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     let start = std::time::Instant::now();
     place
-        .call(["study", "status", "store"])
-        .expect_code(0)
+        .does("study status store")
         .shows(&["9990 runs: 9990 done"]);
     let took = start.elapsed();
     println!("status of 9990 runs: {took:?}");
@@ -400,22 +363,14 @@ fn files_that_cannot_grow_end_the_work_and_lose_nothing() {
     let place = place_of(STUDY);
     let mut refused = 0;
     for blocks in [1, 24, 64] {
-        // Beyond the limit a write fails as on a full disk, once the signal that says so is ignored.
-        let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\"");
-        let output = Command::new("sh")
-            .args(["-c", &script, env!("CARGO_BIN_EXE_peristalsis")])
-            .args(RUN)
-            .current_dir(place.folder.path())
-            .output()
-            .unwrap();
-        let outcome = Outcome::of(output);
+        let outcome = with_small_files(&place, blocks, RUN);
         if outcome.code != Some(0) {
             refused += 1;
             outcome.expect_code(1);
         }
     }
     assert!(refused >= 2, "refused {refused} times");
-    place.call(RUN).expect_code(0);
+    place.does(RUN);
     assert!(tables(&place, "store") == *usual_tables());
 }
 
