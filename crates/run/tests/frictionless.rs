@@ -5,7 +5,7 @@
 
 mod common;
 
-use common::{Outcome, on_both_kernels, run};
+use common::{Outcome, on_both_kernels, run, within};
 use peristalsis_engine::Kernel;
 
 /// The fine lattice at strain rate 0.1: a period lasts 10, N = 203.
@@ -21,44 +21,19 @@ fn dense(
     state: &str,
     seed: u64,
 ) -> Outcome {
-    let settings = [
-        format!("grains.volume_fraction={volume_fraction}"),
-        format!("drive.width={width}"),
-        format!("run.periods={periods}"),
-        format!("initial.state={state}"),
-        "drive.strain_rate=0.1".to_owned(),
-        "tube.waves=10".to_owned(),
-    ];
-    run(
-        kernel,
-        "frictionless-fine",
-        &settings.each_ref().map(String::as_str),
-        seed,
-    )
+    let settings = format!(
+        "grains.volume_fraction={volume_fraction} drive.width={width} run.periods={periods} initial.state={state} \
+         drive.strain_rate=0.1 tube.waves=10"
+    );
+    run(kernel, "frictionless-fine", &settings, seed)
 }
 
 /// The coarse lattice at strain rate 0.05: a period lasts 20, N = 203.
 fn coarse(kernel: Kernel, width: f64, periods: u32, seed: u64) -> Outcome {
-    let settings = [
-        format!("drive.width={width}"),
-        format!("run.periods={periods}"),
-        "drive.strain_rate=0.05".to_owned(),
-        "initial.state=rest".to_owned(),
-    ];
-    run(
-        kernel,
-        "frictionless",
-        &settings.each_ref().map(String::as_str),
-        seed,
-    )
-}
-
-#[track_caller]
-fn within(value: f64, least: f64, most: f64) {
-    assert!(
-        (least..=most).contains(&value),
-        "{value} is not in {least} to {most}"
+    let settings = format!(
+        "drive.width={width} run.periods={periods} drive.strain_rate=0.05 initial.state=rest"
     );
+    run(kernel, "frictionless", &settings, seed)
 }
 
 fn late(outcome: &Outcome) -> f64 {

@@ -50,13 +50,8 @@ fn colours(picture: &Picture) -> (usize, usize) {
 }
 
 fn jammed(direction: &str) -> Run {
-    let direction = format!("drive.direction={direction}");
-    let settings = [
-        &*direction,
-        "initial.state=jammed",
-        "tube.waves=2",
-        "grains.number=60",
-    ];
+    let settings =
+        format!("drive.direction={direction} initial.state=jammed tube.waves=2 grains.number=60");
     Run::new(common::configuration("frictionless", &settings)).unwrap()
 }
 
@@ -162,12 +157,8 @@ fn a_mirrored_tube_gives_the_mirrored_outline() {
 
 #[test]
 fn grains_that_flow_against_the_wave_are_blue() {
-    let settings = [
-        "initial.state=jammed",
-        "initial.axial_velocity=-0.05",
-        "grains.number=300",
-    ];
-    let run = Run::new(common::configuration("frictional", &settings)).unwrap();
+    let settings = "initial.state=jammed initial.axial_velocity=-0.05 grains.number=300";
+    let run = Run::new(common::configuration("frictional", settings)).unwrap();
     let (red, blue) = colours(&picture(&run, look(400)));
     assert!(blue > 500 && red == 0, "{red} red and {blue} blue pixels");
     let section = Look {
@@ -180,8 +171,8 @@ fn grains_that_flow_against_the_wave_are_blue() {
 
 #[test]
 fn every_field_colours_the_grains_of_a_run_that_has_it() {
-    let settings = ["initial.state=jammed", "grains.number=200"];
-    let mut run = Run::new(common::configuration("frictional", &settings)).unwrap();
+    let settings = "initial.state=jammed grains.number=200";
+    let mut run = Run::new(common::configuration("frictional", settings)).unwrap();
     run.follow_orientations();
     run.advance().unwrap();
     let mut seen = Vec::new();
@@ -212,8 +203,8 @@ fn every_field_colours_the_grains_of_a_run_that_has_it() {
 
 #[test]
 fn a_static_wave_has_no_speed_to_compare_with_and_no_grains_are_no_failure() {
-    let settings = ["drive.strain_rate=0", "run.duration=5", "grains.number=0"];
-    let run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+    let settings = "drive.strain_rate=0 run.duration=5 grains.number=0";
+    let run = Run::new(common::configuration("frictionless", settings)).unwrap();
     let side = picture(&run, look(200));
     assert_eq!(colours(&side), (0, 0));
     assert!(
@@ -257,8 +248,8 @@ fn what_cannot_be_drawn_is_refused_in_words() {
 
 #[test]
 fn frames_of_a_trajectory_are_those_that_are_computed() {
-    let settings = ["tube.waves=2", "grains.number=40", "run.periods=3"];
-    let configuration = || common::configuration("frictionless", &settings);
+    let settings = "tube.waves=2 grains.number=40 run.periods=3";
+    let configuration = || common::configuration("frictionless", settings);
     let request = TrajectoryRequest {
         formats: vec![TrajectoryFormat::Gsd],
         every: Some(Span::Periods(0.25)),
@@ -339,7 +330,7 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
     // A trajectory of another tube.
     let other = Run::new(common::configuration(
         "frictionless",
-        &["tube.waves=3", "grains.number=40"],
+        "tube.waves=3 grains.number=40",
     ))
     .unwrap();
     let scene = PictureScene::new(&other, look(64), &[FrameSource::now(&other, false)]).unwrap();
@@ -352,8 +343,8 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
 
 #[test]
 fn the_space_time_diagram_has_a_row_a_wave_and_a_column_a_period() {
-    let settings = ["tube.waves=3", "grains.number=30", "run.periods=4"];
-    let mut run = Run::new(common::configuration("frictionless", &settings)).unwrap();
+    let settings = "tube.waves=3 grains.number=30 run.periods=4";
+    let mut run = Run::new(common::configuration("frictionless", settings)).unwrap();
     while !run.is_complete() {
         run.advance().unwrap();
     }

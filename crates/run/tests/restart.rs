@@ -12,44 +12,26 @@ use peristalsis_run::{
     waves_table,
 };
 
-const STRAIN: &[&str] = &[
-    "grains.number=30",
-    "tube.waves=2",
-    "run.periods=2",
-    "drive.width=2.3",
-];
-const STRESS: &[&str] = &[
-    "grains.number=200",
-    "run.periods=0.3",
-    "initial.state=jammed",
-];
-const FRICTION: &[&str] = &[
-    "contact.static_friction=0.5",
-    "contact.kinetic_friction=0.4",
-];
-const NO_FRICTION: &[&str] = &["contact.static_friction=0", "contact.kinetic_friction=0"];
+const STRAIN: &str = "grains.number=30 tube.waves=2 run.periods=2 drive.width=2.3";
+const STRESS: &str = "grains.number=200 run.periods=0.3 initial.state=jammed";
+const FRICTION: &str = "contact.static_friction=0.5 contact.kinetic_friction=0.4";
+const NO_FRICTION: &str = "contact.static_friction=0 contact.kinetic_friction=0";
 
 /// Preset and settings of one model each.
-fn models() -> Vec<(&'static str, Vec<&'static str>)> {
+fn models() -> Vec<(&'static str, String)> {
     // The preset as it is: equal smooth grains, in the kernel made for them; and pumped against a pressure.
-    let against = ["drive.body_force=-0.003", "drive.waveform=roller"];
+    let against = "drive.body_force=-0.003 drive.waveform=roller";
     let mut models = vec![
-        ("frictionless", STRAIN.to_vec()),
-        ("frictionless", [STRAIN, &against].concat()),
-        ("frictional", [STRESS, &against].concat()),
+        ("frictionless", STRAIN.to_owned()),
+        ("frictionless", format!("{STRAIN} {against}")),
+        ("frictional", format!("{STRESS} {against}")),
     ];
+    let sizes = "grains.diameter_min=0.8 grains.diameter_max=1";
     for integrator in ["run.integrator=verlet", "run.integrator=adams_bashforth"] {
         for law in ["contact.law=linear", "contact.law=hertz"] {
             for friction in [FRICTION, NO_FRICTION] {
                 for (preset, base) in [("frictionless", STRAIN), ("frictional", STRESS)] {
-                    let mut settings = base.to_vec();
-                    settings.extend(friction);
-                    settings.extend([
-                        integrator,
-                        law,
-                        "grains.diameter_min=0.8",
-                        "grains.diameter_max=1",
-                    ]);
+                    let settings = format!("{base} {friction} {integrator} {law} {sizes}");
                     models.push((preset, settings));
                 }
             }
@@ -86,16 +68,16 @@ fn a_state_goes_on_to_the_same_bits() {
                 .map(|table| table(run).unwrap())
         };
         // Tables compare by bits, so that one NaN equals another.
-        assert!(tables(&whole) == tables(&parts), "{preset} {settings:?}");
+        assert!(tables(&whole) == tables(&parts), "{preset} {settings}");
         assert_eq!(
             whole.simulation().bodies(),
             parts.simulation().bodies(),
-            "{preset} {settings:?}"
+            "{preset} {settings}"
         );
         assert_eq!(
             whole.recorder().dispersion(),
             parts.recorder().dispersion(),
-            "{preset} {settings:?}"
+            "{preset} {settings}"
         );
         assert!(whole.simulation().step() > 300);
     }
@@ -103,8 +85,11 @@ fn a_state_goes_on_to_the_same_bits() {
 
 #[test]
 fn a_folder_goes_on_to_the_same_bits() {
-    let frictional = [STRESS, FRICTION].concat();
-    for (preset, settings) in [("frictional", &frictional[..]), ("frictionless", STRAIN)] {
+    let frictional = format!("{STRESS} {FRICTION}");
+    for (preset, settings) in [
+        ("frictional", frictional.as_str()),
+        ("frictionless", STRAIN),
+    ] {
         let configuration = common::configuration(preset, settings);
         let place = tempfile::tempdir().unwrap();
         let (through, stopped) = (place.path().join("through"), place.path().join("stopped"));
@@ -137,7 +122,7 @@ fn a_folder_goes_on_to_the_same_bits() {
 
 /// A run that is stopped after every few steps, saved, and gone on with from the file, against the same run in one go;
 /// answers how often it was gone on with.
-fn in_pieces(preset: &str, settings: &[&str], steps: u64) -> u32 {
+fn in_pieces(preset: &str, settings: &str, steps: u64) -> u32 {
     let configuration = common::configuration(preset, settings);
     let whole = finish(Run::new(configuration.clone()).unwrap());
     let place = tempfile::tempdir().unwrap();
@@ -162,24 +147,19 @@ fn in_pieces(preset: &str, settings: &[&str], steps: u64) -> u32 {
 
 #[test]
 fn a_run_of_many_short_pieces_is_the_run_in_one_go() {
-    let frictional = [STRESS, FRICTION].concat();
+    let frictional = format!("{STRESS} {FRICTION}");
     assert!(in_pieces("frictionless", STRAIN, 7) > 50);
     assert!(in_pieces("frictional", &frictional, 17) > 50);
     // So many periods that the record merges its oldest samples.
-    let long = [
-        "grains.number=5",
-        "tube.waves=1",
-        "run.periods=140",
-        "observe.samples_per_period=2",
-    ];
-    assert!(in_pieces("frictionless", &long, 1000) > 250);
+    let long = "grains.number=5 tube.waves=1 run.periods=140 observe.samples_per_period=2";
+    assert!(in_pieces("frictionless", long, 1000) > 250);
 }
 
 #[test]
 #[ignore = "half a minute: two runs of more than a thousand pieces"]
 fn a_run_of_a_thousand_short_pieces_is_the_run_in_one_go() {
-    let strain = [STRAIN, &["run.periods=20"]].concat();
+    let strain = format!("{STRAIN} run.periods=20");
     assert!(in_pieces("frictionless", &strain, 7) > 1000);
-    let frictional = [STRESS, FRICTION, &["run.periods=1"]].concat();
+    let frictional = format!("{STRESS} {FRICTION} run.periods=1");
     assert!(in_pieces("frictional", &frictional, 4) > 1000);
 }

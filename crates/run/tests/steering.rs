@@ -10,7 +10,7 @@ fn read_back(text: &str) -> Configuration {
     Configuration::from_toml("config.toml", text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-fn begin(preset: &str, settings: &[&str]) -> Run {
+fn begin(preset: &str, settings: &str) -> Run {
     Run::new(configuration(preset, settings)).expect("a tube that holds its grains")
 }
 
@@ -22,8 +22,8 @@ fn advance(run: &mut Run, samples: usize) {
 
 #[test]
 fn the_course_that_was_driven_can_be_run_from_the_start() {
-    let settings = ["tube.waves=2", "drive.width=2.6", "run.periods=20"];
-    let mut driven = Run::new(configuration("frictionless", &settings)).unwrap();
+    let settings = "tube.waves=2 drive.width=2.6 run.periods=20";
+    let mut driven = Run::new(configuration("frictionless", settings)).unwrap();
     advance(&mut driven, 13);
     driven
         .drive_to(ScheduledParameter::Width, 2.9, 0.5)
@@ -58,8 +58,8 @@ fn the_course_that_was_driven_can_be_run_from_the_start() {
 
 #[test]
 fn a_steered_run_goes_on_from_its_checkpoint_to_the_same_bits() {
-    let settings = ["tube.waves=2", "run.periods=3"];
-    let mut run = Run::new(configuration("frictional", &settings)).unwrap();
+    let settings = "tube.waves=2 run.periods=3";
+    let mut run = Run::new(configuration("frictional", settings)).unwrap();
     advance(&mut run, 4);
     run.drive_to(ScheduledParameter::ForceAmplitude, 0.006, 0.1)
         .unwrap();
@@ -81,7 +81,7 @@ fn a_steered_run_goes_on_from_its_checkpoint_to_the_same_bits() {
 
 #[test]
 fn what_cannot_be_driven_is_refused() {
-    let mut run = Run::new(configuration("frictionless", &["tube.waves=2"])).unwrap();
+    let mut run = Run::new(configuration("frictionless", "tube.waves=2")).unwrap();
     let before = run.configuration().clone();
     for (parameter, value) in [
         (ScheduledParameter::Width, -0.1),
@@ -100,7 +100,7 @@ fn what_cannot_be_driven_is_refused() {
     assert_eq!(run.configuration(), &before);
 }
 
-const NARROW: [&str; 2] = ["tube.waves=2", "drive.width=2.7"];
+const NARROW: &str = "tube.waves=2 drive.width=2.7";
 
 #[test]
 fn a_changed_run_is_the_run_that_was_planned_so_and_its_ledger_stays_right() {
@@ -109,19 +109,19 @@ fn a_changed_run_is_the_run_that_was_planned_so_and_its_ledger_stays_right() {
             "frictionless",
             ScheduledParameter::Width,
             [2.8, 2.6],
-            &NARROW[..],
+            NARROW,
         ),
         (
             "frictionless",
             ScheduledParameter::StrainRate,
             [0.07, 0.04],
-            &NARROW[..],
+            NARROW,
         ),
         (
             "frictional",
             ScheduledParameter::ForceAmplitude,
             [0.005, 0.003],
-            &["tube.waves=2", "grains.number=100"][..],
+            "tube.waves=2 grains.number=100",
         ),
     ] {
         let mut changed = begin(preset, overrides);
@@ -151,10 +151,7 @@ fn a_changed_run_is_the_run_that_was_planned_so_and_its_ledger_stays_right() {
 
 #[test]
 fn the_value_that_there_is_changes_no_bit() {
-    let (mut touched, mut left) = (
-        begin("frictionless", &NARROW),
-        begin("frictionless", &NARROW),
-    );
+    let (mut touched, mut left) = (begin("frictionless", NARROW), begin("frictionless", NARROW));
     for run in [&mut touched, &mut left] {
         advance(run, 5);
     }
@@ -173,7 +170,7 @@ fn the_value_that_there_is_changes_no_bit() {
 
 #[test]
 fn a_snapshot_goes_on_with_the_same_bits_after_a_change() {
-    let mut run = begin("frictionless", &NARROW);
+    let mut run = begin("frictionless", NARROW);
     advance(&mut run, 5);
     run.drive_to(ScheduledParameter::Width, 2.8, 0.0).unwrap();
     let bytes = run.to_snapshot().unwrap();

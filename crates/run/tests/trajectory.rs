@@ -17,18 +17,9 @@ use peristalsis_run::{
     TrajectoryRequest, Window, estimate, timeseries_table,
 };
 
-const STRAIN: &[&str] = &[
-    "grains.number=30",
-    "tube.waves=2",
-    "run.periods=1",
-    "drive.width=2.3",
-];
-const STRESS: &[&str] = &[
-    "grains.number=200",
-    "run.periods=0.2",
-    "initial.state=jammed",
-];
-const MODELS: [(&str, &[&str]); 2] = [("frictionless", STRAIN), ("frictional", STRESS)];
+const STRAIN: &str = "grains.number=30 tube.waves=2 run.periods=1 drive.width=2.3";
+const STRESS: &str = "grains.number=200 run.periods=0.2 initial.state=jammed";
+const MODELS: [(&str, &str); 2] = [("frictionless", STRAIN), ("frictional", STRESS)];
 
 fn request(every: &str, window: &str) -> TrajectoryRequest {
     TrajectoryRequest {
@@ -286,7 +277,7 @@ fn spans_and_windows_say_what_they_mean() {
 
 #[test]
 fn plans_take_whole_steps_within_the_run() {
-    let configuration = common::configuration("frictionless", &["run.periods=4"]);
+    let configuration = common::configuration("frictionless", "run.periods=4");
     let per_period = configuration.run.steps() / 4;
     let frames = |every: &str, window: &str| plan(&request(every, window), &configuration).frames();
     assert_eq!(frames("0.1", ":"), 41);
@@ -319,8 +310,8 @@ fn plans_take_whole_steps_within_the_run() {
     assert!(refused("1e-9", ":", &configuration).contains("step of 0.05"));
     assert!(refused("0.1", "5:6", &configuration).contains("window"));
     assert!(refused("0.1", "3:2", &configuration).contains("window"));
-    let settings = ["drive.strain_rate=0", "run.duration=50"];
-    let fixed = common::configuration("frictionless", &settings);
+    let settings = "drive.strain_rate=0 run.duration=50";
+    let fixed = common::configuration("frictionless", settings);
     assert!(refused("0.1", ":", &fixed).contains("stands still"));
     assert_eq!(plan(&request("5t", ":"), &fixed).frames(), 11);
     assert_eq!(plan(&default, &fixed).frames(), 101);

@@ -5,10 +5,10 @@
 use peristalsis_engine::Kernel;
 use peristalsis_run::{Configuration, Run, Status, Summary};
 
-/// The configuration of a preset with settings over it.
-pub(crate) fn configuration(preset: &str, settings: &[&str]) -> Configuration {
-    Configuration::from_preset(preset, settings)
-        .unwrap_or_else(|error| panic!("{settings:?}: {error}"))
+/// The configuration of a preset with settings over it, the words of a line.
+pub(crate) fn configuration(preset: &str, settings: &str) -> Configuration {
+    let words: Vec<&str> = settings.split_whitespace().collect();
+    Configuration::from_preset(preset, &words).unwrap_or_else(|error| panic!("{settings}: {error}"))
 }
 
 /// What a whole run came to.
@@ -42,14 +42,9 @@ fn name(kernel: Kernel) -> &'static str {
 }
 
 /// Runs to the end on a kernel.
-pub(crate) fn run(kernel: Kernel, preset: &str, settings: &[&str], seed: u64) -> Outcome {
-    let more = [
-        format!("run.kernel={}", name(kernel)),
-        format!("run.seed={seed}"),
-    ];
-    let more = more.each_ref().map(String::as_str);
-    let mut run = Run::new(configuration(preset, &[settings, &more].concat()))
-        .expect("the grains of each case fit");
+pub(crate) fn run(kernel: Kernel, preset: &str, settings: &str, seed: u64) -> Outcome {
+    let settings = format!("{settings} run.kernel={} run.seed={seed}", name(kernel));
+    let mut run = Run::new(configuration(preset, &settings)).expect("the grains of each case fit");
     assert_eq!(run.simulation().parameters().kernel, kernel);
     while !run.is_complete() {
         run.advance().expect("no case diverges");
@@ -58,6 +53,15 @@ pub(crate) fn run(kernel: Kernel, preset: &str, settings: &[&str], seed: u64) ->
         averages: run.recorder().averages().to_vec(),
         summary: Summary::of(&run, Status::Complete, None),
     }
+}
+
+/// Asserts that a value lies between bounds.
+#[track_caller]
+pub(crate) fn within(value: f64, least: f64, most: f64) {
+    assert!(
+        (least..=most).contains(&value),
+        "{value} is not in {least} to {most}"
+    );
 }
 
 /// Mean of the averages of periods `from` to `to`, counted from 1, both included.

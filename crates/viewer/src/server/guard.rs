@@ -10,9 +10,7 @@ impl Token {
     pub(crate) fn random() -> Result<Self, ViewerError> {
         let mut bytes = [0; 16];
         getrandom::fill(&mut bytes).map_err(ViewerError::Token)?;
-        Ok(Self(
-            bytes.iter().map(|byte| format!("{byte:02x}")).collect(),
-        ))
+        Ok(Self(peristalsis_formats::hexadecimal(&bytes)))
     }
 
     pub(crate) fn as_str(&self) -> &str {
