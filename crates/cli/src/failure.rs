@@ -80,6 +80,12 @@ impl From<ClaimError> for Failure {
 }
 
 impl Failure {
+    /// A file that cannot be read.
+    pub(crate) fn read(path: &Path) -> impl FnOnce(std::io::Error) -> Self {
+        let path = path.to_owned();
+        move |source| Self::Read { path, source }
+    }
+
     /// A command line that asks for something that does not exist, and what to ask for instead.
     pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
         Self::Usage {

@@ -3,7 +3,7 @@
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{MultiProgress, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use peristalsis_run::Progress;
 
 use crate::failure::say;
@@ -12,10 +12,32 @@ use crate::failure::say;
 pub(crate) enum Display {
     /// Nowhere.
     Silent,
-    /// A bar that is redrawn.
-    Bar(ProgressBar),
-    /// A line now and then.
+    /// To a bar that is redrawn, and lines below it.
+    Bar(Bar),
+    /// To a line now and then.
     Lines(LastLine),
+}
+
+/// A bar on a terminal.
+pub(crate) struct Bar {
+    all: MultiProgress,
+    bar: ProgressBar,
+    below: Vec<ProgressBar>,
+}
+
+impl Bar {
+    /// Shows how much is done, in words too, with more lines below.
+    pub(crate) fn show(&mut self, done: u64, words: String, below: &[String]) {
+        self.bar.set_position(done);
+        self.bar.set_message(words);
+        while self.below.len() < below.len() {
+            let line = ProgressBar::new(1).with_style(style("  {wide_msg}"));
+            self.below.push(self.all.add(line));
+        }
+        for (index, line) in self.below.iter().enumerate() {
+            line.set_message(below.get(index).cloned().unwrap_or_default());
+        }
+    }
 }
 
 /// The last line of progress on a pipe.
@@ -45,30 +67,33 @@ const REFRESH_RATE: u8 = 10;
 /// Time after which a line is printed even within the same tenth.
 const LINE_INTERVAL: Duration = Duration::from_secs(30);
 
-/// Where bars are drawn.
-pub(crate) fn terminal() -> ProgressDrawTarget {
-    ProgressDrawTarget::stderr_with_hz(REFRESH_RATE)
-}
-
-/// How a bar is drawn.
-pub(crate) fn style(template: &str) -> ProgressStyle {
+/// How a bar or a line is drawn.
+fn style(template: &str) -> ProgressStyle {
     ProgressStyle::with_template(template)
         .expect("the template is a constant with known fields")
         .progress_chars("━╸─")
 }
 
 impl Display {
-    pub(crate) fn new(quiet: bool, samples: u64) -> Self {
+    /// Of a run, or of other work in so many pieces.
+    pub(crate) fn new(quiet: bool, pieces: u64) -> Self {
+        let template = "{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]";
+        Self::with_bar(quiet, pieces, template)
+    }
+
+    /// The same with a bar that is drawn by a template of its own.
+    pub(crate) fn with_bar(quiet: bool, pieces: u64, template: &str) -> Self {
         if quiet {
             return Self::Silent;
         }
         if !std::io::stderr().is_terminal() {
             return Self::Lines(LastLine::now(0));
         }
-        let bar = ProgressBar::with_draw_target(Some(samples), terminal());
-        Self::Bar(bar.with_style(style(
-            "{bar:30.cyan/dim} {percent:>3}%  {msg}  [{eta} left]",
-        )))
+        let target = ProgressDrawTarget::stderr_with_hz(REFRESH_RATE);
+        let all = MultiProgress::with_draw_target(target);
+        let bar = all.add(ProgressBar::new(pieces).with_style(style(template)));
+        let below = Vec::new();
+        Self::Bar(Bar { all, bar, below })
     }
 
     /// Shows how far the run is.
@@ -89,10 +114,7 @@ impl Display {
     ) {
         match self {
             Self::Silent => {}
-            Self::Bar(bar) => {
-                bar.set_position(done);
-                bar.set_message(words());
-            }
+            Self::Bar(bar) => bar.show(done, words(), &[]),
             Self::Lines(last) => {
                 let tenth = 10 * done / of.max(1);
                 if tenth > last.tenth || last.is_old() {
@@ -110,10 +132,21 @@ impl Display {
         }
     }
 
-    /// Takes the bar away.
+    /// Says a line that stays.
+    pub(crate) fn tell(&self, text: &str) {
+        match self {
+            Self::Silent => {}
+            Self::Bar(bar) => drop(bar.all.println(text)),
+            Self::Lines(_) => say(text),
+        }
+    }
+
+    /// Takes bar and lines away.
     pub(crate) fn finish(&self) {
-        if let Self::Bar(bar) = self {
-            bar.finish_and_clear();
+        if let Self::Bar(Bar { bar, below, .. }) = self {
+            for line in below.iter().chain([bar]) {
+                line.finish_and_clear();
+            }
         }
     }
 }

@@ -18,10 +18,7 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     let file = match &arguments.file {
         None => None,
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|source| Failure::Read {
-                path: path.clone(),
-                source,
-            })?;
+            let text = std::fs::read_to_string(path).map_err(Failure::read(path))?;
             Some((path.display().to_string(), text))
         }
     };

@@ -16,7 +16,6 @@ mod run;
 mod scene;
 mod si;
 mod spheres;
-mod steering;
 mod stopping;
 mod stopwatch;
 mod summary;

@@ -178,12 +178,6 @@ impl Recorder {
         core::array::from_fn(|place| self.ladder.get(place)?.outcome().observed())
     }
 
-    /// Time of a crossing \[t\] that has not lasted long enough yet.
-    #[must_use]
-    pub fn candidate(&self) -> Option<f64> {
-        self.detector.as_ref()?.candidate()
-    }
-
     /// The samples of the last part of what was measured, at least one.
     #[must_use]
     pub fn late(&self, fraction: f64) -> &[Sample] {

@@ -1,5 +1,7 @@
 //! A run in progress.
 
+mod steering;
+
 use std::path::Path;
 use std::time::Duration;
 
@@ -291,24 +293,6 @@ impl Run {
             transition_time: self.recorder.transition_time(),
             elapsed: self.elapsed,
         }
-    }
-
-    /// Lets the drive follow the schedules of another configuration of the same run from now on.
-    pub(crate) fn follow(&mut self, configuration: Configuration) -> Result<(), RunError> {
-        self.simulation.drive_by(walls(&configuration))?;
-        self.configuration = configuration;
-        Ok(())
-    }
-
-    /// Gives contacts the friction of another configuration of the same run from now on.
-    pub(crate) fn apply_friction(&mut self, configuration: Configuration) -> Result<(), RunError> {
-        let Some(friction) = configuration.contact.friction else {
-            return Ok(());
-        };
-        self.simulation
-            .set_friction(friction.static_friction, friction.kinetic_friction)?;
-        self.configuration = configuration;
-        Ok(())
     }
 
     /// The configuration; of a run that was steered, with the course that it has taken.

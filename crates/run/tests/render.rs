@@ -12,11 +12,6 @@ use peristalsis_run::{
     TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, WallLook, Window, space_time,
 };
 
-const ALL: Window = Window {
-    from: None,
-    to: None,
-};
-
 fn look(width: u32) -> Look {
     Look {
         width,
@@ -253,7 +248,7 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
     let request = TrajectoryRequest {
         formats: vec![TrajectoryFormat::Gsd],
         every: Some(Span::Periods(0.25)),
-        window: ALL,
+        window: Window::default(),
     };
     let steps = configuration().run.steps();
     let plan = || TrajectoryPlan::new(&request, &configuration(), 0, steps).unwrap();
@@ -274,7 +269,7 @@ fn frames_of_a_trajectory_are_those_that_are_computed() {
         }
         frames
     };
-    let read = all(&mut FrameSource::of_file(&path, None, ALL).unwrap());
+    let read = all(&mut FrameSource::of_file(&path, None, Window::default()).unwrap());
     let mut computed = FrameSource::of_run(Run::new(configuration()).unwrap(), plan(), false);
     assert_eq!(computed.frames(), 13);
     let computed = all(&mut computed);

@@ -10,7 +10,7 @@ use peristalsis_reproduce::{
 use peristalsis_study::{Effort, Ending};
 
 use super::study::processors;
-use super::study::progress::{Display, Whole};
+use super::study::progress::{StudyDisplay, Whole};
 use crate::arguments::ReproduceArguments;
 use crate::commands::{code_of, print, tell};
 use crate::failure::Failure;
@@ -53,7 +53,7 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
         limit: arguments.limit,
     };
     stop.keep_results();
-    let mut display = Display::new(arguments.quiet, effort.workers);
+    let mut display = StudyDisplay::new(arguments.quiet);
     let outcome = reproduction.run(
         effort,
         &|| stop.requested().is_some(),

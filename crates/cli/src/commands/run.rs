@@ -189,17 +189,13 @@ impl Record {
     }
 
     fn synchronize(&mut self) -> Result<(), RunError> {
-        match &mut self.trajectory {
-            Some(trajectory) => trajectory.synchronize(),
-            None => Ok(()),
-        }
+        let mut trajectory = self.trajectory.iter_mut();
+        trajectory.try_for_each(Trajectory::synchronize)
     }
 
     fn observe(&mut self, run: &Run) -> Result<(), RunError> {
-        match &mut self.trajectory {
-            Some(trajectory) => trajectory.observe(run),
-            None => Ok(()),
-        }
+        let mut trajectory = self.trajectory.iter_mut();
+        trajectory.try_for_each(|trajectory| trajectory.observe(run))
     }
 
     /// Steps after which a frame is due.

@@ -22,10 +22,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let request = TrajectoryRequest {
         formats: arguments.formats.clone(),
         every: arguments.every,
-        window: Window {
-            from: None,
-            to: None,
-        },
+        window: Window::default(),
     };
     let now = run.simulation().step();
     let plan = TrajectoryPlan::onward(&request, run.configuration(), now, arguments.duration)?;
@@ -63,10 +60,7 @@ pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
     (!arguments.trajectory.is_empty()).then(|| TrajectoryRequest {
         formats: arguments.trajectory.clone(),
         every: arguments.trajectory_every,
-        window: arguments.trajectory_window.unwrap_or(Window {
-            from: None,
-            to: None,
-        }),
+        window: arguments.trajectory_window.unwrap_or_default(),
     })
 }
 

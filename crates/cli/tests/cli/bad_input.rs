@@ -76,7 +76,7 @@ fn a_wrong_override_is_its_own_place() {
         ("drive.width=3.01", "2 tube.radius = 3"),
         ("drive.width", "key=value"),
     ] {
-        let call = format!("run SMALL --out results --set {setting}");
+        let call = format!("run SMALL --out results --set={setting}");
         place.refuses(&call, &[&format!("--set {setting}"), part]);
     }
     assert!(place.inventory().is_empty());

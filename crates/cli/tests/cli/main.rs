@@ -30,7 +30,7 @@ mod viewing;
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output, Stdio};
 use std::time::SystemTime;
 
 use serde_json::Value;
@@ -165,6 +165,13 @@ impl Place {
         Outcome::of(self.command(words(line)).output().unwrap())
     }
 
+    /// The program with the [`words`] of a line, started, with pipes to what it says.
+    fn start(&self, line: &str) -> Child {
+        let mut command = self.command(words(line));
+        let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        piped.spawn().unwrap()
+    }
+
     /// A call that ends well.
     #[track_caller]
     fn does(&self, line: &str) -> Outcome {
@@ -209,6 +216,14 @@ fn collect(root: &Path, folder: &Path, found: &mut Inventory) {
             found.insert(name, Some((std::fs::read(&path).unwrap(), changed)));
         }
     }
+}
+
+/// Sends a signal to a program that was started.
+#[cfg(unix)]
+fn send(signal: &str, child: &Child) {
+    let mut kill = Command::new("kill");
+    let kill = kill.args([format!("-{signal}"), child.id().to_string()]);
+    assert!(kill.status().unwrap().success());
 }
 
 fn read_json(path: &Path) -> Value {

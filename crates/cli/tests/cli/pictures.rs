@@ -184,12 +184,8 @@ fn a_film_goes_through_the_ffmpeg_that_is_named_and_leaves_nothing_where_that_fa
 #[test]
 fn a_film_that_is_stopped_leaves_no_file() {
     let place = place();
-    let mut child = place
-        .command("render results --from start --every 0.0025 --width 400 --out film.gif".split(' '))
-        .stderr(std::process::Stdio::piped())
-        .stdout(std::process::Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child =
+        place.start("render results --from start --every 0.0025 --width 400 --out film.gif");
     // Once there is something beside it, frames are being made.
     let partial = || {
         let names = place.inventory().into_keys();
@@ -205,11 +201,7 @@ fn a_film_that_is_stopped_leaves_no_file() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     std::thread::sleep(std::time::Duration::from_millis(200));
-    let kill = std::process::Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(kill.success());
+    crate::send("INT", &child);
     crate::Outcome::of(child.wait_with_output().unwrap())
         .expect_code(130)
         .says(&["nothing is left of it"]);

@@ -123,29 +123,16 @@ fn what_cannot_be_done_is_said_before_anything_is_made() {
 #[test]
 fn a_signal_stops_it_with_a_report() {
     use std::io::{BufRead, BufReader, Read};
-    use std::process::{Command, Stdio};
 
     let place = Place::new();
-    let mut child = place
-        .command(["reproduce", "--only", "F2"])
-        .stderr(Stdio::piped())
-        .stdout(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = place.start("reproduce --only F2");
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut said = String::new();
     // The first line of progress: it works.
     while !said.contains("study 1 of") {
         assert!(errors.read_line(&mut said).unwrap() > 0, "{said}");
     }
-    let number = child.id().to_string();
-    assert!(
-        Command::new("kill")
-            .args(["-TERM", &number])
-            .status()
-            .unwrap()
-            .success()
-    );
+    crate::send("TERM", &child);
     errors.read_to_string(&mut said).unwrap();
     let output = child.wait_with_output().unwrap();
     let outcome = Outcome {

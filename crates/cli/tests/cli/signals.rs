@@ -1,9 +1,8 @@
 //! A run that is asked to stop: it ends with what it has, says so, and goes on to the same bits.
 
 use std::io::{BufRead, BufReader, Read};
-use std::process::{Command, Stdio};
 
-use crate::{Place, read_json, words};
+use crate::{Place, read_json, send};
 
 /// A run of a second or two, of which a tenth is done when its first line of progress comes.
 const LONG: &str =
@@ -11,21 +10,12 @@ const LONG: &str =
 
 /// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
 fn interrupted(place: &Place, line: &str, signal: &str) -> (Option<i32>, String) {
-    let mut child = place
-        .command(words(line))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = place.start(line);
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut said = String::new();
     errors.read_line(&mut said).unwrap();
     assert!(said.contains("10 %"), "{said}");
-    let sent = Command::new("kill")
-        .args([format!("-{signal}"), child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    send(signal, &child);
     errors.read_to_string(&mut said).unwrap();
     (child.wait().unwrap().code(), said)
 }
@@ -107,23 +97,14 @@ fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
 fn a_run_whose_next_sample_is_a_billion_steps_away_ends_at_once_all_the_same() {
     let place = Place::new();
     let slow = "SMALL run.periods=1 run.time_step=1e-9";
-    let mut child = place
-        .command(words(&format!("run --out stopped {slow}")))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = place.start(&format!("run --out stopped {slow}"));
     // The folder is made when signals are watched for.
     while !place.path("stopped/config.toml").is_file() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     // Twenty grains are packed long before: an end while they are leaves no state.
     std::thread::sleep(std::time::Duration::from_secs(2));
-    let sent = Command::new("kill")
-        .args(["-INT".to_owned(), child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    send("INT", &child);
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let summary = read_json(&place.path("stopped/summary.json"));
     assert_eq!(summary["status"], "interrupted");

@@ -1,8 +1,8 @@
 //! What goes to which stream, and streams that end early.
 
-use std::process::{Child, Stdio};
+use std::process::Stdio;
 
-use crate::{Outcome, Place, read_json, words};
+use crate::{Outcome, Place, read_json};
 
 fn plain(text: &str) -> bool {
     text.chars()
@@ -47,13 +47,6 @@ fn quiet_is_quiet_and_errors_are_not() {
     assert_eq!(summary["warnings"][0]["key"], "run.time_step");
 }
 
-/// Starts the program with pipes to read what it says.
-fn spawn(place: &Place, line: &str) -> Child {
-    let mut command = place.command(words(line));
-    let piped = command.stdout(Stdio::piped()).stderr(Stdio::piped());
-    piped.spawn().unwrap()
-}
-
 #[test]
 fn readers_of_standard_output_may_go_away() {
     let place = Place::new();
@@ -63,7 +56,7 @@ fn readers_of_standard_output_may_go_away() {
         "check --preset frictionless",
         "run SMALL --out results --json",
     ] {
-        let mut child = spawn(&place, line);
+        let mut child = place.start(line);
         drop(child.stdout.take());
         Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     }
@@ -73,12 +66,12 @@ fn readers_of_standard_output_may_go_away() {
 #[test]
 fn readers_of_standard_error_may_go_away() {
     let place = Place::new();
-    let mut child = spawn(&place, "run SMALL --out results --json");
+    let mut child = place.start("run SMALL --out results --json");
     drop(child.stderr.take());
     let outcome = Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     assert_eq!(outcome.json()["status"], "complete");
     // An error that nobody reads keeps its exit code.
-    let mut child = spawn(&place, "check");
+    let mut child = place.start("check");
     drop(child.stderr.take());
     Outcome::of(child.wait_with_output().unwrap()).expect_code(2);
 }

@@ -2,18 +2,12 @@
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
-use std::process::{Command, Stdio};
 
-use crate::{Place, words};
+use crate::{Place, send};
 
 /// Views, asks for the page, and stops; answers the page.
 fn page_of(place: &Place, source: &str) -> String {
-    let mut child = place
-        .command(words(&format!("view {source}")))
-        .stdout(Stdio::piped())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let mut child = place.start(&format!("view {source}"));
     let mut address = String::new();
     BufReader::new(child.stdout.take().unwrap())
         .read_line(&mut address)
@@ -29,11 +23,7 @@ fn page_of(place: &Place, source: &str) -> String {
     stream.write_all(request.as_bytes()).unwrap();
     let mut page = String::new();
     stream.read_to_string(&mut page).unwrap();
-    let sent = Command::new("kill")
-        .args(["-INT", &child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    send("INT", &child);
     assert_eq!(child.wait().unwrap().code(), Some(0));
     page
 }

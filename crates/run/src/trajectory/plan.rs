@@ -67,8 +67,8 @@ impl Span {
     }
 }
 
-/// A window of time in a run: `20:25`, `100:` to the end, `:5t` from the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A window of time in a run: `20:25`, `100:` to the end, `:5t` from the start; the whole of it by default.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Window {
     /// Its beginning; `None`: where the run begins.
     pub from: Option<Span>,
@@ -191,12 +191,6 @@ impl TrajectoryPlan {
     #[must_use]
     pub fn interval(&self) -> u64 {
         self.interval
-    }
-
-    /// The formats.
-    #[must_use]
-    pub fn formats(&self) -> &[TrajectoryFormat] {
-        &self.formats
     }
 
     /// Frames in all.

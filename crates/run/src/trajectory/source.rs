@@ -55,25 +55,20 @@ impl FrameSource {
                 Some(Span::Time(every)) => (time, every),
                 None => (0.0, 0.0),
             };
-            let is_within =
-                |span: Option<Span>, missing: bool, is_on_side: fn(f64, f64) -> bool| {
-                    span.map_or(missing, |span| match span {
-                        Span::Periods(end) => is_on_side(period, end),
-                        Span::Time(end) => is_on_side(time, end),
-                    })
-                };
+            let is_on_side = |end: Option<Span>, side: fn(f64, f64) -> bool| match end {
+                None => true,
+                Some(Span::Periods(end)) => side(period, end),
+                Some(Span::Time(end)) => side(time, end),
+            };
             let slack = TOLERANCE * interval.max(1.0);
-            if is_within(window.from, true, |place, end| place >= end - TOLERANCE)
-                && is_within(window.to, true, |place, end| place <= end + TOLERANCE)
+            if is_on_side(window.from, |place, end| place >= end - TOLERANCE)
+                && is_on_side(window.to, |place, end| place <= end + TOLERANCE)
                 && place >= due - slack
             {
                 chosen.push(number);
                 // On the grid of intervals, so that uneven frames do not drift.
-                due = if due.is_finite() {
-                    due.max(place - interval)
-                } else {
-                    place
-                } + interval;
+                let grid = if due.is_finite() { due } else { place };
+                due = grid.max(place - interval) + interval;
             }
         }
         if chosen.is_empty() {

@@ -26,7 +26,9 @@ pub enum State {
 }
 
 impl State {
-    pub(crate) fn name(self) -> &'static str {
+    /// Its name in files and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Pending => "pending",
             Self::Leased => "leased",

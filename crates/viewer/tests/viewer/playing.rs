@@ -25,10 +25,7 @@ impl Recorded {
         let request = TrajectoryRequest {
             formats: vec![TrajectoryFormat::Gsd],
             every: Some(Span::Periods(0.25)),
-            window: Window {
-                from: None,
-                to: None,
-            },
+            window: Window::default(),
         };
         let two = Span::Periods(2.0);
         let plan = TrajectoryPlan::onward(&request, &configuration, 0, two).unwrap();

@@ -227,10 +227,7 @@ fn request(every: Option<Span>, window: Window) -> TrajectoryRequest {
 /// Where a film's frames come from.
 fn frames(arguments: &RenderArguments, run: Run, field: Field) -> Result<FrameSource, Failure> {
     let with_contacts = field == Field::Pressure;
-    let window = arguments.window.unwrap_or(Window {
-        from: None,
-        to: None,
-    });
+    let window = arguments.window.unwrap_or_default();
     if let Some(path) = trajectory(arguments, field)? {
         return Ok(FrameSource::of_file(&path, arguments.every, window)?);
     }

@@ -1,18 +1,17 @@
 //! Progress of a study on standard error: lines that are redrawn on a terminal, plain ones on a pipe.
 
-use std::io::IsTerminal;
-
-use indicatif::{MultiProgress, ProgressBar};
 use peristalsis_study::{Board, Working};
 
 use super::status::estimate;
 use crate::commands::say;
-use crate::progress::{LastLine, seconds, style, terminal};
+use crate::progress::{Display, LastLine, seconds};
 
 /// Estimates that are shown on a terminal.
 const ESTIMATES_SHOWN: usize = 6;
 /// Workers that are shown on a terminal.
 const WORKERS_SHOWN: usize = 8;
+/// Pieces into which a bar divides the work.
+const PIECES: f64 = 1000.0;
 
 /// Progress of the whole work; a board may show a part of it.
 pub(crate) struct Whole {
@@ -22,77 +21,49 @@ pub(crate) struct Whole {
     pub(crate) fraction: f64,
 }
 
-/// Where progress goes.
-pub(crate) enum Display {
-    /// Nowhere.
-    Silent,
-    /// To lines that are redrawn.
-    Bars(Bars),
-    /// To a line now and then.
-    Lines {
-        last: LastLine,
-        /// Runs that had ended.
-        ended: usize,
-    },
+/// The progress of a study.
+pub(crate) struct StudyDisplay {
+    display: Display,
+    /// Runs that had ended at the last line on a pipe.
+    ended: Option<usize>,
 }
 
-/// The lines on a terminal.
-pub(crate) struct Bars {
-    all: MultiProgress,
-    runs: ProgressBar,
-    estimates: Vec<ProgressBar>,
-    workers: Vec<ProgressBar>,
-}
-
-impl Display {
-    pub(crate) fn new(quiet: bool, workers: usize) -> Self {
-        if quiet {
-            return Self::Silent;
+impl StudyDisplay {
+    pub(crate) fn new(quiet: bool) -> Self {
+        Self {
+            display: Display::with_bar(quiet, PIECES as u64, "{bar:30.cyan/dim} {msg}"),
+            ended: None,
         }
-        if !std::io::stderr().is_terminal() {
-            return Self::Lines {
-                last: LastLine::now(0),
-                ended: usize::MAX,
-            };
-        }
-        let all = MultiProgress::with_draw_target(terminal());
-        let bar = ProgressBar::new(1000).with_style(style("{bar:30.cyan/dim} {msg}"));
-        let runs = all.add(bar);
-        Self::Bars(Bars {
-            estimates: Vec::new(),
-            workers: (0..workers.min(WORKERS_SHOWN))
-                .map(|_| all.add(line()))
-                .collect(),
-            runs,
-            all,
-        })
     }
 
     /// Shows how far the study is.
     pub(crate) fn update(&mut self, board: &Board) {
-        self.update_part(
-            board,
-            &Whole {
-                words: overall(board),
-                fraction: board.fraction,
-            },
-        );
+        let whole = Whole {
+            words: overall(board),
+            fraction: board.fraction,
+        };
+        self.update_part(board, &whole);
     }
 
-    /// Shows the progress of a study, and of the whole work.
+    /// Shows how far a study is, and the whole of which it is a part.
     pub(crate) fn update_part(&mut self, board: &Board, whole: &Whole) {
-        match self {
-            Self::Silent => {}
-            Self::Bars(bars) => bars.update(board, whole),
-            Self::Lines { last, ended } => {
-                for news in &board.news {
-                    say(news);
-                }
+        for news in &board.news {
+            self.display.tell(news);
+        }
+        match &mut self.display {
+            Display::Silent => {}
+            Display::Bar(bar) => {
+                let done = (PIECES * whole.fraction) as u64;
+                bar.show(done, whole.words.clone(), &below(board));
+            }
+            Display::Lines(last) => {
                 let tenth = (10.0 * whole.fraction) as u64;
-                let is_news = *ended != board.done + board.failed
-                    && (tenth != last.tenth || *ended == usize::MAX || board.done == board.total);
+                let ended = board.done + board.failed;
+                let is_news = self.ended.is_none_or(|before| {
+                    ended != before && (tenth != last.tenth || board.done == board.total)
+                });
                 if is_news || last.is_old() {
-                    *ended = board.done + board.failed;
+                    self.ended = Some(ended);
                     *last = LastLine::now(tenth);
                     say(&whole.words);
                     for bracket in &board.brackets {
@@ -105,54 +76,26 @@ impl Display {
 
     /// Says a line that stays.
     pub(crate) fn tell(&self, text: &str) {
-        match self {
-            Self::Silent => {}
-            Self::Bars(bars) => drop(bars.all.println(text)),
-            Self::Lines { .. } => say(text),
-        }
+        self.display.tell(text);
     }
 
     /// Takes the lines away.
     pub(crate) fn finish(&self) {
-        if let Self::Bars(bars) = self {
-            let lines = bars.estimates.iter().chain(&bars.workers);
-            for line in lines.chain([&bars.runs]) {
-                line.finish_and_clear();
-            }
-        }
+        self.display.finish();
     }
 }
 
-/// A line of text.
-fn line() -> ProgressBar {
-    ProgressBar::new(1).with_style(style("  {wide_msg}"))
-}
-
-impl Bars {
-    fn update(&mut self, board: &Board, whole: &Whole) {
-        for news in &board.news {
-            drop(self.all.println(news));
-        }
-        self.runs.set_position((1000.0 * whole.fraction) as u64);
-        self.runs.set_message(whole.words.clone());
-        let more = board.brackets.len().saturating_sub(ESTIMATES_SHOWN);
-        while self.estimates.len() < board.brackets.len().min(ESTIMATES_SHOWN) {
-            let below = self.estimates.len() + 1;
-            self.estimates.push(self.all.insert(below, line()));
-        }
-        for (index, line) in self.estimates.iter().enumerate() {
-            line.set_message(match board.brackets.get(index) {
-                Some(_) if more > 0 && index + 1 == ESTIMATES_SHOWN => {
-                    format!("and {} estimates more", more + 1)
-                }
-                Some(bracket) => estimate(bracket),
-                None => String::new(),
-            });
-        }
-        for (line, working) in self.workers.iter().zip(&board.workers) {
-            line.set_message(working.as_ref().map_or_else(|| "idle".to_owned(), in_words));
-        }
+/// The lines below the bar: estimates, then what each worker does.
+fn below(board: &Board) -> Vec<String> {
+    let mut lines: Vec<String> = board.brackets.iter().map(estimate).collect();
+    if lines.len() > ESTIMATES_SHOWN {
+        let more = lines.len() - ESTIMATES_SHOWN + 1;
+        lines.truncate(ESTIMATES_SHOWN - 1);
+        lines.push(format!("and {more} estimates more"));
     }
+    let workers = board.workers.iter().take(WORKERS_SHOWN);
+    lines.extend(workers.map(|it| it.as_ref().map_or_else(|| "idle".to_owned(), in_words)));
+    lines
 }
 
 fn overall(board: &Board) -> String {

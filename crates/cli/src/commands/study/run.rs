@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
 
-use super::progress::Display;
+use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, processors, store_path};
 use crate::commands::tell;
@@ -23,7 +23,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         limit: arguments.limit,
     };
     stop.keep_results();
-    let mut display = Display::new(arguments.quiet, effort.workers);
+    let mut display = StudyDisplay::new(arguments.quiet);
     let ending = work_on(
         &store,
         &study,

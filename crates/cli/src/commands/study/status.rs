@@ -112,12 +112,9 @@ fn in_words(store: &Store, survey: &Survey) -> String {
             let state = survey.state(run.identity);
             let reason = survey.entries.get(&run.identity)?.reason.as_deref()?;
             matches!(state, State::Failed | State::Quarantined).then(|| {
-                let name = match state {
-                    State::Failed => "failed",
-                    _ => "quarantined",
-                };
                 format!(
-                    "{name} {} ({}, replicate {}): {reason}\n",
+                    "{} {} ({}, replicate {}): {reason}\n",
+                    state.name(),
                     &run.identity.to_string()[..8],
                     survey.plan.point(run).in_words(),
                     run.replicate
@@ -150,22 +147,13 @@ pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
     let survey = store.survey()?;
     let identity = survey.run_beginning(&arguments.run)?;
     let mut lines = vec![format!("run         {identity}")];
-    match survey
-        .plan
-        .runs()
-        .iter()
-        .find(|run| run.identity == identity)
-    {
+    let plan = &survey.plan;
+    match plan.runs().iter().find(|run| run.identity == identity) {
         Some(run) => {
-            lines.push(format!(
-                "point       {}, replicate {}",
-                survey.plan.point(run).in_words(),
-                run.replicate
-            ));
-            lines.push(format!(
-                "seed        {}",
-                survey.plan.configuration(run).run.seed
-            ));
+            let point = plan.point(run).in_words();
+            lines.push(format!("point       {point}, replicate {}", run.replicate));
+            let seed = plan.configuration(run).run.seed;
+            lines.push(format!("seed        {seed}"));
         }
         None => {
             lines.push("point       not part of the study as it stands".to_owned());
@@ -190,11 +178,7 @@ pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
         State::Failed => reason.unwrap_or_default(),
         State::Quarantined => format!("{}; it will be computed again", reason.unwrap_or_default()),
     };
-    let name = serde_json::to_value(state)
-        .ok()
-        .and_then(|value| value.as_str().map(str::to_owned))
-        .unwrap_or_default();
-    lines.push(format!("state       {name}: {meaning}"));
+    lines.push(format!("state       {}: {meaning}", state.name()));
     if let Some(time) = entry.and_then(|entry| entry.transition_time) {
         lines.push(format!("transition  t = {time}"));
     }

@@ -36,7 +36,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     let store = store_path(&arguments.store, &study);
     // So that a study that cannot run is refused here, and no two tasks make it.
     drop(Store::create(&store, &study)?);
-    let program = std::env::current_exe().map_err(unreadable(Path::new("this program")))?;
+    let program = std::env::current_exe().map_err(Failure::read(Path::new("this program")))?;
     let job = Job {
         name: &study.name,
         program: absolute(&program)?,
@@ -146,7 +146,7 @@ fn quoted(path: &Path) -> String {
 
 /// The path from the root on, which the script can hold.
 fn absolute(path: &Path) -> Result<PathBuf, Failure> {
-    let path = std::path::absolute(path).map_err(unreadable(path))?;
+    let path = std::path::absolute(path).map_err(Failure::read(path))?;
     if path.to_str().is_none() {
         return Err(Failure::usage(
             format!("{} is no text, which a script is", path.display()),
@@ -154,11 +154,6 @@ fn absolute(path: &Path) -> Result<PathBuf, Failure> {
         ));
     }
     Ok(path)
-}
-
-fn unreadable(path: &Path) -> impl FnOnce(std::io::Error) -> Failure {
-    let path = path.to_owned();
-    move |source| Failure::Read { path, source }
 }
 
 #[cfg(test)]

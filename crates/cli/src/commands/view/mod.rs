@@ -5,7 +5,7 @@ mod studies;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use peristalsis_configuration::preset;
+use peristalsis_configuration::{Configuration, preset};
 use peristalsis_engine::Instructions;
 use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
 use peristalsis_viewer::{Options, Recording, Viewer};
@@ -81,10 +81,7 @@ fn trajectory(arguments: &ViewArguments) -> Result<Option<PathBuf>, Failure> {
 
 /// A viewer that plays a trajectory. Its run is in its own folder or, as after `peristalsis trajectory`, in the one above.
 fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
-    let place = path.canonicalize().map_err(|source| Failure::Read {
-        path: path.to_owned(),
-        source,
-    })?;
+    let place = path.canonicalize().map_err(Failure::read(path))?;
     let above = place.ancestors().skip(1).take(2);
     let Some(folder) = above.clone().find(|it| it.join(CONFIGURATION).is_file()) else {
         return Err(Failure::usage(
@@ -102,12 +99,10 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
             run.recorder().samples().to_vec(),
         ),
         Err(_) => {
-            let only = ConfigurationArguments {
-                file: Some(folder.join(CONFIGURATION)),
-                preset: None,
-                overrides: Vec::new(),
-            };
-            (sources::configuration(&only)?, Vec::new())
+            let path = folder.join(CONFIGURATION);
+            let text = std::fs::read_to_string(&path).map_err(Failure::read(&path))?;
+            let name = path.display().to_string();
+            (Configuration::from_toml(&name, &text)?, Vec::new())
         }
     };
     let recording = Recording::open(&place, configuration, samples)?;

@@ -98,11 +98,13 @@ fn of_table(path: &Path) -> Result<Study, Failure> {
     let table = read_table(path).map_err(StudyError::from)?;
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let name = table.metadata().get("peristalsis.study");
-    let of_table = |design| Study::of_table(&stem, table.clone(), design).map_err(failure);
+    let of_table =
+        |design: Option<&_>| Study::of_table(&stem, table.clone(), design).map_err(failure);
     let mut best = of_table(None)?;
     if let Some(file) = StudyFile::named(name.map_or(&stem, |name| name.as_str())) {
         for size in [Size::Full, Size::Quick] {
-            let study = of_table(Some(&file.specification(size)?))?;
+            let design = file.specification(size)?;
+            let study = of_table(Some(&design))?;
             if study.watchable() > best.watchable() {
                 best = study;
             }

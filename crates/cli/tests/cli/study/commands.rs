@@ -272,23 +272,13 @@ fn the_schema_is_printed() {
 /// Starts a study that takes minutes, and sends a signal when its runs have begun.
 #[cfg(unix)]
 fn interrupted(place: &Place, signal: &str) -> Outcome {
-    use std::process::{Command, Stdio};
-    let child = place
-        .command(["study", "run", "study.toml", "--store", "store"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let child = place.start("study run study.toml --store store");
     while !place.path("store/runs").exists()
         || std::fs::read_dir(place.path("store/runs")).unwrap().count() == 0
     {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
-    let sent = Command::new("kill")
-        .args([format!("-{signal}"), child.id().to_string()])
-        .status()
-        .unwrap();
-    assert!(sent.success());
+    crate::send(signal, &child);
     Outcome::of(child.wait_with_output().unwrap())
 }
 

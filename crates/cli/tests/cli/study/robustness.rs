@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
+use std::process::{Command, Stdio};
 use std::sync::OnceLock;
 use std::time::Duration;
 
 use super::{STUDY, place_of, quick, tables};
 use crate::limits::with_small_files;
-use crate::{Outcome, Place, words};
+use crate::{Outcome, Place, send};
 
 /// Numbers that look random and are the same every time.
 struct Numbers(u64);
@@ -26,15 +26,6 @@ impl Numbers {
 
 const RUN: &str = "study run study.toml --store store --checkpoint-every 20ms --workers 2";
 
-fn start(place: &Place) -> Child {
-    place
-        .command(words(RUN))
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
 /// The tables of this study when nothing disturbs it.
 fn undisturbed(text: &str) -> [Vec<u8>; 3] {
     let place = place_of(text);
@@ -51,7 +42,7 @@ fn usual_tables() -> &'static [Vec<u8>; 3] {
 fn kill_until_done(place: &Place, numbers: &mut Numbers, longest: u64) -> u32 {
     let mut kills = 0;
     loop {
-        let mut child = start(place);
+        let mut child = place.start(RUN);
         std::thread::sleep(Duration::from_millis(10 + numbers.below(longest)));
         if let Some(status) = child.try_wait().unwrap() {
             let outcome = Outcome::of(child.wait_with_output().unwrap());
@@ -90,11 +81,11 @@ fn kills_at_random_moments_lose_nothing() {
 #[test]
 fn two_processes_of_which_one_is_killed_share_a_store() {
     let place = place_of(STUDY);
-    let mut steady = start(&place);
+    let mut steady = place.start(RUN);
     let mut numbers = Numbers(2);
     let mut kills = 0;
     while steady.try_wait().unwrap().is_none() {
-        let mut other = start(&place);
+        let mut other = place.start(RUN);
         std::thread::sleep(Duration::from_millis(20 + numbers.below(150)));
         if other.try_wait().unwrap().is_none() {
             other.kill().unwrap();
@@ -111,7 +102,7 @@ fn two_processes_of_which_one_is_killed_share_a_store() {
 #[test]
 fn two_processes_at_once_do_the_work_once() {
     let place = place_of(STUDY);
-    let both = [start(&place), start(&place)];
+    let both = [place.start(RUN), place.start(RUN)];
     for child in both {
         Outcome::of(child.wait_with_output().unwrap()).expect_code(0);
     }
@@ -121,22 +112,15 @@ fn two_processes_at_once_do_the_work_once() {
 
 #[test]
 fn a_process_that_slept_too_long_finds_its_run_taken_and_does_no_harm() {
-    let signal = |name: &str, child: &Child| {
-        let sent = Command::new("kill")
-            .args([format!("-{name}"), child.id().to_string()])
-            .status()
-            .unwrap();
-        assert!(sent.success());
-    };
     let place = place_of(STUDY);
-    let sleeper = start(&place);
+    let sleeper = place.start(RUN);
     std::thread::sleep(Duration::from_millis(400));
-    signal("STOP", &sleeper);
+    send("STOP", &sleeper);
     // Its leases are void for everyone else once the index is gone.
     std::fs::remove_file(place.path("store/index.sqlite")).unwrap();
-    let other = start(&place);
+    let other = place.start(RUN);
     std::thread::sleep(Duration::from_millis(300));
-    signal("CONT", &sleeper);
+    send("CONT", &sleeper);
     for child in [sleeper, other] {
         // The first may find that its index was pulled from under it; the store is whole in any case.
         child.wait_with_output().unwrap();
@@ -151,7 +135,7 @@ fn bits_that_flip_between_kills_are_found_and_mended() {
     let mut numbers = Numbers(3);
     let mut flipped = 0;
     for _ in 0..6 {
-        let mut child = start(&place);
+        let mut child = place.start(RUN);
         std::thread::sleep(Duration::from_millis(250 + numbers.below(250)));
         drop(child.kill());
         child.wait().unwrap();

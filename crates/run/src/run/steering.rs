@@ -2,8 +2,9 @@
 
 use peristalsis_configuration::{Schedule, ScheduledParameter};
 
+use super::Run;
+use crate::assemble::walls;
 use crate::error::RunError;
-use crate::run::Run;
 
 /// Largest force amplitude and strain rate, as for the keys of the drive.
 const LARGEST: f64 = 1e6;
@@ -13,7 +14,7 @@ impl Run {
     /// control.
     #[must_use]
     pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {
-        let own = self.configuration().drive.own(parameter)?;
+        let own = self.configuration.drive.own(parameter)?;
         let schedule = self.schedule(parameter);
         Some(schedule.map_or(own, |schedule| schedule.value(self.soonest())))
     }
@@ -43,14 +44,14 @@ impl Run {
     ) -> Result<(), RunError> {
         let refused = |reason: String| Err(RunError::Steering { reason });
         let (name, most) = match parameter {
-            ScheduledParameter::Width => ("drive.width", 2.0 * self.configuration().tube.radius),
+            ScheduledParameter::Width => ("drive.width", 2.0 * self.configuration.tube.radius),
             ScheduledParameter::ForceAmplitude => ("drive.force_amplitude", LARGEST),
             ScheduledParameter::StrainRate => ("drive.strain_rate", LARGEST),
         };
         let Some(now) = self.driven(parameter) else {
             return refused(format!("{name} belongs to the other drive.control"));
         };
-        if self.configuration().drive.period().is_none() {
+        if self.configuration.drive.period().is_none() {
             return refused(format!("{name} cannot follow a wave that stands still"));
         }
         if value > most {
@@ -71,12 +72,14 @@ impl Run {
         let Some(schedule) = going_on else {
             return refused(format!("{name} still follows its schedule"));
         };
-        let mut configuration = self.configuration().clone();
+        let mut configuration = self.configuration.clone();
         let schedules = &mut configuration.drive.schedules;
         schedules.retain(|known| known.parameter != parameter);
         schedules.push(schedule);
         schedules.sort_by_key(|schedule| schedule.parameter);
-        self.follow(configuration)
+        self.simulation.drive_by(walls(&configuration))?;
+        self.configuration = configuration;
+        Ok(())
     }
 
     /// Gives contacts this coefficient of kinetic friction from the next step on, and a static one in the proportion that
@@ -88,7 +91,7 @@ impl Run {
     /// # Errors
     /// [`RunError::Steering`] where grains have no friction, or for a coefficient that is not positive.
     pub fn set_friction(&mut self, kinetic: f64) -> Result<(), RunError> {
-        let mut configuration = self.configuration().clone();
+        let mut configuration = self.configuration.clone();
         let Some(friction) = &mut configuration.contact.friction else {
             return Err(RunError::Steering {
                 reason: "its grains began without friction".to_owned(),
@@ -106,17 +109,20 @@ impl Run {
         };
         friction.kinetic_friction = kinetic;
         friction.static_friction = (proportion * kinetic).max(kinetic);
-        self.apply_friction(configuration)
+        let (fixed, sliding) = (friction.static_friction, friction.kinetic_friction);
+        self.simulation.set_friction(fixed, sliding)?;
+        self.configuration = configuration;
+        Ok(())
     }
 
     fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
-        self.configuration().drive.schedule(parameter)
+        self.configuration.drive.schedule(parameter)
     }
 
     /// When the next course can begin, in periods: between two steps, so that no step sees half of it.
     fn soonest(&self) -> f64 {
-        let run = &self.configuration().run;
-        let period = self.configuration().drive.period().unwrap_or(1.0);
-        (self.simulation().step() as f64 + 0.5) * run.time_step / period
+        let run = &self.configuration.run;
+        let period = self.configuration.drive.period().unwrap_or(1.0);
+        (self.simulation.step() as f64 + 0.5) * run.time_step / period
     }
 }
