@@ -1,6 +1,6 @@
 /** The rows of a study: what was varied, what was measured, and points with their errors. */
 
-/** What the server says of a study; crates/viewer/src/study.rs says the same. */
+/** What the server says of a study; crates/viewer/src/server/study.rs says the same. */
 export interface Study {
   version: number;
   name: string;
