@@ -23,7 +23,7 @@ pub use columns::{COLUMNS, Column, PROFILE, WAVES};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
 pub use orientation::Orientations;
-pub use profile::{PartOfWave, ProfileBin, WallForce, WaveFrameProfile, WavePart};
+pub use profile::{PartOfWave, ProfileBin, WaveFrameProfile, WavePart};
 pub use quantity::{Quantity, Reading, Value};
 pub use sample::{Observer, Sample};
 pub use shape::TubeShape;

@@ -191,15 +191,6 @@ pub struct ProfileBin {
     pub wall_axial_velocity: (f64, f64),
 }
 
-/// Axial force of the wall on the grains of one wavelength, along the wave \[m d/t^2\], each with its error.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallForce {
-    /// Along the normals of contacts.
-    pub normal: (f64, f64),
-    /// By friction.
-    pub tangential: (f64, f64),
-}
-
 impl WaveFrameProfile {
     /// An empty profile with `bins` bins; a block begins with `samples_per_block` samples, a wave period for instance.
     #[must_use]
@@ -392,23 +383,6 @@ impl WaveFrameProfile {
                 }
             })
             .collect()
-    }
-
-    /// The axial force of the wall on the grains of one wavelength over the same part, throat and belly together.
-    #[must_use]
-    pub fn late_wall_force(&self, fraction: f64) -> WallForce {
-        let groups: Vec<Sums> = self.late_groups(fraction).iter().map(total).collect();
-        let all = total(&groups);
-        // Every bin was looked at as often.
-        let looks = |sums: &Sums| sums.wall.looks / self.bins as f64;
-        let with_error = |value: fn(&WallSums) -> f64| {
-            let of = |sums: &Sums| value(&sums.wall) / looks(sums);
-            (of(&all), standard_error(groups.iter().map(of)))
-        };
-        WallForce {
-            normal: with_error(|wall| wall.normal),
-            tangential: with_error(|wall| wall.tangential),
-        }
     }
 
     /// The last part of the blocks in up to ten equal groups.

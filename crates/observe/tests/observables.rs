@@ -196,12 +196,12 @@ fn what_the_wall_does_is_what_the_grains_feel() {
         let mut profile = WaveFrameProfile::new(10, 1);
         profile.add(&View::of(&simulation));
         profile.add_wall_forces(&simulation);
-        let force = profile.late_wall_force(1.0);
+        let force = profile.late_part(1.0, WavePart::Whole);
         assert!(
-            (force.normal.0 - 0.5 * axial).abs() < 1e-9,
+            (force.normal_force.0 - 0.5 * axial).abs() < 1e-9,
             "{force:?} {axial}"
         );
-        assert_eq!(force.tangential.0, 0.0);
+        assert_eq!(force.tangential_force.0, 0.0);
         let bins = profile.late(1.0, 10.0);
         // R = 6 everywhere: a bin has the area 2 pi 6 in each of the two waves.
         let pressure: f64 = bins.iter().map(|bin| bin.wall_pressure.0).sum();
@@ -242,7 +242,7 @@ fn the_parts_of_a_wave_have_their_own_forces() {
             // A prescribed wall moves in and out only.
             assert_eq!(found.wall_velocity.0, 0.0);
         }
-        let all = profile.late_wall_force(1.0).normal.0;
+        let all = profile.late_part(1.0, WavePart::Whole).normal_force.0;
         assert!((all - axial(0) - axial(1)).abs() < 1e-9);
     }
 }

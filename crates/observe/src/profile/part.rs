@@ -2,9 +2,11 @@
 
 use super::{Sums, WaveFrameProfile, standard_error, total};
 
-/// A part of the wavelength; what it leaves is the wide half, or the rear.
+/// A part of the wavelength; what a proper part leaves is the wide half, or the rear.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WavePart {
+    /// All of it.
+    Whole,
     /// Where the tube is narrower than on its mean.
     Narrow,
     /// From the narrowest place to the widest one ahead: where the wave closes the tube.
@@ -30,7 +32,7 @@ impl WaveFrameProfile {
     /// A part of the wave over the last part of what was added, at least one block.
     ///
     /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. A straight tube has
-    /// no such parts: all is NaN.
+    /// no proper parts: all is NaN.
     #[must_use]
     pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
         let groups = self.late_groups(fraction);
@@ -61,6 +63,7 @@ impl WaveFrameProfile {
 fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
     let number = radii.len();
     match part {
+        WavePart::Whole => (0..number).collect(),
         WavePart::Narrow => {
             let mean = radii.iter().sum::<f64>() / number as f64;
             (0..number).filter(|&bin| radii[bin] < mean).collect()

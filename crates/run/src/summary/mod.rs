@@ -8,7 +8,7 @@ mod written;
 use peristalsis_analysis::mean_with_error;
 use peristalsis_configuration::{Configuration, Units};
 use peristalsis_engine::initial::PackingReport;
-use peristalsis_observe::{PartOfWave, Sample, WallFault, WallForce, WavePart};
+use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 
 pub use late::Pumping;
 use late::{axial_dispersion, residence_time};
@@ -97,7 +97,7 @@ pub struct Summary {
     late: Vec<Sample>,
     /// J/Jmax of each whole late period.
     late_averages: Vec<f64>,
-    wall_force: WallForce,
+    whole: PartOfWave,
     narrow: PartOfWave,
     front: PartOfWave,
     throat: LocalFlow,
@@ -118,8 +118,7 @@ impl Summary {
         let late = recorder.late(fraction);
         let late_periods = late.len() / configuration.observe.samples_per_period as usize;
         let averages = recorder.averages();
-        let ratios: Vec<f64> = late.iter().map(|sample| sample.flow_rate_ratio).collect();
-        let flow_rate_ratio = match mean_with_error(&ratios) {
+        let flow_rate_ratio = match mean_with_error(&ratios_of(late)) {
             Ok(estimate) => (estimate.mean, estimate.error),
             Err(_) => (mean_of(late, |sample| sample.flow_rate_ratio), f64::NAN),
         };
@@ -157,7 +156,7 @@ impl Summary {
             trajectory: None,
             configuration: configuration.clone(),
             late_averages: averages[averages.len().saturating_sub(late_periods)..].to_vec(),
-            wall_force: recorder.profile().late_wall_force(fraction),
+            whole: part(WavePart::Whole),
             narrow: part(WavePart::Narrow),
             front: part(WavePart::Front),
             throat: LocalFlow::throat(&profile),
@@ -203,13 +202,6 @@ impl Summary {
         mean_of(&self.late, value)
     }
 
-    fn ratios(&self) -> Vec<f64> {
-        self.late
-            .iter()
-            .map(|sample| sample.flow_rate_ratio)
-            .collect()
-    }
-
     /// Periods that late means are over.
     fn late_periods(&self) -> f64 {
         self.late.len() as f64 / f64::from(self.configuration.observe.samples_per_period)
@@ -219,6 +211,10 @@ impl Summary {
     fn flow_rate_ratio_variance(&self) -> f64 {
         variance(&self.late_averages)
     }
+}
+
+fn ratios_of(late: &[Sample]) -> Vec<f64> {
+    late.iter().map(|sample| sample.flow_rate_ratio).collect()
 }
 
 /// Late mean.

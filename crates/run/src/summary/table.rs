@@ -7,8 +7,8 @@ use peristalsis_observe::Reading::{
 };
 use peristalsis_observe::{Quantity, Reading};
 
-use super::Summary;
 use super::late::error_of;
+use super::{Summary, ratios_of};
 use crate::{REVISION, VERSION};
 
 /// A quantity of a run and where it is written.
@@ -123,7 +123,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("transition_time_80", "t", "tau with the threshold 0.8; missing where there was none", Optional(|s| s.transition_times[7])).only_in_rows(),
     result("transition_time_90", "t", "tau with the threshold 0.9; missing where there was none", Optional(|s| s.transition_times[8])).only_in_rows(),
     result("flow_rate_ratio", "1", "late mean of J/Jmax, grains inside", Measured(|s| s.flow_rate_ratio)).labelled("J / Jmax, late mean"),
-    result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(|s| drift(&s.ratios()))),
+    result("flow_rate_ratio_drift", "1", "late J/Jmax, mean of its second half less that of its first", Real(|s| drift(&ratios_of(&s.late)))),
     result("flow_rate_ratio_variance", "1", "variance of the late averages of J/Jmax over a period each", Real(Summary::flow_rate_ratio_variance)).labelled("variance of J / Jmax"),
     result("flow_rate_ratio_raw", "1", "late mean of J/Jmax of all grains", Real(|s| s.mean(|sample| sample.flow_rate_ratio_raw))),
     result("flow_rate", "1/t", "late mean of J", Real(Summary::flow_rate)).labelled("flow rate J"),
@@ -145,8 +145,8 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("wall_power_error", "m d^2/t^3", "standard error of wall_power", Real(|s| error_of(s.late.iter().map(|sample| sample.wall_power)))),
     result("useful_power", "m d^2/t^3", "late mean power of the flow against the body force", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.useful_power))).at("pumping.useful_power").labelled("useful power"),
     result("pumping_efficiency", "1", "useful power over wall power", OptionalMeasured(|s| s.pumping.map(|pumping| pumping.efficiency))).at("pumping.efficiency").labelled("pumping efficiency"),
-    result("wall_normal_force", "m d/t^2", "late mean axial force of the wall on the grains of a wavelength along the normals of contacts", Measured(|s| s.wall_force.normal)),
-    result("wall_tangential_force", "m d/t^2", "the same by friction", Measured(|s| s.wall_force.tangential)),
+    result("wall_normal_force", "m d/t^2", "late mean axial force of the wall on the grains of a wavelength along the normals of contacts", Measured(|s| s.whole.normal_force)),
+    result("wall_tangential_force", "m d/t^2", "the same by friction", Measured(|s| s.whole.tangential_force)),
     result("narrow_normal_force", "m d/t^2", "part of wall_normal_force where the tube is narrower than on its mean", Measured(|s| s.narrow.normal_force)),
     result("narrow_tangential_force", "m d/t^2", "part of wall_tangential_force there", Measured(|s| s.narrow.tangential_force)),
     result("narrow_axial_velocity", "d/t", "late mean axial velocity of the grains there, laboratory frame", Measured(|s| s.narrow.axial_velocity)),

@@ -62,22 +62,25 @@ fn in_words(found: &Verification) -> String {
         "{} finished runs whose hashes check, {} imported, {} with a checkpoint, {} failed\n",
         found.whole, found.imported, found.checkpointed, found.failed
     );
-    for (identity, reason) in &found.quarantined {
-        text.push_str(&format!(
-            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again\n"
-        ));
-    }
+    text.extend(moved_aside(&found.quarantined).map(|line| line + "\n"));
     text
+}
+
+/// What is said of runs whose files were not whole.
+fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
+    runs.iter().map(|(identity, reason)| {
+        format!(
+            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
+        )
+    })
 }
 
 /// Writes the tables.
 pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let exported = store.export(&arguments.out, arguments.series)?;
-    for (identity, reason) in &exported.quarantined {
-        say(&format!(
-            "run {identity} is not what was sealed ({reason}): moved aside, to be computed again"
-        ));
+    for line in moved_aside(&exported.quarantined) {
+        say(&line);
     }
     if exported.missing > 0 {
         say(&format!(
