@@ -1,6 +1,7 @@
 //! Stops on request: Ctrl-C, SIGTERM and SIGUSR1 (which batch systems send before their time is up) end a run cleanly, a
 //! second one at once.
 
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
@@ -54,5 +55,10 @@ impl Stop {
             0 => None,
             number => Some(SIGNAL_BASE + number as u8),
         }
+    }
+
+    /// The exit code of that signal, or of success.
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        self.requested().map_or(ExitCode::SUCCESS, ExitCode::from)
     }
 }

@@ -22,9 +22,10 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
             "0 <= width <= 2 radius; a finite pressure",
         )
     })?;
-    let region = match fluid.trapping() {
-        Trapping::Absent => None,
-        Trapping::Bolus(region) | Trapping::Ring(region) => Some(region),
+    let (kind, region) = match fluid.trapping() {
+        Trapping::Absent => ("", None),
+        Trapping::Bolus(region) => ("a bolus on the axis", Some(region)),
+        Trapping::Ring(region) => ("a ring off the axis", Some(region)),
     };
     let reflux = fluid.reflux();
     if json {
@@ -42,30 +43,19 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
         print_json(&report)?;
         return Ok(ExitCode::SUCCESS);
     }
-    let trapping = match fluid.trapping() {
-        Trapping::Absent => "none".to_owned(),
-        Trapping::Bolus(region) => format!(
-            "a bolus on the axis, {:.2} % of the fluid",
-            100.0 * region.volume_fraction
-        ),
-        Trapping::Ring(region) => format!(
-            "a ring off the axis, {:.2} % of the fluid",
-            100.0 * region.volume_fraction
-        ),
-    };
-    let reflux = reflux.map_or_else(
-        || "none".to_owned(),
-        |layer| {
-            format!(
-                "{:.2} % of the fluid, near the wall, moves back on average: {:.4} pi a^2 c",
-                100.0 * layer.volume_fraction,
-                layer.flow_rate
-            )
-        },
-    );
-    let efficiency = fluid
-        .efficiency()
-        .map_or_else(|| "does not pump".to_owned(), |value| format!("{value:.4}"));
+    let trapping = region.map_or("none".to_owned(), |region| {
+        let part = 100.0 * region.volume_fraction;
+        format!("{kind}, {part:.2} % of the fluid")
+    });
+    let reflux = reflux.map_or("none".to_owned(), |layer| {
+        format!(
+            "{:.2} % of the fluid, near the wall, moves back on average: {:.4} pi a^2 c",
+            100.0 * layer.volume_fraction,
+            layer.flow_rate
+        )
+    });
+    let efficiency = fluid.efficiency();
+    let efficiency = efficiency.map_or("does not pump".to_owned(), |value| format!("{value:.4}"));
     print(&format!(
         "phi = b/a         {:.5}\npressure rise     P = {} (flow stops at {:.5})\nflow rate         Q = {:.5} pi a^2 c\n\
          J/Jmax            {:.5}\nefficiency        {efficiency}\ntrapping          {trapping}\nreflux            {reflux}\n",

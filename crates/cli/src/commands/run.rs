@@ -65,50 +65,34 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     } else {
         print(&in_words(&run, &summary))?;
     }
-    if let Some(warning) = overlap_warning(&run) {
-        warn(&warning);
-    }
+    overlap_warning(&run).iter().for_each(warn);
+    let tell = |text: String| tell(arguments.quiet, &text);
     if let Some(report) = &summary.trajectory {
-        tell(
-            arguments.quiet,
-            &format!("trajectory: {}", in_one_line(report)),
-        );
+        tell(format!("trajectory: {}", in_one_line(report)));
     }
     // Where the disk is full, what could not be written first is what to speak of.
     if !matches!(ending, Ending::Unwritten(_)) {
         finished?;
     }
+    let place = folder.path().display();
     match ending {
         Ending::Unwritten(source) => Err(Failure::Trajectory {
             folder: folder.path().to_owned(),
             source,
         }),
         Ending::Complete => {
-            tell(
-                arguments.quiet,
-                &format!("written to {}", folder.path().display()),
-            );
+            tell(format!("written to {place}"));
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped(code) => {
-            tell(
-                arguments.quiet,
-                &format!(
-                    "stopped {}; what there is is in {folder}\ngo on with: peristalsis run --resume {folder}",
-                    how_far(&run, &summary),
-                    folder = folder.path().display()
-                ),
-            );
+            tell(format!(
+                "stopped {}; what there is is in {place}\ngo on with: peristalsis run --resume {place}",
+                how_far(&run, &summary)
+            ));
             Ok(ExitCode::from(code))
         }
         Ending::Failed(error) => {
-            tell(
-                arguments.quiet,
-                &format!(
-                    "what was measured, and the state, are in {}",
-                    folder.path().display()
-                ),
-            );
+            tell(format!("what was measured, and the state, are in {place}"));
             Err(error.into())
         }
     }
@@ -139,19 +123,13 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     }
     // Before the work of packing, and again when the folder is made.
     RunFolder::check(&path)?;
-    for warning in warnings(&configuration) {
-        warn(&warning);
-    }
-    if configuration.grains.number > SLOW_PACKING {
-        tell(
-            arguments.quiet,
-            &format!("packing {} grains", configuration.grains.number),
-        );
+    warnings(&configuration).iter().for_each(warn);
+    let grains = configuration.grains.number;
+    if grains > SLOW_PACKING {
+        tell(arguments.quiet, &format!("packing {grains} grains"));
     }
     let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
-    if let Some(warning) = overlap_warning(&run) {
-        warn(&warning);
-    }
+    overlap_warning(&run).iter().for_each(warn);
     let folder = RunFolder::create(&path, run.configuration())?;
     Ok((folder, run))
 }

@@ -194,12 +194,13 @@ mod tests {
     use super::*;
     use crate::warnings::warnings;
 
-    fn configuration(preset: &str, overrides: &[String]) -> Configuration {
-        Configuration::from_preset(preset, overrides).unwrap()
+    fn configuration(preset: &str, settings: &str) -> Configuration {
+        let words: Vec<&str> = settings.split_whitespace().collect();
+        Configuration::from_preset(preset, &words).unwrap()
     }
 
-    fn said(preset: &str, overrides: &[String]) -> Option<String> {
-        warnings(&configuration(preset, overrides))
+    fn said(preset: &str, settings: &str) -> Option<String> {
+        warnings(&configuration(preset, settings))
             .into_iter()
             .find(|warning| warning.key.starts_with("units."))
             .map(|warning| warning.message)
@@ -213,33 +214,21 @@ mod tests {
 
     #[test]
     fn who_follows_the_advice_is_rid_of_the_warning() {
-        for (preset, elasticity, words) in [
-            ("frictional", "units.young_modulus=1e6", "modulus of "),
-            ("frictionless", "units.stiffness=1", "stiffness of "),
+        for (preset, key, value, words) in [
+            ("frictional", "units.young_modulus", "1e6", "modulus of "),
+            ("frictionless", "units.stiffness", "1", "stiffness of "),
         ] {
-            let beads = [
-                "units.grain_diameter=2e-3",
-                "units.density=1200",
-                elasticity,
-            ]
-            .map(str::to_owned)
-            .to_vec();
-            let with = |more: &[String]| [&beads[..], more].concat();
+            let beads = format!("units.grain_diameter=2e-3 units.density=1200 {key}={value}");
             let soft = said(preset, &beads).expect(preset);
             let strain_rate = number_after(&soft, "drive.strain_rate = ");
-            let slow = [format!("drive.strain_rate={strain_rate}")];
-            assert_eq!(said(preset, &with(&slow)), None);
-            let name = elasticity.split('=').next().unwrap();
-            let hard = [
-                format!("{name}={}", number_after(&soft, words)),
-                format!(
-                    "units.wave_frequency={}",
-                    number_after(&soft, "units.wave_frequency = ")
-                ),
-            ];
-            assert_eq!(said(preset, &with(&hard)), None);
+            let slow = format!("{beads} drive.strain_rate={strain_rate}");
+            assert_eq!(said(preset, &slow), None);
+            let harder = number_after(&soft, words);
+            let frequency = number_after(&soft, "units.wave_frequency = ");
+            let hard = format!("{beads} {key}={harder} units.wave_frequency={frequency}");
+            assert_eq!(said(preset, &hard), None);
             // Hardly harder than needed.
-            let overlap = overlap_at_wave_speed(&configuration(preset, &with(&hard)));
+            let overlap = overlap_at_wave_speed(&configuration(preset, &hard));
             assert!(overlap > 0.98 * LARGEST_OVERLAP, "{overlap}");
         }
         assert_eq!(three_digits(0.1, f64::floor), 0.1);
@@ -248,16 +237,9 @@ mod tests {
 
     #[test]
     fn a_softer_modulus_takes_the_forces_of_the_drive_with_it() {
-        let glass = [
-            "units.grain_diameter=1e-3",
-            "units.density=2500",
-            "units.young_modulus=6e10",
-            "units.wave_frequency=1",
-            "drive.force_amplitude=1e-9",
-            "grains.number=2",
-        ]
-        .map(str::to_owned);
-        let said = said("frictional", &glass).unwrap();
+        let glass = "units.grain_diameter=1e-3 units.density=2500 units.young_modulus=6e10 units.wave_frequency=1 \
+                     drive.force_amplitude=1e-9 grains.number=2";
+        let said = said("frictional", glass).unwrap();
         let softer: f64 = number_after(&said, "overlaps stay small: ")
             .parse()
             .unwrap();
@@ -268,17 +250,11 @@ mod tests {
 
     #[test]
     fn the_fastest_wave_of_a_schedule_counts() {
-        let beads = [
-            "units.grain_diameter=1e-3",
-            "units.density=2500",
-            "units.stiffness=1",
-            "drive.strain_rate=0.01",
-        ]
-        .map(str::to_owned);
-        assert_eq!(said("frictionless", &beads), None);
-        let led =
-            "drive.schedule={form='ramp', parameter='strain_rate', from=0.01, to=0.05, end=10}";
-        let led = [&beads[..], &[led.to_owned()]].concat();
+        let beads =
+            "units.grain_diameter=1e-3 units.density=2500 units.stiffness=1 drive.strain_rate=0.01";
+        assert_eq!(said("frictionless", beads), None);
+        let course = "{form='ramp',parameter='strain_rate',from=0.01,to=0.05,end=10}";
+        let led = format!("{beads} drive.schedule={course}");
         let said = said("frictionless", &led).unwrap();
         assert!(
             said.contains("35 %") && said.contains("drive.schedule"),

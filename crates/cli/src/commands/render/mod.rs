@@ -52,7 +52,7 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
             let drawing = still(arguments, run, look, &stop)?;
             match drawing {
                 Some(drawing) => finish_picture(arguments, &out, format, &drawing),
-                None => Ok(stopped(&stop)),
+                None => Ok(stop.exit_code()),
             }
         }
     }
@@ -283,7 +283,7 @@ fn make_film(
         if stop.requested().is_some() {
             display.finish();
             say("the film was given up: nothing is left of it");
-            return Ok(stopped(stop));
+            return Ok(stop.exit_code());
         }
         let Some(frame) = source.step()? else {
             continue;
@@ -347,9 +347,4 @@ fn report(
     };
     print(&text)?;
     Ok(ExitCode::SUCCESS)
-}
-
-/// The exit code of a signal that asked to stop.
-fn stopped(stop: &Stop) -> ExitCode {
-    stop.requested().map_or(ExitCode::SUCCESS, ExitCode::from)
 }

@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         }
         Ending::Stopped => {
             tell(format!("stopped, every run is saved; {}", again()));
-            Ok(stop.requested().map_or(ExitCode::SUCCESS, ExitCode::from))
+            Ok(stop.exit_code())
         }
     }
 }
