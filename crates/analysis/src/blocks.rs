@@ -49,9 +49,6 @@ struct BlockLevel {
 /// `error^2 = sum (x_i - <x>)^2/(n (n - 1)) over the n block averages x_i of a level`
 ///
 /// A last block that is not full is left out. Source: Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989).
-///
-/// # Errors
-/// [`Error::TooFew`] below 4 samples, [`Error::NonFinite`].
 fn block_levels(series: &[f64]) -> Result<Vec<BlockLevel>, Error> {
     let mut averages = checked(series, LEAST_SAMPLES)?.to_vec();
     let mut block_length = 1;

@@ -57,10 +57,6 @@ pub struct Resampled {
 ///
 /// Things are drawn with replacement, as many as there are. `statistic` gives the numbers of a sample, first of the data
 /// themselves, or `None` where they cannot be had; an infinite number counts in the intervals, so that they end there.
-///
-/// # Errors
-/// [`Error::TooFewResamples`] below 20 resamples, or where fewer than 20 succeed; [`Error::Undetermined`] where the
-/// data themselves give no estimate.
 pub(crate) fn bootstrap_errors<T: Clone, const N: usize>(
     sample: &[T],
     bootstrap: Bootstrap,

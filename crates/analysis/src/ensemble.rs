@@ -51,9 +51,6 @@ pub fn mean_and_error(values: &[f64]) -> (f64, f64) {
 /// The jackknife error of the variance holds for any distribution with a fourth moment. For transition times with their
 /// long tails it needs some tens of values. Source: Efron, The Jackknife, the Bootstrap and Other Resampling Plans
 /// (SIAM, 1982), chapter 3.
-///
-/// # Errors
-/// [`Error::TooFew`] below 3 values, [`Error::NonFinite`].
 pub(crate) fn moments(sample: &[f64]) -> Result<Moments, Error> {
     let (mean, scatter) = mean_and_scatter(checked(sample, LEAST_REPLICAS)?);
     let replicas = sample.len() as f64;

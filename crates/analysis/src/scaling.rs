@@ -19,16 +19,6 @@ pub enum Scaling {
 }
 
 impl Scaling {
-    /// Number of free parameters for so many curves.
-    pub fn parameters(&self, curves: usize) -> usize {
-        match self {
-            Self::CriticalLine => 4,
-            Self::CriticalEach => 2 + curves,
-            Self::CriticalKnown(_) => 2,
-            Self::FiniteSize => 3,
-        }
-    }
-
     /// The scaled point: abscissa, ordinate and its error.
     ///
     /// The critical scalings work in logarithms, X = ln((w_c - w)/p^b), Y = ln(y p^a), in which a power law is
@@ -103,12 +93,5 @@ mod tests {
         assert!(beyond.apply(&[1.0, 1.0], 0, 0.1, point).x.is_nan());
         assert!(beyond.apply(&[1.0, 1.0], 1, 0.1, point).x.is_nan());
         assert!(Scaling::FiniteSize.apply(&[1.0], 0, 0.1, point).x.is_nan());
-        let counts = [
-            Scaling::CriticalLine.parameters(5),
-            Scaling::CriticalEach.parameters(5),
-            beyond.parameters(5),
-            Scaling::FiniteSize.parameters(5),
-        ];
-        assert_eq!(counts, [4, 7, 2, 3]);
     }
 }

@@ -20,7 +20,7 @@ pub struct Stationarity {
 
 impl Stationarity {
     /// Whether the halves agree within this many standard errors; 2 is the customary limit.
-    pub fn agrees_within(&self, limit: f64) -> bool {
+    pub(crate) fn agrees_within(&self, limit: f64) -> bool {
         self.score.abs() <= limit
     }
 }

@@ -18,7 +18,7 @@ pub enum Direction {
 
 impl Direction {
     /// J/Jmax of the initial state at t = 0: 0 at rest, 1 jammed.
-    pub fn initial_ratio(self) -> f64 {
+    fn initial_ratio(self) -> f64 {
         match self {
             Self::Upward => 0.0,
             Self::Downward => 1.0,
@@ -204,11 +204,6 @@ impl TransitionDetector {
             .is_some_and(|crossing| crossing.confirmed_periods >= CONFIRMATION_PERIODS)
     }
 
-    /// Whole periods watched so far.
-    pub fn periods(&self) -> u64 {
-        self.periods
-    }
-
     /// Time at which the straight line from the last average to this one meets the threshold.
     fn crossing_time(&self, average: f64) -> f64 {
         let middle = self.periods as f64 + 0.5;
@@ -317,7 +312,7 @@ mod tests {
             [None, Some(2.0), None, Some(6.0), Some(6.0), None]
         );
         assert!(detector.is_complete());
-        assert_eq!(detector.periods(), 6);
+        assert_eq!(detector.periods, 6);
     }
 
     #[test]

@@ -41,9 +41,6 @@ pub struct StationaryMean {
 /// long as it makes the mean's (uncorrelated) standard error smaller. The last 5 batches are never tried as starts. A
 /// `discard` in the second half means that the rule found no stationary part. Sources: White, Simulation 69, 323
 /// (1997); White, Cobb & Spratt, Proc. 2000 Winter Simulation Conference, 755.
-///
-/// # Errors
-/// [`Error::TooFew`] below 32 samples, [`Error::NonFinite`].
 fn truncation(series: &[f64]) -> Result<Truncation, Error> {
     let batches: Vec<f64> = checked(series, LEAST_SAMPLES)?
         .chunks_exact(BATCH)

@@ -227,12 +227,15 @@ proptest! {
         if let Ok(found) = collapse_quality(&scaled) {
             prop_assert!(found.overlap > 0.0 && found.overlap <= 1.0);
         }
-        for scaling in [Scaling::CriticalLine, Scaling::CriticalEach, Scaling::FiniteSize] {
+        for (scaling, count) in [
+            (Scaling::CriticalLine, 4),
+            (Scaling::CriticalEach, 2 + curves.len()),
+            (Scaling::FiniteSize, 3),
+        ] {
             let transform = |p: &[f64], k: usize, parameter: f64, point| {
                 scaling.apply(p, k, parameter, point)
             };
             let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.2 };
-            let count = scaling.parameters(curves.len());
             let (start, steps) = (vec![start; count], vec![step; count]);
             if let Ok(fit) = collapse.fit(&start, &steps, 1, 0) {
                 prop_assert!(fit.quality.overlap >= 0.2 && fit.quality.overlap <= 1.0);

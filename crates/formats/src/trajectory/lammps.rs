@@ -4,7 +4,7 @@
 //! <https://docs.lammps.org/dump.html>.
 
 use std::fmt::Write as _;
-use std::io::{BufRead, BufReader, Seek, SeekFrom};
+use std::io::{self, BufRead, BufReader, ErrorKind, Seek, SeekFrom};
 use std::path::Path;
 
 use super::append::Growing;
@@ -40,11 +40,12 @@ impl LammpsTrajectory {
         inner.seek(SeekFrom::Start(0)).map_err(failed)?;
         let mut reader = BufReader::new(inner);
         let (mut frames, mut end) = (0, 0);
-        while let Some((found, bytes)) = next_frame(&mut reader, frames == 0).map_err(failed)? {
-            if found > step {
-                break;
+        loop {
+            match next_frame(&mut reader, frames == 0) {
+                Ok((found, bytes)) if found <= step => (frames, end) = (frames + 1, end + bytes),
+                Err(error) if error.kind() != ErrorKind::InvalidData => return Err(failed(error)),
+                _ => break,
             }
-            (frames, end) = (frames + 1, end + bytes);
         }
         drop(reader);
         if frames == 0 && file.end() > 0 && !begins_as_ours(&mut file).map_err(failed)? {
@@ -121,39 +122,32 @@ pub(super) fn encode(frame: &Frame, first: bool) -> String {
     text
 }
 
-/// Step and bytes of the next whole frame, if there is one.
-fn next_frame(reader: &mut impl BufRead, first: bool) -> std::io::Result<Option<(u64, u64)>> {
+/// Step and bytes of the next frame; what is no whole frame is an error of kind `InvalidData`.
+fn next_frame(reader: &mut impl BufRead, first: bool) -> io::Result<(u64, u64)> {
     let mut lines = Lines {
         reader,
         line: String::new(),
         bytes: 0,
     };
-    if first && !(lines.next_is("ITEM: UNITS")? && lines.next_is("lj")?) {
-        return Ok(None);
+    if first {
+        lines.expect("ITEM: UNITS")?;
+        lines.expect("lj")?;
     }
-    if !(lines.next_is("ITEM: TIME")? && lines.advance()? && lines.next_is("ITEM: TIMESTEP")?) {
-        return Ok(None);
-    }
-    let Some(step) = lines.next_number()? else {
-        return Ok(None);
-    };
-    if !lines.next_is("ITEM: NUMBER OF ATOMS")? {
-        return Ok(None);
-    }
-    let Some(spheres) = lines.next_number()? else {
-        return Ok(None);
-    };
+    lines.expect("ITEM: TIME")?;
+    lines.advance()?;
+    lines.expect("ITEM: TIMESTEP")?;
+    let step = lines.number()?;
+    lines.expect("ITEM: NUMBER OF ATOMS")?;
+    let spheres = lines.number()?;
     // Box and names of the columns, then the spheres.
     for _ in 0..spheres.saturating_add(5) {
-        if !lines.advance()? {
-            return Ok(None);
-        }
+        lines.advance()?;
     }
-    Ok(Some((step, lines.bytes)))
+    Ok((step, lines.bytes))
 }
 
 /// Whether a file begins like one of ours, as far as it goes.
-fn begins_as_ours(file: &mut Growing) -> std::io::Result<bool> {
+fn begins_as_ours(file: &mut Growing) -> io::Result<bool> {
     let inner = file.file();
     inner.seek(SeekFrom::Start(0))?;
     let mut first = String::new();
@@ -169,27 +163,26 @@ struct Lines<'a, R> {
 }
 
 impl<R: BufRead> Lines<'_, R> {
-    /// Whether there is one more.
-    fn advance(&mut self) -> std::io::Result<bool> {
+    /// Goes on to the next one; a page that was lost in a power cut is no text and so no line.
+    fn advance(&mut self) -> io::Result<&str> {
         self.line.clear();
-        self.bytes += match self.reader.read_line(&mut self.line) {
-            Ok(read) => read as u64,
-            // A page that was lost in a power cut: no text, no line.
-            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => return Ok(false),
-            Err(error) => return Err(error),
-        };
-        Ok(self.line.ends_with('\n'))
+        self.bytes += self.reader.read_line(&mut self.line)? as u64;
+        match self.line.ends_with('\n') {
+            true => Ok(self.line.trim_end()),
+            false => Err(ErrorKind::InvalidData.into()),
+        }
     }
 
-    fn next_is(&mut self, text: &str) -> std::io::Result<bool> {
-        Ok(self.advance()? && self.line.trim_end() == text)
+    fn expect(&mut self, text: &str) -> io::Result<()> {
+        match self.advance()? == text {
+            true => Ok(()),
+            false => Err(ErrorKind::InvalidData.into()),
+        }
     }
 
-    fn next_number(&mut self) -> std::io::Result<Option<u64>> {
-        Ok(if self.advance()? {
-            self.line.trim_end().parse().ok()
-        } else {
-            None
-        })
+    fn number(&mut self) -> io::Result<u64> {
+        self.advance()?
+            .parse()
+            .map_err(|_| ErrorKind::InvalidData.into())
     }
 }
