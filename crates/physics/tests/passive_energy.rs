@@ -2,11 +2,9 @@
 
 mod common;
 
-use common::{Collision, SLIDINGS, friction, hertz, normals, table};
+use common::{Collision, LINEAR, SLIDINGS, friction, hertz, normals, table};
 use glam::DVec3;
-use peristalsis_physics::contact::{
-    ContactModel, CundallStrack, DissipationForm, LinearSpringDashpot, Normal, Sliding,
-};
+use peristalsis_physics::contact::{ContactModel, CundallStrack, DissipationForm, Normal, Sliding};
 use proptest::prelude::*;
 
 const TIME_STEP: f64 = 2e-3;
@@ -133,10 +131,7 @@ fn the_literal_form_gains_energy() {
         }
     }
     let linear = largest_gain(ContactModel {
-        normal: Normal::Linear(LinearSpringDashpot {
-            normal_stiffness: 1.0,
-            normal_damping: 5.48e-3,
-        }),
+        normal: Normal::Linear(LINEAR),
         friction: Some(without_dashpot(Sliding::Literal)),
     });
     println!("linear, Literal: {linear:?}");

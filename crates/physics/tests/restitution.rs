@@ -2,21 +2,14 @@
 
 mod common;
 
-use common::{Collision, LINEAR, hertz, normals};
+use common::{Collision, LINEAR, hertz, normals, smooth};
 use peristalsis_physics::contact::{
-    ContactModel, DissipationForm, LinearSpringDashpot, Normal, NormalLaw, ViscoelasticHertz,
+    DissipationForm, LinearSpringDashpot, Normal, NormalLaw, ViscoelasticHertz,
 };
 
 /// Head-on restitution of two spheres of mass 1 in three dimensions.
 fn restitution_of_spheres(normal: Normal, speed: f64, time_step: f64) -> f64 {
-    let mut spheres = Collision::oblique(
-        ContactModel {
-            normal,
-            friction: None,
-        },
-        speed,
-        0.0,
-    );
+    let mut spheres = Collision::oblique(smooth(normal), speed, 0.0);
     spheres.run(time_step);
     (spheres.velocity[1].x - spheres.velocity[0].x) / speed
 }
@@ -102,14 +95,7 @@ fn the_linear_contact_lasts_as_long_as_it_says() {
         normal_stiffness: 1.0,
         normal_damping: 0.3,
     };
-    let mut spheres = Collision::oblique(
-        ContactModel {
-            normal: Normal::Linear(law),
-            friction: None,
-        },
-        0.1,
-        0.0,
-    );
+    let mut spheres = Collision::oblique(smooth(Normal::Linear(law)), 0.1, 0.0);
     let mut steps = 0;
     let time_step = 1e-4;
     spheres.evaluate(0.0);
@@ -206,14 +192,7 @@ fn spheres_bounce_as_on_a_line() {
 fn restitution_is_the_same_for_either_sphere_and_any_observer() {
     for (name, normal) in normals() {
         let plain = restitution_of_spheres(normal, 0.1, 1e-3);
-        let mut other = Collision::oblique(
-            ContactModel {
-                normal,
-                friction: None,
-            },
-            0.0,
-            0.0,
-        );
+        let mut other = Collision::oblique(smooth(normal), 0.0, 0.0);
         other.velocity[1].x = -0.1;
         other.run(1e-3);
         let seen = (other.velocity[1].x - other.velocity[0].x) / 0.1;

@@ -32,6 +32,18 @@ pub(crate) struct LaneVector<M: Machine> {
     pub(crate) z: Lanes<M>,
 }
 
+#[inline(always)]
+fn window<const N: usize>(slice: &[f64], start: usize) -> &[f64; N] {
+    let window = slice[start..start + N].first_chunk();
+    window.expect("a window of N numbers")
+}
+
+#[inline(always)]
+fn window_mut<const N: usize>(slice: &mut [f64], start: usize) -> &mut [f64; N] {
+    let window = slice[start..start + N].first_chunk_mut();
+    window.expect("a window of N numbers")
+}
+
 impl<A: Arithmetic<N>, const N: usize> Numbers<A, N> {
     #[inline(always)]
     pub(crate) fn from_array(values: &[f64; N]) -> Self {
@@ -66,47 +78,33 @@ impl<M: Machine> Lanes<M> {
     /// The numbers of `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn load(slice: &[f64], start: usize) -> Self {
-        let window = slice[start..].first_chunk::<LANES>();
-        Self(M::load(window.expect("a window of LANES numbers")))
+        Self(M::load(window(slice, start)))
     }
 
     /// Writes the numbers into `slice` from `start` on.
     #[inline(always)]
     pub(crate) fn store(self, slice: &mut [f64], start: usize) {
-        let window = slice[start..].first_chunk_mut::<LANES>();
-        M::store(self.0, window.expect("a window of LANES numbers"));
+        M::store(self.0, window_mut(slice, start));
     }
 
     /// Writes the numbers of the lanes where `mask` holds into `slice` from `start` on, in order; of eight places those
     /// behind them hold 0 or any of the numbers.
     #[inline(always)]
     pub(crate) fn pack(self, mask: Mask<M>, slice: &mut [f64], start: usize) {
-        let window = slice[start..].first_chunk_mut::<LANES>();
-        M::pack(
-            mask.to_bits(),
-            self.0,
-            window.expect("a window of LANES numbers"),
-        );
+        M::pack(mask.to_bits(), self.0, window_mut(slice, start));
     }
 
     /// The numbers of `slice` from `start` on, in order, one in each lane where `mask` holds, and 0 in the others.
     #[inline(always)]
     pub(crate) fn unpack(mask: Mask<M>, slice: &[f64], start: usize) -> Self {
-        let window = slice[start..].first_chunk::<LANES>();
-        Self(M::unpack(
-            mask.to_bits(),
-            window.expect("a window of LANES numbers"),
-        ))
+        Self(M::unpack(mask.to_bits(), window(slice, start)))
     }
 
     /// The four numbers of `slice` that begin where each lane says; the k-th becomes numbers k.
     #[inline(always)]
     pub(crate) fn windows(slice: &[f64], starts: [i32; LANES]) -> [Self; 4] {
-        let [a, b, c, d, e, f, g, h] = starts.map(|start| {
-            let start = start as u32 as usize;
-            let window = slice[start..start + 4].first_chunk::<4>();
-            window.expect("a window of four numbers")
-        });
+        let [a, b, c, d, e, f, g, h] =
+            starts.map(|start| window::<4>(slice, start as u32 as usize));
         Self::of_quads([
             Quad::<M>::from_array(a),
             Quad::<M>::from_array(b),

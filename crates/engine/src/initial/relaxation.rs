@@ -51,7 +51,7 @@ pub(super) fn grow<N: NormalLaw>(
         for (diameter, full) in bodies_now.diameter[..bodies.grains].iter_mut().zip(&full) {
             *diameter = scale * full;
         }
-        descent.restart();
+        descent.restart(0.2 * descent.longest_step);
         // The kernel of the last stage makes room first.
         descent.forces = Forces::Listed(Box::new(Contacts::none()));
         descent.forces = Forces::between(&bodies_now, wall);
@@ -159,9 +159,10 @@ impl Descent {
         }
     }
 
-    fn restart(&mut self) {
+    /// Stops all motion and goes on with another step.
+    fn restart(&mut self, time_step: f64) {
         self.velocity.fill(DVec3::ZERO);
-        self.time_step = 0.2 * self.longest_step;
+        self.time_step = time_step;
         self.mixing = MIXING;
         self.downhill = 0;
     }
@@ -213,7 +214,7 @@ impl Descent {
                 self.mixing *= 0.99;
             }
         } else {
-            self.restart_uphill();
+            self.restart(0.5 * self.time_step);
         }
         for i in 0..self.velocity.len() {
             self.velocity[i] += self.time_step * force(i);
@@ -227,12 +228,5 @@ impl Descent {
             bodies.position[i] += by;
         }
         false
-    }
-
-    fn restart_uphill(&mut self) {
-        self.velocity.fill(DVec3::ZERO);
-        self.time_step *= 0.5;
-        self.mixing = MIXING;
-        self.downhill = 0;
     }
 }

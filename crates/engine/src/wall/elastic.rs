@@ -37,7 +37,7 @@ pub struct ElasticParameters {
 pub struct ElasticWall {
     parameters: ElasticParameters,
     /// (cos, sin) of each sphere's reference angle.
-    directions: Vec<(f64, f64)>,
+    pub(crate) directions: Vec<(f64, f64)>,
     /// Each bond once: for each sphere its next on the ring and its two on the ring above.
     bonds: Vec<[u32; 3]>,
     /// Ring of each sphere, and half steps to it around the ring.
@@ -45,9 +45,11 @@ pub struct ElasticWall {
     /// Whether spheres so many rings and half steps apart may touch.
     far: Vec<bool>,
     /// Radial force that balances the springs of the reference tube; the same for all spheres.
-    balance: f64,
-    cycles: f64,
-    amplitude: f64,
+    pub(crate) balance: f64,
+    /// Wavelengths that the wave has run since the start.
+    pub(crate) cycles: f64,
+    /// f^P now \[m d/t^2\].
+    pub(crate) amplitude: f64,
 }
 
 impl ElasticWall {
@@ -121,21 +123,6 @@ impl ElasticWall {
         self.amplitude = self.parameters.force_amplitude.value(time);
     }
 
-    /// (cos, sin) of each sphere's reference angle.
-    pub(crate) fn directions(&self) -> &[(f64, f64)] {
-        &self.directions
-    }
-
-    /// Constant radial force on each sphere \[m d/t^2\].
-    pub(crate) fn balance(&self) -> f64 {
-        self.balance
-    }
-
-    /// f^P now \[m d/t^2\].
-    pub(crate) fn amplitude(&self) -> f64 {
-        self.amplitude
-    }
-
     /// The parameters.
     #[must_use]
     pub fn parameters(&self) -> &ElasticParameters {
@@ -146,11 +133,6 @@ impl ElasticWall {
     #[must_use]
     pub fn lattice(&self) -> &Lattice {
         &self.parameters.lattice
-    }
-
-    /// Wavelengths that the wave has run since the start.
-    pub(crate) fn cycles(&self) -> f64 {
-        self.cycles
     }
 
     /// Reference place of a wall sphere \[d\].

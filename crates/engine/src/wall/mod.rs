@@ -59,7 +59,7 @@ impl Wall {
                     frequency: ours.frequency.clone(),
                     ..theirs.clone()
                 };
-                (rescheduled == *ours, (this.amplitude(), other.amplitude()))
+                (rescheduled == *ours, (this.amplitude, other.amplitude))
             }
             _ => (false, (0.0, 0.0)),
         };
@@ -124,8 +124,8 @@ impl Wall {
     #[must_use]
     pub fn cycles(&self) -> f64 {
         match self {
-            Self::Prescribed(wall) => wall.cycles(),
-            Self::Elastic(wall) => wall.cycles(),
+            Self::Prescribed(wall) => wall.cycles,
+            Self::Elastic(wall) => wall.cycles,
         }
     }
 

@@ -29,9 +29,10 @@ pub struct PrescribedWall {
     /// cos and sin of 2 pi z/lambda of each ring of a wavelength, z along the wave.
     ring_phases: Vec<(f64, f64)>,
     /// The rings of one wavelength now.
-    rings: Vec<Ring>,
+    pub(crate) rings: Vec<Ring>,
     wave: RadiusWave,
-    cycles: f64,
+    /// Wavelengths that the wave has run since the start, c t/lambda.
+    pub(super) cycles: f64,
 }
 
 impl PrescribedWall {
@@ -119,11 +120,6 @@ impl PrescribedWall {
         }
     }
 
-    /// The rings of one wavelength now.
-    pub(crate) fn rings(&self) -> &[Ring] {
-        &self.rings
-    }
-
     /// The lattice.
     #[must_use]
     pub fn lattice(&self) -> &Lattice {
@@ -134,11 +130,6 @@ impl PrescribedWall {
     #[must_use]
     pub fn wave(&self) -> &RadiusWave {
         &self.wave
-    }
-
-    /// Wavelengths that the wave has run since the start, c t/lambda.
-    pub(crate) fn cycles(&self) -> f64 {
-        self.cycles
     }
 
     /// c/lambda at `time` \[1/t\].

@@ -47,8 +47,7 @@ impl LinearSpringDashpot {
     /// returns to zero, as the unclipped law has it.
     #[must_use]
     pub fn restitution(&self, reduced_mass: f64) -> f64 {
-        let damping_rate = self.normal_damping / (2.0 * reduced_mass);
-        let frequency_squared = self.normal_stiffness / reduced_mass - damping_rate * damping_rate;
+        let (damping_rate, frequency_squared) = self.oscillation(reduced_mass);
         if frequency_squared <= 0.0 {
             return 0.0;
         }
@@ -59,12 +58,18 @@ impl LinearSpringDashpot {
     /// is overdamped.
     #[must_use]
     pub fn contact_time(&self, reduced_mass: f64) -> f64 {
-        let damping_rate = self.normal_damping / (2.0 * reduced_mass);
-        let frequency_squared = self.normal_stiffness / reduced_mass - damping_rate * damping_rate;
+        let (_, frequency_squared) = self.oscillation(reduced_mass);
         if frequency_squared <= 0.0 {
             return f64::INFINITY;
         }
         core::f64::consts::PI / frequency_squared.sqrt()
+    }
+
+    /// beta, and omega_0^2 - beta^2.
+    fn oscillation(&self, reduced_mass: f64) -> (f64, f64) {
+        let damping_rate = self.normal_damping / (2.0 * reduced_mass);
+        let frequency_squared = self.normal_stiffness / reduced_mass - damping_rate * damping_rate;
+        (damping_rate, frequency_squared)
     }
 }
 

@@ -338,6 +338,14 @@ mod tests {
         sliding: Sliding::Spring,
     };
 
+    const LAW: ContactLaw<LinearSpringDashpot, CundallStrack> = ContactLaw {
+        normal: LinearSpringDashpot {
+            normal_stiffness: 1.0,
+            normal_damping: 0.2,
+        },
+        tangential: FRICTION,
+    };
+
     fn contact(parting: f64) -> Contact {
         Contact {
             overlap: 0.1,
@@ -351,14 +359,7 @@ mod tests {
 
     #[test]
     fn force_and_torque_by_hand() {
-        let law = ContactLaw {
-            normal: LinearSpringDashpot {
-                normal_stiffness: 1.0,
-                normal_damping: 0.2,
-            },
-            tangential: FRICTION,
-        };
-        let found = law.force(&contact(-0.1), &mut TangentialHistory::default(), 0.0);
+        let found = LAW.force(&contact(-0.1), &mut TangentialHistory::default(), 0.0);
         // f_n = 0.1 + 0.02; |f_t| = 0.1 * 0.3 < 0.5 f_n, against the slip along y.
         assert!((found.force - DVec3::new(0.12, -0.03, 0.0)).length() < 1e-15);
         // -x cross (-0.03 y) = 0.03 z
@@ -369,29 +370,14 @@ mod tests {
 
     #[test]
     fn a_contact_that_pulls_has_no_friction() {
-        let law = ContactLaw {
-            normal: LinearSpringDashpot {
-                normal_stiffness: 1.0,
-                normal_damping: 0.2,
-            },
-            tangential: FRICTION,
-        };
-        let found = law.force(&contact(0.8), &mut TangentialHistory::default(), 0.0);
+        let found = LAW.force(&contact(0.8), &mut TangentialHistory::default(), 0.0);
         assert!((found.force - DVec3::new(-0.06, 0.0, 0.0)).length() < 1e-15);
         assert_eq!(found.torque_per_arm, DVec3::ZERO);
     }
 
     #[test]
     fn a_smooth_law_is_the_normal_law_alone() {
-        let normal = LinearSpringDashpot {
-            normal_stiffness: 1.0,
-            normal_damping: 0.2,
-        };
-        let law = ContactLaw {
-            normal,
-            tangential: Frictionless,
-        };
-        let found = law.force(&contact(-0.1), &mut (), 0.05);
+        let found = LAW.frictionless().force(&contact(-0.1), &mut (), 0.05);
         assert!((found.force - DVec3::new(0.12, 0.0, 0.0)).length() < 1e-15);
         assert_eq!(
             (found.torque_per_arm, found.tangential),

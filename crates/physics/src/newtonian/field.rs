@@ -99,7 +99,8 @@ pub(super) mod pathline {
 
 #[cfg(test)]
 mod tests {
-    use super::{NewtonianPeristalsis, pathline};
+    use super::pathline;
+    use crate::newtonian::tests::flow;
     use proptest::prelude::*;
     use std::f64::consts::TAU;
 
@@ -111,7 +112,7 @@ mod tests {
             phase in 0.0..1.0_f64,
             fraction in 0.05..0.95_f64,
         ) {
-            let flow = NewtonianPeristalsis::new(ratio, pressure).unwrap();
+            let flow = flow(ratio, pressure);
             let radius = fraction * flow.wall_radius(phase);
             let step = 1e-5;
             let along_radius = (flow.stream_function(radius + step, phase)
@@ -131,7 +132,7 @@ mod tests {
             pressure in -3.0..3.0_f64,
             phase in 0.0..1.0_f64,
         ) {
-            let flow = NewtonianPeristalsis::new(ratio, pressure).unwrap();
+            let flow = flow(ratio, pressure);
             let wall = flow.wall_radius(phase);
             prop_assert!(flow.axial_velocity(wall, phase).abs() < 1e-12);
             let wall_velocity = -ratio * TAU * libm::cos(TAU * phase);
@@ -145,7 +146,7 @@ mod tests {
 
     #[test]
     fn the_stream_function_is_constant_along_the_path_of_a_particle() {
-        let flow = NewtonianPeristalsis::new(0.5, 0.6).unwrap();
+        let flow = flow(0.5, 0.6);
         let mut position = [0.1, 1.1];
         let start = flow.stream_function(position[1], position[0]);
         for _ in 0..2000 {
@@ -161,7 +162,7 @@ mod tests {
     #[test]
     fn poiseuille_flow_without_a_wave() {
         // phi = 0, P = -1: u = 2 (1 - r^2), mean flow rate 1.
-        let flow = NewtonianPeristalsis::new(0.0, -1.0).unwrap();
+        let flow = flow(0.0, -1.0);
         assert!((flow.flow_rate() - 1.0).abs() < 1e-15);
         assert!((flow.axial_velocity(0.5, 0.3) - 1.5).abs() < 1e-15);
     }

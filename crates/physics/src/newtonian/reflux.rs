@@ -114,12 +114,9 @@ impl NewtonianPeristalsis {
 #[cfg(test)]
 mod tests {
     use super::super::field::pathline;
+    use super::super::tests::flow;
     use super::*;
     use proptest::prelude::*;
-
-    fn flow(amplitude_ratio: f64, pressure: f64) -> NewtonianPeristalsis {
-        NewtonianPeristalsis::new(amplitude_ratio, pressure).unwrap()
-    }
 
     /// Mean velocity of a particle that passes the throat at this fraction of its radius, from its integrated path.
     fn integrated(flow: &NewtonianPeristalsis, fraction: f64) -> (f64, f64) {

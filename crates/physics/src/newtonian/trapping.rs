@@ -150,12 +150,9 @@ impl NewtonianPeristalsis {
 #[cfg(test)]
 mod tests {
     use super::super::field::pathline;
+    use super::super::tests::flow;
     use super::*;
     use proptest::prelude::*;
-
-    fn flow(amplitude_ratio: f64, pressure: f64) -> NewtonianPeristalsis {
-        NewtonianPeristalsis::new(amplitude_ratio, pressure).unwrap()
-    }
 
     /// Whether the velocity on the axis, in the wave frame, takes both signs along the tube.
     fn stagnates_on_the_axis(flow: &NewtonianPeristalsis) -> bool {

@@ -170,6 +170,14 @@ mod tests {
         sphere_diameter: 1.0,
     };
 
+    const FRICTIONAL: Lattice = Lattice {
+        spheres_per_ring: 22,
+        rings_per_wave: 23,
+        waves: 2,
+        wavelength: 20.0,
+        sphere_diameter: 1.0,
+    };
+
     fn position(lattice: &Lattice, sphere: WallSphere, radius: f64) -> [f64; 3] {
         let angle = lattice.angle(sphere);
         [
@@ -181,13 +189,7 @@ mod tests {
 
     #[test]
     fn the_neighbours_are_the_six_nearest_spheres() {
-        let lattice = Lattice {
-            spheres_per_ring: 22,
-            rings_per_wave: 23,
-            waves: 2,
-            wavelength: 20.0,
-            sphere_diameter: 1.0,
-        };
+        let lattice = FRICTIONAL;
         let length = lattice.length();
         for index in 0..lattice.spheres() {
             let centre = position(&lattice, lattice.sphere(index), 3.5);
@@ -217,13 +219,7 @@ mod tests {
 
     #[test]
     fn bond_lengths_of_the_frictional_preset_are_close_to_one_diameter() {
-        let lattice = Lattice {
-            spheres_per_ring: 22,
-            rings_per_wave: 23,
-            waves: 2,
-            wavelength: 20.0,
-            sphere_diameter: 1.0,
-        };
+        let lattice = FRICTIONAL;
         let chord = 2.0 * 3.5 * (PI / 22.0).sin();
         assert!((chord - 0.9962).abs() < 1e-4);
         let half_turn = 2.0 * 3.5 * (PI / 44.0).sin();

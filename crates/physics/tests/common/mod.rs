@@ -54,17 +54,19 @@ pub(crate) fn normals() -> [(&'static str, Normal); 3] {
     ]
 }
 
+/// A normal law without friction.
+pub(crate) const fn smooth(normal: Normal) -> ContactModel {
+    ContactModel {
+        normal,
+        friction: None,
+    }
+}
+
 /// Every contact law there is, by name: each normal law without friction and with each form of sliding.
 pub(crate) fn table() -> Vec<(String, ContactModel)> {
     let mut rows = Vec::new();
     for (name, normal) in normals() {
-        rows.push((
-            format!("{name}, frictionless"),
-            ContactModel {
-                normal,
-                friction: None,
-            },
-        ));
+        rows.push((format!("{name}, frictionless"), smooth(normal)));
         for sliding in SLIDINGS {
             let friction = Some(friction(sliding));
             rows.push((

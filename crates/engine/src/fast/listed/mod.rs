@@ -26,23 +26,12 @@ use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
 
 /// Room to work in, kept from advance to advance.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     pub(crate) instructions: Instructions,
     spheres: Spheres,
     pairs: Pairs,
     rows: Rows,
-}
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Self {
-            instructions: Instructions::widest(),
-            spheres: Spheres::default(),
-            pairs: Pairs::default(),
-            rows: Rows::default(),
-        }
-    }
 }
 
 /// The list is made for so many skins.

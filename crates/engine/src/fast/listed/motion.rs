@@ -111,10 +111,11 @@ impl Motion<'_> {
         // Nothing added leaves even the sign of a zero as it is.
         let pushed = (self.body_force != 0.0).then_some(self.body_force);
         let (on_grains, on_wall) = ((Record::ZERO, pushed), (mean, None));
-        self.translate::<M, S, FIRST, MOVES>(&scheme, 0..grains, on_grains, &mut extremes)?;
-        self.translate::<M, S, FIRST, MOVES>(&scheme, grains..number, on_wall, &mut extremes)?;
+        self.go_on::<M, S, FIRST, MOVES, false>(&scheme, 0..grains, on_grains, &mut extremes)?;
+        self.go_on::<M, S, FIRST, MOVES, false>(&scheme, grains..number, on_wall, &mut extremes)?;
         if self.rotates {
-            self.rotate::<M, S, FIRST, MOVES>(&scheme);
+            let torque = (Record::ZERO, None);
+            self.go_on::<M, S, FIRST, MOVES, true>(&scheme, 0..grains, torque, &mut extremes)?;
         }
         if !MOVES {
             // The spheres of a wall do not rotate, whatever torques contacts wrote there.
@@ -123,9 +124,16 @@ impl Motion<'_> {
         Ok(extremes.travel())
     }
 
-    /// Moves a range of spheres, `mean` taken off the force on each and `body_force` added to its acceleration.
+    /// Moves a range of spheres, or turns them: `mean` taken off the force (or torque) on each and `body_force` added to its
+    /// acceleration.
     #[inline(always)]
-    fn translate<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
+    fn go_on<
+        M: Machine,
+        S: Scheme<Quad<M>>,
+        const FIRST: bool,
+        const MOVES: bool,
+        const TURNS: bool,
+    >(
         &mut self,
         scheme: &S,
         range: core::ops::Range<usize>,
@@ -139,12 +147,29 @@ impl Motion<'_> {
         let push = push.as_ref().map(Record::quad);
         let spheres = &mut *self.spheres;
         let position = &mut spheres.position[range.clone()][..count];
-        let velocity = &mut spheres.velocity[range.clone()][..count];
-        let force = &mut spheres.force[range.clone()][..count];
-        let inverse_mass = &spheres.inverse_mass[range.clone()][..count];
-        let before = &mut spheres.acceleration_before[range.clone()][..count];
+        let (velocity, force, inverse_mass, before, velocity_before) = if TURNS {
+            (
+                &mut spheres.turning,
+                &mut spheres.torque,
+                &spheres.inverse_inertia,
+                &mut spheres.angular_acceleration_before,
+                &mut spheres.turning_before,
+            )
+        } else {
+            (
+                &mut spheres.velocity,
+                &mut spheres.force,
+                &spheres.inverse_mass,
+                &mut spheres.acceleration_before,
+                &mut spheres.velocity_before,
+            )
+        };
+        let velocity = &mut velocity[range.clone()][..count];
+        let force = &mut force[range.clone()][..count];
+        let inverse_mass = &inverse_mass[range.clone()][..count];
+        let before = &mut before[range.clone()][..count];
         let velocity_before = match S::TWO_STEP && MOVES {
-            true => &mut spheres.velocity_before[range][..count],
+            true => &mut velocity_before[range][..count],
             false => &mut [],
         };
         for k in 0..count {
@@ -162,29 +187,31 @@ impl Motion<'_> {
                 velocity[k] = v.record();
                 continue;
             }
-            let v_before = if S::TWO_STEP {
-                velocity_before[k].quad()
-            } else {
-                v
-            };
-            let by = scheme.displacement(v, acceleration, v_before);
-            let [x, y, z, _] = (by * by).record().0;
-            let squared = x + y + z;
-            // A comparison with NaN is false: written so that NaN is caught.
-            let in_reach = squared <= limit_squared;
-            if !in_reach {
-                return Err(Runaway {
-                    body: body + k,
-                    displacement: squared.sqrt(),
-                });
-            }
-            extremes.add(by);
-            position[k] = (position[k].quad() + by).record();
-            let z = position[k].0[2];
-            if !(0.0..length).contains(&z) {
-                let (folded, turns) = fold(z, length);
-                position[k].0[2] = folded;
-                position[k].0[3] += f64::from(turns);
+            if !TURNS {
+                let v_before = if S::TWO_STEP {
+                    velocity_before[k].quad()
+                } else {
+                    v
+                };
+                let by = scheme.displacement(v, acceleration, v_before);
+                let [x, y, z, _] = (by * by).record().0;
+                let squared = x + y + z;
+                // A comparison with NaN is false: written so that NaN is caught.
+                let in_reach = squared <= limit_squared;
+                if !in_reach {
+                    return Err(Runaway {
+                        body: body + k,
+                        displacement: squared.sqrt(),
+                    });
+                }
+                extremes.add(by);
+                position[k] = (position[k].quad() + by).record();
+                let z = position[k].0[2];
+                if !(0.0..length).contains(&z) {
+                    let (folded, turns) = fold(z, length);
+                    position[k].0[2] = folded;
+                    position[k].0[3] += f64::from(turns);
+                }
             }
             if S::TWO_STEP {
                 velocity_before[k] = v.record();
@@ -195,44 +222,6 @@ impl Motion<'_> {
             force[k] = Record::ZERO;
         }
         Ok(())
-    }
-
-    /// Turns the grains.
-    #[inline(always)]
-    fn rotate<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
-        &mut self,
-        scheme: &S,
-    ) {
-        let spheres = &mut *self.spheres;
-        let grains = spheres.grains;
-        let turning = &mut spheres.turning[..grains];
-        let torque = &mut spheres.torque[..grains];
-        let inverse_inertia = &spheres.inverse_inertia[..grains];
-        let before = &mut spheres.angular_acceleration_before[..grains];
-        let turning_before = match S::TWO_STEP && MOVES {
-            true => &mut spheres.turning_before[..grains],
-            false => &mut [],
-        };
-        for k in 0..grains {
-            let mut acceleration = torque[k].quad::<M::Quads>();
-            let mut omega = turning[k].quad::<M::Quads>();
-            if !FIRST {
-                acceleration = acceleration * inverse_inertia[k];
-                omega = scheme.corrected(omega, acceleration, before[k].quad());
-            }
-            if !MOVES {
-                torque[k] = acceleration.record();
-                turning[k] = omega.record();
-                continue;
-            }
-            if S::TWO_STEP {
-                turning_before[k] = omega.record();
-            }
-            let predicted = scheme.predicted(omega, acceleration, before[k].quad());
-            turning[k] = predicted.record();
-            before[k] = acceleration.record();
-            torque[k] = Record::ZERO;
-        }
     }
 }
 

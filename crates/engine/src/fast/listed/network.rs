@@ -85,7 +85,7 @@ impl Rows {
         self.turns.clear();
         self.turns.resize(room, 0.0);
         for parity in 0..2 {
-            let directions = &wall.directions()[parity * spheres..(parity + 1) * spheres];
+            let directions = &wall.directions[parity * spheres..(parity + 1) * spheres];
             self.cos[parity].clear();
             self.cos[parity].extend(directions.iter().map(|direction| direction.0));
             self.cos[parity].resize(room, 0.0);
@@ -285,7 +285,7 @@ fn tethers_and_drive<M: Machine>(
     let (zero, half, balance) = (
         Lanes::<M>::splat(0.0),
         Lanes::splat(0.5),
-        Lanes::splat(wall.balance()),
+        Lanes::splat(wall.balance),
     );
     let network = &parameters.network;
     let tethers = network.tethers;
@@ -320,8 +320,8 @@ fn tethers_and_drive<M: Machine>(
             - balance * away_radial;
         sums.keep_energy += Lanes::select(valid, keep_energy, zero);
         let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
-            - Lanes::splat(wall.cycles());
-        let push = Lanes::splat(wall.amplitude()) * parameters.waveform.value_by_series(phase);
+            - Lanes::splat(wall.cycles);
+        let push = Lanes::splat(wall.amplitude) * parameters.waveform.value_by_series(phase);
         let (drive_cos, drive_sin) = match parameters.angle {
             DriveAngle::Reference => (cos, sin),
             DriveAngle::Current => {

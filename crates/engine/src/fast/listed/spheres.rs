@@ -30,16 +30,6 @@ pub(super) struct Spheres {
     pub(super) inverse_inertia: Vec<f64>,
 }
 
-fn fill(records: &mut Vec<Record>, vectors: &[DVec3]) {
-    records.clear();
-    records.extend(vectors.iter().map(|&vector| Record::new(vector, 0.0)));
-}
-
-fn empty(vectors: &mut Vec<DVec3>, records: &[Record]) {
-    vectors.clear();
-    vectors.extend(records.iter().map(|record| record.vector()));
-}
-
 impl Spheres {
     pub(super) fn number(&self) -> usize {
         self.position.len()
@@ -55,16 +45,21 @@ impl Spheres {
         let turnings = bodies.angular_velocity.iter().zip(&bodies.diameter);
         self.turning
             .extend(turnings.map(|(&turning, &diameter)| Record::new(turning, diameter)));
-        fill(&mut self.velocity, &bodies.velocity);
-        fill(&mut self.force, &bodies.acceleration);
-        fill(&mut self.torque, &bodies.angular_acceleration);
-        fill(&mut self.velocity_before, &past.velocity);
-        fill(&mut self.turning_before, &past.angular_velocity);
-        fill(&mut self.acceleration_before, &past.acceleration);
-        fill(
-            &mut self.angular_acceleration_before,
-            &past.angular_acceleration,
-        );
+        for (records, vectors) in [
+            (&mut self.velocity, &bodies.velocity),
+            (&mut self.force, &bodies.acceleration),
+            (&mut self.torque, &bodies.angular_acceleration),
+            (&mut self.velocity_before, &past.velocity),
+            (&mut self.turning_before, &past.angular_velocity),
+            (&mut self.acceleration_before, &past.acceleration),
+            (
+                &mut self.angular_acceleration_before,
+                &past.angular_acceleration,
+            ),
+        ] {
+            records.clear();
+            records.extend(vectors.iter().map(|&vector| Record::new(vector, 0.0)));
+        }
         self.inverse_mass.clear();
         self.inverse_mass
             .extend(bodies.mass.iter().map(|mass| 1.0 / mass));
@@ -89,17 +84,22 @@ impl Spheres {
     /// Writes everything back; `force` and `torque` must hold accelerations.
     pub(super) fn store(&self, bodies: &mut Bodies, past: &mut Past) {
         self.store_places(bodies);
-        empty(&mut bodies.velocity, &self.velocity);
-        empty(&mut bodies.angular_velocity, &self.turning);
-        empty(&mut bodies.acceleration, &self.force);
-        empty(&mut bodies.angular_acceleration, &self.torque);
-        empty(&mut past.velocity, &self.velocity_before);
-        empty(&mut past.angular_velocity, &self.turning_before);
-        empty(&mut past.acceleration, &self.acceleration_before);
-        empty(
-            &mut past.angular_acceleration,
-            &self.angular_acceleration_before,
-        );
+        for (vectors, records) in [
+            (&mut bodies.velocity, &self.velocity),
+            (&mut bodies.angular_velocity, &self.turning),
+            (&mut bodies.acceleration, &self.force),
+            (&mut bodies.angular_acceleration, &self.torque),
+            (&mut past.velocity, &self.velocity_before),
+            (&mut past.angular_velocity, &self.turning_before),
+            (&mut past.acceleration, &self.acceleration_before),
+            (
+                &mut past.angular_acceleration,
+                &self.angular_acceleration_before,
+            ),
+        ] {
+            vectors.clear();
+            vectors.extend(records.iter().map(|record| record.vector()));
+        }
     }
 }
 

@@ -41,6 +41,12 @@ pub enum Instructions {
     Plain,
 }
 
+impl Default for Instructions {
+    fn default() -> Self {
+        Self::widest()
+    }
+}
+
 impl Instructions {
     /// The widest that this machine has.
     #[must_use]

@@ -14,6 +14,44 @@ pub(super) const MOST_RINGS: usize = MOST / LANES;
 /// A number for each candidate; the numbers behind them are arbitrary.
 type Column = [f64; MOST + LANES];
 
+/// A vector for each candidate, by component.
+#[derive(Debug)]
+pub(super) struct Vectors([Column; 3]);
+
+impl Vectors {
+    #[inline(always)]
+    pub(super) fn load<M: Machine>(&self, at: usize) -> LaneVector<M> {
+        let Self([x, y, z]) = self;
+        LaneVector::new(Lanes::load(x, at), Lanes::load(y, at), Lanes::load(z, at))
+    }
+
+    #[inline(always)]
+    pub(super) fn store<M: Machine>(&mut self, at: usize, of: LaneVector<M>) {
+        let Self([x, y, z]) = self;
+        of.x.store(x, at);
+        of.y.store(y, at);
+        of.z.store(z, at);
+    }
+
+    #[inline(always)]
+    fn pack<M: Machine>(&mut self, mask: Mask<M>, of: LaneVector<M>, at: usize) {
+        let Self([x, y, z]) = self;
+        of.x.pack(mask, x, at);
+        of.y.pack(mask, y, at);
+        of.z.pack(mask, z, at);
+    }
+
+    #[inline(always)]
+    fn unpack<M: Machine>(&self, mask: Mask<M>, at: usize) -> LaneVector<M> {
+        let Self([x, y, z]) = self;
+        LaneVector::new(
+            Lanes::unpack(mask, x, at),
+            Lanes::unpack(mask, y, at),
+            Lanes::unpack(mask, z, at),
+        )
+    }
+}
+
 /// Pairs of a grain and a ring that may touch.
 ///
 /// They stand in the order of the blocks of grains; within a block first the first ring of each of its grains, then the
@@ -25,13 +63,9 @@ pub(super) struct Candidates {
     rounds_used: usize,
     /// Place of the grain; then its place relative to the nearest sphere of the ring: along the radius to this sphere, along
     /// the ring, and along the tube from there. In the end the force on the grain.
-    pub(super) x: Column,
-    pub(super) y: Column,
-    pub(super) z: Column,
+    pub(super) position: Vectors,
     /// Its velocity; then along the same directions.
-    pub(super) velocity_x: Column,
-    pub(super) velocity_y: Column,
-    pub(super) velocity_z: Column,
+    pub(super) velocity: Vectors,
     /// Number of the ring, counted on beyond the ends of the tube; then its radius.
     pub(super) ring: Column,
     /// How fast the ring's radius grows.
@@ -58,12 +92,8 @@ impl Default for Candidates {
             number: 0,
             rounds: [Round::default(); MOST],
             rounds_used: 0,
-            x: none,
-            y: none,
-            z: none,
-            velocity_x: none,
-            velocity_y: none,
-            velocity_z: none,
+            position: Vectors([none; 3]),
+            velocity: Vectors([none; 3]),
             ring: none,
             ring_velocity: none,
             cos: none,
@@ -97,12 +127,8 @@ impl Candidates {
         let at = self.number;
         // One check of the bounds for all columns.
         assert!(at <= MOST);
-        position.x.pack(meet, &mut self.x, at);
-        position.y.pack(meet, &mut self.y, at);
-        position.z.pack(meet, &mut self.z, at);
-        velocity.x.pack(meet, &mut self.velocity_x, at);
-        velocity.y.pack(meet, &mut self.velocity_y, at);
-        velocity.z.pack(meet, &mut self.velocity_z, at);
+        self.position.pack(meet, position, at);
+        self.velocity.pack(meet, velocity, at);
         ring.pack(meet, &mut self.ring, at);
         self.rounds[self.rounds_used] = Round {
             block: block as u32,
@@ -129,20 +155,14 @@ impl Candidates {
             self.rounds[..self.rounds_used].chunk_by(|one, other| one.block == other.block)
         {
             let block = of_block[0].block as usize;
-            let LaneVector {
-                mut x,
-                mut y,
-                mut z,
-            } = to.load::<M>(block);
+            let mut force = to.load::<M>(block);
             for round in of_block {
                 let meet = Mask::from_bits(round.bits);
                 assert!(at <= MOST);
-                x += Lanes::unpack(meet, &self.x, at);
-                y += Lanes::unpack(meet, &self.y, at);
-                z += Lanes::unpack(meet, &self.z, at);
+                force += self.position.unpack(meet, at);
                 at += meet.count() as usize;
             }
-            to.store(block, LaneVector::new(x, y, z));
+            to.store(block, force);
         }
     }
 }

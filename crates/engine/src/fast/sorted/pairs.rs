@@ -13,7 +13,7 @@ use crate::fast::sums::Sums;
 pub(super) const COINCIDENT: f64 = 1e-30;
 
 /// Constants of all pairs of grains.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PairConstants {
     /// d, the distance at which grains touch.
     pub(super) reach: f64,

@@ -18,7 +18,7 @@ use crate::parameters::Parameters;
 use crate::wall::Wall;
 
 /// Grains in the order of z, with all that their motion needs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Sorted {
     pub(super) grains: usize,
     pub(super) length: f64,

@@ -5,13 +5,11 @@ use peristalsis_physics::contact::NormalLaw;
 use super::motion::{Motion, Phase};
 use super::order::Sorting;
 use super::pairs::PairConstants;
-use super::rows::{Row, Scratch};
+use super::rows::Row;
 use super::state::Sorted;
 use super::tile::OfTile;
 use super::wall::WallTable;
 use crate::bodies::Bodies;
-use crate::fast::columns::Columns;
-use crate::fast::machine::Instructions;
 use crate::integrate::Runaway;
 use crate::ledger::Tally;
 use crate::steps::{Course, Stepper};
@@ -43,22 +41,8 @@ impl Sorted {
             },
             wall: WallTable::new(wall.prescribed()?.lattice(), diameter),
             strips,
-            rows: Vec::new(),
-            order: Vec::new(),
-            turns: Vec::new(),
-            position: Columns::default(),
-            velocity: Columns::default(),
-            acceleration: Columns::default(),
-            force: Columns::default(),
-            origin: Vec::new(),
-            lateral: 0.0,
-            tiles: Vec::new(),
             of_tiles: vec![OfTile::default()],
-            reached_by: Vec::new(),
-            moved: Vec::new(),
-            scratch: Scratch::default(),
-            instructions: Instructions::widest(),
-            pool: None,
+            ..Self::default()
         };
         sorted.load(bodies, sorting);
         Some(sorted)

@@ -17,7 +17,7 @@ pub(super) const SKINS: f64 = 2.0;
 const MOST_ACROSS: f64 = 256.0;
 
 /// Square strips, each at least as wide as listed pairs reach.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Strips {
     across: usize,
     half_width: f64,

@@ -47,24 +47,6 @@ pub(super) struct WallTable {
     most_rings: usize,
 }
 
-/// Sums of force over distance on the spheres of a ring, and of it times their cos and sin.
-struct RingSums<M: Machine> {
-    all: Lanes<M>,
-    cos: Lanes<M>,
-    sin: Lanes<M>,
-}
-
-impl<M: Machine> Default for RingSums<M> {
-    #[inline(always)]
-    fn default() -> Self {
-        Self {
-            all: Lanes::default(),
-            cos: Lanes::default(),
-            sin: Lanes::default(),
-        }
-    }
-}
-
 /// Added to the reach, in rings, so that rounding leaves no ring at its edge out.
 const MARGIN: f64 = 1e-9;
 
@@ -114,11 +96,10 @@ impl WallTable {
     /// Takes over the rings where they are now.
     pub(super) fn follow(&mut self, wall: &Wall) {
         let wall = wall.prescribed().expect("a wall that this kernel serves");
-        let rings = wall.rings();
-        for (entry, ring) in self.rings.chunks_exact_mut(2).zip(rings) {
+        for (entry, ring) in self.rings.chunks_exact_mut(2).zip(&wall.rings) {
             entry.copy_from_slice(&[ring.radius, ring.velocity]);
         }
-        for (radius, ring) in self.radius.iter_mut().zip(rings.iter().cycle()) {
+        for (radius, ring) in self.radius.iter_mut().zip(wall.rings.iter().cycle()) {
             *radius = ring.radius;
         }
         let wave = wall.wave();
@@ -172,11 +153,8 @@ impl WallTable {
     #[inline(always)]
     pub(super) fn turn_to_nearest<M: Machine>(&self, candidates: &mut Candidates) {
         for (at, holds) in candidates.eights::<M>() {
-            let x = Lanes::<M>::load(&candidates.x, at);
-            let y = Lanes::load(&candidates.y, at);
-            let z = Lanes::load(&candidates.z, at);
-            let velocity_x = Lanes::<M>::load(&candidates.velocity_x, at);
-            let velocity_y = Lanes::load(&candidates.velocity_y, at);
+            let LaneVector { x, y, z } = candidates.position.load::<M>(at);
+            let velocity = candidates.velocity.load::<M>(at);
             // The numbers of the other lanes are arbitrary.
             let ring = Lanes::load(&candidates.ring, at);
             let ring = Lanes::select(holds, ring, Lanes::splat(0.0));
@@ -197,12 +175,13 @@ impl WallTable {
                 Lanes::splat(-1.0),
                 Lanes::splat(1.0),
             );
-            let turned_y = (velocity_y * cos - velocity_x * sin) * side;
-            (x * cos + y * sin).store(&mut candidates.x, at);
-            (across * side).store(&mut candidates.y, at);
-            (z - ring * Lanes::splat(self.spacing)).store(&mut candidates.z, at);
-            (velocity_x * cos + velocity_y * sin).store(&mut candidates.velocity_x, at);
-            turned_y.store(&mut candidates.velocity_y, at);
+            let dz = z - ring * Lanes::splat(self.spacing);
+            let turned = LaneVector::new(x * cos + y * sin, across * side, dz);
+            candidates.position.store(at, turned);
+            let turned_x = velocity.x * cos + velocity.y * sin;
+            let turned_y = (velocity.y * cos - velocity.x * sin) * side;
+            let turned = LaneVector::new(turned_x, turned_y, velocity.z);
+            candidates.velocity.store(at, turned);
             radius.store(&mut candidates.ring, at);
             ring_velocity.store(&mut candidates.ring_velocity, at);
             cos.store(&mut candidates.cos, at);
@@ -223,12 +202,8 @@ impl WallTable {
         let reach = Lanes::splat(self.reach);
         let reach_squared = reach * reach;
         for (at, holds) in candidates.eights::<M>() {
-            let u = Lanes::<M>::load(&candidates.x, at);
-            let v = Lanes::load(&candidates.y, at);
-            let dz = Lanes::load(&candidates.z, at);
-            let velocity_u = Lanes::load(&candidates.velocity_x, at);
-            let velocity_v = Lanes::load(&candidates.velocity_y, at);
-            let velocity_z = Lanes::load(&candidates.velocity_z, at);
+            let LaneVector { x: u, y: v, z: dz } = candidates.position.load::<M>(at);
+            let velocity = candidates.velocity.load::<M>(at);
             let radius = Lanes::load(&candidates.ring, at);
             let ring_velocity = Lanes::load(&candidates.ring_velocity, at);
             // The angle is approximate: a lane that turned to the second nearest sphere touches in a slightly different
@@ -242,9 +217,9 @@ impl WallTable {
             let squares = Lanes::select(holds, squares, Lanes::splat(f64::INFINITY));
             let double = radius + radius;
             let (double_u, double_v) = (double * u, double * v);
-            let along = u * velocity_u + v * velocity_v + dz * velocity_z + ring_velocity * radius;
-            let along_u = radius * velocity_u + ring_velocity * u;
-            let along_v = radius * velocity_v + ring_velocity * v;
+            let along = u * velocity.x + v * velocity.y + dz * velocity.z + ring_velocity * radius;
+            let along_u = radius * velocity.x + ring_velocity * u;
+            let along_v = radius * velocity.y + ring_velocity * v;
             // First the number of spheres that lanes touch, so that the branches below can be predicted.
             let mut visits = 0;
             for (visited, &(cos, sin)) in self.outward.iter().enumerate() {
@@ -257,7 +232,8 @@ impl WallTable {
                     break;
                 }
             }
-            let mut pushes = RingSums::default();
+            // Sums of force over distance, and of it times cos and sin of the spheres.
+            let (mut pushes, mut by_cos, mut by_sin) = (zero, zero, zero);
             for &(cos, sin) in &self.outward[..visits] {
                 let (cos, sin) = (Lanes::splat(cos), Lanes::splat(sin));
                 let distance_squared = squares - (double_u * cos + double_v * sin);
@@ -269,9 +245,9 @@ impl WallTable {
                 let normal_velocity = Lanes::select(touches, parting * inverse, zero);
                 let answer = law.force(overlap, normal_velocity, Lanes::splat(self.reduced_radius));
                 let push = Lanes::select(touches, answer.force * inverse, zero);
-                pushes.all += push;
-                pushes.cos += push * cos;
-                pushes.sin += push * sin;
+                pushes += push;
+                by_cos += push * cos;
+                by_sin += push * sin;
                 let lost = (answer.elastic_force - answer.force) * normal_velocity;
                 sums.add_contact::<FULL>(overlap, answer.energy, lost);
                 if FULL {
@@ -279,20 +255,19 @@ impl WallTable {
                 }
             }
             // V . s = V (p - R) of each sphere.
-            let outward = u * pushes.cos + v * pushes.sin - radius * pushes.all;
+            let outward = u * by_cos + v * by_sin - radius * pushes;
             sums.wall_power += ring_velocity * outward;
-            let on_u = u * pushes.all - radius * pushes.cos;
-            let on_v = v * pushes.all - radius * pushes.sin;
-            let on_z = dz * pushes.all;
+            let on_u = u * pushes - radius * by_cos;
+            let on_v = v * pushes - radius * by_sin;
+            let on_z = dz * pushes;
             if FULL {
                 sums.wall_axial_force += on_z;
             }
             let cos = Lanes::load(&candidates.cos, at);
             let sin = Lanes::load(&candidates.sin, at);
             let on_v = on_v * Lanes::load(&candidates.side, at);
-            (on_u * cos - on_v * sin).store(&mut candidates.x, at);
-            (on_u * sin + on_v * cos).store(&mut candidates.y, at);
-            on_z.store(&mut candidates.z, at);
+            let force = LaneVector::new(on_u * cos - on_v * sin, on_u * sin + on_v * cos, on_z);
+            candidates.position.store(at, force);
         }
     }
 
