@@ -23,6 +23,11 @@ pub enum Verdict {
 }
 
 impl Verdict {
+    /// The verdict on a question of which enough is known, or not.
+    pub(crate) fn answered_if(is_known: bool) -> Self {
+        if is_known { Self::Answered } else { Self::Open }
+    }
+
     /// The word for it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -155,6 +160,21 @@ impl Finding {
         statistics: Statistics,
         needed: &Statistics,
     ) -> Self {
+        let empty = Self {
+            varied: "width",
+            ..Self::default()
+        };
+        empty.concluded(verdict, summary, statistics, needed)
+    }
+
+    /// The same with a verdict, which is open where the statistics do not suffice.
+    pub(crate) fn concluded(
+        self,
+        verdict: Verdict,
+        summary: String,
+        statistics: Statistics,
+        needed: &Statistics,
+    ) -> Self {
         let is_sufficient = statistics.suffice(needed);
         Self {
             verdict: if is_sufficient {
@@ -165,8 +185,7 @@ impl Finding {
             summary,
             statistics,
             needed: *needed,
-            varied: "width",
-            ..Self::default()
+            ..self
         }
     }
 

@@ -14,6 +14,7 @@ mod collapse;
 mod columns;
 mod contents;
 mod critical;
+mod draft;
 mod error;
 mod evidence;
 mod examination;

@@ -42,7 +42,7 @@ use peristalsis_figures::Drawing;
 use peristalsis_figures::chart::ChartFigure;
 
 use crate::error::Result;
-use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
 
 /// Values for placeholders by name.
 pub(crate) type Values<'a> = [(&'a str, &'a dyn Display)];
@@ -87,23 +87,11 @@ impl Prose {
         )
     }
 
-    /// A finding with the sections `method` and `weaknesses`, as far as these ask for no value.
-    pub(crate) fn finding(
-        &self,
-        verdict: Verdict,
-        summary: String,
-        statistics: Statistics,
-        needed: &Statistics,
-    ) -> Finding {
-        let plain = |name: &str| -> Vec<String> {
-            let found = self.find(name);
-            let plain = found.filter(|text| placeholders(text).is_empty());
-            plain.map_or(Vec::new(), |_| self.paragraphs(name, &[]))
-        };
-        Finding {
-            paragraphs: plain("method"),
-            weaknesses: plain("weaknesses"),
-            ..Finding::new(verdict, summary, statistics, needed)
+    /// The paragraphs of a section that asks for no value; none of another.
+    pub(crate) fn plain(&self, name: &str) -> Vec<String> {
+        match self.find(name) {
+            Some(text) if placeholders(text).is_empty() => self.paragraphs(name, &[]),
+            _ => Vec::new(),
         }
     }
 
@@ -328,19 +316,14 @@ mod tests {
     #[test]
     fn text_and_code_of_each_claim_belong_together() {
         for claim in CLAIMS {
-            let code = code(&claim.id.to_lowercase());
-            // These are asked for by `finding` and `nothing`.
-            let is_plain = |name: &&str| {
-                let text = claim.prose.find(name);
-                text.is_some_and(|text| placeholders(text).is_empty())
-            };
+            let code = code(&claim.id.to_lowercase()).replace("draft.", "PROSE.");
+            // These are asked for by a draft and by `nothing`.
             let mut asked = vec!["nothing".to_owned()];
-            asked.extend(
-                ["method", "weaknesses"]
-                    .iter()
-                    .filter(|name| is_plain(name))
-                    .map(|name| (*name).to_owned()),
-            );
+            for section in ["method", "weaknesses"] {
+                if !claim.prose.plain(section).is_empty() {
+                    asked.push(section.to_owned());
+                }
+            }
             for (method, kind) in [
                 ("text", ""),
                 ("paragraphs", ""),

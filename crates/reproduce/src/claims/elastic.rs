@@ -3,7 +3,7 @@
 use peristalsis_figures::{ColourScale, Units};
 
 use super::prelude::*;
-use crate::thresholds::FOR_A_VERDICT_ON_FORCES;
+pub(super) use crate::thresholds::FOR_A_VERDICT_ON_FORCES as NEEDED;
 
 /// Strain rate of the source's pictures.
 pub(super) const SOURCE_RATE: f64 = 4.01e-3;
@@ -55,21 +55,16 @@ pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> 
 }
 
 /// A finding on forces, with what counts for its verdict.
-pub(super) fn finding(
-    prose: &Prose,
-    verdict: Verdict,
-    summary: String,
-    statistics: Statistics,
-) -> Finding {
-    let finding = prose.finding(verdict, summary, statistics, &FOR_A_VERDICT_ON_FORCES);
-    let mut finding = finding.varying("force");
-    finding.paragraphs.insert(0, WHAT_COUNTS.to_owned());
-    finding
+pub(super) fn draft(prose: Prose) -> Draft {
+    let mut draft = Draft::of(prose).varying("force");
+    let paragraphs = &mut draft.finding.paragraphs;
+    paragraphs.insert(0, WHAT_COUNTS.to_owned());
+    draft
 }
 
 /// A finding on forces without runs.
 pub(super) fn nothing(prose: &Prose) -> Finding {
-    let finding = prose.nothing(Statistics::default(), &FOR_A_VERDICT_ON_FORCES);
+    let finding = prose.nothing(Statistics::default(), &NEEDED);
     finding.varying("force")
 }
 

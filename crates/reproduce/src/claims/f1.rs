@@ -116,29 +116,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("why", &why),
         ],
     );
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
+    let mut draft = Draft::of(PROSE);
     let [fine, coarse] = &both;
     for kind in fine.tight() {
-        finding.quantities.push(PROSE.quantity(
+        draft.quantity(
             "jammed flow",
             &[("rate", &kind.strain_rate), ("below", &BELOW_THE_JUMP)],
             kind.fast_flow,
-        ));
+        );
     }
     let rows = fine.all.iter().chain(&coarse.all).map(Kind::row);
-    let table = PROSE.table("kinds", &[("below", &BELOW_THE_JUMP)], rows);
-    finding.tables.push(table);
+    draft.table("kinds", &[("below", &BELOW_THE_JUMP)], rows);
     let periods = fine.periods.max(coarse.periods);
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
-    finding
-        .figures
-        .extend(in_time(evidence.study("flow-in-time")?)?);
-    finding.figures.push(snapshots()?);
-    Ok(finding)
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    in_time(&mut draft, evidence.study("flow-in-time")?)?;
+    draft.finding.figures.push(snapshots()?);
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 /// J/Jmax in time for several widths, a panel a lattice; nothing where only rows were imported.
-fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
+fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
     let mut panels = Vec::new();
     let mut widths: Vec<f64> = Vec::new();
     for lattice in [Lattice::COARSE, Lattice::FINE] {
@@ -156,18 +153,14 @@ fn in_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
         panels.extend(drawn.map(|rate| panel.title(&format!("{name} lattice, *ε̇* = {rate}"))));
     }
     let Some(first) = widths.first() else {
-        return Ok(None);
+        return Ok(());
     };
-    let otherwise = (*first, first + 0.01);
+    let (all, otherwise) = (widths.iter().copied(), (*first, first + 0.01));
     let chart = ChartFigure::grid(2, panels)
         .share_y()
-        .colour_scale(colours(
-            &label(Axis::Width),
-            widths.iter().copied(),
-            otherwise,
-        ))
+        .colour_scale(colours(&label(Axis::Width), all, otherwise))
         .width(Width::DoubleColumn);
-    PROSE.chart("flow-in-time", &[], chart).map(Some)
+    draft.chart("flow-in-time", &[], chart)
 }
 
 /// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the fine lattice, after so many periods.

@@ -19,14 +19,14 @@ const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let lattices = OnLattice::all(evidence)?;
-    let (mut parts, mut means, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut draft, mut parts, mut means) = (Draft::of(PROSE), Vec::new(), Vec::new());
     let (mut rows, mut sensitivity) = (Vec::new(), Vec::new());
     for one in &lattices {
         let exponents: Vec<Uncertain> = one.fitted().map(|(_, fit)| fit.exponent).collect();
         let found = Exponent::of(&PROSE, one, EXPONENT, &exponents);
         parts.push(found.part);
         means.extend(found.words);
-        quantities.extend(found.quantity);
+        draft.finding.quantities.extend(found.quantity);
         for (line, fit) in one.fitted() {
             rows.push(row(&one.name, line, fit));
             sensitivity.push(shifted(&one.name, line));
@@ -40,20 +40,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text("summary", &[("means", &means.join(", ")), ("why", &why)]);
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    finding.quantities = quantities;
-    finding.paragraphs = PROSE.paragraphs("method", &[("window", &WINDOW)]);
-    finding.tables = vec![
-        PROSE.table("exponents", &[], rows),
-        PROSE.table("sensitivity", &[], sensitivity),
-    ];
+    draft.finding.paragraphs = PROSE.paragraphs("method", &[("window", &WINDOW)]);
+    draft.table("exponents", &[], rows);
+    draft.table("sensitivity", &[], sensitivity);
     let lines = lattices.iter().flat_map(|one| &one.lines);
     let chart = ChartFigure::grid(2, lattices.iter().filter_map(times))
         .share_y()
         .colour_scale(rate_colours(lines.map(|line| line.strain_rate)))
         .width(Width::DoubleColumn);
-    finding.figures = vec![PROSE.chart("transition-times", &[], chart)?];
-    Ok(finding)
+    draft.chart("transition-times", &[], chart)?;
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 fn row(lattice: &str, line: &Line<'_>, fit: &Divergence) -> Vec<String> {

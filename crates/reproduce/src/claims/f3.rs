@@ -30,16 +30,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         |(name, found): &(String, Collapsed)| format!("{name} lattice: {}", found.in_words());
     let words: Vec<String> = found.iter().map(words).collect();
     let summary = PROSE.text("summary", &[("found", &words.join("; ")), ("why", &why)]);
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
+    let mut draft = Draft::of(PROSE);
     for (name, collapsed) in &found {
         let of = format!("{name} lattice");
         let exponents = collapsed.quantities(&of, ["*a*", "*b*"]);
-        finding.quantities.extend(exponents);
-        finding.tables.push(collapsed.table(&of));
+        draft.finding.quantities.extend(exponents);
+        draft.finding.tables.push(collapsed.table(&of));
     }
     let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"];
     let chart = chart(&found, labels, "*τε̇*^{*a*}", -1.0);
-    let figure = PROSE.chart("collapse-of-transition-times", &[], chart)?;
-    finding.figures.push(figure);
-    Ok(finding)
+    draft.chart("collapse-of-transition-times", &[], chart)?;
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }

@@ -18,7 +18,7 @@ const SCALING: [f64; 2] = [7.0, 1.5];
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let lattices = OnLattice::all(evidence)?;
-    let (mut parts, mut means, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut draft, mut parts, mut means) = (Draft::of(PROSE), Vec::new(), Vec::new());
     let (mut rows, mut collapses) = (Vec::new(), Vec::new());
     for one in &lattices {
         let exponents = one.scattered().map(|(_, fit)| fit.variance_exponent);
@@ -26,7 +26,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let found = Exponent::of(&PROSE, one, EXPONENT, &exponents);
         parts.push(found.part);
         means.extend(found.words);
-        quantities.extend(found.quantity);
+        draft.finding.quantities.extend(found.quantity);
         rows.extend(one.scattered().map(|(line, fit)| {
             vec![
                 one.name.clone(),
@@ -40,7 +40,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let variance = |ensemble: &WidthEnsemble| Some(ensemble.fit?.variance);
         if let Some(collapsed) = collapse(one, SCALING, EXPONENT, variance) {
             let of = format!("variance, {} lattice", one.name);
-            quantities.extend(collapsed.quantities(&of, ["*a_{χ}*", "*b_{χ}*"]));
+            let exponents = collapsed.quantities(&of, ["*a_{χ}*", "*b_{χ}*"]);
+            draft.finding.quantities.extend(exponents);
             collapses.push((one.name.clone(), collapsed));
         }
     }
@@ -49,23 +50,19 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text("summary", &[("means", &means.join(", ")), ("why", &why)]);
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    finding.quantities = quantities;
-    finding.tables.push(PROSE.table("exponents", &[], rows));
+    draft.table("exponents", &[], rows);
     let lines = lattices.iter().flat_map(OnLattice::fitted);
     let variances = ChartFigure::grid(2, lattices.iter().filter_map(variances))
         .share_y()
         .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)))
         .width(Width::DoubleColumn);
-    let variances = PROSE.chart("transition-time-variance", &[], variances)?;
-    finding.figures.push(variances);
+    draft.chart("transition-time-variance", &[], variances)?;
     if !collapses.is_empty() {
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"];
         let scaled = chart(&collapses, labels, "*χ_{τ}ε̇*^{*a*}", -3.0);
-        let scaled = PROSE.chart("collapse-of-variances", &[], scaled)?;
-        finding.figures.push(scaled);
+        draft.chart("collapse-of-variances", &[], scaled)?;
     }
-    Ok(finding)
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 /// Variances of one lattice with the fitted laws; `None` without any.

@@ -122,16 +122,12 @@ impl Line {
         ]
     }
 
-    /// Exponent of the rise of the peak toward the critical width, where it can be fitted.
-    fn exponent(&self) -> Option<Quantity> {
+    /// Exponent of the rise of the peak toward the critical width, where it can be fitted, and the number of widths.
+    fn exponent(&self) -> Option<(Uncertain, usize)> {
         let [width, value, error] = columns(self.rising(), LEAST_ERROR_OF_A_MOMENT);
         let critical = self.critical_width()?;
         let fit = fit_law(Law::Power, &width, &value, &error, Some(critical)).ok()?;
-        Some(PROSE.quantity(
-            "exponent",
-            &[("rate", &self.strain_rate), ("widths", &width.len())],
-            fit.exponent,
-        ))
+        Some((fit.exponent, width.len()))
     }
 }
 
@@ -153,19 +149,22 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if lines.is_empty() {
         return Ok(PROSE.nothing(statistics, &needed));
     }
-    let (mut rows, mut quantities) = (Vec::new(), Vec::new());
-    let mut bounded = 0;
+    let (mut draft, mut rows, mut bounded) = (Draft::of(PROSE), Vec::new(), 0);
     for line in &lines {
         let Some(highest) = line.highest() else {
             continue;
         };
         bounded += usize::from(highest.height().value < BOUNDED_MOMENT);
-        quantities.push(PROSE.quantity(
-            "peak",
-            &[("rate", &line.strain_rate), ("width", &highest.width)],
-            highest.height(),
-        ));
-        quantities.extend(line.exponent());
+        let (rate, width) = (line.strain_rate, highest.width);
+        let height = highest.height();
+        draft.quantity("peak", &[("rate", &rate), ("width", &width)], height);
+        if let Some((exponent, widths)) = line.exponent() {
+            draft.quantity(
+                "exponent",
+                &[("rate", &rate), ("widths", &widths)],
+                exponent,
+            );
+        }
         rows.push(line.row(highest));
     }
     let scaling = scaling_relation(&lines);
@@ -179,10 +178,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             } else {
                 "do not fall on one curve"
             };
-            PROSE.text(
-                "scaling",
-                &[("how", &how), ("exponents", &found.in_words())],
-            )
+            let exponents = found.in_words();
+            PROSE.text("scaling", &[("how", &how), ("exponents", &exponents)])
         }
     };
     let verdict = match bounded == lines.len() {
@@ -197,32 +194,28 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("scaling", &in_words),
         ],
     );
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    finding.quantities = quantities;
-    finding.tables.push(PROSE.table("peaks", &[], rows));
+    draft.table("peaks", &[], rows);
     if let Some(found) = scaling {
         let of = "peak of the second moment";
         let exponents = found.quantities(of, ["*a_{J}*", "*b_{J}*"]);
-        finding.quantities.extend(exponents);
-        finding.tables.push(found.table(of));
+        draft.finding.quantities.extend(exponents);
+        draft.finding.tables.push(found.table(of));
         let found = [("fine".to_owned(), found)];
         let chart = chart(&found, ["", ""], "max_{*t*} *χ_{J}ε̇*^{*a*}", -1.0);
-        let figure = PROSE.chart("collapse-of-second-moments", &[], chart)?;
-        finding.figures.push(figure);
+        draft.chart("collapse-of-second-moments", &[], chart)?;
     }
-    finding.figures.push(against_width(&lines)?);
-    let in_time = lines.get(lines.len() / 2).map(in_time).transpose()?;
-    finding.figures.extend(in_time);
-    Ok(finding)
+    draft.chart("second-moment-peak", &[], against_width(&lines))?;
+    if let Some(line) = lines.get(lines.len() / 2) {
+        draft.chart("second-moment-in-time", &[], in_time(line))?;
+    }
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 /// Collapse of the rising sides of the peaks of all strain rates, with free exponents.
 fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
     let (mut critical, mut curves) = (Vec::new(), Vec::new());
-    for line in lines {
-        let Some(width) = line.critical_width() else {
-            continue;
-        };
+    let known = |line| Some((line, Line::critical_width(line)?));
+    for (line, width) in lines.iter().filter_map(known) {
         let points: Vec<CurvePoint> = line
             .rising()
             .filter(|(_, height)| height.value > 0.0)
@@ -247,7 +240,7 @@ fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
     collapse_curves(critical, curves, [0.0, 1.0], None)
 }
 
-fn against_width(lines: &[Line]) -> Result<ReportFigure> {
+fn against_width(lines: &[Line]) -> ChartFigure {
     let series = |line: &Line| {
         let known = line.peaks.iter().filter(|peak| peak.height().value > 0.0);
         let peaks = known.map(|peak| (peak.width, peak.height()));
@@ -257,17 +250,15 @@ fn against_width(lines: &[Line]) -> Result<ReportFigure> {
         .y_scale(Scale::Logarithmic)
         .with_all(coloured(lines.iter().map(series)));
     let rates = lines.iter().map(|line| line.strain_rate);
-    let chart = ChartFigure::new(panel).colour_scale(rate_colours(rates));
-    PROSE.chart("second-moment-peak", &[], chart)
+    ChartFigure::new(panel).colour_scale(rate_colours(rates))
 }
 
-fn in_time(line: &Line) -> Result<ReportFigure> {
+fn in_time(line: &Line) -> ChartFigure {
     let courses = line.moments.iter();
     let panel = panel(Axis::Period, Axis::FlowRateMoment)
         .title(&format!("*ε̇* = {}", line.strain_rate))
         .with_all(courses.map(|(width, moment)| course(*width, moment)));
     let widths = line.moments.iter().map(|one| one.0);
     let scale = colours(&label(Axis::Width), widths, (line.last, line.last));
-    let chart = ChartFigure::new(panel).colour_scale(scale);
-    PROSE.chart("second-moment-in-time", &[], chart)
+    ChartFigure::new(panel).colour_scale(scale)
 }

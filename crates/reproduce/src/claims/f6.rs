@@ -74,7 +74,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let both = Shown::<Line<'_>>::on_both(evidence)?;
     let (mut parts, mut counts, mut rows) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut means, mut quantities) = (Vec::new(), Vec::new());
+    let (mut draft, mut means) = (Draft::of(PROSE), Vec::new());
     for one in &both {
         let name = &one.name;
         let all = one.tight().count();
@@ -92,10 +92,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                 mean,
             )
         }));
-        quantities.extend(one.tight().filter_map(|line| {
+        for line in one.tight() {
             let rate = &line.strain_rate;
-            Some(PROSE.quantity("height", &[("lattice", name), ("rate", rate)], line.height?))
-        }));
+            draft.quantity("height", &[("lattice", name), ("rate", rate)], line.height);
+        }
         rows.extend(one.all.iter().map(|line| line.row(name)));
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
@@ -106,29 +106,27 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         "summary",
         &[("counts", &counts.join(" and ")), ("why", &why)],
     );
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    means.reverse();
-    finding.quantities = [means, quantities].concat();
-    let table = PROSE.table("jumps", &[("near", &NEAR_THE_JUMP)], rows);
-    finding.tables.push(table);
+    draft
+        .finding
+        .quantities
+        .splice(0..0, means.into_iter().rev());
+    draft.table("jumps", &[("near", &NEAR_THE_JUMP)], rows);
     let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
-    finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
+    draft.finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
     let rates = both.iter().flat_map(|one| &one.all);
     let chart = ChartFigure::grid(2, both.iter().map(beside_a_fluid))
         .share_y()
         .colour_scale(rate_colours(rates.map(|line| line.strain_rate)))
         .width(Width::DoubleColumn);
-    let figure = PROSE.chart("stationary-flow", &[], chart)?;
-    finding.figures.push(figure);
+    draft.chart("stationary-flow", &[], chart)?;
     let [fine, _] = &both;
     let near: Vec<f64> = fine.tight().flat_map(|line| &line.near).copied().collect();
     if let Some(bars) = flow_histogram(&near, -0.05, 1.05, 22) {
         let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(bars);
         let chart = ChartFigure::new(panel);
-        let figure = PROSE.chart("two-peaks", &[("near", &NEAR_THE_JUMP)], chart)?;
-        finding.figures.push(figure);
+        draft.chart("two-peaks", &[("near", &NEAR_THE_JUMP)], chart)?;
     }
-    Ok(finding)
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 /// The branches of one lattice beside the flow of a Newtonian fluid.

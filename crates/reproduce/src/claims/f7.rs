@@ -21,9 +21,8 @@ type Critical = Vec<(f64, Uncertain)>;
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let (mut parts, mut slopes, mut quantities) = (Vec::new(), Vec::new(), Vec::new());
-    let mut rows = Vec::new();
-    let mut periods: f64 = 0.0;
+    let (mut draft, mut parts, mut slopes) = (Draft::of(PROSE), Vec::new(), Vec::new());
+    let (mut rows, mut periods) = (Vec::new(), 0.0);
     let mut panel = panel(Axis::StrainRate, Axis::CriticalWidth).x_range(0.0..);
     for (place, one) in OnLattice::all(evidence)?.iter().enumerate() {
         let of = |critical: fn(&Line<'_>) -> Option<Uncertain>| -> Critical {
@@ -55,6 +54,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                 slopes.push(format!("{slope} on the {} lattice", one.name));
                 panel = with_line(panel, &line, &rate, place);
             }
+            let quantities = &mut draft.finding.quantities;
             quantities.extend(of_line(&line, &one.name, how, rate.len()));
             if let Ok(curve) = fit_parabola(&rate, &width, &error) {
                 let probability = number(curve.linearity, 3);
@@ -86,14 +86,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         "summary",
         &[("slopes", &slopes.join(" and ")), ("why", &why)],
     );
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    finding.quantities = quantities;
-    finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
-    let table = PROSE.table("critical widths", &[], rows);
-    finding.tables.push(table);
-    let figure = PROSE.chart("critical-width", &[], ChartFigure::new(panel))?;
-    finding.figures.push(figure);
-    Ok(finding)
+    draft.finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
+    draft.table("critical widths", &[], rows);
+    draft.chart("critical-width", &[], ChartFigure::new(panel))?;
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 fn diverging(line: &Line<'_>) -> Option<Uncertain> {

@@ -143,8 +143,7 @@ impl Judged {
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut parts, mut all, mut words) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut quantities, mut rows) = (Vec::new(), Vec::new());
-    let mut panels: Vec<ChartPanel> = Vec::new();
+    let (mut draft, mut rows, mut panels) = (Draft::of(PROSE), Vec::new(), Vec::new());
     for (lattice, study) in [("fine", "density-fine"), ("coarse", "density-coarse")] {
         let densities = Density::all_of(evidence.study(study)?.rows());
         if densities.is_empty() {
@@ -165,7 +164,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             said.push_str(&PROSE.text("too few", &[("densities", &LEAST_DENSITIES)]));
         }
         words.push(said);
-        quantities.extend(judged.quantities(lattice));
+        draft.finding.quantities.extend(judged.quantities(lattice));
         rows.extend(densities.iter().map(|density| density.row(lattice)));
         panels.extend(panels_of(lattice, &densities));
     }
@@ -175,17 +174,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(found, &F8_NEEDED));
     }
     let summary = PROSE.text("summary", &[("found", &words.join(". ")), ("why", &why)]);
-    let mut finding = PROSE.finding(verdict, summary, found, &F8_NEEDED);
-    finding.quantities = quantities;
-    finding.paragraphs = PROSE.paragraphs(
+    draft.finding.paragraphs = PROSE.paragraphs(
         "method",
         &[("compared", &COMPARED_WIDTH), ("hardly", &(100.0 * HARDLY))],
     );
-    let table = PROSE.table("densities", &[("compared", &COMPARED_WIDTH)], rows);
-    finding.tables.push(table);
+    draft.table("densities", &[("compared", &COMPARED_WIDTH)], rows);
     let chart = ChartFigure::grid(3, panels).width(Width::DoubleColumn);
-    finding.figures = vec![PROSE.chart("density", &[], chart)?];
-    Ok(finding)
+    draft.chart("density", &[], chart)?;
+    Ok(draft.concluded(verdict, summary, found, &F8_NEEDED))
 }
 
 fn panels_of(lattice: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {

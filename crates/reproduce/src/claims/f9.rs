@@ -136,31 +136,29 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("why", &why),
         ],
     );
-    let mut finding = PROSE.finding(verdict, summary, statistics, &needed);
-    let widths = loops().filter(|one| one.is_tight()).filter_map(|one| {
-        Some(PROSE.quantity(
+    let mut draft = Draft::of(PROSE);
+    for one in loops().filter(|one| one.is_tight()) {
+        draft.quantity(
             "loop",
             &[("lattice", &one.lattice.name()), ("rate", &one.strain_rate)],
-            one.distance?,
-        ))
-    });
-    finding.quantities.extend(widths);
-    let table = PROSE.table("loops", &[], loops().map(Loop::row));
-    finding.tables.push(table);
+            one.distance,
+        );
+    }
+    draft.table("loops", &[], loops().map(Loop::row));
     let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
     if !rows.is_empty() {
-        finding.tables.push(PROSE.table("lifetimes", &[], rows));
+        draft.table("lifetimes", &[], rows);
     }
-    finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
     let [fine, coarse] = &both;
     let panels = [coarse, fine].map(|one| widest(&one.all));
     let panels: Vec<ChartPanel> = panels.into_iter().flatten().collect();
     if !panels.is_empty() {
         let chart = ChartFigure::grid(2, panels).share_y();
         let chart = chart.width(Width::DoubleColumn);
-        finding.figures = vec![PROSE.chart("hysteresis", &[], chart)?];
+        draft.chart("hysteresis", &[], chart)?;
     }
-    Ok(finding)
+    Ok(draft.concluded(verdict, summary, statistics, &needed))
 }
 
 /// How long jams last in tubes too wide for them.

@@ -107,18 +107,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         in_words(lattice, &here)
     });
     let summary = PROSE.text("summary", &[("lattices", &words.join(". "))]);
-    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q1_NEEDED);
+    let mut draft = Draft::of(PROSE);
     for line in lines.iter().filter(|line| line.jumps) {
-        finding.quantities.push(PROSE.quantity(
+        draft.quantity(
             "critical width",
             &[("lattice", &line.lattice), ("rate", &line.strain_rate)],
             line.critical,
-        ));
+        );
     }
-    let table = PROSE.table("falls", &[], lines.iter().map(Line::row));
-    finding.tables.push(table);
-    finding.figures.push(figure(&lines)?);
-    Ok(finding)
+    draft.table("falls", &[], lines.iter().map(Line::row));
+    draft.chart("small-strain-rates", &[], figure(&lines))?;
+    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q1_NEEDED))
 }
 
 /// What the lines of one lattice say.
@@ -200,7 +199,7 @@ fn crossing_of_half(branch: &Branch<'_>) -> Option<f64> {
     Some(step.controls[0] + part * (step.controls[1] - step.controls[0]))
 }
 
-fn figure(lines: &[Line]) -> Result<ReportFigure> {
+fn figure(lines: &[Line]) -> ChartFigure {
     let panel =
         |name: &str| ChartPanel::new(&label(Axis::StrainRate), name).x_scale(Scale::Logarithmic);
     let mut width = panel(&label(Axis::CriticalWidth));
@@ -225,6 +224,5 @@ fn figure(lines: &[Line]) -> Result<ReportFigure> {
         let heights = joined(&format!("{lattice} lattice"), heights);
         height = height.with_all(heights.map(numbered));
     }
-    let chart = ChartFigure::grid(2, [width, height]).width(Width::DoubleColumn);
-    PROSE.chart("small-strain-rates", &[], chart)
+    ChartFigure::grid(2, [width, height]).width(Width::DoubleColumn)
 }

@@ -213,11 +213,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             format!("{name} in {holding} of {}", known.len())
         })
         .collect();
-    let verdict = if outcomes.len() >= LEAST_SETTINGS {
-        Verdict::Answered
-    } else {
-        Verdict::Open
-    };
+    let verdict = Verdict::answered_if(outcomes.len() >= LEAST_SETTINGS);
     let summary = PROSE.text(
         "summary",
         &[
@@ -227,17 +223,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         ],
     );
     let statistics = Statistics::weakest_at_one_rate(outcomes.iter().map(Outcome::statistics));
-    let found = PROSE.finding(verdict, summary, statistics, &Q10_NEEDED);
-    let mut found = found.varying("force");
-    let table = PROSE.table("settings", &[], outcomes.iter().map(Outcome::cells));
-    found.tables.push(table);
+    let mut draft = Draft::of(PROSE).varying("force");
+    draft.table("settings", &[], outcomes.iter().map(Outcome::cells));
     let panels: Vec<ChartPanel> = outcomes.iter().filter_map(flow_of).collect();
     if !panels.is_empty() {
         let chart = ChartFigure::grid(3, panels).share_x().share_y();
         let chart = chart.width(Width::DoubleColumn);
-        found.figures = vec![PROSE.chart("sensitivity", &[], chart)?];
+        draft.chart("sensitivity", &[], chart)?;
     }
-    Ok(found)
+    Ok(draft.concluded(verdict, summary, statistics, &Q10_NEEDED))
 }
 
 /// Both branches of one setting; `None` where they are empty.

@@ -99,7 +99,7 @@ impl Outcome {
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut all, mut panels, mut words) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut rows, mut quantities) = (Vec::new(), Vec::new());
+    let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
     for (study, lattice) in [("method-fine", "fine"), ("method-coarse", "coarse")] {
         let groups = grouped(evidence.study(study)?.rows(), Method::of);
         all.extend(groups.iter().map(|(_, rows)| behind(rows, Row::width)));
@@ -121,8 +121,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .unwrap_or(Uncertain::normal(0.0, 0.0));
         words.push(PROSE.text("lattice", &[("lattice", &lattice), ("shift", &most)]));
         rows.extend(outcomes.iter().map(|one| one.row(lattice, usual)));
-        quantities.extend(outcomes.iter().map(|one| {
-            PROSE.quantity(
+        for one in &outcomes {
+            draft.quantity(
                 "critical width",
                 &[
                     ("lattice", &lattice),
@@ -131,8 +131,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                     ("skin", &one.method.skin),
                 ],
                 one.critical,
-            )
-        }));
+            );
+        }
         panels.push(against_step(lattice, &outcomes));
     }
     // One strain rate a lattice, whatever the number of methods.
@@ -141,12 +141,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &Q11_NEEDED));
     }
     let summary = PROSE.text("summary", &[("lattices", &words.join("; "))]);
-    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q11_NEEDED);
-    finding.quantities = quantities;
-    finding.tables.push(PROSE.table("methods", &[], rows));
+    draft.table("methods", &[], rows);
     let chart = ChartFigure::grid(panels.len(), panels).width(Width::DoubleColumn);
-    finding.figures = vec![PROSE.chart("method", &[], chart)?];
-    Ok(finding)
+    draft.chart("method", &[], chart)?;
+    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q11_NEEDED))
 }
 
 /// Critical width against the step, one series an integrator, at the usual skin.

@@ -93,27 +93,22 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if ends.is_empty() {
         return Ok(PROSE.nothing(Statistics::default(), &Q2_NEEDED));
     }
-    let verdict = match lattices >= LEAST_LATTICES {
-        true => Verdict::Answered,
-        false => Verdict::Open,
-    };
+    let verdict = Verdict::answered_if(lattices >= LEAST_LATTICES);
     let summary = PROSE.text("summary", &[("ends", &ends.join(" and "))]);
     let statistics = Statistics {
         strain_rates: ends.len(),
         ..Statistics::weakest(all.into_iter())
     };
-    let mut finding = PROSE.finding(verdict, summary, statistics, &Q2_NEEDED);
+    let mut draft = Draft::of(PROSE);
     for wall in &walls {
         let (lattice, rate) = (wall.lattice.name(), wall.strain_rate);
-        finding.quantities.push(PROSE.quantity(
+        draft.quantity(
             "critical width",
             &[("lattice", &lattice), ("rate", &rate)],
             wall.critical,
-        ));
+        );
     }
-    let table = PROSE.table("lattices", &[], walls.iter().map(Wall::row));
-    finding.tables.push(table);
-    let figure = PROSE.chart("roughness", &[], ChartFigure::new(panel))?;
-    finding.figures.push(figure);
-    Ok(finding)
+    draft.table("lattices", &[], walls.iter().map(Wall::row));
+    draft.chart("roughness", &[], ChartFigure::new(panel))?;
+    Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
 }

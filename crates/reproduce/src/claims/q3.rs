@@ -134,17 +134,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .collect();
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
     let summary = PROSE.text("summary", &[("spans", &spans.join(", "))]);
-    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q3_NEEDED);
+    let mut draft = Draft::of(PROSE);
     let each = || {
         found
             .iter()
             .flat_map(|(varied, of)| of.iter().map(move |one| (varied, one)))
     };
     let rows = each().map(|(varied, one)| one.row(varied));
-    let table = PROSE.table("critical widths", &[], rows);
-    finding.tables.push(table);
+    draft.table("critical widths", &[], rows);
     for (varied, one) in each() {
-        finding.quantities.push(PROSE.quantity(
+        draft.quantity(
             "critical width",
             &[
                 ("varied", &varied.name),
@@ -152,13 +151,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                 ("speed", &number(one.wave_speed, 2)),
             ],
             one.width,
-        ));
+        );
     }
     let panels = found.iter().map(|(varied, of)| against(varied, of));
     let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
-    let figure = PROSE.chart("softness-or-geometry", &[], chart)?;
-    finding.figures.push(figure);
-    Ok(finding)
+    draft.chart("softness-or-geometry", &[], chart)?;
+    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q3_NEEDED))
 }
 
 fn against(varied: &Varied, found: &[Critical]) -> ChartPanel {

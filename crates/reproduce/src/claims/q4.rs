@@ -78,28 +78,20 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Some(mean) => PROSE.text("power", &[("exponent", &mean)]),
         None => PROSE.text("no power", &[]),
     };
-    let verdict = match tubes.len() >= LEAST_LENGTHS {
-        true => Verdict::Answered,
-        false => Verdict::Open,
-    };
+    let verdict = Verdict::answered_if(tubes.len() >= LEAST_LENGTHS);
     let summary = PROSE.text("summary", &[("how", &how)]);
-    let mut finding = PROSE.finding(verdict, summary, statistics, &Q4_NEEDED);
+    let mut draft = Draft::of(PROSE);
     for tube in &tubes {
         let width = tube.critical.as_ref().map(|found| found.width);
-        finding.quantities.extend(
-            width.map(|width| PROSE.quantity("critical width", &[("waves", &tube.waves)], width)),
-        );
+        draft.quantity("critical width", &[("waves", &tube.waves)], width);
     }
     for (width, exponent) in &exponents {
-        finding
-            .quantities
-            .push(PROSE.quantity("exponent", &[("width", width)], *exponent));
+        draft.quantity("exponent", &[("width", width)], *exponent);
     }
-    let table = PROSE.table("lengths", &[], tubes.iter().map(Tube::row));
-    finding.tables.push(table);
-    finding.figures.push(figure(&tubes)?);
-    finding.figures.extend(space_time(study)?);
-    Ok(finding)
+    draft.table("lengths", &[], tubes.iter().map(Tube::row));
+    draft.chart("length", &[], figure(&tubes))?;
+    space_time(&mut draft, study)?;
+    Ok(draft.concluded(verdict, summary, statistics, &Q4_NEEDED))
 }
 
 /// Exponent of tau in the length at every width that several lengths share.
@@ -120,7 +112,7 @@ fn exponents(tubes: &[Tube<'_>]) -> Vec<(f64, Uncertain)> {
         .collect()
 }
 
-fn figure(tubes: &[Tube<'_>]) -> Result<ReportFigure> {
+fn figure(tubes: &[Tube<'_>]) -> ChartFigure {
     let name = |tube: &Tube<'_>| format!("{} waves", tube.waves);
     let flows = tubes.iter();
     let flows = flows.map(|tube| branch_points(&name(tube), &tube.branch));
@@ -135,23 +127,22 @@ fn figure(tubes: &[Tube<'_>]) -> Result<ReportFigure> {
         .with_all(numbered(times));
     let timed = tubes.iter().any(|tube| !tube.times.is_empty());
     let panels = [flow].into_iter().chain(timed.then_some(times));
-    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
-    PROSE.chart("length", &[], chart)
+    ChartFigure::grid(2, panels).width(Width::DoubleColumn)
 }
 
 /// The flow of each wave in time, of the longest tube at the widest bottleneck that jammed it.
-fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
+fn space_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
     let key = |row: &Row<'_>| (row.number("waves"), row.width());
     let jammed = study
         .rows()
         .into_iter()
         .filter(|row| row.transition().observed().is_some() && row.replicate() == 0);
     let Some((_, widest)) = grouped(jammed, key).pop() else {
-        return Ok(None);
+        return Ok(());
     };
     let row = widest[0];
     let Some(table) = study.waves(&row)? else {
-        return Ok(None);
+        return Ok(());
     };
     let (wave, ratio) = (table.integers("wave")?, table.reals("flow_rate_ratio")?);
     let rows = row.number("waves") as usize;
@@ -173,6 +164,5 @@ fn space_time(study: &StudyResults) -> Result<Option<ReportFigure>> {
         .panel_height(50.0)
         .width(Width::DoubleColumn);
     let width = row.width();
-    let figure = PROSE.chart("space-time", &[("waves", &rows), ("width", &width)], chart)?;
-    Ok(Some(figure))
+    draft.chart("space-time", &[("waves", &rows), ("width", &width)], chart)
 }

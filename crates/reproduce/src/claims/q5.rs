@@ -88,11 +88,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let lattices = OnLattice::all(evidence)?;
     let statistics = best(lattices.iter().map(OnLattice::statistics), &needed);
-    let (mut compared, mut quantities) = (Vec::new(), Vec::new());
+    let (mut draft, mut compared) = (Draft::of(PROSE), Vec::new());
     let (mut all, mut excluded) = (0, 0);
     for one in &lattices {
         let exponents = one.scattered().map(|(_, fit)| fit.scatter_exponent);
         let exponents: Vec<Uncertain> = exponents.collect();
+        let quantities = &mut draft.finding.quantities;
         quantities.extend(weighted_mean(&exponents).map(|mean| {
             let found = PROSE.quantity(
                 "exponent",
@@ -123,23 +124,20 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("exponential", &good(&LAWS[3..])),
         ],
     );
-    let mut finding = PROSE.finding(Verdict::Answered, summary, statistics, &needed);
-    finding.quantities = quantities;
-    let table = PROSE.table("laws", &[], compared.iter().map(Compared::row));
-    finding.tables.push(table);
-    finding.figures.extend(relative_variance(&compared)?);
+    draft.table("laws", &[], compared.iter().map(Compared::row));
+    relative_variance(&mut draft, &compared)?;
     let survival = compared
         .iter()
         .filter(|one| one.lattice == "fine" && (one.line.strain_rate - 0.1).abs() < 0.03)
         .find_map(|one| survival_panel(one.line, one.scatter.critical_width.value));
     if let Some((panel, scale)) = survival {
         let chart = ChartFigure::new(panel).colour_scale(scale);
-        finding.figures.push(PROSE.chart("survival", &[], chart)?);
+        draft.chart("survival", &[], chart)?;
     }
-    Ok(finding)
+    Ok(draft.concluded(Verdict::Answered, summary, statistics, &needed))
 }
 
-fn relative_variance(compared: &[Compared<'_>]) -> Result<Option<ReportFigure>> {
+fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()> {
     let mut panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
         .x_scale(Scale::Logarithmic)
         .y_scale(Scale::Logarithmic);
@@ -153,10 +151,10 @@ fn relative_variance(compared: &[Compared<'_>]) -> Result<Option<ReportFigure>> 
         }
     }
     if rates.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
     let chart = ChartFigure::new(panel).colour_scale(rate_colours(rates.into_iter()));
-    PROSE.chart("relative-variance", &[], chart).map(Some)
+    draft.chart("relative-variance", &[], chart)
 }
 
 /// Survival against time over its mean at each width below the critical one, coloured by the width.

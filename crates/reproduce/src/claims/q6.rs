@@ -201,24 +201,23 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let at_tether = |tether| samples.at(Point { tether, ..PRESET });
     let (without, pinned) = (at_friction(0.0), at_tether(PINNED));
     let summary = of_friction(preset, without) + &of_wall(preset, pinned);
-    let finding = PROSE.finding(Verdict::Answered, summary, statistics, &Q6_NEEDED);
-    let mut finding = finding.varying("friction");
+    let mut draft = Draft::of(PROSE).varying("friction");
     let balance = balance(preset, FreeFlight::of(results, preset)?);
-    finding.paragraphs.splice(0..0, balance);
+    draft.finding.paragraphs.splice(0..0, balance);
     let points = [
         ("flow of the preset at a small force", Some(preset)),
         ("the same without friction", without),
         ("the same with the wall pinned", pinned),
         ("the same with the wall free along the tube", at_tether(0.0)),
     ];
-    let quantity = |(name, sampled): (&str, Option<&Sampled<'_>>)| -> Option<Quantity> {
-        Some(PROSE.quantity("flow", &[("name", &name)], sampled?.flow))
-    };
-    finding.quantities = points.into_iter().filter_map(quantity).collect();
-    let table = PROSE.table("forces", &[], samples.0.iter().map(Sampled::cells));
-    finding.tables.push(table);
-    finding.figures = figures::all(results, &samples)?;
-    Ok(finding)
+    for (name, sampled) in points {
+        let flow = sampled.map(|one| one.flow);
+        draft.quantity("flow", &[("name", &name)], flow);
+    }
+    draft.table("forces", &[], samples.0.iter().map(Sampled::cells));
+    figures::causes(&mut draft, &samples)?;
+    figures::balance(&mut draft, results, &samples)?;
+    Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q6_NEEDED))
 }
 
 /// What friction has to do with it.

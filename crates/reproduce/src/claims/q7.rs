@@ -133,14 +133,6 @@ impl<'a> Corner<'a> {
         }
     }
 
-    fn quantities(&self) -> Vec<Quantity> {
-        let lowest = self.flow.lowest().map(|point| point.flow);
-        let gap = self.flow.gap().map(|gap| gap.height);
-        let lowest = lowest.map(|flow| PROSE.quantity("lowest", &[("corner", &self.name())], flow));
-        let gap = gap.map(|height| PROSE.quantity("gap", &[("corner", &self.name())], height));
-        lowest.into_iter().chain(gap).collect()
-    }
-
     /// The row of the table.
     fn cells(&self) -> Vec<String> {
         let control = |value: f64| number(value, self.wall.digits);
@@ -216,11 +208,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(Statistics::default(), &Q7_NEEDED));
     }
     let statistics = Statistics::weakest_at_one_rate(corners.iter().map(Corner::statistics));
-    let verdict = if corners.len() == 4 {
-        Verdict::Answered
-    } else {
-        Verdict::Open
-    };
+    let verdict = Verdict::answered_if(corners.len() == 4);
     let summary = PROSE.text(
         "summary",
         &[
@@ -229,16 +217,19 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("back", &where_seen(&corners, Corner::flows_back)),
         ],
     );
-    let finding = PROSE.finding(verdict, summary, statistics, &Q7_NEEDED);
-    let mut finding = finding.varying("bottleneck");
-    finding.quantities = corners.iter().flat_map(Corner::quantities).collect();
-    let table = PROSE.table("corners", &[], corners.iter().map(Corner::cells));
-    finding.tables.push(table);
+    let mut draft = Draft::of(PROSE).varying("bottleneck");
+    for corner in &corners {
+        let lowest = corner.flow.lowest().map(|point| point.flow);
+        let gap = corner.flow.gap().map(|gap| gap.height);
+        draft.quantity("lowest", &[("corner", &corner.name())], lowest);
+        draft.quantity("gap", &[("corner", &corner.name())], gap);
+    }
+    draft.table("corners", &[], corners.iter().map(Corner::cells));
     let left_out: usize = corners.iter().map(|corner| corner.left_out).sum();
     if left_out > 0 {
         let weakness = PROSE.text("left out", &[("states", &left_out)]);
-        finding.weaknesses.push(weakness);
+        draft.finding.weaknesses.push(weakness);
     }
-    finding.figures.push(figures::figure(&corners)?);
-    Ok(finding)
+    draft.chart("two-by-two", &[], figures::chart(&corners))?;
+    Ok(draft.concluded(verdict, summary, statistics, &Q7_NEEDED))
 }

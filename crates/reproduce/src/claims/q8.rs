@@ -215,24 +215,20 @@ impl<'b, 'a> AtRate<'b, 'a> {
         )
     }
 
-    fn quantities(&self) -> Vec<Quantity> {
-        let fluctuations = self.ladders.iter();
+    fn add_quantities(&self, draft: &mut Draft) {
+        let rate = &self.rate;
+        let ladders = self.ladders.iter();
         let fluctuations =
-            fluctuations.filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)));
-        let of_fluctuation = exponent(fluctuations).map(|exponent| {
-            PROSE.quantity("exponent of fluctuation", &[("rate", &self.rate)], exponent)
-        });
-        let widths = self.loops.iter();
-        let widths = widths.filter_map(|one| Some((one.periods, one.width()?)));
-        let of_loop = exponent(widths)
-            .map(|exponent| PROSE.quantity("exponent of loop", &[("rate", &self.rate)], exponent));
-        let rises = self.ladders.iter().filter_map(|one| {
-            let (rate, waves) = (self.rate, one.waves);
-            let height = one.rise()?.height;
-            Some(PROSE.quantity("rise", &[("rate", &rate), ("waves", &waves)], height))
-        });
-        let exponents = of_fluctuation.into_iter().chain(of_loop);
-        exponents.chain(rises).collect()
+            ladders.filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)));
+        let of_size = exponent(fluctuations);
+        draft.quantity("exponent of fluctuation", &[("rate", rate)], of_size);
+        let loops = self.loops.iter();
+        let widths = loops.filter_map(|one| Some((one.periods, one.width()?)));
+        draft.quantity("exponent of loop", &[("rate", rate)], exponent(widths));
+        for one in &self.ladders {
+            let height = one.rise().map(|rise| rise.height);
+            draft.quantity("rise", &[("rate", rate), ("waves", &one.waves)], height);
+        }
     }
 }
 
@@ -250,24 +246,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &Q8_NEEDED));
     }
     let words: Vec<String> = rates.iter().map(AtRate::words).collect();
-    let verdict = if rates.iter().all(AtRate::is_complete) {
-        Verdict::Answered
-    } else {
-        Verdict::Open
-    };
+    let verdict = Verdict::answered_if(rates.iter().all(AtRate::is_complete));
     let summary = format!("{}.", words.join(". "));
-    let finding = PROSE.finding(verdict, summary, statistics, &Q8_NEEDED);
-    let mut finding = finding.varying("force");
-    finding.quantities = rates.iter().flat_map(AtRate::quantities).collect();
+    let mut draft = Draft::of(PROSE).varying("force");
+    for at in &rates {
+        at.add_quantities(&mut draft);
+    }
     if !ladders.is_empty() {
-        let table = PROSE.table("ladders", &[], ladders.iter().map(Ladder::cells));
-        finding.tables.push(table);
+        draft.table("ladders", &[], ladders.iter().map(Ladder::cells));
     }
     if !loops.is_empty() {
-        let table = PROSE.table("loops", &[], loops.iter().map(Loop::cells));
-        finding.tables.push(table);
+        draft.table("loops", &[], loops.iter().map(Loop::cells));
     }
-    finding.paragraphs = PROSE.paragraphs("method", &[("passed", &PASSED)]);
-    finding.figures.extend(figures::figure(&rates)?);
-    Ok(finding)
+    draft.finding.paragraphs = PROSE.paragraphs("method", &[("passed", &PASSED)]);
+    let panels = figures::panels(&rates);
+    if !panels.is_empty() {
+        let chart = ChartFigure::grid(rates.len(), panels)
+            .width(Width::DoubleColumn)
+            .panel_height(36.0)
+            .legend(LegendPlace::Below);
+        draft.chart("small-speed", &[("passed", &PASSED)], chart)?;
+    }
+    Ok(draft.concluded(verdict, summary, statistics, &Q8_NEEDED))
 }

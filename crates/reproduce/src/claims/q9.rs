@@ -215,19 +215,6 @@ impl<'a> Pump<'a> {
         ))
     }
 
-    fn quantities(&self) -> Vec<Quantity> {
-        let Model { name, unit, .. } = self.model;
-        let best = self
-            .sine()
-            .best()
-            .map(|(_, efficiency)| PROSE.quantity("efficiency", &[("model", name)], efficiency));
-        let stop = self
-            .sine()
-            .stop()
-            .map(|stop| PROSE.quantity("stop", &[("model", name), ("unit", unit)], stop));
-        best.into_iter().chain(stop).collect()
-    }
-
     /// The rows of the table.
     fn cells(&self) -> Vec<Vec<String>> {
         let characteristics = self.characteristics.iter();
@@ -244,21 +231,21 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(Statistics::default(), &Q9_NEEDED));
     }
     let words: Vec<String> = pumps.iter().filter_map(Pump::words).collect();
-    let verdict = if pumps.len() == MODELS.len() && words.len() == pumps.len() {
-        Verdict::Answered
-    } else {
-        Verdict::Open
-    };
+    let all = pumps.len() == MODELS.len() && words.len() == pumps.len();
+    let verdict = Verdict::answered_if(all);
     let summary = match &*words.join(". ") {
         "" => PROSE.text("no pump", &[]),
         words => format!("{words}."),
     };
     let statistics = Statistics::weakest_at_one_rate(pumps.iter().map(Pump::statistics));
-    let finding = PROSE.finding(verdict, summary, statistics, &Q9_NEEDED);
-    let mut finding = finding.varying("back pressure");
-    finding.quantities = pumps.iter().flat_map(Pump::quantities).collect();
-    let table = PROSE.table("pumps", &[], pumps.iter().flat_map(Pump::cells));
-    finding.tables.push(table);
+    let mut draft = Draft::of(PROSE).varying("back pressure");
+    for pump in &pumps {
+        let (sine, Model { name, unit, .. }) = (pump.sine(), pump.model);
+        let best = sine.best().map(|(_, efficiency)| efficiency);
+        draft.quantity("efficiency", &[("model", name)], best);
+        draft.quantity("stop", &[("model", name), ("unit", unit)], sine.stop());
+    }
+    draft.table("pumps", &[], pumps.iter().flat_map(Pump::cells));
     let at_the_edge: Vec<&str> = pumps
         .iter()
         .filter(|pump| pump.sine().best_is_at_the_edge())
@@ -266,8 +253,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .collect();
     if !at_the_edge.is_empty() {
         let weakness = PROSE.text("at the edge", &[("pumps", &at_the_edge.join("; "))]);
-        finding.weaknesses.push(weakness);
+        draft.finding.weaknesses.push(weakness);
     }
-    finding.figures = figures::all(&pumps)?;
-    Ok(finding)
+    draft.chart("pump-characteristic", &[], figures::characteristic(&pumps))?;
+    figures::on_the_wall(&mut draft, &pumps)?;
+    Ok(draft.concluded(verdict, summary, statistics, &Q9_NEEDED))
 }

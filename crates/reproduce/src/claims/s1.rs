@@ -2,7 +2,7 @@
 
 use peristalsis_figures::{Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
 
-use super::elastic::{finding, is_frictionless, judged, nothing};
+use super::elastic::{NEEDED, draft, is_frictionless, judged, nothing};
 use super::prelude::*;
 use crate::branch::flow_of;
 use crate::forces::together;
@@ -89,29 +89,28 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .collect();
     let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
     let summary = PROSE.text("summary", &[("flows", &flows.join(", "))]);
-    let mut found = finding(&PROSE, verdict, summary, statistics(&lines, &scenes));
-    let quantity = |scene: &Scene<'_>| {
+    let mut draft = draft(PROSE);
+    for scene in &scenes {
         let (name, runs) = (scene.name(), scene.rows.len());
         let flow = scene.flow;
-        PROSE.quantity("flow rate", &[("scene", &name), ("runs", &runs)], flow)
-    };
-    found.quantities = scenes.iter().map(quantity).collect();
+        draft.quantity("flow rate", &[("scene", &name), ("runs", &runs)], flow);
+    }
     let drifts = |scene: &&Scene<'_>| scene.rows.iter().any(|row| !row.is_stationary());
     let drifting: Vec<String> = scenes.iter().filter(drifts).map(Scene::name).collect();
     if !drifting.is_empty() {
         let scenes = drifting.join(", ");
         let weakness = PROSE.text("drifting", &[("scenes", &scenes)]);
-        found.weaknesses.push(weakness);
+        draft.finding.weaknesses.push(weakness);
     }
     let mut pictures = Vec::new();
     for scene in &scenes {
         pictures.extend(scene.picture(study)?);
     }
     if !pictures.is_empty() {
-        found.tables.push(against_the_wave(&pictures)?);
-        found.figures.push(flow_fields(&pictures)?);
+        draft.table("grains of the pictures", &[], against_the_wave(&pictures)?);
+        draft.finding.figures.push(flow_fields(&pictures)?);
     }
-    Ok(found)
+    Ok(draft.concluded(verdict, summary, statistics(&lines, &scenes), &NEEDED))
 }
 
 /// The pictures are of one strain rate: forces and strain rates are those of the branches, whose flows these are; replicates
@@ -126,7 +125,7 @@ fn statistics(lines: &[ForceLine<'_>], scenes: &[Scene<'_>]) -> Statistics {
 }
 
 /// Which part of the grains moves against the wave in each picture.
-fn against_the_wave(pictures: &[Picture<'_>]) -> Result<ReportTable> {
+fn against_the_wave(pictures: &[Picture<'_>]) -> Result<Vec<Vec<String>>> {
     let mut cells = Vec::new();
     for Picture { name, row, spheres } in pictures {
         let is_grain = spheres.booleans("grain")?;
@@ -147,7 +146,7 @@ fn against_the_wave(pictures: &[Picture<'_>]) -> Result<ReportTable> {
             number(row.escaped_fraction(), 3),
         ]);
     }
-    Ok(PROSE.table("grains of the pictures", &[], cells))
+    Ok(cells)
 }
 
 /// How far from the axis a picture shows spheres, in radii of the tube.

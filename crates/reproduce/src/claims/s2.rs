@@ -2,7 +2,7 @@
 
 use peristalsis_analysis::{Family, Survival, Transition, fit_lifetime, mean_and_error};
 
-use super::elastic::{finding, judged, label, nothing};
+use super::elastic::{NEEDED, draft, judged, label, nothing};
 use super::prelude::*;
 use crate::forces::together;
 use crate::thresholds::GIVEN_WAY;
@@ -125,39 +125,37 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("lasting", &lasting),
         ],
     );
-    let mut found = finding(&PROSE, verdict, summary, together(judged(&lines)));
+    let mut draft = draft(PROSE);
     for rung in &ladder {
         let runs = rung.rows.len();
         let censored = runs - rung.times.len();
-        found.quantities.extend(rung.mean().map(|mean| {
-            PROSE.quantity(
-                "time",
-                &[
-                    ("force", &rung.force),
-                    ("runs", &runs),
-                    ("censored", &censored),
-                ],
-                mean,
-            )
-        }));
+        draft.quantity(
+            "time",
+            &[
+                ("force", &rung.force),
+                ("runs", &runs),
+                ("censored", &censored),
+            ],
+            rung.mean(),
+        );
     }
-    let table = PROSE.table("times", &[], ladder.iter().map(Rung::cells));
-    found.tables.push(table);
+    draft.table("times", &[], ladder.iter().map(Rung::cells));
     let all = Rung::all_of(&branches);
     if !all.is_empty() {
         let cells = all.iter().map(Rung::cells);
-        let table = PROSE.table("times at all strain rates", &[], cells);
-        found.tables.push(table);
+        draft.table("times at all strain rates", &[], cells);
     }
     let method = PROSE.text("method", &[("threshold", &GIVEN_WAY)]);
-    found.paragraphs.push(method);
-    found.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
-    found.figures.push(figure(study, &ladder)?);
-    Ok(found)
+    draft.finding.paragraphs.push(method);
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    let chart = figure(study, &ladder)?;
+    draft.chart("yielding", &[("threshold", &GIVEN_WAY)], chart)?;
+    let statistics = together(judged(&lines));
+    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
 /// J(t) of one run a force, and the time until the jam gives way against the force.
-fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ReportFigure> {
+fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ChartFigure> {
     let courses = courses(study, ladder)?;
     let is_coloured = !courses.is_empty();
     let in_time = ChartPanel::new(&label(Axis::Period), &label(Axis::FlowRateRatio))
@@ -175,7 +173,7 @@ fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ReportFigure> {
         let axis = label(Axis::ForceAmplitude);
         chart = chart.colour_scale(colours(&axis, forces, (first, 1.01 * first)));
     }
-    PROSE.chart("yielding", &[("threshold", &GIVEN_WAY)], chart)
+    Ok(chart)
 }
 
 /// The flow in time of the first replicate at each force whose time series is at hand.

@@ -1,7 +1,7 @@
 //! S3: the stationary flow against the force, a jump at large strain rates and none at small ones.
 
 use super::elastic::{
-    branch_rows, colours_of_rates, finding, flow_against_force, judged, label, nothing,
+    NEEDED, branch_rows, colours_of_rates, draft, flow_against_force, judged, label, nothing,
     with_branches,
 };
 use super::prelude::*;
@@ -49,20 +49,24 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         summary = format!("{summary} {sentence}");
     }
     let statistics = together(tight.iter().copied());
-    let mut found = finding(&PROSE, verdict, summary, statistics);
-    let vanishes = vanishing.map(|rate| PROSE.quantity("vanishing", &[], rate));
-    let heights = tight.iter().filter_map(|line| height(line));
-    found.quantities = vanishes.into_iter().chain(heights).collect();
-    let cells = lines.iter().map(|line| cells(&rows, line));
-    found.tables.push(PROSE.table("rises", &[], cells));
+    let mut draft = draft(PROSE);
+    draft.quantity("vanishing", &[], vanishing);
+    for line in &tight {
+        draft.quantity("height", &[("rate", &line.strain_rate)], line.height());
+    }
+    draft.table("rises", &[], lines.iter().map(|line| cells(&rows, line)));
     let escaped = number(100.0 * MOST_ESCAPED, 0);
-    found.paragraphs.push(PROSE.text(
+    draft.finding.paragraphs.push(PROSE.text(
         "method",
         &[("least", &LEAST_JUMP_AGAINST_FORCE), ("escaped", &escaped)],
     ));
-    found.figures.push(branches(&lines, &tight)?);
-    found.figures.extend(peaks(&rows, &tight)?);
-    Ok(found)
+    draft.chart("branches", &[], branches(&lines, &tight))?;
+    let panels = peaks(&rows, &tight);
+    if !panels.is_empty() {
+        let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+        draft.chart("peaks-against-force", &[], chart)?;
+    }
+    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
 /// The bracket of the strain rate at which the jump vanishes: all that jump are faster than all that do not.
@@ -79,10 +83,6 @@ fn listed(rates: &[f64]) -> String {
     }
     let texts: Vec<String> = rates.iter().map(f64::to_string).collect();
     format!("*ε̇* = {}", texts.join(", "))
-}
-
-fn height(line: &ForceLine<'_>) -> Option<Quantity> {
-    Some(PROSE.quantity("height", &[("rate", &line.strain_rate)], line.height()?))
 }
 
 /// J/Jmax of all stationary runs of a line.
@@ -136,7 +136,7 @@ fn cells(rows: &[Row<'_>], line: &ForceLine<'_>) -> Vec<String> {
 }
 
 /// Both branches at each strain rate, and the height of the rise against the strain rate.
-fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> Result<ReportFigure> {
+fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> ChartFigure {
     let window = tight
         .iter()
         .rev()
@@ -145,11 +145,10 @@ fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> Result<ReportF
     let flow = with_branches(flow_against_force(), tight)
         .with_all(window.map(|(first, last)| Window::new("", first, last)))
         .title("filled: from rest, open: from jammed");
-    let chart = ChartFigure::grid(2, [flow].into_iter().chain(heights(tight)))
+    ChartFigure::grid(2, [flow].into_iter().chain(heights(tight)))
         .legend(LegendPlace::Hidden)
         .colour_scale(colours_of_rates(lines))
-        .width(Width::DoubleColumn);
-    PROSE.chart("branches", &[], chart)
+        .width(Width::DoubleColumn)
 }
 
 /// The height of the rise against the strain rate; `None` where no height is known.
@@ -179,7 +178,7 @@ fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
 }
 
 /// Histograms of J/Jmax, for the slowest and the fastest wave of those with most runs.
-fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Result<Option<ReportFigure>> {
+fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Vec<ChartPanel> {
     let runs = |line: &ForceLine<'_>| line.statistics.runs;
     let most = tight.iter().map(|line| runs(line)).max().unwrap_or(0);
     let many: Vec<&&ForceLine<'_>> = tight.iter().filter(|line| 2 * runs(line) >= most).collect();
@@ -190,11 +189,6 @@ fn peaks(rows: &[Row<'_>], tight: &[&ForceLine<'_>]) -> Result<Option<ReportFigu
         let panel = panel.title(&format!("*ε̇* = {}", line.strain_rate));
         Some(panel.with(bars.tint(Tint::Blue)))
     };
-    let panels = many.first().into_iter().chain(last).filter_map(panel);
-    let panels: Vec<ChartPanel> = panels.collect();
-    if panels.is_empty() {
-        return Ok(None);
-    }
-    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
-    PROSE.chart("peaks-against-force", &[], chart).map(Some)
+    let shown = many.first().into_iter().chain(last);
+    shown.filter_map(panel).collect()
 }

@@ -1,7 +1,8 @@
 //! S4: back flow at small forces.
 
 use super::elastic::{
-    branch_rows, colours_of_rates, finding, flow_against_force, judged, nothing, with_branches,
+    NEEDED, branch_rows, colours_of_rates, draft, flow_against_force, judged, nothing,
+    with_branches,
 };
 use super::prelude::*;
 use crate::forces::{counted, is_below, together};
@@ -57,20 +58,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Verdict::Reproduced
     };
     let statistics = together(tight.iter().copied());
-    let mut found = finding(&PROSE, verdict, summary(&backward, &forward), statistics);
+    let mut draft = draft(PROSE);
     for line in &tight {
-        found.quantities.extend(line.flow.lowest().map(|lowest| {
-            PROSE.quantity(
-                "lowest",
-                &[("rate", &line.strain_rate), ("force", &lowest.control)],
-                lowest.flow,
-            )
-        }));
+        if let Some(lowest) = line.flow.lowest() {
+            let (rate, force) = (line.strain_rate, lowest.control);
+            draft.quantity("lowest", &[("rate", &rate), ("force", &force)], lowest.flow);
+        }
     }
-    let cells = tight.iter().flat_map(|line| cells(line));
-    found.tables.push(PROSE.table("flows", &[], cells));
+    draft.table("flows", &[], tight.iter().flat_map(|line| cells(line)));
     let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
-    found.paragraphs.push(method);
+    draft.finding.paragraphs.push(method);
     // Those whose flow is negative at larger forces only, and not at the smallest.
     let only_beyond = |line: &&ForceLine<'_>| {
         negative(line)
@@ -80,7 +77,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let beyond: Vec<&ForceLine<'_>> = tight.iter().copied().filter(only_beyond).collect();
     if !beyond.is_empty() {
         let weakness = PROSE.text("only beyond", &[("rates", &rates(&beyond))]);
-        found.weaknesses.push(weakness);
+        draft.finding.weaknesses.push(weakness);
     }
     let panel = flow_against_force()
         .y_range(-0.12..=0.12)
@@ -88,8 +85,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let chart = ChartFigure::new(with_branches(panel, &tight))
         .legend(LegendPlace::Hidden)
         .colour_scale(colours_of_rates(&lines));
-    found.figures = vec![PROSE.chart("back-flow", &[], chart)?];
-    Ok(found)
+    draft.chart("back-flow", &[], chart)?;
+    let summary = summary(&backward, &forward);
+    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
 /// The strain rates of some lines in words.

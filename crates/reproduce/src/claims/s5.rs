@@ -1,7 +1,7 @@
 //! S5: no back flow without friction?
 
 use super::elastic::{
-    SOURCE_RATE, branch_rows, colours_of_rates, finding, flow_against_force, judged, nothing,
+    NEEDED, SOURCE_RATE, branch_rows, colours_of_rates, draft, flow_against_force, judged, nothing,
     with_branches,
 };
 use super::prelude::*;
@@ -49,21 +49,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         (false, false) => Verdict::Open,
     };
     let (summary, statistics) = (summary(&tight, flows_back), together(tight.iter().copied()));
-    let mut found = finding(&PROSE, verdict, summary, statistics);
+    let mut draft = draft(PROSE);
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
-        found.quantities.push(PROSE.quantity(
-            "difference",
-            &[("rate", &rate), ("force", &without.control)],
-            difference(&without.flow, &with.flow),
-        ));
+        let (force, more) = (without.control, difference(&without.flow, &with.flow));
+        draft.quantity("difference", &[("rate", &rate), ("force", &force)], more);
     }
-    let cells = pairs.iter().flat_map(cells);
-    found.tables.push(PROSE.table("flows", &[], cells));
+    draft.table("flows", &[], pairs.iter().flat_map(cells));
     let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
-    found.paragraphs.push(method);
-    found.figures.push(figure(&lines, &pairs)?);
-    Ok(found)
+    draft.finding.paragraphs.push(method);
+    draft.chart("frictionless", &[], figure(&lines, &pairs))?;
+    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
 
 /// Whether any flow is negative, and the smallest of them.
@@ -118,7 +114,7 @@ fn cells((line, other): &Pair<'_, '_>) -> Vec<Vec<String>> {
 
 /// All flows without friction, and beside them those with friction at one strain rate that both have, the source's if
 /// possible.
-fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> Result<ReportFigure> {
+fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> ChartFigure {
     let empty = || flow_against_force().with(Reference::horizontal(0.0));
     let tight: Vec<&ForceLine<'_>> = pairs.iter().map(|(line, _)| *line).collect();
     let all =
@@ -142,10 +138,9 @@ fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> Result<ReportFigur
             let title = format!("from rest, *ε̇* = {}", without.strain_rate);
             empty().with_all(numbered(points)).title(&title)
         });
-    let chart = ChartFigure::grid(2, [all].into_iter().chain(beside))
+    ChartFigure::grid(2, [all].into_iter().chain(beside))
         .share_y()
         .legend(LegendPlace::Inside)
         .colour_scale(colours_of_rates(lines))
-        .width(Width::DoubleColumn);
-    PROSE.chart("frictionless", &[], chart)
+        .width(Width::DoubleColumn)
 }

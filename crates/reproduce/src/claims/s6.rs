@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use peristalsis_analysis::mean_and_error;
 
-use super::elastic::{SOURCE_RATE, finding, is_frictionless, judged, nothing};
+use super::elastic::{NEEDED, SOURCE_RATE, draft, is_frictionless, judged, nothing};
 use super::prelude::*;
 use crate::forces::together;
 use crate::thresholds::{CLEAR, LEAST_DIFFERENCE, LEAST_RATIO, MOST_ESCAPED, UNJAMMED};
@@ -201,7 +201,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             ("agree", &agree),
         ],
     );
-    let mut found = finding(&PROSE, verdict, summary, together(judged(&lines)));
+    let mut draft = draft(PROSE);
     let alike = pairs.iter().filter_map(|(one, other, outcome)| {
         let alike = match outcome {
             Outcome::DifferInTemperature => "differ in temperature only",
@@ -214,35 +214,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             &[("alike", &alike), ("one", one), ("other", other)],
         ))
     });
-    found.weaknesses.splice(0..0, alike);
+    draft.finding.weaknesses.splice(0..0, alike);
     // The first, at the smallest force, of the source's strain rate where there is one.
     let shown = frictional
         .iter()
         .find(|flow| flow.rows[0].strain_rate() == SOURCE_RATE)
         .unwrap_or(&frictional[0]);
     let shown = [shown].into_iter().chain(&frictionless);
-    found.quantities = shown.flat_map(quantities).collect();
-    let table = table(frictional.iter().chain(&frictionless));
-    found.tables.push(table);
-    found.paragraphs.push(PROSE.text("tubes", &[]));
-    found.paragraphs.push(PROSE.text(
-        "method",
-        &[
-            ("difference", &LEAST_DIFFERENCE),
-            ("ratio", &LEAST_RATIO),
-            ("errors", &CLEAR),
-        ],
-    ));
-    let profiles = figures::profiles(elastic, prescribed)?;
-    found.figures.extend(profiles);
-    Ok(found)
-}
-
-fn quantities(flow: &Flow<'_>) -> Vec<Quantity> {
-    NUMBERS[..5]
-        .iter()
-        .map(|(name, symbol, value)| {
-            PROSE.quantity(
+    for flow in shown {
+        for (name, symbol, value) in &NUMBERS[..5] {
+            draft.quantity(
                 "mean",
                 &[
                     ("name", name),
@@ -251,14 +232,24 @@ fn quantities(flow: &Flow<'_>) -> Vec<Quantity> {
                     ("runs", &flow.rows.len()),
                 ],
                 flow.mean(*value),
-            )
-        })
-        .collect()
-}
-
-fn table<'b, 'a: 'b>(flows: impl Iterator<Item = &'b Flow<'a>>) -> ReportTable {
+            );
+        }
+    }
+    let flows = frictional.iter().chain(&frictionless);
     let mut table = PROSE.table("flows", &[], flows.map(Flow::cells));
     let symbols = NUMBERS.iter().map(|(_, symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
-    table
+    draft.finding.tables.push(table);
+    draft.finding.paragraphs.push(PROSE.text("tubes", &[]));
+    draft.finding.paragraphs.push(PROSE.text(
+        "method",
+        &[
+            ("difference", &LEAST_DIFFERENCE),
+            ("ratio", &LEAST_RATIO),
+            ("errors", &CLEAR),
+        ],
+    ));
+    figures::profiles(&mut draft, elastic, prescribed)?;
+    let statistics = together(judged(&lines));
+    Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }

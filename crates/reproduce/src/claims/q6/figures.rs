@@ -2,19 +2,12 @@
 
 use peristalsis_figures::chart::{Corner, Note};
 
-use super::{PINNED, PRESET, PROSE, Point, Sampled, Samples};
+use super::{PINNED, PRESET, Point, Sampled, Samples};
 use crate::claims::elastic::label;
 use crate::claims::prelude::*;
 
 /// Where a wall without a tether stands on the logarithmic axis.
 const FREE_TETHER: f64 = 3e-4;
-
-/// All figures, the most important first.
-pub(super) fn all(results: &StudyResults, samples: &Samples<'_>) -> Result<Vec<ReportFigure>> {
-    let mut figures = vec![causes(samples)?];
-    figures.extend(balance(results, samples)?);
-    Ok(figures)
-}
 
 /// A value of some samples against one of what is varied; `None` where none has it.
 fn series<'a: 'b, 'b>(
@@ -30,7 +23,7 @@ fn series<'a: 'b, 'b>(
 }
 
 /// The flow against friction, tether and strain rate, and the forces of the wall against friction.
-fn causes(samples: &Samples<'_>) -> Result<ReportFigure> {
+pub(super) fn causes(draft: &mut Draft, samples: &Samples<'_>) -> Result<()> {
     let panel = |x: &str, y: &str| ChartPanel::new(x, y).with(Reference::horizontal(0.0));
     let flow_panel = |x: &str| panel(x, &label(Axis::FlowRateRatio));
     let flow = |one: &Sampled<'_>| Some(one.flow);
@@ -65,7 +58,7 @@ fn causes(samples: &Samples<'_>) -> Result<ReportFigure> {
     let of_wall = "force of the wall, 10^{3}*F*/*Yd*^{2}";
     let forces = panel(&label(Axis::StaticFriction), of_wall).with_all(numbered(forces));
     let panels = [friction, tether, rate, forces];
-    PROSE.chart(
+    draft.chart(
         "cause-of-back-flow",
         &[
             ("friction", &PRESET.friction),
@@ -77,7 +70,11 @@ fn causes(samples: &Samples<'_>) -> Result<ReportFigure> {
 }
 
 /// Radius, velocities and forces against the phase, with and without friction; `None` where no profile is at hand.
-fn balance(results: &StudyResults, samples: &Samples<'_>) -> Result<Option<ReportFigure>> {
+pub(super) fn balance(
+    draft: &mut Draft,
+    results: &StudyResults,
+    samples: &Samples<'_>,
+) -> Result<()> {
     let mut columns = Vec::new();
     for friction in [PRESET.friction, 0.0] {
         let Some(one) = samples.at(Point { friction, ..PRESET }) else {
@@ -88,7 +85,7 @@ fn balance(results: &StudyResults, samples: &Samples<'_>) -> Result<Option<Repor
         }
     }
     let Some([radius, ..]) = columns.first_mut() else {
-        return Ok(None);
+        return Ok(());
     };
     *radius = radius
         .clone()
@@ -99,7 +96,7 @@ fn balance(results: &StudyResults, samples: &Samples<'_>) -> Result<Option<Repor
         .panel_height(34.0)
         .share_x()
         .legend(LegendPlace::Below);
-    PROSE.chart("axial-balance", &[], chart).map(Some)
+    draft.chart("axial-balance", &[], chart)
 }
 
 /// Radius, velocities and forces against the phase of one run.

@@ -2,12 +2,12 @@
 
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
-use super::{Corner, PROSE, bottleneck};
+use super::{Corner, bottleneck};
 use crate::claims::elastic::label;
 use crate::claims::prelude::*;
 
 /// Flow against the measured bottleneck, a panel a corner.
-pub(super) fn figure(corners: &[Corner<'_>]) -> Result<ReportFigure> {
+pub(super) fn chart(corners: &[Corner<'_>]) -> ChartFigure {
     let widths = || {
         let points = corners.iter().flat_map(|corner| corner.flow.points());
         points.map(|point| bottleneck(point).value)
@@ -15,12 +15,11 @@ pub(super) fn figure(corners: &[Corner<'_>]) -> Result<ReportFigure> {
     let least = widths().fold(f64::INFINITY, f64::min);
     let largest = widths().fold(0.0, f64::max);
     let panels = corners.iter().map(|corner| panel(corner, least, largest));
-    let chart = ChartFigure::grid(2, panels)
+    ChartFigure::grid(2, panels)
         .width(Width::DoubleColumn)
         .share_x()
         .share_y()
-        .legend(LegendPlace::Below);
-    PROSE.chart("two-by-two", &[], chart)
+        .legend(LegendPlace::Below)
 }
 
 /// One corner, between the least and the largest bottleneck of all.

@@ -1,12 +1,11 @@
 //! The figure of Q8: flow and fluctuation in tubes of several lengths, and the loops of sweeps.
 
-use super::{AtRate, Ladder, Loop, PROSE};
+use super::{AtRate, Ladder, Loop};
 use crate::claims::elastic::label;
 use crate::claims::prelude::*;
-use crate::thresholds::PASSED;
 
 /// Flow and fluctuation against the force, a column a strain rate, and below the loops.
-pub(super) fn figure(rates: &[AtRate<'_, '_>]) -> Result<Option<ReportFigure>> {
+pub(super) fn panels(rates: &[AtRate<'_, '_>]) -> Vec<ChartPanel> {
     let mut panels = Vec::new();
     if rates.iter().any(|at| !at.ladders.is_empty()) {
         panels.extend(rates.iter().map(flow));
@@ -16,15 +15,7 @@ pub(super) fn figure(rates: &[AtRate<'_, '_>]) -> Result<Option<ReportFigure>> {
     if rates.iter().any(|at| at.loops.iter().any(has_passed)) {
         panels.extend(rates.iter().map(sweeps));
     }
-    if panels.is_empty() {
-        return Ok(None);
-    }
-    let chart = ChartFigure::grid(rates.len(), panels)
-        .width(Width::DoubleColumn)
-        .panel_height(36.0)
-        .legend(LegendPlace::Below);
-    let figure = PROSE.chart("small-speed", &[("passed", &PASSED)], chart)?;
-    Ok(Some(figure))
+    panels
 }
 
 fn title(at: &AtRate<'_, '_>) -> String {

@@ -1,6 +1,6 @@
 //! Figures of Q9: the characteristic curves of the pumps, and what acts on their walls.
 
-use super::{PROSE, Pump, WAVEFORMS, dispersion, efficiency};
+use super::{Pump, WAVEFORMS, dispersion, efficiency};
 use crate::claims::prelude::*;
 
 /// Loads at which the curves of a Newtonian fluid are drawn.
@@ -8,23 +8,15 @@ const LOADS: i32 = 100;
 /// Lowest flow that is drawn: grains that fall back go beyond.
 const LEAST_FLOW: f64 = -0.5;
 
-/// All figures, the most important first.
-pub(super) fn all(pumps: &[Pump<'_>]) -> Result<Vec<ReportFigure>> {
-    let mut figures = vec![characteristic(pumps)?];
-    figures.extend(on_the_wall(pumps)?);
-    Ok(figures)
-}
-
 /// Flow, efficiency and dispersion against the back pressure, a column a pump.
-fn characteristic(pumps: &[Pump<'_>]) -> Result<ReportFigure> {
+pub(super) fn characteristic(pumps: &[Pump<'_>]) -> ChartFigure {
     let panels = [flow_panel, efficiency_panel, dispersion_panel];
     let panels = panels.into_iter().flat_map(|panel| pumps.iter().map(panel));
-    let chart = ChartFigure::grid(pumps.len(), panels)
+    ChartFigure::grid(pumps.len(), panels)
         .width(Width::DoubleColumn)
         .panel_height(38.0)
         .share_x()
-        .legend(LegendPlace::Below);
-    PROSE.chart("pump-characteristic", &[], chart)
+        .legend(LegendPlace::Below)
 }
 
 fn flow_panel(pump: &Pump<'_>) -> ChartPanel {
@@ -114,7 +106,7 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>> {
 }
 
 /// Radius, pressure and shear against the phase of the wave, a column a pump; `None` where no profile is at hand.
-fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>> {
+pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
     let mut columns = Vec::new();
     for pump in pumps {
         let profiles = profiles(pump)?;
@@ -123,7 +115,7 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>> {
         }
     }
     if columns.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
     let mut panels = Vec::new();
     for (pump, profiles) in &columns {
@@ -144,7 +136,7 @@ fn on_the_wall(pumps: &[Pump<'_>]) -> Result<Option<ReportFigure>> {
         .panel_height(32.0)
         .share_x()
         .legend(LegendPlace::Below);
-    PROSE.chart("pump-wall", &[], chart).map(Some)
+    draft.chart("pump-wall", &[], chart)
 }
 
 /// A column of each profile against the phase, with bands where it has errors.

@@ -1,6 +1,5 @@
 //! The figure of S6: profiles of the flows that are compared.
 
-use super::PROSE;
 use crate::claims::elastic::{is_frictionless, label};
 use crate::claims::prelude::*;
 use crate::thresholds::UNJAMMED;
@@ -80,12 +79,13 @@ fn curves(elastic: &StudyResults, prescribed: &StudyResults) -> Result<Vec<Curve
 
 /// Profiles of one run of each flow; `None` where none is at hand.
 pub(super) fn profiles(
+    draft: &mut Draft,
     elastic: &StudyResults,
     prescribed: &StudyResults,
-) -> Result<Option<ReportFigure>> {
+) -> Result<()> {
     let curves = curves(elastic, prescribed)?;
     if curves.is_empty() {
-        return Ok(None);
+        return Ok(());
     }
     let panel = |label: &str| {
         ChartPanel::new("distance from the throat, *ζ*/*λ*", label).x_range(-0.5..=0.5)
@@ -109,5 +109,5 @@ pub(super) fn profiles(
     let chart = ChartFigure::grid(3, panels)
         .legend(LegendPlace::Below)
         .width(Width::DoubleColumn);
-    PROSE.chart("profiles", &[], chart).map(Some)
+    draft.chart("profiles", &[], chart)
 }

@@ -1,0 +1,81 @@
+//! A finding while it is written.
+
+use peristalsis_analysis::Uncertain;
+use peristalsis_figures::chart::ChartFigure;
+
+use crate::error::Result;
+use crate::finding::{Finding, Statistics, Verdict};
+use crate::prose::{Prose, Values};
+
+/// A finding while it is written, in the words of its claim.
+pub(crate) struct Draft {
+    prose: Prose,
+    /// What is written already.
+    pub(crate) finding: Finding,
+}
+
+impl Draft {
+    /// With the sections `method` and `weaknesses` of the text, as far as these ask for no value.
+    pub(crate) fn of(prose: Prose) -> Self {
+        let finding = Finding {
+            varied: "width",
+            paragraphs: prose.plain("method"),
+            weaknesses: prose.plain("weaknesses"),
+            ..Finding::default()
+        };
+        Self { prose, finding }
+    }
+
+    /// The same, with the parameter that is varied at each strain rate.
+    pub(crate) fn varying(mut self, varied: &'static str) -> Self {
+        self.finding.varied = varied;
+        self
+    }
+
+    /// Adds the number of a section `quantity: name`, where it is known.
+    pub(crate) fn quantity(
+        &mut self,
+        name: &str,
+        values: &Values<'_>,
+        ours: impl Into<Option<Uncertain>>,
+    ) {
+        let found = ours
+            .into()
+            .map(|ours| self.prose.quantity(name, values, ours));
+        self.finding.quantities.extend(found);
+    }
+
+    /// Adds the table of a section `table: name`.
+    pub(crate) fn table(
+        &mut self,
+        name: &str,
+        values: &Values<'_>,
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) {
+        let table = self.prose.table(name, values, rows);
+        self.finding.tables.push(table);
+    }
+
+    /// Adds the chart of a section `figure: name`.
+    pub(crate) fn chart(
+        &mut self,
+        name: &str,
+        values: &Values<'_>,
+        chart: ChartFigure,
+    ) -> Result<()> {
+        let figure = self.prose.chart(name, values, chart)?;
+        self.finding.figures.push(figure);
+        Ok(())
+    }
+
+    /// The finding with its verdict.
+    pub(crate) fn concluded(
+        self,
+        verdict: Verdict,
+        summary: String,
+        statistics: Statistics,
+        needed: &Statistics,
+    ) -> Finding {
+        self.finding.concluded(verdict, summary, statistics, needed)
+    }
+}
