@@ -43,98 +43,115 @@ pub(crate) fn collapse(
     slope: f64,
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
-    let mut critical = Vec::new();
-    let mut curves = Vec::new();
+    let mut curves = Curves::default();
     for (line, fit) in lattice.fitted() {
-        let critical_width = fit.critical_width;
-        let points: Vec<CurvePoint> = line
-            .ensembles
-            .iter()
-            .filter(|ensemble| ensemble.observed >= 3 * ensemble.censored && ensemble.observed > 2)
-            .filter(|ensemble| ensemble.width < fit.critical_width.value)
-            .filter(|ensemble| line.resolves(ensemble, RESOLVED))
-            .filter_map(|ensemble| {
-                let found =
-                    quantity(ensemble).filter(|found| found.value > 0.0 && found.error > 0.0)?;
+        let known = |one: &&WidthEnsemble| {
+            one.observed >= 3 * one.censored
+                && one.observed > 2
+                && one.width < fit.critical_width.value
+                && line.resolves(one, RESOLVED)
+        };
+        let points = line.ensembles.iter().filter(known);
+        let points = points.filter_map(|one| Some((one.width, quantity(one)?)));
+        curves.add(line.strain_rate, &fit.critical_width, slope, points);
+    }
+    curves.collapse(claimed, Some(claimed))
+}
+
+/// Curves of known critical widths.
+#[derive(Default)]
+pub(crate) struct Curves {
+    critical: Vec<f64>,
+    all: Vec<Curve>,
+}
+
+impl Curves {
+    /// Adds a quantity that goes about as (w_c - w)^-slope, where three positive points or more have an error.
+    pub(crate) fn add(
+        &mut self,
+        parameter: f64,
+        critical: &Uncertain,
+        slope: f64,
+        points: impl Iterator<Item = (f64, Uncertain)>,
+    ) {
+        let points: Vec<CurvePoint> = points
+            .filter(|(_, found)| found.value > 0.0 && found.error > 0.0)
+            .map(|(x, found)| {
                 // A critical width that is off by its error moves a point along the curve.
-                let steepness = slope * found.value / (critical_width.value - ensemble.width);
-                Some(CurvePoint {
-                    x: ensemble.width,
+                let steepness = slope * found.value / (critical.value - x);
+                let error = found.error.hypot(steepness * critical.error);
+                CurvePoint {
+                    x,
                     y: found.value,
-                    error: found.error.hypot(steepness * critical_width.error),
-                })
+                    error,
+                }
             })
             .collect();
         if points.len() >= 3 {
-            critical.push(fit.critical_width.value);
-            curves.push(Curve {
-                parameter: line.strain_rate,
-                points,
-            });
+            self.critical.push(critical.value);
+            self.all.push(Curve { parameter, points });
         }
     }
-    collapse_curves(critical, curves, claimed, Some(claimed))
-}
 
-/// Collapses curves of known critical widths, beginning the search at `start`; `None` where there are fewer than three.
-pub(crate) fn collapse_curves(
-    critical: Vec<f64>,
-    curves: Vec<Curve>,
-    start: [f64; 2],
-    claimed: Option<[f64; 2]>,
-) -> Option<Collapsed> {
-    if curves.len() < 3 {
-        return None;
+    /// Collapses them, beginning the search at `start`; `None` where there are fewer than three.
+    pub(crate) fn collapse(self, start: [f64; 2], claimed: Option<[f64; 2]>) -> Option<Collapsed> {
+        let Self {
+            critical,
+            all: curves,
+        } = self;
+        if curves.len() < 3 {
+            return None;
+        }
+        let scaling = Scaling::CriticalKnown(critical.clone());
+        let transform = |parameters: &[f64], curve: usize, parameter: f64, point: CurvePoint| {
+            scaling.apply(parameters, curve, parameter, point)
+        };
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &transform,
+            least_overlap: OVERLAP,
+        };
+        let fit = collapse.fit(&start, &STEPS, STARTS, SEED).ok()?;
+        let bootstrap = Bootstrap::new(RESAMPLES, SEED);
+        let left_out: Vec<(f64, Vec<f64>)> = collapse
+            .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
+            .map(|fits| {
+                curves
+                    .iter()
+                    .zip(fits)
+                    .map(|(curve, fit)| (curve.parameter, fit.parameters))
+                    .collect()
+            })
+            .unwrap_or_default();
+        // Curves that differ by more than their errors leave the exponents that much less certain.
+        let stretch = fit.quality.quality.max(1.0).sqrt();
+        let exponents = collapse
+            .bootstrap(&fit, &STEPS, bootstrap)
+            .ok()?
+            .estimates
+            .iter()
+            .enumerate()
+            .map(|(place, exponent)| {
+                let fits: Vec<f64> = left_out.iter().map(|(_, fit)| fit[place]).collect();
+                Uncertain::normal(
+                    exponent.value,
+                    (stretch * exponent.error).max(jackknife(&fits)),
+                )
+            })
+            .collect();
+        let claimed = claimed.map(|claimed| {
+            let quality = collapse.quality(&claimed).ok();
+            (claimed, quality.map(|found| (found.quality, found.overlap)))
+        });
+        Some(Collapsed {
+            critical,
+            claimed,
+            fit,
+            exponents,
+            left_out,
+            curves,
+        })
     }
-    let scaling = Scaling::CriticalKnown(critical.clone());
-    let transform = |parameters: &[f64], curve: usize, parameter: f64, point: CurvePoint| {
-        scaling.apply(parameters, curve, parameter, point)
-    };
-    let collapse = Collapse {
-        curves: &curves,
-        transform: &transform,
-        least_overlap: OVERLAP,
-    };
-    let fit = collapse.fit(&start, &STEPS, STARTS, SEED).ok()?;
-    let bootstrap = Bootstrap::new(RESAMPLES, SEED);
-    let left_out: Vec<(f64, Vec<f64>)> = collapse
-        .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
-        .map(|fits| {
-            curves
-                .iter()
-                .zip(fits)
-                .map(|(curve, fit)| (curve.parameter, fit.parameters))
-                .collect()
-        })
-        .unwrap_or_default();
-    // Curves that differ by more than their errors leave the exponents that much less certain.
-    let stretch = fit.quality.quality.max(1.0).sqrt();
-    let exponents = collapse
-        .bootstrap(&fit, &STEPS, bootstrap)
-        .ok()?
-        .estimates
-        .iter()
-        .enumerate()
-        .map(|(place, exponent)| {
-            let fits: Vec<f64> = left_out.iter().map(|(_, fit)| fit[place]).collect();
-            Uncertain::normal(
-                exponent.value,
-                (stretch * exponent.error).max(jackknife(&fits)),
-            )
-        })
-        .collect();
-    let claimed = claimed.map(|claimed| {
-        let quality = collapse.quality(&claimed).ok();
-        (claimed, quality.map(|found| (found.quality, found.overlap)))
-    });
-    Some(Collapsed {
-        critical,
-        claimed,
-        fit,
-        exponents,
-        left_out,
-        curves,
-    })
 }
 
 /// Standard error from estimates that leave out one of n curves each, [(n - 1)/n sum (t_i - mean)^2]^(1/2); 0 without any.

@@ -13,7 +13,9 @@ use crate::finding::{Quantity, Statistics};
 use crate::judgement::{Part, agrees};
 use crate::lattices::LATTICES;
 use crate::prose::Prose;
-use crate::row::{Row, Start, behind, by_strain_rate, escaped, grouped, longest};
+use crate::row::{
+    Row, Start, behind, by_strain_rate, escaped, grouped, longest, nearest_threshold,
+};
 use crate::thresholds::{MOST_ESCAPED, RESOLVED, WINDOW};
 
 /// The studies that [`OnLattice::all`] reads.
@@ -133,10 +135,7 @@ impl Thresholds {
             (Some(one), _) | (None, Some(one)) => one.1,
             (None, None) => 0.5,
         };
-        THRESHOLDS
-            .into_iter()
-            .min_by(|one, other| (one - wanted).abs().total_cmp(&(other - wanted).abs()))
-            .unwrap_or(0.5)
+        THRESHOLDS[nearest_threshold(wanted)]
     }
 }
 

@@ -25,6 +25,12 @@ pub(crate) fn cell_of<T>(value: Option<T>, text: impl Fn(T) -> String) -> String
     value.map_or(NONE.to_owned(), text)
 }
 
+/// Numbers in a row.
+pub(crate) fn listed(numbers: impl IntoIterator<Item = f64>) -> String {
+    let texts: Vec<String> = numbers.into_iter().map(|one| one.to_string()).collect();
+    texts.join(", ")
+}
+
 /// A probability; very small ones come from the tails of approximate distributions, and are called small.
 pub(crate) fn probability(value: f64) -> String {
     if value < 1e-3 {

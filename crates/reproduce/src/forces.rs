@@ -4,8 +4,9 @@ use peristalsis_analysis::Uncertain;
 use peristalsis_analysis::number::decimal as number;
 
 use crate::branch::{Branch, Branches, Control, Point, Step};
+use crate::exhibit::listed;
 use crate::finding::Statistics;
-use crate::row::{Row, Start, by_strain_rate, escaped, grouped};
+use crate::row::{Row, Start, ascending, by_strain_rate, escaped, grouped};
 use crate::thresholds::{
     CLEAR, FINEST, FOR_A_VERDICT_ON_FORCES, LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED, SPAN,
     STATIONARY_PERIODS,
@@ -56,10 +57,7 @@ pub(crate) fn leaking(rows: &[Row<'_>]) -> Vec<f64> {
     let leaks = escaped_at(rows)
         .into_iter()
         .filter(|(_, escaped)| *escaped > MOST_ESCAPED);
-    let mut forces: Vec<f64> = leaks.map(|(force, _)| force).collect();
-    forces.sort_by(f64::total_cmp);
-    forces.dedup();
-    forces
+    ascending(leaks.map(|(force, _)| force))
 }
 
 /// Largest fraction of grains outside, and the forces left out for that, in words.
@@ -68,8 +66,8 @@ pub(crate) fn outside(escaped: f64, left_out: &[f64]) -> String {
     if left_out.is_empty() {
         return escaped;
     }
-    let forces: Vec<String> = left_out.iter().map(f64::to_string).collect();
-    format!("{escaped} (left out: {})", forces.join(", "))
+    let forces = listed(left_out.iter().copied());
+    format!("{escaped} (left out: {forces})")
 }
 
 /// Number of runs that count for a verdict.

@@ -110,6 +110,14 @@ fn threshold_column(place: usize) -> String {
     format!("transition_time_{}", 10 * (place + 1))
 }
 
+/// Place of the one of [`THRESHOLDS`] that is nearest.
+pub(crate) fn nearest_threshold(wanted: f64) -> usize {
+    let distance = |place: &usize| (THRESHOLDS[*place] - wanted).abs();
+    (0..THRESHOLDS.len())
+        .min_by(|one, other| distance(one).total_cmp(&distance(other)))
+        .unwrap_or(0)
+}
+
 impl<'a> Row<'a> {
     /// A number; NaN where the column is missing or holds no numbers.
     pub(crate) fn number(&self, column: &str) -> f64 {
@@ -228,15 +236,7 @@ impl<'a> Row<'a> {
 
     /// The transition at another threshold, the nearest of [`THRESHOLDS`].
     pub(crate) fn transition_at(&self, threshold: f64) -> Transition {
-        let place = THRESHOLDS
-            .iter()
-            .enumerate()
-            .min_by(|(_, one), (_, other)| {
-                (*one - threshold)
-                    .abs()
-                    .total_cmp(&(*other - threshold).abs())
-            })
-            .map_or(0, |(place, _)| place);
+        let place = nearest_threshold(threshold);
         self.transition_of(self.number(&threshold_column(place)))
     }
 
@@ -279,6 +279,14 @@ pub(crate) fn by_strain_rate<'a>(
 pub(crate) fn escaped<'a>(rows: &[Row<'a>]) -> f64 {
     let sum: f64 = rows.iter().map(Row::escaped_fraction).sum();
     sum / rows.len() as f64
+}
+
+/// Numbers, each once, ascending.
+pub(crate) fn ascending(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut numbers: Vec<f64> = numbers.collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers.dedup();
+    numbers
 }
 
 /// Longest time that a run was given, in whole periods.

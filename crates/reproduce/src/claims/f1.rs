@@ -12,22 +12,21 @@ const STUDIES: &[&str] = &["flow-in-time", "branches-fine", "branches-coarse"];
 pub(super) const CLAIM: Claim = Claim::new("F1", PROSE, STUDIES, examine);
 
 /// What the branch from rest of one lattice at one strain rate says.
-struct Kind {
+struct Kind<'a> {
     lattice: Lattice,
     strain_rate: f64,
-    statistics: Statistics,
+    runs: usize,
+    branch: Branch<'a>,
     /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
     slow: f64,
     fast: f64,
     /// J/Jmax just beyond the jump, and [`BELOW_THE_JUMP`].
     slow_flow: Uncertain,
     fast_flow: Uncertain,
-    escaped: f64,
-    jumps: bool,
 }
 
-impl AtRate<'_> for Kind {
-    fn of(lattice: Lattice, strain_rate: f64, mut rows: Vec<Row<'_>>) -> Option<Self> {
+impl<'a> AtRate<'a> for Kind<'a> {
+    fn of(lattice: Lattice, strain_rate: f64, mut rows: Vec<Row<'a>>) -> Option<Self> {
         rows.retain(|row| row.start() == Start::Rest);
         let branch = Branch::of(&rows, Start::Rest, Control::Width);
         let [before, after] = branch.step()?.controls;
@@ -41,35 +40,31 @@ impl AtRate<'_> for Kind {
             side.clone().filter(right).count() as f64 / side.count().max(1) as f64
         };
         let mut points = branch.points.iter();
-        let fast = points
-            .clone()
-            .rfind(|point| point.control <= before - BELOW_THE_JUMP)?;
-        let slow = points.find(|point| point.control >= after)?;
+        let is_below = |point: &&Point<'_>| point.control <= before - BELOW_THE_JUMP;
         Some(Self {
             lattice,
             strain_rate,
-            statistics: branch.statistics(rows.len()),
+            runs: rows.len(),
             slow: fraction(true),
             fast: fraction(false),
-            slow_flow: slow.flow,
-            fast_flow: fast.flow,
-            escaped: branch.escaped(),
-            jumps: branch.jumps(),
+            fast_flow: points.clone().rfind(is_below)?.flow,
+            slow_flow: points.find(|point| point.control >= after)?.flow,
+            branch,
         })
     }
 
     fn escaped(&self) -> f64 {
-        self.escaped
+        self.branch.escaped()
     }
 
     fn statistics(&self) -> Statistics {
-        self.statistics
+        self.branch.statistics(self.runs)
     }
 }
 
-impl Kind {
+impl Kind<'_> {
     fn holds(&self) -> bool {
-        self.jumps
+        self.branch.jumps()
             && self.slow >= NEARLY_ALL
             && self.fast >= NEARLY_ALL
             && self.slow_flow.value < SLOW
@@ -84,14 +79,14 @@ impl Kind {
             number(self.fast, 2),
             self.slow_flow.to_string(),
             self.fast_flow.to_string(),
-            number(self.escaped, 2),
+            number(self.escaped(), 2),
         ]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let both = Shown::<Kind>::on_both(evidence)?;
+    let both = Shown::<Kind<'_>>::on_both(evidence)?;
     let (mut parts, mut counts) = (Vec::new(), Vec::new());
     for one in &both {
         let holding = one.tight().filter(|kind| kind.holds()).count();

@@ -1,12 +1,11 @@
 //! F5: the fluctuation of the flow rate across an ensemble.
 
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Curve as Scaled, CurvePoint, Interval, Law, MomentPeak, fit_law,
-    second_moment, second_moment_peak,
+    AfterEnd, Bootstrap, Interval, Law, MomentPeak, fit_law, second_moment, second_moment_peak,
 };
 
 use super::prelude::*;
-use crate::collapse::{Collapsed, chart, collapse_curves};
+use crate::collapse::{Collapsed, Curves, chart};
 use crate::thresholds::{
     BOUNDED_MOMENT, LEAST_ERROR_OF_A_MOMENT, LEAST_RUNS_OF_A_MOMENT, SAME_CURVE,
 };
@@ -213,31 +212,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 
 /// Collapse of the rising sides of the peaks of all strain rates, with free exponents.
 fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
-    let (mut critical, mut curves) = (Vec::new(), Vec::new());
-    let known = |line| Some((line, Line::critical_width(line)?));
-    for (line, width) in lines.iter().filter_map(known) {
-        let points: Vec<CurvePoint> = line
-            .rising()
-            .filter(|(_, height)| height.value > 0.0)
-            .map(|(x, height)| {
-                let steepness = height.value / (width.value - x);
+    let mut curves = Curves::default();
+    for line in lines {
+        if let Some(width) = line.critical_width() {
+            let rising = line.rising().map(|(x, height)| {
                 let error = height.error.max(LEAST_ERROR_OF_A_MOMENT);
-                CurvePoint {
-                    x,
-                    y: height.value,
-                    error: error.hypot(steepness * width.error),
-                }
-            })
-            .collect();
-        if points.len() > 2 {
-            critical.push(width.value);
-            curves.push(Scaled {
-                parameter: line.strain_rate,
-                points,
+                (x, Uncertain::normal(height.value, error))
             });
+            curves.add(line.strain_rate, &width, 1.0, rising);
         }
     }
-    collapse_curves(critical, curves, [0.0, 1.0], None)
+    curves.collapse([0.0, 1.0], None)
 }
 
 fn against_width(lines: &[Line]) -> ChartFigure {

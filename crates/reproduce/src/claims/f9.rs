@@ -1,6 +1,8 @@
 //! F9: hysteresis.
 
-use peristalsis_analysis::{Family, Transition, fit_lifetime, hysteresis, mean_and_error};
+use peristalsis_analysis::{
+    Family, Hysteresis, Transition, fit_lifetime, hysteresis, mean_and_error,
+};
 
 use super::prelude::*;
 use crate::thresholds::{CLEAR_LOOP, ONE_WIDTH_BY_CHANCE};
@@ -15,12 +17,10 @@ struct Loop<'a> {
     lattice: Lattice,
     strain_rate: f64,
     flow: Branches<'a>,
-    /// w_c, w_c' and their distance; w_c' may lie beyond all widths.
-    critical: Option<Uncertain>,
-    critical_jammed: Option<Uncertain>,
-    distance: Option<Uncertain>,
-    /// Probability of such runs if both starts had one critical width.
-    probability: Option<f64>,
+    /// w_c, where no loop is found from the branch alone.
+    critical: Uncertain,
+    /// Where both starts pass from one flow to the other at some width.
+    found: Option<Hysteresis>,
     /// Lower bound of the distance where the jam outlives every width.
     at_least: Option<f64>,
     runs: usize,
@@ -42,14 +42,13 @@ impl<'a> AtRate<'a> for Loop<'a> {
         let found = hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)).ok();
         let outlives = found.is_none() && jammed.1.iter().all(|jammed| *jammed);
         let largest = jammed.0.iter().copied().fold(0.0, f64::max);
-        let found = found.as_ref();
         Some(Self {
             lattice,
             strain_rate,
-            critical: found.map_or(Some(fall.place()), |found| Some(found.from_rest.width)),
-            critical_jammed: found.map(|found| found.from_jammed.width),
-            distance: found.map(|found| found.loop_width),
-            probability: found.map(|found| found.probability),
+            critical: found
+                .as_ref()
+                .map_or(fall.place(), |found| found.from_rest.width),
+            found,
             at_least: outlives.then_some(largest - fall.controls[1]),
             runs: rows.len(),
             flow,
@@ -72,11 +71,20 @@ impl<'a> AtRate<'a> for Loop<'a> {
 impl Loop<'_> {
     /// Whether jams break up at some width, beyond that at which grains from rest begin to jam.
     fn closes(&self) -> bool {
-        self.distance
-            .is_some_and(|distance| distance.value > CLEAR_LOOP * distance.error)
-            && self
-                .probability
-                .is_some_and(|probability| probability < ONE_WIDTH_BY_CHANCE)
+        self.found.as_ref().is_some_and(|found| {
+            found.loop_width.value > CLEAR_LOOP * found.loop_width.error
+                && found.probability < ONE_WIDTH_BY_CHANCE
+        })
+    }
+
+    /// The distance of w_c and w_c'.
+    fn distance(&self) -> Option<Uncertain> {
+        self.found.as_ref().map(|found| found.loop_width)
+    }
+
+    /// w_c', which may lie beyond all widths.
+    fn critical_jammed(&self) -> Option<Uncertain> {
+        self.found.as_ref().map(|found| found.from_jammed.width)
     }
 
     /// Whether both flows exist at some width, jams that outlive all runs included.
@@ -95,9 +103,9 @@ impl Loop<'_> {
         vec![
             self.lattice.name(),
             number(self.strain_rate, 3),
-            cell(self.critical),
-            bound(self.critical_jammed, &|_| "> 3".to_owned()),
-            bound(self.distance, &|least| format!("> {}", number(least, 2))),
+            self.critical.to_string(),
+            bound(self.critical_jammed(), &|_| "> 3".to_owned()),
+            bound(self.distance(), &|least| format!("> {}", number(least, 2))),
             number(self.escaped(), 2),
         ]
     }
@@ -141,7 +149,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity(
             "loop",
             &[("lattice", &one.lattice.name()), ("rate", &one.strain_rate)],
-            one.distance,
+            one.distance(),
         );
     }
     draft.table("loops", &[], loops().map(Loop::row));
@@ -190,18 +198,17 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
 
 /// The widest closed loop of a lattice, or the first that does not close.
 fn widest(loops: &[Loop<'_>]) -> Option<ChartPanel> {
-    let width = |one: &Loop<'_>| one.distance.map_or(0.0, |distance| distance.value);
+    let width = |one: &Loop<'_>| one.distance().map_or(0.0, |distance| distance.value);
     let widest = loops
         .iter()
-        .filter(|one| one.distance.is_some())
+        .filter(|one| one.distance().is_some())
         .max_by(|one, other| width(one).total_cmp(&width(other)));
     let one = widest.or_else(|| loops.iter().find(|one| one.at_least.is_some()))?;
     let lattice = one.lattice.name();
     let mut panel = flow_panel().title(&format!("{lattice} lattice, *ε̇* = {}", one.strain_rate));
-    if let (Some(rest), Some(jammed)) = (one.critical, one.critical_jammed)
-        && jammed.value > rest.value
-    {
-        panel = panel.with(Window::new("both states", rest.value, jammed.value));
+    let (rest, jammed) = (one.critical.value, one.critical_jammed());
+    if let Some(jammed) = jammed.filter(|jammed| jammed.value > rest) {
+        panel = panel.with(Window::new("both states", rest, jammed.value));
     }
     Some(panel.with_all(both_starts(&one.flow).into_iter().flatten()))
 }

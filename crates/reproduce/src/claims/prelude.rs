@@ -16,7 +16,7 @@ pub(super) use crate::error::Result;
 pub(super) use crate::evidence::{Evidence, StudyResults, first_kept};
 pub(super) use crate::exhibit::{
     NONE, both_starts, branch_points, cell, cell_of, coloured, colours, course, ends, error_band,
-    flow_panel, fluid, joined, label, numbered, panel, points, rate_colours, spaced,
+    flow_panel, fluid, joined, label, listed, numbered, panel, points, rate_colours, spaced,
 };
 pub(super) use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};
 pub(super) use crate::forces::ForceLine;
@@ -24,5 +24,5 @@ pub(super) use crate::judgement::{Part, agrees, all_hold, best, judge};
 pub(super) use crate::lattices::{AtRate, Shown};
 pub(super) use crate::prose::Prose;
 pub(super) use crate::row::{
-    Lattice, Row, Start, behind, by_strain_rate, grouped, longest, mean, mean_of,
+    Lattice, Row, Start, ascending, behind, by_strain_rate, grouped, longest, mean, mean_of,
 };

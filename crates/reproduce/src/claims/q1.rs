@@ -133,8 +133,7 @@ fn in_words(lattice: &str, lines: &[&Line]) -> String {
         },
     );
     let steady = lines.iter().filter(|line| !line.jumps);
-    let steady: Vec<String> = steady.map(|line| line.strain_rate.to_string()).collect();
-    let steady = match &*steady.join(", ") {
+    let steady = match &*listed(steady.map(|line| line.strain_rate)) {
         "" => String::new(),
         rates => format!(" {}", PROSE.text("steady", &[("rates", &rates)])),
     };

@@ -41,7 +41,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let mut summary = PROSE.text(
         "summary",
-        &[("jumping", &listed(&jumping)), ("smooth", &listed(&smooth))],
+        &[
+            ("jumping", &in_words(jumping)),
+            ("smooth", &in_words(smooth)),
+        ],
     );
     if let Some(rate) = vanishing {
         let (lower, upper) = (rate.interval_95.lower, rate.interval_95.upper);
@@ -77,12 +80,11 @@ fn vanishing(jumping: &[f64], smooth: &[f64]) -> Option<Uncertain> {
 }
 
 /// Strain rates in words.
-fn listed(rates: &[f64]) -> String {
-    if rates.is_empty() {
-        return "no strain rate".to_owned();
+fn in_words(rates: Vec<f64>) -> String {
+    match &*listed(rates) {
+        "" => "no strain rate".to_owned(),
+        rates => format!("*ε̇* = {rates}"),
     }
-    let texts: Vec<String> = rates.iter().map(f64::to_string).collect();
-    format!("*ε̇* = {}", texts.join(", "))
 }
 
 /// J/Jmax of all stationary runs of a line.

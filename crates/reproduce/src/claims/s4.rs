@@ -37,10 +37,7 @@ pub(super) fn negative(line: &ForceLine<'_>) -> Vec<f64> {
 
 /// All forces of a line, ascending.
 fn forces(line: &ForceLine<'_>) -> Vec<f64> {
-    let mut forces: Vec<f64> = line.flow.points().map(|point| point.control).collect();
-    forces.sort_by(f64::total_cmp);
-    forces.dedup();
-    forces
+    ascending(line.flow.points().map(|point| point.control))
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
@@ -92,11 +89,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 
 /// The strain rates of some lines in words.
 fn rates(lines: &[&ForceLine<'_>]) -> String {
-    let rates: Vec<String> = lines
-        .iter()
-        .map(|line| line.strain_rate.to_string())
-        .collect();
-    rates.join(", ")
+    listed(lines.iter().map(|line| line.strain_rate))
 }
 
 /// Where the flow is negative.

@@ -118,18 +118,17 @@ pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
         return Ok(());
     }
     let mut panels = Vec::new();
-    for (pump, profiles) in &columns {
-        let panel = ChartPanel::new("", "radius, *R*/*d*").title(pump.model.name);
-        panels.push(with_profiles(panel, profiles, "radius")?);
-    }
-    for (pump, profiles) in &columns {
-        let panel = ChartPanel::new("", &format!("pressure, *p*{}", pump.model.per_unit));
-        panels.push(with_profiles(panel, profiles, "wall_pressure")?);
-    }
-    for (pump, profiles) in &columns {
-        let y_label = format!("shear, *τ*{}", pump.model.per_unit);
-        let panel = ChartPanel::new(&label(Axis::Phase), &y_label).with(Reference::horizontal(0.0));
-        panels.push(with_profiles(panel, profiles, "wall_shear")?);
+    for column in ["radius", "wall_pressure", "wall_shear"] {
+        for (pump, profiles) in &columns {
+            let unit = pump.model.per_unit;
+            let panel = match column {
+                "radius" => ChartPanel::new("", "radius, *R*/*d*").title(pump.model.name),
+                "wall_pressure" => ChartPanel::new("", &format!("pressure, *p*{unit}")),
+                _ => ChartPanel::new(&label(Axis::Phase), &format!("shear, *τ*{unit}"))
+                    .with(Reference::horizontal(0.0)),
+            };
+            panels.push(with_profiles(panel, profiles, column)?);
+        }
     }
     let chart = ChartFigure::grid(columns.len(), panels)
         .width(Width::DoubleColumn)
