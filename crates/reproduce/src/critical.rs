@@ -12,7 +12,7 @@ use crate::evidence::Evidence;
 use crate::finding::{Quantity, Statistics};
 use crate::judgement::{Part, agrees};
 use crate::lattices::LATTICES;
-use crate::prose::Prose;
+use crate::prose::{Prose, values};
 use crate::row::{
     Row, Start, behind, by_strain_rate, escaped, grouped, longest, nearest_threshold,
 };
@@ -376,17 +376,10 @@ impl Exponent {
     ) -> Self {
         let mean = weighted_mean(exponents);
         let name = &lattice.name;
-        let words = |mean| prose.text("mean", &[("mean", &mean), ("lattice", name)]);
+        let words = |mean| prose.text("mean", values!(mean, lattice = name));
         let quantity = |mean| {
-            let found = prose.quantity(
-                "exponent",
-                &[
-                    ("lattice", name),
-                    ("rates", &exponents.len()),
-                    ("window", &WINDOW),
-                ],
-                mean,
-            );
+            let (lattice, rates, window) = (name, exponents.len(), WINDOW);
+            let found = prose.quantity("exponent", values!(lattice, rates, window), mean);
             found.sourced(source)
         };
         Self {

@@ -68,6 +68,18 @@ impl Draft {
         Ok(())
     }
 
+    /// Adds a section to the paragraphs.
+    pub(crate) fn paragraph(&mut self, section: &str, values: &Values<'_>) {
+        let text = self.prose.text(section, values);
+        self.finding.paragraphs.push(text);
+    }
+
+    /// Adds a section to the weaknesses.
+    pub(crate) fn weakness(&mut self, section: &str, values: &Values<'_>) {
+        let text = self.prose.text(section, values);
+        self.finding.weaknesses.push(text);
+    }
+
     /// The finding with its verdict.
     pub(crate) fn concluded(
         self,

@@ -47,6 +47,14 @@ use crate::finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics};
 /// Values for placeholders by name.
 pub(crate) type Values<'a> = [(&'a str, &'a dyn Display)];
 
+/// [`Values`] from variables of the same names, or from expressions: `values!(rate, width = line.width)`.
+macro_rules! values {
+    (of $name:ident) => { (stringify!($name), &$name as &dyn std::fmt::Display) };
+    (of $name:ident = $value:expr) => { (stringify!($name), &$value as &dyn std::fmt::Display) };
+    ($($name:ident $(= $value:expr)?),+) => { &[$(values!(of $name $(= $value)?)),+] };
+}
+pub(crate) use values;
+
 /// The text of a claim.
 #[derive(Clone, Copy, Debug)]
 pub struct Prose {
@@ -298,17 +306,26 @@ mod tests {
     /// The names of the values in the code of a call, from its opening bracket on.
     fn values(call: &str) -> Vec<&str> {
         let mut depth = 0;
-        let end = call.find(|c| {
+        let mut closes = |c| {
             depth += i32::from(c == '(') - i32::from(c == ')');
             depth == 0
+        };
+        let call = &call[..call.find(&mut closes).unwrap_or(call.len())];
+        let Some((_, values)) = call.split_once("values!(") else {
+            return Vec::new();
+        };
+        // Commas within brackets and texts part no values.
+        let mut depth = 0;
+        let mut is_text = false;
+        let parts = values.split(|c| {
+            is_text ^= c == '"';
+            depth += i32::from("([".contains(c)) - i32::from(")]".contains(c));
+            c == ',' && depth == 0 && !is_text || depth < 0
         });
-        let call = &call[..end.unwrap_or(call.len())];
-        call.match_indices("(\"")
-            .skip(usize::from(call.starts_with("(\"")))
-            .filter(|(at, _)| {
-                !call[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '!')
-            })
-            .filter_map(|(at, _)| call[at + 2..].split_once("\",").map(|(name, _)| name))
+        let name = |part: &'_ str| part.split(['=', ')']).next().map(str::trim);
+        parts
+            .filter_map(name)
+            .filter(|name| !name.is_empty())
             .collect()
     }
 
@@ -327,6 +344,8 @@ mod tests {
             for (method, kind) in [
                 ("text", ""),
                 ("paragraphs", ""),
+                ("paragraph", ""),
+                ("weakness", ""),
                 ("table", "table: "),
                 ("figure", "figure: "),
                 ("chart", "figure: "),

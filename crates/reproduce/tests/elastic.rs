@@ -8,7 +8,7 @@ mod rows;
 use peristalsis_reproduce::{Evidence, Finding, STUDIES, Size, Start, Statistics, Verdict};
 use peristalsis_study::{Plan, Specification};
 
-use rows::{Rows, evidence, examine, value};
+use rows::{Rows, assert_says, evidence, examine, value};
 
 /// An elastic tube whose flow follows a given law.
 #[derive(Clone, Copy)]
@@ -418,7 +418,7 @@ fn numbers_of_back_flow_and_of_unjammed_flows_are_those_of_the_law() {
     }
     // Where both flows exist the slow one counts.
     let finding = find("S4", SOURCE);
-    assert!(finding.summary.contains("0.005"), "{}", finding.summary);
+    assert_says(&finding.summary, "0.005");
 }
 
 #[test]
@@ -517,13 +517,12 @@ fn settings_are_named_and_counted() {
         "S4 in 3 of 4",
         "S5 in 4 of 4",
     ] {
-        assert!(finding.summary.contains(said), "{}", finding.summary);
+        assert_says(&finding.summary, said);
     }
     assert_eq!(finding.verdict, Verdict::Open);
     // A leak at one force leaves that force out, not the setting.
     let leaking = of(&settings(200.0));
-    let summary = &leaking.summary;
-    assert!(summary.contains("4 hold their grains"), "{summary}");
+    assert_says(&leaking.summary, "4 hold their grains");
     assert!(cells(&leaking, 5)[0].ends_with("(left out: 0.0065)"));
     // With enough settings there is an answer.
     let mut rows = settings(0.0);

@@ -7,7 +7,7 @@ mod rows;
 
 use peristalsis_reproduce::{Finding, Verdict};
 
-use rows::{Rows, evidence, value};
+use rows::{Rows, assert_says, assert_verdict, evidence, value};
 
 /// Numbers that every run here has.
 const TUBE: [(&str, f64); 6] = [
@@ -66,38 +66,17 @@ fn back_flow(flow: impl Fn(f64, f64) -> f64, replicates: i32) -> Rows {
 fn back_flow_is_traced_to_friction_or_to_the_wall() {
     let by_friction = back_flow(|friction, _| if friction > 0.15 { -0.05 } else { 0.3 }, 3);
     let finding = examine("Q6", &[("back-flow", &by_friction)]);
-    assert_eq!(
-        finding.verdict,
-        Verdict::Answered,
-        "{:?}",
-        finding.statistics
-    );
-    assert!(
-        finding.summary.contains("Friction is needed"),
-        "{}",
-        finding.summary
-    );
-    assert!(
-        finding.summary.contains("need not move"),
-        "{}",
-        finding.summary
-    );
+    assert_verdict(&finding, Verdict::Answered);
+    assert_says(&finding.summary, "Friction is needed");
+    assert_says(&finding.summary, "need not move");
     assert!((value(&finding, "without friction") - 0.3).abs() < 1e-9);
     // Friction -2.6, of which -3.9 in the front: what is left for the rear is 1.3.
-    assert!(
-        finding.paragraphs[0].contains("1.30"),
-        "{}",
-        finding.paragraphs[0]
-    );
+    assert_says(&finding.paragraphs[0], "1.30");
     assert!(!finding.figures.is_empty());
 
     let by_the_wall = back_flow(|_, tether| if tether < 1.0 { -0.05 } else { 0.1 }, 3);
     let finding = examine("Q6", &[("back-flow", &by_the_wall)]);
-    assert!(
-        finding.summary.contains("Friction is not needed"),
-        "{}",
-        finding.summary
-    );
+    assert_says(&finding.summary, "Friction is not needed");
     assert!(
         !finding.summary.contains("need not move"),
         "{}",
@@ -158,23 +137,18 @@ fn each_corner_is_told_by_what_it_does() {
             ("two-by-two-stress", &stress),
         ],
     );
-    assert_eq!(
-        finding.verdict,
-        Verdict::Answered,
-        "{:?}",
-        finding.statistics
-    );
+    assert_verdict(&finding, Verdict::Answered);
     for part in [
         "A fast flow is seen everywhere",
         "by the start, are seen in the elastic wall only, whatever the grains",
         "Back flow is seen in 1 of 4 corners: frictional grains, prescribed wall",
     ] {
-        assert!(finding.summary.contains(part), "{}", finding.summary);
+        assert_says(&finding.summary, part);
     }
     let gap = value(&finding, "two starts, frictional grains, elastic");
     assert!((gap - 0.8).abs() < 1e-9, "{gap}");
     let open = examine("Q7", &[("two-by-two-strain", &strain)]);
-    assert_eq!(open.verdict, Verdict::Open);
+    assert_verdict(&open, Verdict::Open);
 }
 
 /// Ladders of forces in three lengths at two strain rates; `variance(waves)` at the largest.
@@ -242,12 +216,7 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
             ),
         ],
     );
-    assert_eq!(
-        finding.verdict,
-        Verdict::Answered,
-        "{:?}",
-        finding.statistics
-    );
+    assert_verdict(&finding, Verdict::Answered);
     assert!(value(&finding, size_exponent).abs() < 1e-9);
     assert!((value(&finding, loop_exponent) + 1.0).abs() < 1e-6);
     assert!((value(&finding, "strain rate 0.001, 8 waves") - 0.7).abs() < 1e-9);
@@ -262,15 +231,15 @@ fn lengths_and_sweeps_tell_a_jump_from_a_continuous_rise() {
     );
     assert!((value(&finding, size_exponent) - 1.0).abs() < 1e-9);
     assert!(value(&finding, loop_exponent).abs() < 1e-9);
-    assert!(finding.summary.contains("1.0 ± "), "{}", finding.summary);
+    assert_says(&finding.summary, "1.0 ± ");
     // Without sweeps the question stays open.
     let alone = examine("Q8", &[("small-speed-size", &ladders(|_| 0.02))]);
-    assert_eq!(alone.verdict, Verdict::Open);
+    assert_verdict(&alone, Verdict::Open);
     // So it does without lengths, but the sweeps are told and drawn; and with a fluctuation that is not known.
     let (up, down) = (sweeps(2.0, 7.0, |_| 5.0), sweeps(7.0, 2.0, |_| 4.0));
     let swept = examine("Q8", &[("sweep-up", &up), ("sweep-down", &down)]);
-    assert_eq!(swept.verdict, Verdict::Open);
-    assert!(swept.summary.contains("1.0 ± "), "{}", swept.summary);
+    assert_verdict(&swept, Verdict::Open);
+    assert_says(&swept.summary, "1.0 ± ");
     assert_eq!((swept.figures.len(), swept.tables.len()), (1, 1));
     let drifting = ladders(|_| f64::NAN);
     let drifting = examine("Q8", &[("small-speed-size", &drifting), ("sweep-up", &up)]);
@@ -323,12 +292,7 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
             ("pumping-frictional", &other),
         ],
     );
-    assert_eq!(
-        finding.verdict,
-        Verdict::Answered,
-        "{:?}",
-        finding.statistics
-    );
+    assert_verdict(&finding, Verdict::Answered);
     let stop = finding
         .quantities
         .iter()
@@ -347,7 +311,7 @@ fn a_pump_is_known_by_where_it_stops_and_what_it_costs() {
     assert!(row[8].starts_with("0.05"), "{row:?}");
     assert_eq!(finding.tables[0].rows.len(), 4);
     let alone = examine("Q9", &[("pumping-frictionless", &one)]);
-    assert_eq!(alone.verdict, Verdict::Open);
+    assert_verdict(&alone, Verdict::Open);
 }
 
 /// What a reproduction has that was stopped early.
@@ -435,13 +399,13 @@ fn the_method_is_judged_by_smaller_steps_and_other_integrators() {
         _ => 2.795,
     });
     let finding = examine("Q11", &[("method-fine", &rows), ("method-coarse", &rows)]);
-    assert_eq!(finding.verdict, Verdict::Answered, "{}", finding.summary);
+    assert_verdict(&finding, Verdict::Answered);
     let usual = value(&finding, "fine lattice, Verlet, step 0.05, skin 0.3");
     let coarse_step = value(&finding, "fine lattice, Verlet, step 0.1,");
     let other = value(&finding, "coarse lattice, Adams-Bashforth");
     assert!((usual - 2.795).abs() < 0.006 && (coarse_step - 2.755).abs() < 0.006);
     assert!((other - 2.815).abs() < 0.006);
     // The step of 0.1 is not one to trust more; the other integrator moves by 0.02.
-    assert!(finding.summary.contains("0.020 ±"), "{}", finding.summary);
+    assert_says(&finding.summary, "0.020 ±");
     assert_eq!(finding.tables[0].rows.len(), 10);
 }

@@ -8,7 +8,7 @@ mod rows;
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Lattice, STUDIES, Size, Start, Verdict};
 use peristalsis_study::Specification;
 
-use rows::{Rows, examine, value};
+use rows::{Rows, assert_verdict, examine, value};
 
 /// A tube whose transition times and branches follow given laws.
 #[derive(Clone, Copy)]
@@ -183,36 +183,35 @@ fn every_study_file_is_valid_and_named_for_itself() {
 /// Each claim on a tube that does as the source says, and on one that does not.
 #[test]
 fn verdicts_follow_the_law_of_the_tube() {
-    let other = |id| match id {
-        "F1" => Tube {
-            jump: 0.4,
-            ..SOURCE
-        },
-        "F2" => Tube {
-            alpha: 2.0,
-            ..SOURCE
-        },
-        "F6" => Tube {
-            jump: 0.0,
-            ..SOURCE
-        },
-        "F7" => Tube {
-            slope: 2.0,
-            ..SOURCE
-        },
-        _ => Tube {
-            hysteresis: 0.0,
-            ..SOURCE
-        },
+    let other = |id| {
+        let mut tube = SOURCE;
+        match id {
+            "F1" => tube.jump = 0.4,
+            "F2" => tube.alpha = 2.0,
+            "F6" => tube.jump = 0.0,
+            "F7" => tube.slope = 2.0,
+            _ => tube.hysteresis = 0.0,
+        }
+        tube
     };
     for id in ["F1", "F2", "F6", "F7", "F9"] {
         let as_said = find(id, SOURCE);
-        assert_eq!(as_said.verdict, Verdict::Reproduced, "{}", as_said.summary);
+        assert_eq!(
+            as_said.verdict,
+            Verdict::Reproduced,
+            "{id}: {}",
+            as_said.summary
+        );
         let differs = find(id, other(id));
-        assert_eq!(differs.verdict, Verdict::Differs, "{}", differs.summary);
+        assert_eq!(
+            differs.verdict,
+            Verdict::Differs,
+            "{id}: {}",
+            differs.summary
+        );
     }
     let scatter = find("F4", SOURCE);
-    assert_eq!(scatter.verdict, Verdict::Reproduced, "{}", scatter.summary);
+    assert_verdict(&scatter, Verdict::Reproduced);
     let steeper = find("F2", other("F2"));
     assert!((value(&steeper, "fine lattice") - 2.0).abs() < 0.2);
 }

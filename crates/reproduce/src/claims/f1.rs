@@ -91,39 +91,26 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for one in &both {
         let holding = one.tight().filter(|kind| kind.holds()).count();
         let all = one.tight().count();
-        counts.push(PROSE.text(
-            "count",
-            &[("holding", &holding), ("all", &all), ("lattice", &one.name)],
-        ));
+        counts.push(PROSE.text("count", values!(holding, all, lattice = one.name)));
         parts.push(one.part(holding == all));
     }
     let (verdict, statistics, why) = judge(&parts, &needed);
     if both.iter().all(|one| one.all.is_empty()) {
         return Ok(PROSE.nothing(statistics, &needed));
     }
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("slow", &SLOW),
-            ("below", &BELOW_THE_JUMP),
-            ("near", &NEAR_ONE),
-            ("counts", &counts.join(" and ")),
-            ("why", &why),
-        ],
-    );
+    let (slow, below, near) = (SLOW, BELOW_THE_JUMP, NEAR_ONE);
+    let counts = counts.join(" and ");
+    let summary = PROSE.text("summary", values!(slow, below, near, counts, why));
     let mut draft = Draft::of(PROSE);
     let [fine, coarse] = &both;
     for kind in fine.tight() {
-        draft.quantity(
-            "jammed flow",
-            &[("rate", &kind.strain_rate), ("below", &BELOW_THE_JUMP)],
-            kind.fast_flow,
-        );
+        let (rate, flow) = (kind.strain_rate, kind.fast_flow);
+        draft.quantity("jammed flow", values!(rate, below), flow);
     }
     let rows = fine.all.iter().chain(&coarse.all).map(Kind::row);
-    draft.table("kinds", &[("below", &BELOW_THE_JUMP)], rows);
+    draft.table("kinds", values!(below), rows);
     let periods = fine.periods.max(coarse.periods);
-    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     in_time(&mut draft, evidence.study("flow-in-time")?)?;
     draft.finding.figures.push(snapshots()?);
     Ok(draft.concluded(verdict, summary, statistics, &needed))

@@ -39,8 +39,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if means.is_empty() {
         return Ok(PROSE.nothing(statistics, &needed));
     }
-    let summary = PROSE.text("summary", &[("means", &means.join(", ")), ("why", &why)]);
-    draft.finding.paragraphs = PROSE.paragraphs("method", &[("window", &WINDOW)]);
+    let summary = PROSE.text("summary", values!(means = means.join(", "), why));
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(window = WINDOW));
     draft.table("exponents", &[], rows);
     draft.table("sensitivity", &[], sensitivity);
     let lines = lattices.iter().flat_map(|one| &one.lines);

@@ -29,7 +29,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let words =
         |(name, found): &(String, Collapsed)| format!("{name} lattice: {}", found.in_words());
     let words: Vec<String> = found.iter().map(words).collect();
-    let summary = PROSE.text("summary", &[("found", &words.join("; ")), ("why", &why)]);
+    let summary = PROSE.text("summary", values!(found = words.join("; "), why));
     let mut draft = Draft::of(PROSE);
     for (name, collapsed) in &found {
         let of = format!("{name} lattice");

@@ -49,7 +49,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if means.is_empty() {
         return Ok(PROSE.nothing(statistics, &needed));
     }
-    let summary = PROSE.text("summary", &[("means", &means.join(", ")), ("why", &why)]);
+    let summary = PROSE.text("summary", values!(means = means.join(", "), why));
     draft.table("exponents", &[], rows);
     let lines = lattices.iter().flat_map(OnLattice::fitted);
     let variances = ChartFigure::grid(2, lattices.iter().filter_map(variances))

@@ -156,13 +156,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         bounded += usize::from(highest.height().value < BOUNDED_MOMENT);
         let (rate, width) = (line.strain_rate, highest.width);
         let height = highest.height();
-        draft.quantity("peak", &[("rate", &rate), ("width", &width)], height);
+        draft.quantity("peak", values!(rate, width), height);
         if let Some((exponent, widths)) = line.exponent() {
-            draft.quantity(
-                "exponent",
-                &[("rate", &rate), ("widths", &widths)],
-                exponent,
-            );
+            draft.quantity("exponent", values!(rate, widths), exponent);
         }
         rows.push(line.row(highest));
     }
@@ -177,22 +173,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             } else {
                 "do not fall on one curve"
             };
-            let exponents = found.in_words();
-            PROSE.text("scaling", &[("how", &how), ("exponents", &exponents)])
+            PROSE.text("scaling", values!(how, exponents = found.in_words()))
         }
     };
     let verdict = match bounded == lines.len() {
         true => Verdict::Differs,
         false => Verdict::Open,
     };
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("bounded", &bounded),
-            ("all", &lines.len()),
-            ("scaling", &in_words),
-        ],
-    );
+    let all = lines.len();
+    let summary = PROSE.text("summary", values!(bounded, all, scaling = in_words));
     draft.table("peaks", &[], rows);
     if let Some(found) = scaling {
         let of = "peak of the second moment";

@@ -79,22 +79,16 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let name = &one.name;
         let all = one.tight().count();
         let jumping = one.tight().filter(|line| line.branch.jumps()).count();
-        counts.push(PROSE.text(
-            "count",
-            &[("jumping", &jumping), ("all", &all), ("lattice", name)],
-        ));
+        counts.push(PROSE.text("count", values!(jumping, all, lattice = name)));
         parts.push(one.part(jumping == all));
         let heights: Vec<Uncertain> = one.tight().filter_map(|line| line.height).collect();
         means.extend(weighted_mean(&heights).map(|mean| {
-            PROSE.quantity(
-                "mean height",
-                &[("lattice", name), ("rates", &heights.len())],
-                mean,
-            )
+            let rates = heights.len();
+            PROSE.quantity("mean height", values!(lattice = name, rates), mean)
         }));
         for line in one.tight() {
             let rate = &line.strain_rate;
-            draft.quantity("height", &[("lattice", name), ("rate", rate)], line.height);
+            draft.quantity("height", values!(lattice = name, rate), line.height);
         }
         rows.extend(one.all.iter().map(|line| line.row(name)));
     }
@@ -102,17 +96,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if rows.is_empty() {
         return Ok(PROSE.nothing(statistics, &needed));
     }
-    let summary = PROSE.text(
-        "summary",
-        &[("counts", &counts.join(" and ")), ("why", &why)],
-    );
+    let summary = PROSE.text("summary", values!(counts = counts.join(" and "), why));
     draft
         .finding
         .quantities
         .splice(0..0, means.into_iter().rev());
-    draft.table("jumps", &[("near", &NEAR_THE_JUMP)], rows);
+    draft.table("jumps", values!(near = NEAR_THE_JUMP), rows);
     let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
-    draft.finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
     let rates = both.iter().flat_map(|one| &one.all);
     let chart = ChartFigure::grid(2, both.iter().map(beside_a_fluid))
         .share_y()
@@ -124,7 +115,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if let Some(bars) = flow_histogram(&near, -0.05, 1.05, 22) {
         let panel = ChartPanel::new(&label(Axis::FlowRateRatio), "runs").with(bars);
         let chart = ChartFigure::new(panel);
-        draft.chart("two-peaks", &[("near", &NEAR_THE_JUMP)], chart)?;
+        draft.chart("two-peaks", values!(near = NEAR_THE_JUMP), chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &needed))
 }

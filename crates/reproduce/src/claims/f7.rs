@@ -58,15 +58,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             quantities.extend(of_line(&line, &one.name, how, rate.len()));
             if let Ok(curve) = fit_parabola(&rate, &width, &error) {
                 let probability = number(curve.linearity, 3);
-                let curvature = PROSE.quantity(
-                    "curvature",
-                    &[
-                        ("lattice", &one.name),
-                        ("how", &how),
-                        ("probability", &probability),
-                    ],
-                    curve.quadratic,
-                );
+                let (lattice, ours) = (&one.name, curve.quadratic);
+                let curvature =
+                    PROSE.quantity("curvature", values!(lattice, how, probability), ours);
                 quantities.push(curvature.sourced(0.0));
             }
         }
@@ -82,11 +76,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .tint(Tint::Black)
             .pattern(Pattern::Dotted),
     );
-    let summary = PROSE.text(
-        "summary",
-        &[("slopes", &slopes.join(" and ")), ("why", &why)],
-    );
-    draft.finding.paragraphs = PROSE.paragraphs("method", &[("periods", &periods)]);
+    let summary = PROSE.text("summary", values!(slopes = slopes.join(" and "), why));
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
     draft.table("critical widths", &[], rows);
     draft.chart("critical-width", &[], ChartFigure::new(panel))?;
     Ok(draft.concluded(verdict, summary, statistics, &needed))
@@ -115,29 +106,14 @@ fn row(lattice: &str, line: &Line<'_>) -> Vec<String> {
 
 /// Slope and intercept as quantities.
 fn of_line(line: &LineFit, lattice: &str, how: &str, rates: usize) -> [Quantity; 2] {
-    let method = PROSE.text(
-        "line",
-        &[
-            ("how", &how),
-            ("rates", &rates),
-            ("chi_squared", &number(line.chi_squared, 1)),
-            ("freedom", &line.degrees_of_freedom),
-            ("factor", &number(line.scale_factor(), 1)),
-        ],
-    );
-    let slope = PROSE.quantity(
-        "slope",
-        &[("lattice", &lattice), ("how", &how), ("line", &method)],
-        slope(line),
-    );
-    let intercept = PROSE.quantity(
-        "intercept",
-        &[("lattice", &lattice), ("how", &how), ("line", &method)],
-        Uncertain::normal(
-            line.intercept.value,
-            line.intercept.error * line.scale_factor(),
-        ),
-    );
+    let (freedom, factor) = (line.degrees_of_freedom, line.scale_factor());
+    let intercept = line.intercept;
+    let intercept = Uncertain::normal(intercept.value, intercept.error * factor);
+    let slope = slope(line);
+    let (chi_squared, factor) = (number(line.chi_squared, 1), number(factor, 1));
+    let line = PROSE.text("line", values!(how, rates, chi_squared, freedom, factor));
+    let slope = PROSE.quantity("slope", values!(lattice, how, line), slope);
+    let intercept = PROSE.quantity("intercept", values!(lattice, how, line), intercept);
     [slope.sourced(SLOPE), intercept]
 }
 

@@ -113,15 +113,9 @@ impl Judged {
             Some(false) => "does not always decrease",
             None => "is not known at every density, hence not how it changes",
         };
-        PROSE.text(
-            "lattice",
-            &[
-                ("lattice", &lattice),
-                ("how", &how),
-                ("change", &number(100.0 * self.relative_change, 1)),
-                ("exponent", &cell(self.exponent)),
-            ],
-        )
+        let change = number(100.0 * self.relative_change, 1);
+        let exponent = cell(self.exponent);
+        PROSE.text("lattice", values!(lattice, how, change, exponent))
     }
 
     fn quantities(&self, lattice: &str) -> [Quantity; 2] {
@@ -132,8 +126,8 @@ impl Judged {
             ..quantity
         };
         let none = Uncertain::normal(f64::NAN, f64::NAN);
-        let change = PROSE.quantity("change", &[("lattice", &lattice)], none);
-        let exponent = PROSE.quantity("exponent", &[("lattice", &lattice)], none);
+        let change = PROSE.quantity("change", values!(lattice), none);
+        let exponent = PROSE.quantity("exponent", values!(lattice), none);
         [
             quantity(change, 0.0, self.change),
             quantity(exponent, EXPONENT, self.exponent),
@@ -161,7 +155,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
                 statistics,
             });
         } else {
-            said.push_str(&PROSE.text("too few", &[("densities", &LEAST_DENSITIES)]));
+            said.push_str(&PROSE.text("too few", values!(densities = LEAST_DENSITIES)));
         }
         words.push(said);
         draft.finding.quantities.extend(judged.quantities(lattice));
@@ -173,12 +167,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if words.is_empty() {
         return Ok(PROSE.nothing(found, &F8_NEEDED));
     }
-    let summary = PROSE.text("summary", &[("found", &words.join(". ")), ("why", &why)]);
-    draft.finding.paragraphs = PROSE.paragraphs(
-        "method",
-        &[("compared", &COMPARED_WIDTH), ("hardly", &(100.0 * HARDLY))],
-    );
-    draft.table("densities", &[("compared", &COMPARED_WIDTH)], rows);
+    let summary = PROSE.text("summary", values!(found = words.join(". "), why));
+    let (compared, hardly) = (COMPARED_WIDTH, 100.0 * HARDLY);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared, hardly));
+    draft.table("densities", values!(compared), rows);
     let chart = ChartFigure::grid(3, panels).width(Width::DoubleColumn);
     draft.chart("density", &[], chart)?;
     Ok(draft.concluded(verdict, summary, found, &F8_NEEDED))

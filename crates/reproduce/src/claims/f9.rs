@@ -118,15 +118,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for one in &both {
         let looping = one.tight().filter(|one| one.has_loop()).count();
         let closed = one.tight().filter(|one| one.closes()).count();
-        counts.push(PROSE.text(
-            "count",
-            &[
-                ("lattice", &one.name),
-                ("looping", &looping),
-                ("all", &one.tight().count()),
-                ("closed", &closed),
-            ],
-        ));
+        let (lattice, all) = (&one.name, one.tight().count());
+        counts.push(PROSE.text("count", values!(lattice, looping, all, closed)));
         // Both halves of the claim: two states, and jams that break up.
         parts.push(one.part(looping >= needed.strain_rates && closed > 0));
     }
@@ -136,28 +129,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &needed));
     }
     let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("periods", &periods),
-            ("counts", &counts.join("; ")),
-            ("why", &why),
-        ],
-    );
+    let summary = PROSE.text("summary", values!(periods, counts = counts.join("; "), why));
     let mut draft = Draft::of(PROSE);
     for one in loops().filter(|one| one.is_tight()) {
-        draft.quantity(
-            "loop",
-            &[("lattice", &one.lattice.name()), ("rate", &one.strain_rate)],
-            one.distance(),
-        );
+        let (lattice, rate) = (one.lattice.name(), one.strain_rate);
+        draft.quantity("loop", values!(lattice, rate), one.distance());
     }
     draft.table("loops", &[], loops().map(Loop::row));
     let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
     if !rows.is_empty() {
         draft.table("lifetimes", &[], rows);
     }
-    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let [fine, coarse] = &both;
     let panels = [coarse, fine].map(|one| widest(&one.all));
     let panels: Vec<ChartPanel> = panels.into_iter().flatten().collect();

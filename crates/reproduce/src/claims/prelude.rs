@@ -22,7 +22,7 @@ pub(super) use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Ver
 pub(super) use crate::forces::ForceLine;
 pub(super) use crate::judgement::{Part, agrees, all_hold, best, judge};
 pub(super) use crate::lattices::{AtRate, Shown};
-pub(super) use crate::prose::Prose;
+pub(super) use crate::prose::{Prose, values};
 pub(super) use crate::row::{
     Lattice, Row, Start, ascending, behind, by_strain_rate, grouped, longest, mean, mean_of,
 };

@@ -106,14 +106,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .collect();
         in_words(lattice, &here)
     });
-    let summary = PROSE.text("summary", &[("lattices", &words.join(". "))]);
+    let summary = PROSE.text("summary", values!(lattices = words.join(". ")));
     let mut draft = Draft::of(PROSE);
     for line in lines.iter().filter(|line| line.jumps) {
-        draft.quantity(
-            "critical width",
-            &[("lattice", &line.lattice), ("rate", &line.strain_rate)],
-            line.critical,
-        );
+        let (lattice, rate) = (line.lattice, line.strain_rate);
+        draft.quantity("critical width", values!(lattice, rate), line.critical);
     }
     draft.table("falls", &[], lines.iter().map(Line::row));
     draft.chart("small-strain-rates", &[], figure(&lines))?;
@@ -126,27 +123,17 @@ fn in_words(lattice: &str, lines: &[&Line]) -> String {
     let jump = slowest.map_or_else(
         || PROSE.text("no jump", &[]),
         |line| {
-            PROSE.text(
-                "jump",
-                &[("rate", &line.strain_rate), ("width", &line.critical)],
-            )
+            let (rate, width) = (line.strain_rate, line.critical);
+            PROSE.text("jump", values!(rate, width))
         },
     );
     let steady = lines.iter().filter(|line| !line.jumps);
     let steady = match &*listed(steady.map(|line| line.strain_rate)) {
         "" => String::new(),
-        rates => format!(" {}", PROSE.text("steady", &[("rates", &rates)])),
+        rates => format!(" {}", PROSE.text("steady", values!(rates))),
     };
-    PROSE.text(
-        "lattice",
-        &[
-            ("lattice", &lattice),
-            ("jump", &jump),
-            ("steady", &steady),
-            ("turning", &turning(lines)),
-            ("half", &turning_of_half(lines)),
-        ],
-    )
+    let (turning, half) = (turning(lines), turning_of_half(lines));
+    PROSE.text("lattice", values!(lattice, jump, steady, turning, half))
 }
 
 /// Whether the critical width falls toward the smallest strain rates at which there is a jump, by more than its errors.
@@ -159,7 +146,7 @@ fn turning(lines: &[&Line]) -> String {
     let fall = difference(&highest.critical, &slowest.critical);
     if fall.value > CLEAR_TURN * fall.error {
         let (rate, fall) = (highest.strain_rate, number(fall.value, 3));
-        PROSE.text("turns", &[("rate", &rate), ("fall", &fall)])
+        PROSE.text("turns", values!(rate, fall))
     } else {
         PROSE.text("does not turn", &[])
     }
@@ -174,15 +161,11 @@ fn turning_of_half(lines: &[&Line]) -> String {
     };
     let widest = halves().max_by(|one, other| one.1.total_cmp(&other.1));
     match (halves().next(), widest) {
-        (Some(slowest), Some(widest)) if widest.0 > slowest.0 => PROSE.text(
-            "half turns",
-            &[
-                ("rate", &widest.0),
-                ("widest", &number(widest.1, 3)),
-                ("slowest", &number(slowest.1, 3)),
-                ("smallest", &slowest.0),
-            ],
-        ),
+        (Some(slowest), Some(widest)) if widest.0 > slowest.0 => {
+            let (rate, smallest) = (widest.0, slowest.0);
+            let [widest, slowest] = [widest, slowest].map(|half| number(half.1, 3));
+            PROSE.text("half turns", values!(rate, widest, slowest, smallest))
+        }
         _ => PROSE.text("half does not turn", &[]),
     }
 }

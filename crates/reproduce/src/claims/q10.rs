@@ -214,14 +214,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         })
         .collect();
     let verdict = Verdict::answered_if(outcomes.len() >= LEAST_SETTINGS);
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("settings", &outcomes.len()),
-            ("tight", &tight.len()),
-            ("holding", &words.join(", ")),
-        ],
-    );
+    let (settings, tight, holding) = (outcomes.len(), tight.len(), words.join(", "));
+    let summary = PROSE.text("summary", values!(settings, tight, holding));
     let statistics = Statistics::weakest_at_one_rate(outcomes.iter().map(Outcome::statistics));
     let mut draft = Draft::of(PROSE).varying("force");
     draft.table("settings", &[], outcomes.iter().map(Outcome::cells));

@@ -119,18 +119,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .map(|one| one.shift(usual))
             .max_by(|one, other| one.value.abs().total_cmp(&other.value.abs()))
             .unwrap_or(Uncertain::normal(0.0, 0.0));
-        words.push(PROSE.text("lattice", &[("lattice", &lattice), ("shift", &most)]));
+        words.push(PROSE.text("lattice", values!(lattice, shift = most)));
         rows.extend(outcomes.iter().map(|one| one.row(lattice, usual)));
         for one in &outcomes {
+            let integrator = one.method.integrator();
+            let (step, skin, width) = (one.method.time_step, one.method.skin, one.critical);
             draft.quantity(
                 "critical width",
-                &[
-                    ("lattice", &lattice),
-                    ("integrator", &one.method.integrator()),
-                    ("step", &one.method.time_step),
-                    ("skin", &one.method.skin),
-                ],
-                one.critical,
+                values!(lattice, integrator, step, skin),
+                width,
             );
         }
         panels.push(against_step(lattice, &outcomes));
@@ -140,7 +137,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if panels.is_empty() {
         return Ok(PROSE.nothing(statistics, &Q11_NEEDED));
     }
-    let summary = PROSE.text("summary", &[("lattices", &words.join("; "))]);
+    let summary = PROSE.text("summary", values!(lattices = words.join("; ")));
     draft.table("methods", &[], rows);
     let chart = ChartFigure::grid(panels.len(), panels).width(Width::DoubleColumn);
     draft.chart("method", &[], chart)?;

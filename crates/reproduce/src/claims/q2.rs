@@ -79,14 +79,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         panel = panel.with_all(drawn.map(|points| points.series(series)));
         tight.sort_by(|one, other| one.depth.total_cmp(&other.depth));
         if let (Some(smoothest), Some(roughest)) = (tight.first(), tight.last()) {
-            ends.push(PROSE.text(
-                "ends",
-                &[
-                    ("roughest", &number(roughest.critical.value, 3)),
-                    ("smoothest", &number(smoothest.critical.value, 3)),
-                    ("rate", &rate),
-                ],
-            ));
+            let [roughest, smoothest] =
+                [roughest, smoothest].map(|wall| number(wall.critical.value, 3));
+            ends.push(PROSE.text("ends", values!(roughest, smoothest, rate)));
         }
         walls.extend(of_rate);
     }
@@ -94,7 +89,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(Statistics::default(), &Q2_NEEDED));
     }
     let verdict = Verdict::answered_if(lattices >= LEAST_LATTICES);
-    let summary = PROSE.text("summary", &[("ends", &ends.join(" and "))]);
+    let summary = PROSE.text("summary", values!(ends = ends.join(" and ")));
     let statistics = Statistics {
         strain_rates: ends.len(),
         ..Statistics::weakest(all.into_iter())
@@ -102,11 +97,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let mut draft = Draft::of(PROSE);
     for wall in &walls {
         let (lattice, rate) = (wall.lattice.name(), wall.strain_rate);
-        draft.quantity(
-            "critical width",
-            &[("lattice", &lattice), ("rate", &rate)],
-            wall.critical,
-        );
+        draft.quantity("critical width", values!(lattice, rate), wall.critical);
     }
     draft.table("lattices", &[], walls.iter().map(Wall::row));
     draft.chart("roughness", &[], ChartFigure::new(panel))?;

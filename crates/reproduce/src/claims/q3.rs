@@ -133,7 +133,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         })
         .collect();
     let statistics = Statistics::weakest_at_one_rate(all.into_iter());
-    let summary = PROSE.text("summary", &[("spans", &spans.join(", "))]);
+    let summary = PROSE.text("summary", values!(spans = spans.join(", ")));
     let mut draft = Draft::of(PROSE);
     let each = || {
         found
@@ -143,15 +143,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = each().map(|(varied, one)| one.row(varied));
     draft.table("critical widths", &[], rows);
     for (varied, one) in each() {
-        draft.quantity(
-            "critical width",
-            &[
-                ("varied", &varied.name),
-                ("value", &number(one.value, 3)),
-                ("speed", &number(one.wave_speed, 2)),
-            ],
-            one.width,
-        );
+        let (varied, width) = (varied.name, one.width);
+        let (value, speed) = (number(one.value, 3), number(one.wave_speed, 2));
+        draft.quantity("critical width", values!(varied, value, speed), width);
     }
     let panels = found.iter().map(|(varied, of)| against(varied, of));
     let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);

@@ -75,18 +75,18 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let exponents = exponents(&tubes);
     let of_widths: Vec<Uncertain> = exponents.iter().map(|one| one.1).collect();
     let how = match weighted_mean(&of_widths) {
-        Some(mean) => PROSE.text("power", &[("exponent", &mean)]),
+        Some(mean) => PROSE.text("power", values!(exponent = mean)),
         None => PROSE.text("no power", &[]),
     };
     let verdict = Verdict::answered_if(tubes.len() >= LEAST_LENGTHS);
-    let summary = PROSE.text("summary", &[("how", &how)]);
+    let summary = PROSE.text("summary", values!(how));
     let mut draft = Draft::of(PROSE);
     for tube in &tubes {
         let width = tube.critical.as_ref().map(|found| found.width);
-        draft.quantity("critical width", &[("waves", &tube.waves)], width);
+        draft.quantity("critical width", values!(waves = tube.waves), width);
     }
     for (width, exponent) in &exponents {
-        draft.quantity("exponent", &[("width", width)], *exponent);
+        draft.quantity("exponent", values!(width), *exponent);
     }
     draft.table("lengths", &[], tubes.iter().map(Tube::row));
     draft.chart("length", &[], figure(&tubes))?;
@@ -163,6 +163,6 @@ fn space_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
         .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
         .panel_height(50.0)
         .width(Width::DoubleColumn);
-    let width = row.width();
-    draft.chart("space-time", &[("waves", &rows), ("width", &width)], chart)
+    let (waves, width) = (rows, row.width());
+    draft.chart("space-time", values!(waves, width), chart)
 }

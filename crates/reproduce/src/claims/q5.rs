@@ -95,11 +95,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let exponents: Vec<Uncertain> = exponents.collect();
         let quantities = &mut draft.finding.quantities;
         quantities.extend(weighted_mean(&exponents).map(|mean| {
-            let found = PROSE.quantity(
-                "exponent",
-                &[("lattice", &one.name), ("rates", &exponents.len())],
-                mean,
-            );
+            let (lattice, rates) = (&one.name, exponents.len());
+            let found = PROSE.quantity("exponent", values!(lattice, rates), mean);
             found.sourced(1.0)
         }));
         all += exponents.len();
@@ -113,19 +110,21 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let good = |laws: &[Law]| compared.iter().filter(|one| one.is_good(laws)).count();
     let with_power = |one: &&Compared<'_>| one.excess(Law::Power).is_some();
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("excluded", &excluded),
-            ("all", &all),
-            ("power", &good(&LAWS[..1])),
-            ("compared", &compared.iter().filter(with_power).count()),
-            ("barrier", &good(&LAWS[1..3])),
-            ("exponential", &good(&LAWS[3..])),
-        ],
-    );
+    let [power, barrier, exponential] = [&LAWS[..1], &LAWS[1..3], &LAWS[3..]].map(good);
     draft.table("laws", &[], compared.iter().map(Compared::row));
     relative_variance(&mut draft, &compared)?;
+    let number = compared.iter().filter(with_power).count();
+    let summary = PROSE.text(
+        "summary",
+        values!(
+            excluded,
+            all,
+            power,
+            compared = number,
+            barrier,
+            exponential
+        ),
+    );
     let survival = compared
         .iter()
         .filter(|one| one.lattice == "fine" && (one.line.strain_rate - 0.1).abs() < 0.03)

@@ -212,7 +212,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     ];
     for (name, sampled) in points {
         let flow = sampled.map(|one| one.flow);
-        draft.quantity("flow", &[("name", &name)], flow);
+        draft.quantity("flow", values!(name), flow);
     }
     draft.table("forces", &[], samples.0.iter().map(Sampled::cells));
     figures::causes(&mut draft, &samples)?;
@@ -224,23 +224,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 fn of_friction(preset: &Sampled<'_>, without: Option<&Sampled<'_>>) -> String {
     let (with, friction) = (preset.flow, PRESET.friction);
     match without {
-        Some(without) if without.flows_back() => PROSE.text(
-            "friction is not needed",
-            &[
-                ("without", &without.flow),
-                ("with", &with),
-                ("friction", &friction),
-            ],
-        ),
-        Some(without) if preset.flows_back() => PROSE.text(
-            "friction is needed",
-            &[
-                ("without", &without.flow),
-                ("with", &with),
-                ("friction", &friction),
-            ],
-        ),
-        _ => PROSE.text("with friction", &[("with", &with), ("friction", &friction)]),
+        Some(one) if one.flows_back() => {
+            let without = one.flow;
+            PROSE.text("friction is not needed", values!(without, with, friction))
+        }
+        Some(one) if preset.flows_back() => {
+            let without = one.flow;
+            PROSE.text("friction is needed", values!(without, with, friction))
+        }
+        _ => PROSE.text("with friction", values!(with, friction)),
     }
 }
 
@@ -251,12 +243,9 @@ fn of_wall(preset: &Sampled<'_>, pinned: Option<&Sampled<'_>>) -> String {
     };
     let sentence = if preset.flows_back() && pinned.flows_back() {
         let change = difference(&pinned.flow, &preset.flow);
-        PROSE.text(
-            "wall need not move",
-            &[("pinned", &pinned.flow), ("change", &change)],
-        )
+        PROSE.text("wall need not move", values!(pinned = pinned.flow, change))
     } else {
-        PROSE.text("wall pinned", &[("pinned", &pinned.flow)])
+        PROSE.text("wall pinned", values!(pinned = pinned.flow))
     };
     format!(" {sentence}")
 }
@@ -264,26 +253,15 @@ fn of_wall(preset: &Sampled<'_>, pinned: Option<&Sampled<'_>>) -> String {
 /// The momentum balance of the preset in words.
 fn balance(preset: &Sampled<'_>, flight: Option<FreeFlight>) -> Option<String> {
     let (whole, part) = ("wall_tangential_force", "front_tangential_force");
-    let balance = PROSE.text(
-        "balance",
-        &[
-            ("normal", &preset.force("wall_normal_force")?),
-            ("tangential", &preset.force(whole)?),
-            ("front", &preset.force(part)?),
-            ("rear", &preset.rest(whole, part)?),
-        ],
-    );
+    let (normal, tangential) = (preset.force("wall_normal_force")?, preset.force(whole)?);
+    let (front, rear) = (preset.force(part)?, preset.rest(whole, part)?);
+    let balance = PROSE.text("balance", values!(normal, tangential, front, rear));
     let Some(flight) = flight else {
         return Some(balance);
     };
-    let flight = PROSE.text(
-        "free flight",
-        &[
-            ("part", &number(flight.part, 2)),
-            ("velocity", &number(flight.velocity, 3)),
-            ("share", &number(flight.share, 3)),
-            ("other", &number(preset.flow.value - flight.share, 3)),
-        ],
-    );
+    let (part, velocity) = (number(flight.part, 2), number(flight.velocity, 3));
+    let other = number(preset.flow.value - flight.share, 3);
+    let share = number(flight.share, 3);
+    let flight = PROSE.text("free flight", values!(part, velocity, share, other));
     Some(format!("{balance} {flight}"))
 }

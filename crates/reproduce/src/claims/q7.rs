@@ -209,26 +209,21 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let statistics = Statistics::weakest_at_one_rate(corners.iter().map(Corner::statistics));
     let verdict = Verdict::answered_if(corners.len() == 4);
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("fast", &where_seen(&corners, Corner::is_fast)),
-            ("bistable", &where_seen(&corners, Corner::is_bistable)),
-            ("back", &where_seen(&corners, Corner::flows_back)),
-        ],
-    );
+    let fast = where_seen(&corners, Corner::is_fast);
+    let bistable = where_seen(&corners, Corner::is_bistable);
+    let back = where_seen(&corners, Corner::flows_back);
+    let summary = PROSE.text("summary", values!(fast, bistable, back));
     let mut draft = Draft::of(PROSE).varying("bottleneck");
-    for corner in &corners {
-        let lowest = corner.flow.lowest().map(|point| point.flow);
-        let gap = corner.flow.gap().map(|gap| gap.height);
-        draft.quantity("lowest", &[("corner", &corner.name())], lowest);
-        draft.quantity("gap", &[("corner", &corner.name())], gap);
+    for one in &corners {
+        let lowest = one.flow.lowest().map(|point| point.flow);
+        let (gap, corner) = (one.flow.gap().map(|gap| gap.height), one.name());
+        draft.quantity("lowest", values!(corner), lowest);
+        draft.quantity("gap", values!(corner), gap);
     }
     draft.table("corners", &[], corners.iter().map(Corner::cells));
     let left_out: usize = corners.iter().map(|corner| corner.left_out).sum();
     if left_out > 0 {
-        let weakness = PROSE.text("left out", &[("states", &left_out)]);
-        draft.finding.weaknesses.push(weakness);
+        draft.weakness("left out", values!(states = left_out));
     }
     draft.chart("two-by-two", &[], figures::chart(&corners))?;
     Ok(draft.concluded(verdict, summary, statistics, &Q7_NEEDED))

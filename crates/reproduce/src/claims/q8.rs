@@ -199,20 +199,14 @@ impl<'b, 'a> AtRate<'b, 'a> {
         let widths: Vec<String> = self.loops.iter().filter_map(|one| one.words()).collect();
         let rises = match &*rises.join(", ") {
             "" => PROSE.text("no rises", &[]),
-            rises => PROSE.text("rises", &[("rises", &rises)]),
+            rises => PROSE.text("rises", values!(rises)),
         };
         let sweeps = match &*widths.join(", ") {
             "" => PROSE.text("no sweeps", &[]),
-            widths => PROSE.text("sweeps", &[("widths", &widths)]),
+            widths => PROSE.text("sweeps", values!(widths)),
         };
-        PROSE.text(
-            "at a strain rate",
-            &[
-                ("rate", &number(1e3 * self.rate, 2)),
-                ("rises", &rises),
-                ("sweeps", &sweeps),
-            ],
-        )
+        let rate = number(1e3 * self.rate, 2);
+        PROSE.text("at a strain rate", values!(rate, rises, sweeps))
     }
 
     fn add_quantities(&self, draft: &mut Draft) {
@@ -221,13 +215,13 @@ impl<'b, 'a> AtRate<'b, 'a> {
         let fluctuations =
             ladders.filter_map(|one| Some((one.waves, one.largest_fluctuation()?.1)));
         let of_size = exponent(fluctuations);
-        draft.quantity("exponent of fluctuation", &[("rate", rate)], of_size);
+        draft.quantity("exponent of fluctuation", values!(rate), of_size);
         let loops = self.loops.iter();
         let widths = loops.filter_map(|one| Some((one.periods, one.width()?)));
-        draft.quantity("exponent of loop", &[("rate", rate)], exponent(widths));
+        draft.quantity("exponent of loop", values!(rate), exponent(widths));
         for one in &self.ladders {
             let height = one.rise().map(|rise| rise.height);
-            draft.quantity("rise", &[("rate", rate), ("waves", &one.waves)], height);
+            draft.quantity("rise", values!(rate, waves = one.waves), height);
         }
     }
 }
@@ -258,14 +252,14 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if !loops.is_empty() {
         draft.table("loops", &[], loops.iter().map(Loop::cells));
     }
-    draft.finding.paragraphs = PROSE.paragraphs("method", &[("passed", &PASSED)]);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed = PASSED));
     let panels = figures::panels(&rates);
     if !panels.is_empty() {
         let chart = ChartFigure::grid(rates.len(), panels)
             .width(Width::DoubleColumn)
             .panel_height(36.0)
             .legend(LegendPlace::Below);
-        draft.chart("small-speed", &[("passed", &PASSED)], chart)?;
+        draft.chart("small-speed", values!(passed = PASSED), chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &Q8_NEEDED))
 }

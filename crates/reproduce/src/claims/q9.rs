@@ -198,20 +198,17 @@ impl<'a> Pump<'a> {
         let unit = self.model.pressure_unit;
         let stop = match self.sine().stop() {
             None => PROSE.text("no stop", &[]),
-            Some(stop) => PROSE.text("stop", &[("stop", &stop), ("unit", &unit)]),
+            Some(stop) => PROSE.text("stop", values!(stop, unit)),
         };
+        let (name, flow) = (self.model.name, point.flow);
+        let pressure = number(point.control, 4);
+        let amplitude = number(self.amplitude_ratio, 2);
+        let fluid = number(self.newtonian_efficiency(), 3);
         Some(PROSE.text(
             "pump",
-            &[
-                ("name", &self.model.name),
-                ("efficiency", &efficiency),
-                ("flow", &point.flow),
-                ("pressure", &number(point.control, 4)),
-                ("unit", &unit),
-                ("amplitude", &number(self.amplitude_ratio, 2)),
-                ("fluid", &number(self.newtonian_efficiency(), 3)),
-                ("stop", &stop),
-            ],
+            values!(
+                name, efficiency, flow, pressure, unit, amplitude, fluid, stop
+            ),
         ))
     }
 
@@ -242,8 +239,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for pump in &pumps {
         let (sine, Model { name, unit, .. }) = (pump.sine(), pump.model);
         let best = sine.best().map(|(_, efficiency)| efficiency);
-        draft.quantity("efficiency", &[("model", name)], best);
-        draft.quantity("stop", &[("model", name), ("unit", unit)], sine.stop());
+        draft.quantity("efficiency", values!(model = name), best);
+        draft.quantity("stop", values!(model = name, unit), sine.stop());
     }
     draft.table("pumps", &[], pumps.iter().flat_map(Pump::cells));
     let at_the_edge: Vec<&str> = pumps
@@ -252,8 +249,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .map(|pump| pump.model.name)
         .collect();
     if !at_the_edge.is_empty() {
-        let weakness = PROSE.text("at the edge", &[("pumps", &at_the_edge.join("; "))]);
-        draft.finding.weaknesses.push(weakness);
+        draft.weakness("at the edge", values!(pumps = at_the_edge.join("; ")));
     }
     draft.chart("pump-characteristic", &[], figures::characteristic(&pumps))?;
     figures::on_the_wall(&mut draft, &pumps)?;

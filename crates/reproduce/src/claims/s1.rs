@@ -88,19 +88,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         .map(|scene| format!("{} at {}", scene.flow, scene.name()))
         .collect();
     let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
-    let summary = PROSE.text("summary", &[("flows", &flows.join(", "))]);
+    let summary = PROSE.text("summary", values!(flows = flows.join(", ")));
     let mut draft = draft(PROSE);
     for scene in &scenes {
         let (name, runs) = (scene.name(), scene.rows.len());
-        let flow = scene.flow;
-        draft.quantity("flow rate", &[("scene", &name), ("runs", &runs)], flow);
+        draft.quantity("flow rate", values!(scene = name, runs), scene.flow);
     }
     let drifts = |scene: &&Scene<'_>| scene.rows.iter().any(|row| !row.is_stationary());
     let drifting: Vec<String> = scenes.iter().filter(drifts).map(Scene::name).collect();
     if !drifting.is_empty() {
         let scenes = drifting.join(", ");
-        let weakness = PROSE.text("drifting", &[("scenes", &scenes)]);
-        draft.finding.weaknesses.push(weakness);
+        draft.weakness("drifting", values!(scenes));
     }
     let mut pictures = Vec::new();
     for scene in &scenes {
@@ -211,5 +209,5 @@ fn flow_fields(pictures: &[Picture<'_>]) -> Result<ReportFigure> {
     };
     let first = &pictures[0].row;
     let periods = number(first.time() * first.strain_rate(), 0);
-    Ok(PROSE.figure("flow-fields", &[("periods", &periods)], figure.draw()?))
+    Ok(PROSE.figure("flow-fields", values!(periods), figure.draw()?))
 }

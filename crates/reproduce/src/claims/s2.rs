@@ -117,27 +117,12 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         format!("from {} on none does", rung.force)
     });
     let lines = ForceLine::all_of(&branches);
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("periods", &periods),
-            ("yielding", &yielding),
-            ("lasting", &lasting),
-        ],
-    );
+    let summary = PROSE.text("summary", values!(periods, yielding, lasting));
     let mut draft = draft(PROSE);
     for rung in &ladder {
-        let runs = rung.rows.len();
+        let (force, runs) = (rung.force, rung.rows.len());
         let censored = runs - rung.times.len();
-        draft.quantity(
-            "time",
-            &[
-                ("force", &rung.force),
-                ("runs", &runs),
-                ("censored", &censored),
-            ],
-            rung.mean(),
-        );
+        draft.quantity("time", values!(force, runs, censored), rung.mean());
     }
     draft.table("times", &[], ladder.iter().map(Rung::cells));
     let all = Rung::all_of(&branches);
@@ -145,11 +130,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let cells = all.iter().map(Rung::cells);
         draft.table("times at all strain rates", &[], cells);
     }
-    let method = PROSE.text("method", &[("threshold", &GIVEN_WAY)]);
-    draft.finding.paragraphs.push(method);
-    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", &[("periods", &periods)]);
+    draft.paragraph("method", values!(threshold = GIVEN_WAY));
+    draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     let chart = figure(study, &ladder)?;
-    draft.chart("yielding", &[("threshold", &GIVEN_WAY)], chart)?;
+    draft.chart("yielding", values!(threshold = GIVEN_WAY), chart)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }

@@ -39,30 +39,22 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     } else {
         Verdict::Open
     };
-    let mut summary = PROSE.text(
-        "summary",
-        &[
-            ("jumping", &in_words(jumping)),
-            ("smooth", &in_words(smooth)),
-        ],
-    );
+    let (jumping, smooth) = (in_words(jumping), in_words(smooth));
+    let mut summary = PROSE.text("summary", values!(jumping, smooth));
     if let Some(rate) = vanishing {
         let (lower, upper) = (rate.interval_95.lower, rate.interval_95.upper);
-        let sentence = PROSE.text("vanishing", &[("lower", &lower), ("upper", &upper)]);
+        let sentence = PROSE.text("vanishing", values!(lower, upper));
         summary = format!("{summary} {sentence}");
     }
     let statistics = together(tight.iter().copied());
     let mut draft = draft(PROSE);
     draft.quantity("vanishing", &[], vanishing);
     for line in &tight {
-        draft.quantity("height", &[("rate", &line.strain_rate)], line.height());
+        draft.quantity("height", values!(rate = line.strain_rate), line.height());
     }
     draft.table("rises", &[], lines.iter().map(|line| cells(&rows, line)));
     let escaped = number(100.0 * MOST_ESCAPED, 0);
-    draft.finding.paragraphs.push(PROSE.text(
-        "method",
-        &[("least", &LEAST_JUMP_AGAINST_FORCE), ("escaped", &escaped)],
-    ));
+    draft.paragraph("method", values!(least = LEAST_JUMP_AGAINST_FORCE, escaped));
     draft.chart("branches", &[], branches(&lines, &tight))?;
     let panels = peaks(&rows, &tight);
     if !panels.is_empty() {

@@ -59,12 +59,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for line in &tight {
         if let Some(lowest) = line.flow.lowest() {
             let (rate, force) = (line.strain_rate, lowest.control);
-            draft.quantity("lowest", &[("rate", &rate), ("force", &force)], lowest.flow);
+            draft.quantity("lowest", values!(rate, force), lowest.flow);
         }
     }
     draft.table("flows", &[], tight.iter().flat_map(|line| cells(line)));
-    let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
-    draft.finding.paragraphs.push(method);
+    draft.paragraph("method", values!(least = LEAST_BACK_FLOW));
     // Those whose flow is negative at larger forces only, and not at the smallest.
     let only_beyond = |line: &&ForceLine<'_>| {
         negative(line)
@@ -73,8 +72,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     };
     let beyond: Vec<&ForceLine<'_>> = tight.iter().copied().filter(only_beyond).collect();
     if !beyond.is_empty() {
-        let weakness = PROSE.text("only beyond", &[("rates", &rates(&beyond))]);
-        draft.finding.weaknesses.push(weakness);
+        draft.weakness("only beyond", values!(rates = rates(&beyond)));
     }
     let panel = flow_against_force()
         .y_range(-0.12..=0.12)
@@ -95,16 +93,10 @@ fn rates(lines: &[&ForceLine<'_>]) -> String {
 /// Where the flow is negative.
 fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     let at_rate = |line: &&ForceLine<'_>| {
-        let lowest = line.flow.lowest()?;
-        Some(PROSE.text(
-            "at a strain rate",
-            &[
-                ("rate", &line.strain_rate),
-                ("forces", &range(&negative(line))),
-                ("lowest", &lowest.flow),
-                ("force", &lowest.control),
-            ],
-        ))
+        let point = line.flow.lowest()?;
+        let (rate, forces) = (line.strain_rate, range(&negative(line)));
+        let (lowest, force) = (&point.flow, point.control);
+        Some(PROSE.text("at a strain rate", values!(rate, forces, lowest, force)))
     };
     let words: Vec<String> = backward.iter().filter_map(at_rate).collect();
     if words.is_empty() {
@@ -115,10 +107,7 @@ fn summary(backward: &[&ForceLine<'_>], forward: &[&ForceLine<'_>]) -> String {
     } else {
         format!(", and nowhere at *ε̇* = {}", rates(forward))
     };
-    PROSE.text(
-        "summary",
-        &[("rates", &words.join(", ")), ("elsewhere", &elsewhere)],
-    )
+    PROSE.text("summary", values!(rates = words.join(", "), elsewhere))
 }
 
 /// Forces in words.

@@ -53,11 +53,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let compared = pairs.iter().flat_map(compared);
     for (rate, without, with) in compared.filter(|(.., with)| with.flow.value < 0.0) {
         let (force, more) = (without.control, difference(&without.flow, &with.flow));
-        draft.quantity("difference", &[("rate", &rate), ("force", &force)], more);
+        draft.quantity("difference", values!(rate, force), more);
     }
     draft.table("flows", &[], pairs.iter().flat_map(cells));
-    let method = PROSE.text("method", &[("least", &LEAST_BACK_FLOW)]);
-    draft.finding.paragraphs.push(method);
+    draft.paragraph("method", values!(least = LEAST_BACK_FLOW));
     draft.chart("frictionless", &[], figure(&lines, &pairs))?;
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
@@ -72,16 +71,9 @@ fn summary(tight: &[&ForceLine<'_>], flows_back: bool) -> String {
     smallest.map_or_else(
         || "No stationary runs yet.".to_owned(),
         |(rate, point)| {
-            PROSE.text(
-                "summary",
-                &[
-                    ("place", &if flows_back { "somewhere" } else { "nowhere" }),
-                    ("means", &points().count()),
-                    ("smallest", &point.flow),
-                    ("force", &point.control),
-                    ("rate", &rate),
-                ],
-            )
+            let place = if flows_back { "somewhere" } else { "nowhere" };
+            let (means, smallest, force) = (points().count(), point.flow, point.control);
+            PROSE.text("summary", values!(place, means, smallest, force, rate))
         },
     )
 }

@@ -192,15 +192,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     } else {
         Verdict::Open
     };
-    let summary = PROSE.text(
-        "summary",
-        &[
-            ("differ", &differ),
-            ("pairs", &pairs.len()),
-            ("warmer", &warmer),
-            ("agree", &agree),
-        ],
-    );
+    let number = pairs.len();
+    let summary = PROSE.text("summary", values!(differ, pairs = number, warmer, agree));
     let mut draft = draft(PROSE);
     let alike = pairs.iter().filter_map(|(one, other, outcome)| {
         let alike = match outcome {
@@ -209,10 +202,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             Outcome::Differ | Outcome::Unknown => return None,
         };
         let (one, other) = (&one.name, &other.name);
-        Some(PROSE.text(
-            "alike",
-            &[("alike", &alike), ("one", one), ("other", other)],
-        ))
+        Some(PROSE.text("alike", values!(alike, one, other)))
     });
     draft.finding.weaknesses.splice(0..0, alike);
     // The first, at the smallest force, of the source's strain rate where there is one.
@@ -223,16 +213,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let shown = [shown].into_iter().chain(&frictionless);
     for flow in shown {
         for (name, symbol, value) in &NUMBERS[..5] {
-            draft.quantity(
-                "mean",
-                &[
-                    ("name", name),
-                    ("flow", &flow.name),
-                    ("symbol", symbol),
-                    ("runs", &flow.rows.len()),
-                ],
-                flow.mean(*value),
-            );
+            let (runs, mean) = (flow.rows.len(), flow.mean(*value));
+            let flow = &flow.name;
+            draft.quantity("mean", values!(name, flow, symbol, runs), mean);
         }
     }
     let flows = frictional.iter().chain(&frictionless);
@@ -240,15 +223,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let symbols = NUMBERS.iter().map(|(_, symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
     draft.finding.tables.push(table);
-    draft.finding.paragraphs.push(PROSE.text("tubes", &[]));
-    draft.finding.paragraphs.push(PROSE.text(
-        "method",
-        &[
-            ("difference", &LEAST_DIFFERENCE),
-            ("ratio", &LEAST_RATIO),
-            ("errors", &CLEAR),
-        ],
-    ));
+    draft.paragraph("tubes", &[]);
+    let (difference, ratio, errors) = (LEAST_DIFFERENCE, LEAST_RATIO, CLEAR);
+    draft.paragraph("method", values!(difference, ratio, errors));
     figures::profiles(&mut draft, elastic, prescribed)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use peristalsis_formats::{Table, Values};
-use peristalsis_reproduce::{CLAIMS, Evidence, Finding, STUDIES};
+use peristalsis_reproduce::{CLAIMS, Evidence, Finding, STUDIES, Verdict};
 
 /// Columns that every row has: whole numbers, then numbers.
 const WHOLE: [&str; 6] = [
@@ -30,12 +30,15 @@ const NUMBERS: [&str; 11] = [
     "transition_threshold",
 ];
 
-/// Rows as they are put together: texts and numbers by column.
+/// Texts and numbers of a run by column.
+type Row = (BTreeMap<String, String>, BTreeMap<String, f64>);
+
+/// Rows as they are put together.
 #[derive(Clone, Default)]
 pub(crate) struct Rows {
     /// Numbers that every row has unless it says otherwise.
     common: Vec<(&'static str, f64)>,
-    rows: Vec<(BTreeMap<String, String>, BTreeMap<String, f64>)>,
+    rows: Vec<Row>,
 }
 
 impl Rows {
@@ -110,35 +113,26 @@ impl Rows {
             texts.extend(some_texts.keys().map(String::as_str));
             numbers.extend(some_numbers.keys().map(String::as_str));
         }
-        let mut table = Table::builder();
-        for name in texts {
-            let text = |row: &(BTreeMap<String, String>, _)| row.0.get(name).cloned();
-            let column = self
-                .rows
-                .iter()
-                .map(|row| text(row).unwrap_or_default())
-                .collect();
-            table = table.column(name, "", "", Values::Text(column));
-        }
-        for name in WHOLE {
-            let column = self
-                .rows
-                .iter()
-                .map(|row| row.1.get(name).map_or(0, |value| *value as i64))
-                .collect();
-            table = table.column(name, "", "", Values::Integer(column));
-        }
-        for name in numbers {
-            if WHOLE.contains(&name) {
-                continue;
-            }
-            let column = self
-                .rows
-                .iter()
-                .map(|row| row.1.get(name).copied().unwrap_or(f64::NAN))
-                .collect();
-            table = table.column(name, "", "", Values::Real(column));
-        }
+        let texts = texts.into_iter().map(|name| {
+            let text = |row: &Row| row.0.get(name).cloned().unwrap_or_default();
+            (name, Values::Text(self.rows.iter().map(text).collect()))
+        });
+        let whole = WHOLE.into_iter().map(|name| {
+            let number = |row: &Row| row.1.get(name).map_or(0, |value| *value as i64);
+            (
+                name,
+                Values::Integer(self.rows.iter().map(number).collect()),
+            )
+        });
+        let numbers = numbers.into_iter().filter(|name| !WHOLE.contains(name));
+        let numbers = numbers.map(|name| {
+            let number = |row: &Row| row.1.get(name).copied().unwrap_or(f64::NAN);
+            (name, Values::Real(self.rows.iter().map(number).collect()))
+        });
+        let columns = texts.chain(whole).chain(numbers);
+        let table = columns.fold(Table::builder(), |table, (name, values)| {
+            table.column(name, "", "", values)
+        });
         table.build().unwrap()
     }
 }
@@ -161,6 +155,17 @@ pub(crate) fn evidence(studies: &[(&str, &Rows)]) -> Evidence {
 pub(crate) fn examine(id: &str, evidence: &Evidence) -> Finding {
     let claim = CLAIMS.iter().find(|claim| claim.id == id).unwrap();
     (claim.examine)(evidence).unwrap()
+}
+
+/// Asserts a verdict; where it differs, says what was found.
+pub(crate) fn assert_verdict(finding: &Finding, verdict: Verdict) {
+    let found = (&finding.summary, finding.statistics);
+    assert_eq!(finding.verdict, verdict, "{found:?}");
+}
+
+/// Asserts that a text says something.
+pub(crate) fn assert_says(text: &str, part: &str) {
+    assert!(text.contains(part), "{part:?} in {text:?}");
 }
 
 /// The value of the first quantity whose name contains this.

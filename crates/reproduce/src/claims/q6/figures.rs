@@ -58,15 +58,9 @@ pub(super) fn causes(draft: &mut Draft, samples: &Samples<'_>) -> Result<()> {
     let of_wall = "force of the wall, 10^{3}*F*/*Yd*^{2}";
     let forces = panel(&label(Axis::StaticFriction), of_wall).with_all(numbered(forces));
     let panels = [friction, tether, rate, forces];
-    draft.chart(
-        "cause-of-back-flow",
-        &[
-            ("friction", &PRESET.friction),
-            ("tether", &PRESET.tether),
-            ("rate", &PRESET.rate),
-        ],
-        ChartFigure::grid(2, panels).width(Width::DoubleColumn),
-    )
+    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    let (friction, tether, rate) = (PRESET.friction, PRESET.tether, PRESET.rate);
+    draft.chart("cause-of-back-flow", values!(friction, tether, rate), chart)
 }
 
 /// Radius, velocities and forces against the phase, with and without friction; `None` where no profile is at hand.

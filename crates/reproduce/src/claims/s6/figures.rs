@@ -8,8 +8,7 @@ use crate::thresholds::UNJAMMED;
 struct Curves {
     name: String,
     place: Vec<f64>,
-    values: [Vec<f64>; 3],
-    errors: [Vec<f64>; 3],
+    columns: Vec<[Vec<f64>; 2]>,
 }
 
 impl Curves {
@@ -31,21 +30,21 @@ impl Curves {
             let values = table.reals(name)?;
             Ok((0..bins).map(|k| values[order(k)] / unit).collect())
         };
-        let mut values: [Vec<f64>; 3] = Default::default();
-        let mut errors: [Vec<f64>; 3] = Default::default();
-        let names = ["density", "axial_velocity", "granular_temperature"];
-        let units = [mean, speed, speed * speed];
-        for (place, (name, unit)) in names.into_iter().zip(units).enumerate() {
-            values[place] = column(name, unit)?;
-            errors[place] = column(&format!("{name}_error"), unit)?;
+        let units = [
+            ("density", mean),
+            ("axial_velocity", speed),
+            ("granular_temperature", speed * speed),
+        ];
+        let mut columns = Vec::new();
+        for (name, unit) in units {
+            let error = column(&format!("{name}_error"), unit)?;
+            columns.push([column(name, unit)?, error]);
         }
+        let place = |k: usize| (k as f64 - (bins / 2) as f64) / bins as f64;
         Ok(Some(Self {
             name,
-            place: (0..bins)
-                .map(|k| (k as f64 - (bins / 2) as f64) / bins as f64)
-                .collect(),
-            values,
-            errors,
+            place: (0..bins).map(place).collect(),
+            columns,
         }))
     }
 }
@@ -96,15 +95,13 @@ pub(super) fn profiles(
         panel("temperature, *T*_{g}/*mc*^{2}").y_scale(Scale::Logarithmic),
     ];
     let panels = panels.into_iter().enumerate().map(|(quantity, panel)| {
-        curves
-            .iter()
-            .enumerate()
-            .fold(panel, |panel, (series, curve)| {
-                let (value, error) = (&curve.values[quantity], &curve.errors[quantity]);
-                panel
-                    .with(error_band(&curve.place, value, error).series(series))
-                    .with(Curve::new(&curve.name, &curve.place, value).series(series))
-            })
+        let curves = curves.iter().enumerate();
+        curves.fold(panel, |panel, (series, curve)| {
+            let [value, error] = &curve.columns[quantity];
+            panel
+                .with(error_band(&curve.place, value, error).series(series))
+                .with(Curve::new(&curve.name, &curve.place, value).series(series))
+        })
     });
     let chart = ChartFigure::grid(3, panels)
         .legend(LegendPlace::Below)
