@@ -311,22 +311,25 @@ mod tests {
             depth == 0
         };
         let call = &call[..call.find(&mut closes).unwrap_or(call.len())];
-        let Some((_, values)) = call.split_once("values!(") else {
-            return Vec::new();
-        };
-        // Commas within brackets and texts part no values.
-        let mut depth = 0;
-        let mut is_text = false;
-        let parts = values.split(|c| {
+        let (_, values) = call.split_once("values!(").unwrap_or_default();
+        let (mut depth, mut is_text, mut begin) = (0, false, 0);
+        let mut names = Vec::new();
+        for (at, c) in values.char_indices() {
             is_text ^= c == '"';
-            depth += i32::from("([".contains(c)) - i32::from(")]".contains(c));
-            c == ',' && depth == 0 && !is_text || depth < 0
-        });
-        let name = |part: &'_ str| part.split(['=', ')']).next().map(str::trim);
-        parts
-            .filter_map(name)
-            .filter(|name| !name.is_empty())
-            .collect()
+            match c {
+                '(' | '[' => depth += 1,
+                ')' | ']' if depth > 0 => depth -= 1,
+                ',' | ')' if depth == 0 && !is_text => {
+                    names.extend(values[begin..at].split('=').next().map(str::trim));
+                    begin = at + 1;
+                    if c == ')' {
+                        break;
+                    }
+                }
+                _ => {}
+            }
+        }
+        names
     }
 
     /// Every section of every claim is asked for by its code with just its placeholders, and no other is.
