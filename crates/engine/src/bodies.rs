@@ -58,7 +58,6 @@ impl Sphere {
 impl Bodies {
     /// One of the spheres.
     #[inline(always)]
-    #[must_use]
     pub fn sphere(&self, index: usize) -> Sphere {
         Sphere {
             position: self.position[index],
@@ -70,7 +69,6 @@ impl Bodies {
 
     /// Spheres at rest at the given places, with the given diameters and masses d^3 (in units of the mass of a sphere
     /// of diameter 1) and moments of inertia m d^2/10.
-    #[must_use]
     pub fn grains_at_rest(position: Vec<DVec3>, diameter: Vec<f64>) -> Self {
         let number = position.len();
         let mass: Vec<f64> = diameter.iter().map(|d| d * d * d).collect();
@@ -107,13 +105,11 @@ impl Bodies {
     }
 
     /// Number of moving spheres, grains and wall.
-    #[must_use]
     pub fn number(&self) -> usize {
         self.position.len()
     }
 
     /// Kinetic energy of translation of the spheres of a range, sum m v^2/2 \[m d^2/t^2\].
-    #[must_use]
     pub fn kinetic_energy(&self, range: core::ops::Range<usize>) -> f64 {
         range
             .map(|i| 0.5 * self.mass[i] * self.velocity[i].length_squared())
@@ -121,7 +117,6 @@ impl Bodies {
     }
 
     /// Kinetic energy of rotation of the grains, sum I omega^2/2 \[m d^2/t^2\].
-    #[must_use]
     pub fn rotational_energy(&self) -> f64 {
         (0..self.grains)
             .map(|i| 0.5 * self.inertia[i] * self.angular_velocity[i].length_squared())
@@ -129,7 +124,6 @@ impl Bodies {
     }
 
     /// Unfolded axial position z + turns L of a sphere \[d\].
-    #[must_use]
     pub fn unfolded(&self, index: usize, length: f64) -> f64 {
         self.position[index].z + f64::from(self.turns[index]) * length
     }

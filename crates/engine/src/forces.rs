@@ -30,11 +30,7 @@ pub(crate) struct Reference<'a, N, T: TangentialLaw> {
 
 impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
     fn move_spheres(&mut self) -> Result<(), Runaway> {
-        let Parameters {
-            integrator,
-            time_step,
-            ..
-        } = *self.parameters;
+        let (integrator, time_step) = (self.parameters.integrator, self.parameters.time_step);
         before_forces(integrator, self.bodies, self.past, time_step, self.limit)?;
         self.bodies.fold(self.length);
         Ok(())
@@ -47,17 +43,11 @@ impl<N: NormalLaw, T: TangentialLaw> Stepper for Reference<'_, N, T> {
     }
 
     fn evaluate(&mut self, wall: &Wall, _complete: bool) -> Tally {
-        let Parameters {
-            integrator,
-            time_step,
-            skin,
-            body_force,
-            ..
-        } = *self.parameters;
-        self.contacts.refresh(self.bodies, wall, skin);
+        let (parameters, time_step) = (self.parameters, self.parameters.time_step);
+        self.contacts.refresh(self.bodies, wall, parameters.skin);
         let tally = evaluate(self.law, self.bodies, wall, self.contacts, time_step);
-        add_body_force(self.bodies, body_force);
-        after_forces(integrator, self.bodies, self.past, time_step);
+        add_body_force(self.bodies, parameters.body_force);
+        after_forces(parameters.integrator, self.bodies, self.past, time_step);
         tally
     }
 
@@ -82,11 +72,9 @@ pub(crate) fn evaluate<N: NormalLaw, T: TangentialLaw>(
     let length = wall.length();
     let pairs = &mut contacts.pairs;
     add_pairs(law, bodies, pairs, length, time_step, &mut tally);
-    match wall {
-        Wall::Prescribed(wall) => {
-            wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
-        }
-        Wall::Elastic(wall) => wall.add_forces(bodies, &mut tally),
+    wall.add_forces(law, bodies, &mut contacts.wall, time_step, &mut tally);
+    if let Some(wall) = wall.elastic() {
+        wall.add_forces(bodies, &mut tally);
     }
     // Until here the arrays held forces and torques.
     for (acceleration, mass) in bodies.acceleration.iter_mut().zip(&bodies.mass) {

@@ -71,13 +71,11 @@ impl Tally {
     }
 
     /// Elastic energy of contacts, network and tethers.
-    #[must_use]
     pub fn potential_energy(&self) -> f64 {
         self.contact_energy + self.network_energy + self.keep_energy
     }
 
     /// Power that enters from outside.
-    #[must_use]
     pub fn input_power(&self) -> f64 {
         self.wall_power + self.drive_power + self.keep_power
     }
@@ -146,13 +144,11 @@ impl Ledger {
     }
 
     /// Work of wall and drive.
-    #[must_use]
     pub fn input(&self) -> f64 {
         self.wall_work + self.drive_work + self.keep_work
     }
 
     /// Energy that was lost.
-    #[must_use]
     pub fn dissipated(&self) -> f64 {
         self.normal_dissipated
             + self.tangential_dissipated
@@ -163,14 +159,12 @@ impl Ledger {
     }
 
     /// Energy that the ledger cannot account for, for kinetic plus potential energy `energy` now.
-    #[must_use]
     pub fn residual(&self, energy: f64) -> f64 {
         energy - self.initial_energy - self.input() - self.body_work + self.dissipated()
     }
 
     /// |residual| over the integral of |power of wall and drive| and the |work of the body force|; over the initial energy
     /// where next to nothing entered; 0 where nothing is missing.
-    #[must_use]
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
         let entered = self.gross_work + self.body_work.abs();

@@ -193,7 +193,6 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
 /// Separation with z brought to the nearest image in a tube of period L, for two positions in \[0, L).
 #[inline(always)]
-#[must_use]
 pub(crate) fn periodic(mut separation: DVec3, length: f64) -> DVec3 {
     if separation.z > 0.5 * length {
         separation.z -= length;

@@ -39,7 +39,6 @@ pub struct Simulation {
 
 impl Simulation {
     /// A simulation that starts at time 0 with the given spheres.
-    #[must_use]
     pub fn new(bodies: Bodies, wall: Wall, parameters: Parameters) -> Self {
         let mut simulation = Self::assemble(bodies, wall, parameters);
         // Forces at the start, so that the first step knows its accelerations.
@@ -224,49 +223,41 @@ impl Simulation {
     }
 
     /// The spheres.
-    #[must_use]
     pub fn bodies(&self) -> &Bodies {
         &self.bodies
     }
 
     /// The wall as it is now.
-    #[must_use]
     pub fn wall(&self) -> &Wall {
         &self.course.wall
     }
 
     /// How the simulation is computed.
-    #[must_use]
     pub fn parameters(&self) -> &Parameters {
         &self.parameters
     }
 
     /// Sums over the contacts at the end of the last step.
-    #[must_use]
     pub fn tally(&self) -> &Tally {
         &self.course.tally
     }
 
     /// Energies accumulated since the start.
-    #[must_use]
     pub fn ledger(&self) -> &Ledger {
         &self.course.ledger
     }
 
     /// Steps done since the start.
-    #[must_use]
     pub fn step(&self) -> u64 {
         self.course.step
     }
 
     /// Time since the start \[t\].
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.course.time()
     }
 
     /// Kinetic plus potential energy of grains and elastic wall \[m d^2/t^2\].
-    #[must_use]
     pub fn energy(&self) -> f64 {
         self.bodies.kinetic_energy(0..self.bodies.number())
             + self.bodies.rotational_energy()
@@ -274,7 +265,6 @@ impl Simulation {
     }
 
     /// Energy that the ledger cannot account for over the integral of |power that enters|.
-    #[must_use]
     pub fn energy_residual(&self) -> f64 {
         self.ledger().relative_residual(self.energy())
     }
@@ -309,7 +299,6 @@ impl Simulation {
     }
 
     /// All contacts as they are now, with their forces; grain by grain.
-    #[must_use]
     pub fn touching(&self) -> Vec<Touching> {
         // Histories of contacts with the wall are taken out on the way.
         let mut memory = self.memory.clone();
@@ -321,13 +310,11 @@ impl Simulation {
     }
 
     /// Everything that a restart needs to go on with the same bits.
-    #[must_use]
     pub fn snapshot(&self) -> Snapshot {
         self.snapshot_view().into_owned()
     }
 
     /// The same, to be written down at once.
-    #[must_use]
     pub fn snapshot_view(&self) -> SnapshotView<'_> {
         let (pair_histories, wall_histories) = match &self.memory {
             Memory::Smooth(_) => (Vec::new(), Vec::new()),

@@ -50,7 +50,6 @@ pub struct SnapshotView<'a> {
 
 impl SnapshotView<'_> {
     /// A snapshot of its own.
-    #[must_use]
     pub fn into_owned(self) -> Snapshot {
         Snapshot {
             step: self.step,

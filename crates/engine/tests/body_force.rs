@@ -76,8 +76,7 @@ fn momentum_grows_by_the_weight() {
         }
         let mass: f64 = bodies.mass.iter().sum();
         let before = momentum(&bodies);
-        let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
-        simulation.advance(100).unwrap();
+        let simulation = advanced(&bodies, &wall, parameters, 100);
         assert!(simulation.ledger().largest_overlap > 0.01);
         let gained = momentum(simulation.bodies()) - before;
         let weight = DVec3::new(0.0, 0.0, mass * BODY_FORCE * simulation.time());
@@ -104,8 +103,8 @@ fn the_ledger_closes_and_holds_its_work() {
                         body_force: BODY_FORCE,
                         ..parameters(normal, friction, integrator, time_step)
                     };
-                    let mut simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
-                    simulation.advance((20.0 / time_step) as u64).unwrap();
+                    let steps = (20.0 / time_step) as u64;
+                    let simulation = advanced(&bodies, wall, parameters, steps);
                     let ledger = simulation.ledger();
                     // What would be missing without it.
                     assert!(

@@ -48,18 +48,10 @@ fn the_balanced_tube_is_in_equilibrium() {
         // Each part of the mean would cancel in a straight tube anyway: it is left in.
         parameters.network.tethers.net_force = NetForce::Free;
         let mut simulation = alone(parameters.clone(), |_| ());
-        let largest = forces(&simulation)
-            .iter()
-            .map(|force| force.length())
-            .fold(0.0, f64::max);
+        let largest = longest(&forces(&simulation));
         assert!(largest < 1e-15, "{largest}");
         simulation.advance(500).unwrap();
-        let fastest = simulation
-            .bodies()
-            .velocity
-            .iter()
-            .map(|v| v.length())
-            .fold(0.0, f64::max);
+        let fastest = longest(&simulation.bodies().velocity);
         assert!(fastest < 1e-9, "{fastest}");
 
         // Without the balance it shrinks: the springs are stretched.
@@ -93,10 +85,7 @@ fn the_forces_are_the_slope_of_the_energy() {
     // A tube so narrow that opposite sides touch.
     parameters.mean_radius = 0.55;
     parameters.network.contact_range = 1.0;
-    let normal = Normal::Linear(LinearSpringDashpot {
-        normal_stiffness: 1.0,
-        normal_damping: 0.0,
-    });
+    let normal = Normal::Linear(linear(1.0, 0.0));
     let law = common::parameters(normal, None, Integrator::Verlet, 0.05);
     let wall = elastic(parameters);
     let mut bodies = with_wall_spheres(Bodies::default(), &wall);

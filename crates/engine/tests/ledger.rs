@@ -75,10 +75,7 @@ fn under_stress_control_with_everything_on() {
 /// Two grains that collide without friction in a tube that does nothing: what is lost is in the ledger, term by term.
 #[test]
 fn the_terms_of_a_single_impact() {
-    let law = LinearSpringDashpot {
-        normal_stiffness: 1.0,
-        normal_damping: 0.1,
-    };
+    let law = linear(1.0, 0.1);
     let bodies = grains(&[
         (DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.0, 0.0, 0.1)),
         (DVec3::new(0.0, 0.0, 6.01), DVec3::ZERO),

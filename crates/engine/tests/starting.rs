@@ -160,9 +160,7 @@ fn a_seed_decides_every_bit() {
             assert!(one.diameter[..number] != other.diameter[..number]);
             let run = |bodies: &Bodies| {
                 let parameters = parameters(LINEAR, Some(FRICTION), Integrator::Verlet, 0.05);
-                let mut simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
-                simulation.advance(50).unwrap();
-                bits(&simulation)
+                bits(&advanced(bodies, &wall, parameters, 50))
             };
             assert_eq!(run(&one), run(&same));
             assert_ne!(run(&one), run(&other));
@@ -240,10 +238,7 @@ fn few_grains_are_enough() {
 #[test]
 fn an_absurd_time_step_stops_with_step_and_grain() {
     for integrator in INTEGRATORS {
-        let normal = Normal::Linear(LinearSpringDashpot {
-            normal_stiffness: 1e6,
-            normal_damping: 0.0,
-        });
+        let normal = Normal::Linear(linear(1e6, 0.0));
         let bodies = grains(&[
             (DVec3::new(3.0, 0.0, 5.0), DVec3::ZERO),
             (DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.0, 0.0, 0.3)),

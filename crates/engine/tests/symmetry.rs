@@ -13,19 +13,10 @@ fn tube(heading: f64) -> Wall {
     strained(coarse(WAVES), heading, 2.6, 0.1)
 }
 
-fn start(bodies: &Bodies, heading: f64, parameters: Parameters) -> Simulation {
-    Simulation::new(bodies.clone(), tube(heading), parameters)
-}
-
 /// Sum of v_z over L.
 fn flow(simulation: &Simulation) -> f64 {
-    simulation
-        .bodies()
-        .velocity
-        .iter()
-        .map(|velocity| velocity.z)
-        .sum::<f64>()
-        / LENGTH
+    let velocities = simulation.bodies().velocity.iter();
+    velocities.map(|velocity| velocity.z).sum::<f64>() / LENGTH
 }
 
 /// Largest difference of places and velocities between `plain` after `map` and `found`.
@@ -57,12 +48,8 @@ fn the_mirror_image_flows_the_other_way() {
         }
         for integrator in INTEGRATORS {
             let parameters = parameters(normal, friction, integrator, 0.05);
-            let (mut plain, mut mirrored) = (
-                start(&bodies, -1.0, parameters),
-                start(&image, 1.0, parameters),
-            );
-            plain.advance(STEPS).unwrap();
-            mirrored.advance(STEPS).unwrap();
+            let plain = advanced(&bodies, &tube(-1.0), parameters, STEPS);
+            let mirrored = advanced(&image, &tube(1.0), parameters, STEPS);
             let apart = difference(plain.bodies(), mirrored.bodies(), mirror);
             println!(
                 "{name}, {integrator:?}: mirror {apart:e}, J = {}",
@@ -88,17 +75,15 @@ fn skinless(friction: Option<CundallStrack>) -> Kernel {
 fn the_skin_changes_no_bit() {
     for (name, normal, friction) in laws() {
         let bodies = packed(GRAINS, 0.8, &tube(-1.0), normal, 9);
-        let with = |skin: f64, steps: u64| {
+        let with = |skin: f64| {
             let parameters = Parameters {
                 skin,
                 kernel: skinless(friction),
                 ..parameters(normal, friction, Integrator::Verlet, 0.05)
             };
-            let mut simulation = start(&bodies, -1.0, parameters);
-            simulation.advance(steps).unwrap();
-            simulation
+            advanced(&bodies, &tube(-1.0), parameters, 800)
         };
-        let (thin, usual, thick) = (with(0.05, 800), with(0.3, 800), with(1.0, 800));
+        let (thin, usual, thick) = (with(0.05), with(0.3), with(1.0));
         assert_eq!(bits(&thin), bits(&usual), "{name}");
         assert_eq!(bits(&thick), bits(&usual), "{name}");
         assert_eq!(thick.ledger(), usual.ledger(), "{name}");
@@ -146,9 +131,7 @@ fn the_skin_changes_no_bit_in_odd_tubes() {
                     kernel: skinless(friction),
                     ..parameters(LINEAR, friction, Integrator::Verlet, 0.05)
                 };
-                let mut simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
-                simulation.advance(300).unwrap();
-                simulation.snapshot()
+                advanced(&bodies, wall, parameters, 300).snapshot()
             };
             let usual = with(0.3);
             assert_eq!(with(0.05), usual, "{name}");
@@ -179,9 +162,7 @@ fn the_skin_changes_no_bit_of_the_ledger_of_a_fast_parting() {
             kernel: Kernel::Fast,
             ..parameters(LINEAR, Some(FRICTION), Integrator::Verlet, 0.05)
         };
-        let mut simulation = Simulation::new(bodies, wide(20.0), parameters);
-        simulation.advance(10).unwrap();
-        simulation.snapshot()
+        advanced(&bodies, &wide(20.0), parameters, 10).snapshot()
     };
     let usual = with(0.3);
     assert!(usual.ledger.history_reset > 1e-4);

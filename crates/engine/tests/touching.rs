@@ -16,8 +16,7 @@ fn the_forces_of_contacts_add_up_to_the_accelerations_of_the_grains() {
                     kernel,
                     ..parameters(normal, friction, INTEGRATORS[0], 0.01)
                 };
-                let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
-                simulation.advance(2_000).unwrap();
+                let simulation = advanced(&bodies, wall, parameters, 2_000);
                 assert_forces(&simulation, &format!("{name} {kernel:?} {number} grains"));
             }
         }
@@ -81,9 +80,7 @@ fn assert_forces(simulation: &Simulation, case: &str) {
         "{case}"
     );
     // Forces of the step itself were those of velocities predicted for its end: the same to the order of the step.
-    let scale = forces
-        .iter()
-        .fold(0.0_f64, |most, force| most.max(force.length()));
+    let scale = longest(&forces);
     for (grain, force) in forces.iter().enumerate() {
         let expected = bodies.mass[grain] * bodies.acceleration[grain];
         assert!(

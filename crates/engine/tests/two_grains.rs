@@ -25,10 +25,7 @@ fn head_on_restitution_has_its_closed_form() {
     let time_step = 1e-4;
     for integrator in INTEGRATORS {
         for damping in [5.48e-3, 0.1, 0.3] {
-            let law = LinearSpringDashpot {
-                normal_stiffness: 1.0,
-                normal_damping: damping,
-            };
+            let law = linear(1.0, damping);
             let (found, expected) = (
                 restitution(law, integrator, time_step),
                 law.restitution(0.5),
@@ -66,17 +63,6 @@ fn oblique(
     )
 }
 
-fn state(simulation: &Simulation) -> Vec<DVec3> {
-    let bodies = simulation.bodies();
-    bodies
-        .position
-        .iter()
-        .chain(&bodies.velocity)
-        .chain(&bodies.angular_velocity)
-        .copied()
-        .collect()
-}
-
 fn distance(one: &[DVec3], other: &[DVec3]) -> f64 {
     one.iter()
         .zip(other)
@@ -99,10 +85,7 @@ fn frictions() -> [(&'static str, Option<CundallStrack>); 3] {
     ]
 }
 
-const STRONGLY_DAMPED: Normal = Normal::Linear(LinearSpringDashpot {
-    normal_stiffness: 1.0,
-    normal_damping: 0.3,
-});
+const STRONGLY_DAMPED: Normal = Normal::Linear(linear(1.0, 0.3));
 
 /// Errors of the state after `duration` for three halvings of the step, root mean square over gaps.
 fn errors(
@@ -122,7 +105,7 @@ fn errors(
             1,
             "the contact must persist"
         );
-        state(&simulation)
+        motion(simulation.bodies())
     };
     let mut sums = [0.0; 4];
     for &gap in gaps {

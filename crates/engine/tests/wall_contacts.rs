@@ -90,8 +90,7 @@ fn a_restart_finds_the_same_contacts() {
         for friction in [None, Some(FRICTION)] {
             let bodies = packed(80, 1.0, wall, LINEAR, 3);
             let parameters = parameters(LINEAR, friction, INTEGRATORS[0], 0.05);
-            let mut simulation = Simulation::new(bodies, wall.clone(), parameters);
-            simulation.advance(200).unwrap();
+            let simulation = advanced(&bodies, wall, parameters, 200);
             let again =
                 Simulation::restore(simulation.snapshot(), wall.clone(), parameters).unwrap();
             let found = forces(&simulation);

@@ -15,10 +15,7 @@ fn departure(refinement: u32, heading: f64, time_step: f64) -> f64 {
         rings_per_wave: 14 * refinement,
         ..coarse(2)
     };
-    let law = LinearSpringDashpot {
-        normal_stiffness: 1.0 / f64::from(refinement * refinement),
-        normal_damping: 0.0,
-    };
+    let law = linear(1.0 / f64::from(refinement * refinement), 0.0);
     let bodies = grains(&[(DVec3::new(0.31, 0.17, 6.2), DVec3::new(0.02, -0.05, 0.03))]);
     let parameters = parameters(Normal::Linear(law), None, Integrator::Verlet, time_step);
     let mut simulation = Simulation::new(
@@ -76,13 +73,7 @@ fn moving(number: usize, normal: Normal, speed: f64, drift: f64, wall: &Wall) ->
 #[test]
 fn a_wave_that_stands_still_drives_nothing() {
     for (name, normal) in [
-        (
-            "linear",
-            Normal::Linear(LinearSpringDashpot {
-                normal_stiffness: 1.0,
-                normal_damping: 0.05,
-            }),
-        ),
+        ("linear", Normal::Linear(linear(1.0, 0.05))),
         ("hertz", HERTZ),
     ] {
         for friction in [None, Some(FRICTION)] {

@@ -43,7 +43,6 @@ pub trait Real:
 
     /// This where it is positive, else 0.
     #[inline(always)]
-    #[must_use]
     fn positive_part(self) -> Self {
         let zero = Self::splat(0.0);
         Self::select(zero.less(self), self, zero)
@@ -51,21 +50,18 @@ pub trait Real:
 
     /// The lesser of this and `other`.
     #[inline(always)]
-    #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.less(other), self, other)
     }
 
     /// The larger of this and `other`.
     #[inline(always)]
-    #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.less(self), self, other)
     }
 
     /// The nearest whole number, for numbers below 2^51 in size.
     #[inline(always)]
-    #[must_use]
     fn nearest_integer(self) -> Self {
         // Added to a number, this leaves no digits behind the point.
         let shift = Self::splat(6_755_399_441_055_744.0);
@@ -74,7 +70,6 @@ pub trait Real:
 
     /// The absolute value.
     #[inline(always)]
-    #[must_use]
     fn abs(self) -> Self {
         self.max(-self)
     }

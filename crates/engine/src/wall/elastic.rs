@@ -54,7 +54,6 @@ pub struct ElasticWall {
 
 impl ElasticWall {
     /// The wall at time 0.
-    #[must_use]
     pub fn new(parameters: ElasticParameters) -> Self {
         let lattice = parameters.lattice;
         let spheres = 0..lattice.spheres();
@@ -124,19 +123,16 @@ impl ElasticWall {
     }
 
     /// The parameters.
-    #[must_use]
     pub fn parameters(&self) -> &ElasticParameters {
         &self.parameters
     }
 
     /// The lattice.
-    #[must_use]
     pub fn lattice(&self) -> &Lattice {
         &self.parameters.lattice
     }
 
     /// Reference place of a wall sphere \[d\].
-    #[must_use]
     pub fn reference(&self, sphere: usize) -> DVec3 {
         let (cos, sin) = self.directions[sphere];
         let lattice = &self.parameters.lattice;

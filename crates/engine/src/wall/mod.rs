@@ -6,14 +6,15 @@ mod prescribed;
 
 pub use elastic::{ElasticParameters, ElasticWall};
 pub use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, NetForce, Tethers};
-pub(crate) use prescribed::Grains;
 pub use prescribed::PrescribedWall;
 
 use glam::DVec3;
-use peristalsis_physics::contact::Contact;
+use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
+use self::memory::WallMemory;
 use crate::bodies::{Bodies, Sphere};
+use crate::ledger::Tally;
 
 /// The wall of a simulation.
 #[derive(Clone, Debug)]
@@ -78,7 +79,6 @@ impl Wall {
     }
 
     /// The lattice of the wall's spheres; `None` where the wall has none.
-    #[must_use]
     pub fn lattice(&self) -> Option<&Lattice> {
         match self {
             Self::Prescribed(wall) => Some(wall.lattice()),
@@ -96,32 +96,27 @@ impl Wall {
     }
 
     /// L, the period of the tube \[d\].
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.extent().0
     }
 
     /// lambda \[d\]
-    #[must_use]
     pub fn wavelength(&self) -> f64 {
         self.extent().1
     }
 
     /// Wavelengths in the tube.
-    #[must_use]
     pub fn waves(&self) -> u32 {
         self.extent().2
     }
 
     /// Diameter of the wall's spheres, 0 where it has none \[d\]: the wall's surface lies half of it inside its radius.
-    #[must_use]
     pub fn sphere_diameter(&self) -> f64 {
         self.lattice()
             .map_or(0.0, |lattice| lattice.sphere_diameter)
     }
 
     /// Wavelengths that the wave has run since the start, the integral of c/lambda.
-    #[must_use]
     pub fn cycles(&self) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.cycles,
@@ -130,7 +125,6 @@ impl Wall {
     }
 
     /// +1 where the wave runs towards +z, -1 towards -z.
-    #[must_use]
     pub fn heading(&self) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.wave().heading,
@@ -139,7 +133,6 @@ impl Wall {
     }
 
     /// c/lambda at `time` \[1/t\].
-    #[must_use]
     pub fn frequency(&self, time: f64) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.frequency(time),
@@ -148,7 +141,6 @@ impl Wall {
     }
 
     /// Largest radius that the tube is expected to have, to the centres \[d\].
-    #[must_use]
     pub fn usual_radius(&self) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.wave().mean_radius + wall.wave().amplitude.abs(),
@@ -157,7 +149,6 @@ impl Wall {
     }
 
     /// Mean radius of the tube, to the centres: a of a prescribed wave, the reference radius of an elastic wall \[d\].
-    #[must_use]
     pub fn mean_radius(&self) -> f64 {
         match self {
             Self::Prescribed(wall) => wall.wave().mean_radius,
@@ -166,7 +157,6 @@ impl Wall {
     }
 
     /// The wave that the radius follows; `None` where the radius follows from forces.
-    #[must_use]
     pub fn wave(&self) -> Option<&RadiusWave> {
         self.prescribed().map(PrescribedWall::wave)
     }
@@ -179,7 +169,6 @@ impl Wall {
 
     /// Place of the throat in the frame of the wave \[lambda\]: under strain control the radius is least there, under
     /// stress control the inward force is largest.
-    #[must_use]
     pub fn throat(&self) -> f64 {
         match self {
             Self::Prescribed(_) => 0.25,
@@ -188,7 +177,6 @@ impl Wall {
     }
 
     /// Number of the wall's spheres that forces move: the last of the [`Bodies`].
-    #[must_use]
     pub fn mobile_spheres(&self) -> usize {
         self.elastic().map_or(0, |wall| wall.lattice().spheres())
     }
@@ -224,15 +212,15 @@ impl Wall {
     pub(crate) fn prescribed(&self) -> Option<&PrescribedWall> {
         match self {
             Self::Prescribed(wall) => Some(wall),
-            Self::Elastic(_) => None,
+            _ => None,
         }
     }
 
     /// The elastic wall, if it is one.
     pub(crate) fn elastic(&self) -> Option<&ElasticWall> {
         match self {
-            Self::Prescribed(_) => None,
             Self::Elastic(wall) => Some(wall),
+            _ => None,
         }
     }
 
@@ -244,9 +232,92 @@ impl Wall {
 
     /// Calls `touch` for each contact of a grain with what of the wall no force moves: with the number of the wall's
     /// sphere, the contact (the grain not rotating) and the velocity of the wall there.
+    #[inline(always)]
     pub(crate) fn for_each_contact(&self, grain: &Sphere, touch: impl FnMut(u32, Contact, DVec3)) {
         if let Self::Prescribed(wall) = self {
             wall.for_each_contact(grain, touch);
         }
+    }
+
+    /// Adds the forces and torques on the grains of what of the wall no force moves.
+    pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
+        &self,
+        law: &ContactLaw<N, T>,
+        grains: &mut impl Grains,
+        memory: &mut WallMemory<T::History<f64>>,
+        time_step: f64,
+        tally: &mut Tally,
+    ) {
+        if self.mobile_spheres() > 0 {
+            return;
+        }
+        if T::ROTATES {
+            memory.begin();
+        }
+        for grain in 0..grains.grains() {
+            let sphere = grains.sphere(grain);
+            let (mut force, mut torque) = grains.force(grain);
+            self.for_each_contact(&sphere, |number, mut contact, wall_velocity| {
+                let arm = contact.arm(sphere.diameter);
+                let mut history = T::History::<f64>::default();
+                if T::ROTATES {
+                    contact.rotation = arm * sphere.angular_velocity;
+                    history = memory.take(grain, number);
+                }
+                let answer = law.force(&contact, &mut history, time_step);
+                if T::ROTATES {
+                    memory.put(number, history);
+                    torque += arm * answer.torque_per_arm;
+                }
+                force += answer.force;
+                tally.add_contact(&answer, contact.overlap);
+                tally.wall_contacts += 1;
+                tally.wall_power += answer.force.dot(wall_velocity);
+                tally.wall_axial_force += answer.force.z;
+            });
+            grains.set_force(grain, force, torque);
+            if T::ROTATES {
+                for ended in memory.end_grain(grain) {
+                    tally.history_reset += law.tangential.stored_energy(ended);
+                }
+            }
+        }
+        if T::ROTATES {
+            memory.end();
+        }
+    }
+}
+
+/// Grains, as a kernel keeps them, with the forces and torques on them.
+pub(crate) trait Grains {
+    /// How many there are.
+    fn grains(&self) -> usize;
+    /// One of them.
+    fn sphere(&self, grain: usize) -> Sphere;
+    /// Force and torque on one of them.
+    fn force(&self, grain: usize) -> (DVec3, DVec3);
+    /// Writes both.
+    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3);
+}
+
+/// Until all forces are known accelerations stand for them.
+impl Grains for Bodies {
+    fn grains(&self) -> usize {
+        self.grains
+    }
+
+    #[inline(always)]
+    fn sphere(&self, grain: usize) -> Sphere {
+        self.sphere(grain)
+    }
+
+    #[inline(always)]
+    fn force(&self, grain: usize) -> (DVec3, DVec3) {
+        (self.acceleration[grain], self.angular_acceleration[grain])
+    }
+
+    #[inline(always)]
+    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3) {
+        (self.acceleration[grain], self.angular_acceleration[grain]) = (force, torque);
     }
 }

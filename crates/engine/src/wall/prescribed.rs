@@ -3,13 +3,11 @@
 use core::f64::consts::TAU;
 
 use glam::DVec3;
-use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
+use peristalsis_physics::contact::Contact;
 use peristalsis_physics::wall::lattice::approximate_angle;
 use peristalsis_physics::wall::{Lattice, RadiusWave, Ring, Schedule, Waveform};
 
-use super::memory::WallMemory;
-use crate::bodies::{Bodies, Sphere};
-use crate::ledger::Tally;
+use crate::bodies::Sphere;
 
 /// Staggered rings whose radius follows a travelling wave.
 ///
@@ -40,7 +38,6 @@ impl PrescribedWall {
     ///
     /// `mean_radius` a \[d\], `amplitude` b(t) \[d\], `frequency` c(t)/lambda \[1/t\], `heading` +1 for a wave towards +z,
     /// -1 towards -z.
-    #[must_use]
     pub fn new(
         lattice: Lattice,
         mean_radius: f64,
@@ -121,19 +118,16 @@ impl PrescribedWall {
     }
 
     /// The lattice.
-    #[must_use]
     pub fn lattice(&self) -> &Lattice {
         &self.lattice
     }
 
     /// The wave as it is now.
-    #[must_use]
     pub fn wave(&self) -> &RadiusWave {
         &self.wave
     }
 
     /// c/lambda at `time` \[1/t\].
-    #[must_use]
     pub fn frequency(&self, time: f64) -> f64 {
         self.frequency.value(time)
     }
@@ -245,85 +239,6 @@ impl PrescribedWall {
                 touch(sphere, contact, velocity);
             }
         });
-    }
-
-    /// Adds the forces and torques of the wall on the grains.
-    pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
-        &self,
-        law: &ContactLaw<N, T>,
-        grains: &mut impl Grains,
-        memory: &mut WallMemory<T::History<f64>>,
-        time_step: f64,
-        tally: &mut Tally,
-    ) {
-        if T::ROTATES {
-            memory.begin();
-        }
-        for grain in 0..grains.grains() {
-            let sphere = grains.sphere(grain);
-            let (mut force, mut torque) = grains.force(grain);
-            self.for_each_contact(&sphere, |number, mut contact, wall_velocity| {
-                let arm = contact.arm(sphere.diameter);
-                let mut history = T::History::<f64>::default();
-                if T::ROTATES {
-                    contact.rotation = arm * sphere.angular_velocity;
-                    history = memory.take(grain, number);
-                }
-                let answer = law.force(&contact, &mut history, time_step);
-                if T::ROTATES {
-                    memory.put(number, history);
-                    torque += arm * answer.torque_per_arm;
-                }
-                force += answer.force;
-                tally.add_contact(&answer, contact.overlap);
-                tally.wall_contacts += 1;
-                tally.wall_power += answer.force.dot(wall_velocity);
-                tally.wall_axial_force += answer.force.z;
-            });
-            grains.set_force(grain, force, torque);
-            if T::ROTATES {
-                for ended in memory.end_grain(grain) {
-                    tally.history_reset += law.tangential.stored_energy(ended);
-                }
-            }
-        }
-        if T::ROTATES {
-            memory.end();
-        }
-    }
-}
-
-/// Grains, as a kernel keeps them, with the forces and torques on them.
-pub(crate) trait Grains {
-    /// How many there are.
-    fn grains(&self) -> usize;
-    /// One of them.
-    fn sphere(&self, grain: usize) -> Sphere;
-    /// Force and torque on one of them.
-    fn force(&self, grain: usize) -> (DVec3, DVec3);
-    /// Writes both.
-    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3);
-}
-
-/// Until all forces are known accelerations stand for them.
-impl Grains for Bodies {
-    fn grains(&self) -> usize {
-        self.grains
-    }
-
-    #[inline(always)]
-    fn sphere(&self, grain: usize) -> Sphere {
-        self.sphere(grain)
-    }
-
-    #[inline(always)]
-    fn force(&self, grain: usize) -> (DVec3, DVec3) {
-        (self.acceleration[grain], self.angular_acceleration[grain])
-    }
-
-    #[inline(always)]
-    fn set_force(&mut self, grain: usize, force: DVec3, torque: DVec3) {
-        (self.acceleration[grain], self.angular_acceleration[grain]) = (force, torque);
     }
 }
 

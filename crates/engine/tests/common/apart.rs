@@ -1,5 +1,6 @@
 //! How far two simulations of one system are apart.
 
+use super::longest;
 use glam::DVec3;
 use peristalsis_engine::{Ledger, Simulation, Tally};
 use peristalsis_physics::contact::TangentialHistory;
@@ -86,7 +87,7 @@ impl Totals {
     fn of(simulation: &Simulation, forces: &[DVec3]) -> Self {
         let tally = simulation.tally();
         let force = forces.iter().map(|force| force.length()).sum::<f64>() + tally.total_overlap;
-        let fastest = largest(&simulation.bodies().velocity);
+        let fastest = longest(&simulation.bodies().velocity);
         Self {
             largest_overlap: tally.largest_overlap,
             force,
@@ -109,10 +110,6 @@ fn times(vectors: &[DVec3], factors: &[f64]) -> Vec<DVec3> {
     .collect()
 }
 
-fn largest(vectors: &[DVec3]) -> f64 {
-    vectors.iter().fold(0.0, |most, v| most.max(v.length()))
-}
-
 fn difference(one: &[DVec3], other: &[DVec3]) -> f64 {
     assert_eq!(one.len(), other.len());
     most(one.iter().zip(other).map(|(a, b)| (*a - *b).length()))
@@ -130,7 +127,7 @@ fn most(numbers: impl Iterator<Item = f64>) -> f64 {
 }
 
 fn relative(one: &[DVec3], other: &[DVec3], scale: f64) -> f64 {
-    share(difference(one, other), largest(one).max(scale))
+    share(difference(one, other), longest(one).max(scale))
 }
 
 /// A difference in units of a scale, 0 where there is no difference.

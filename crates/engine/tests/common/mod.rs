@@ -27,10 +27,7 @@ pub(crate) use self::states::{Row, State, Tube, lively, random, rows};
 pub(crate) const INTEGRATORS: [Integrator; 2] = [Integrator::Verlet, Integrator::AdamsBashforth];
 
 /// The normal law of the frictionless preset.
-pub(crate) const LINEAR: Normal = Normal::Linear(LinearSpringDashpot {
-    normal_stiffness: 1.0,
-    normal_damping: 5.48e-3,
-});
+pub(crate) const LINEAR: Normal = Normal::Linear(linear(1.0, 5.48e-3));
 
 /// The normal law of the frictional preset.
 pub(crate) const HERTZ: Normal = Normal::Hertz(ViscoelasticHertz {
@@ -219,14 +216,43 @@ pub(crate) fn packed(
     pack(&packing, wall, normal).expect("the grains fit").0
 }
 
+/// Grains so many steps on.
+pub(crate) fn advanced(
+    bodies: &Bodies,
+    wall: &Wall,
+    parameters: Parameters,
+    steps: u64,
+) -> Simulation {
+    let mut simulation = Simulation::new(bodies.clone(), wall.clone(), parameters);
+    simulation.advance(steps).expect("does not diverge");
+    simulation
+}
+
+/// A linear law.
+pub(crate) const fn linear(normal_stiffness: f64, normal_damping: f64) -> LinearSpringDashpot {
+    LinearSpringDashpot {
+        normal_stiffness,
+        normal_damping,
+    }
+}
+
+/// All positions, velocities and spins.
+pub(crate) fn motion(bodies: &Bodies) -> Vec<DVec3> {
+    let vectors = bodies.position.iter().chain(&bodies.velocity);
+    vectors.chain(&bodies.angular_velocity).copied().collect()
+}
+
+/// The length of the longest.
+pub(crate) fn longest(vectors: &[DVec3]) -> f64 {
+    vectors
+        .iter()
+        .fold(0.0, |most, vector| most.max(vector.length()))
+}
+
 /// The bits of everything that moves.
 pub(crate) fn bits(simulation: &Simulation) -> Vec<u64> {
-    let bodies = simulation.bodies();
-    bodies
-        .position
-        .iter()
-        .chain(&bodies.velocity)
-        .chain(&bodies.angular_velocity)
+    let vectors = motion(simulation.bodies()).into_iter();
+    vectors
         .flat_map(|vector| vector.to_array())
         .map(f64::to_bits)
         .collect()
@@ -245,12 +271,8 @@ pub(crate) fn angular_momentum(bodies: &Bodies, length: f64) -> DVec3 {
 
 /// Total momentum.
 pub(crate) fn momentum(bodies: &Bodies) -> DVec3 {
-    bodies
-        .velocity
-        .iter()
-        .zip(&bodies.mass)
-        .map(|(v, m)| *m * *v)
-        .sum()
+    let velocities = bodies.velocity.iter().zip(&bodies.mass);
+    velocities.map(|(v, m)| *m * *v).sum()
 }
 
 /// Uniform numbers in [0, 1) for test states; any will do, as long as they are the same each time.

@@ -57,14 +57,12 @@ impl Default for ViscoelasticHertz {
 impl ViscoelasticHertz {
     /// 2 Y/(3 (1 - nu^2)): the force is this times sqrt(R_ij) xi^(3/2).
     #[inline(always)]
-    #[must_use]
     pub fn modulus(&self) -> f64 {
         2.0 * self.young_modulus / (3.0 * (1.0 - self.poisson_ratio * self.poisson_ratio))
     }
 
     /// B, the time that multiplies sqrt(xi) v_n.
     #[inline(always)]
-    #[must_use]
     pub fn relaxation_time(&self) -> f64 {
         match self.dissipation_form {
             DissipationForm::Printed => self.dissipation_time,

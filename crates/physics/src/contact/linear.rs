@@ -45,7 +45,6 @@ impl LinearSpringDashpot {
     /// e = exp(-pi beta/sqrt(omega_0^2 - beta^2)), beta = eta/(2 m_ij), omega_0^2 = k/m_ij; for m_ij = 1/2 and k = 1
     /// this is exp(-pi eta/sqrt(2 - eta^2)). Zero where the contact is overdamped. The contact ends where the overlap
     /// returns to zero, as the unclipped law has it.
-    #[must_use]
     pub fn restitution(&self, reduced_mass: f64) -> f64 {
         let (damping_rate, frequency_squared) = self.oscillation(reduced_mass);
         if frequency_squared <= 0.0 {
@@ -56,7 +55,6 @@ impl LinearSpringDashpot {
 
     /// Duration of a normal impact, pi/sqrt(omega_0^2 - beta^2) \[t\], for reduced mass m_ij; infinite where the contact
     /// is overdamped.
-    #[must_use]
     pub fn contact_time(&self, reduced_mass: f64) -> f64 {
         let (_, frequency_squared) = self.oscillation(reduced_mass);
         if frequency_squared <= 0.0 {

@@ -40,7 +40,6 @@ pub struct Contact<R: Real = f64> {
 
 /// R_ij = d_i d_j/(2 (d_i + d_j)) \[d\], the reduced radius of two spheres.
 #[inline(always)]
-#[must_use]
 pub fn reduced_radius<R: Real>(diameter: R, other: R) -> R {
     diameter * other / (R::splat(2.0) * (diameter + other))
 }
@@ -49,7 +48,6 @@ impl<R: Real> Contact<R> {
     /// The contact of spheres of diameters d_i and d_j at r_i - r_j = `separation`, v_i - v_j = `relative_velocity`,
     /// neither of which rotates.
     #[inline(always)]
-    #[must_use]
     pub fn new(
         (diameter, other): (R, R),
         separation: R::Vector,
@@ -68,7 +66,6 @@ impl<R: Real> Contact<R> {
 
     /// l = (d - xi)/2 \[d\]: the lever arm of a sphere of diameter `diameter`, from its centre to the plane of contact.
     #[inline(always)]
-    #[must_use]
     pub fn arm(&self, diameter: R) -> R {
         R::splat(0.5) * (diameter - self.overlap)
     }
@@ -82,7 +79,6 @@ impl<R: Real> Contact<R> {
 
     /// v_n = (v_i - v_j) . n, positive when parting.
     #[inline(always)]
-    #[must_use]
     pub fn normal_velocity(&self) -> R {
         self.relative_velocity.dot(self.normal)
     }
@@ -145,7 +141,6 @@ pub enum Elasticity {
 
 impl Elasticity {
     /// Its value, whichever it is.
-    #[must_use]
     pub fn value(self) -> f64 {
         match self {
             Self::Stiffness(value) | Self::YoungModulus(value) => value,
@@ -250,7 +245,6 @@ impl<N: NormalLaw, T: TangentialLaw> ContactLaw<N, T> {
 impl Contact {
     /// Whether the spheres overlap and have a normal, which spheres at the same place have not.
     #[inline(always)]
-    #[must_use]
     pub fn touches(&self) -> bool {
         self.overlap > 0.0 && self.distance > 0.0
     }

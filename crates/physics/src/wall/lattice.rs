@@ -33,37 +33,31 @@ pub struct WallSphere {
 
 impl Lattice {
     /// L, the period of the tube \[d\].
-    #[must_use]
     pub fn length(&self) -> f64 {
         self.wavelength * f64::from(self.waves)
     }
 
     /// Rings in the whole tube.
-    #[must_use]
     pub fn rings(&self) -> u32 {
         self.rings_per_wave * self.waves
     }
 
     /// Spheres in the whole tube.
-    #[must_use]
     pub fn spheres(&self) -> usize {
         self.rings() as usize * self.spheres_per_ring as usize
     }
 
     /// s, the axial distance of neighbouring rings \[d\].
-    #[must_use]
     pub fn spacing(&self) -> f64 {
         self.wavelength / f64::from(self.rings_per_wave)
     }
 
     /// Number of a sphere: ring by ring.
-    #[must_use]
     pub fn index(&self, sphere: WallSphere) -> usize {
         sphere.ring as usize * self.spheres_per_ring as usize + sphere.place as usize
     }
 
     /// The sphere of a number.
-    #[must_use]
     pub fn sphere(&self, index: usize) -> WallSphere {
         let per_ring = self.spheres_per_ring as usize;
         WallSphere {
@@ -73,25 +67,21 @@ impl Lattice {
     }
 
     /// zeta_k \[d\].
-    #[must_use]
     pub fn axial_position(&self, ring: u32) -> f64 {
         f64::from(ring) * self.spacing()
     }
 
     /// Angle of a sphere in units of pi/M, from 0 to 2M - 1.
-    #[must_use]
     pub fn half_steps(&self, sphere: WallSphere) -> u32 {
         2 * sphere.place + sphere.ring % 2
     }
 
     /// Angle of a sphere \[rad\].
-    #[must_use]
     pub fn angle(&self, sphere: WallSphere) -> f64 {
         f64::from(self.half_steps(sphere)) * PI / f64::from(self.spheres_per_ring)
     }
 
     /// The six lattice neighbours of a sphere: two on its ring, two on each ring beside it.
-    #[must_use]
     pub fn neighbours(&self, sphere: WallSphere) -> [WallSphere; 6] {
         let (rings, per_ring) = (self.rings(), self.spheres_per_ring);
         let WallSphere { ring, place } = sphere;
@@ -118,7 +108,6 @@ impl Lattice {
     ///
     /// The circumradius of the lattice triangle minus the wall spheres' radius; a grain of larger radius cannot leave
     /// without overlapping the wall.
-    #[must_use]
     pub fn largest_passing_radius(&self, radius: f64) -> f64 {
         let chord = 2.0 * radius * libm::sin(PI / f64::from(self.spheres_per_ring));
         let half_turn = 2.0 * radius * libm::sin(0.5 * PI / f64::from(self.spheres_per_ring));
@@ -140,7 +129,6 @@ impl Lattice {
 /// Enough to find the nearest sphere of a ring, whose contacts are then found exactly. A polynomial, so that the same
 /// bits come out on every platform; after Abramowitz & Stegun 4.4.49.
 #[inline(always)]
-#[must_use]
 pub fn approximate_angle<R: Real>(x: R, y: R) -> R {
     let zero = R::splat(0.0);
     let (abs_x, abs_y) = (x.abs(), y.abs());

@@ -12,7 +12,6 @@ pub struct Schedule {
 
 impl Schedule {
     /// The same value at all times.
-    #[must_use]
     pub fn constant(value: f64) -> Self {
         Self {
             knots: vec![(0.0, value)],
@@ -20,7 +19,6 @@ impl Schedule {
     }
 
     /// Through the given knots; `None` unless there is one at least, all finite, in order of time.
-    #[must_use]
     pub fn through(knots: Vec<(f64, f64)>) -> Option<Self> {
         let finite = knots
             .iter()
@@ -42,7 +40,6 @@ impl Schedule {
     }
 
     /// The knots (time, value).
-    #[must_use]
     pub fn knots(&self) -> &[(f64, f64)] {
         &self.knots
     }
@@ -53,7 +50,6 @@ impl Schedule {
     }
 
     /// Value at `time`.
-    #[must_use]
     pub fn value(&self, time: f64) -> f64 {
         match self.passed(time) {
             0 => self.knots[0].1,
@@ -66,7 +62,6 @@ impl Schedule {
     }
 
     /// Slope at `time`, from the right.
-    #[must_use]
     pub fn rate(&self, time: f64) -> f64 {
         match self.passed(time) {
             0 => 0.0,
@@ -79,7 +74,6 @@ impl Schedule {
     }
 
     /// Sum of the steps after `start` and up to `end`: how much the value jumps in that time.
-    #[must_use]
     pub fn jump(&self, start: f64, end: f64) -> f64 {
         self.knots
             .windows(2)
@@ -89,7 +83,6 @@ impl Schedule {
     }
 
     /// Integral from 0 to `time` >= 0.
-    #[must_use]
     pub fn integral(&self, time: f64) -> f64 {
         if let [(_, value)] = self.knots[..] {
             return value * time;

@@ -49,20 +49,17 @@ pub struct Ring {
 
 impl RadiusWave {
     /// Phase in cycles at z, after the wave has gone `cycles` = c t/lambda wavelengths.
-    #[must_use]
     pub fn phase(&self, z: f64, cycles: f64) -> f64 {
         let phase = cycles - self.heading * z / self.wavelength;
         phase - phase.floor()
     }
 
     /// R at z \[d\].
-    #[must_use]
     pub fn radius(&self, z: f64, cycles: f64) -> f64 {
         self.mean_radius + self.amplitude * self.waveform.value(self.phase(z, cycles))
     }
 
     /// The wall at z, for frequency c/lambda and rate of change db/dt of the amplitude.
-    #[must_use]
     pub fn ring(&self, z: f64, cycles: f64, frequency: f64, amplitude_rate: f64) -> Ring {
         let value_and_slope = self.waveform.value_and_slope(self.phase(z, cycles));
         self.ring_of(value_and_slope, frequency, amplitude_rate)
@@ -70,7 +67,6 @@ impl RadiusWave {
 
     /// The wall where the waveform has the given value and slope against phase.
     #[inline]
-    #[must_use]
     pub fn ring_of(&self, (value, slope): (f64, f64), frequency: f64, amplitude_rate: f64) -> Ring {
         Ring {
             radius: self.mean_radius + self.amplitude * value,
@@ -82,7 +78,6 @@ impl RadiusWave {
     /// Position in the frame of the wave, in wavelengths in \[0, 1): the distance along the wave from a place of phase 0.
     ///
     /// A wave along +z is a function of z - ct; the position is (heading z - c t)/lambda folded to one wavelength.
-    #[must_use]
     pub fn wave_frame_position(&self, z: f64, cycles: f64) -> f64 {
         let position = self.heading * z / self.wavelength - cycles;
         position - position.floor()

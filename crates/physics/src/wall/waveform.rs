@@ -40,7 +40,6 @@ impl Waveform {
     pub const ALL: [Self; 3] = [Self::Sine, Self::Bolus, Self::Roller];
 
     /// Value at a phase in cycles.
-    #[must_use]
     pub fn value(self, phase: f64) -> f64 {
         match self {
             Self::Sine => libm::sin(TAU * phase),
@@ -49,7 +48,6 @@ impl Waveform {
     }
 
     /// Value, and derivative with respect to the phase in cycles.
-    #[must_use]
     pub fn value_and_slope(self, phase: f64) -> (f64, f64) {
         match self {
             Self::Sine => {
@@ -82,7 +80,6 @@ impl Waveform {
 
     /// The same value for any number type, good to 1e-14, at phases below 2^31 in size.
     #[inline(always)]
-    #[must_use]
     pub fn value_by_series<R: Real>(self, phase: R) -> R {
         let one = R::splat(1.0);
         match self {
@@ -106,7 +103,6 @@ impl Waveform {
     }
 
     /// Mean g over the wave; the mean radius is a + b g.
-    #[must_use]
     pub fn mean(self) -> f64 {
         match self {
             Self::Sine => 0.0,
@@ -117,7 +113,6 @@ impl Waveform {
     }
 
     /// Largest value; the least is -1.
-    #[must_use]
     pub fn largest(self) -> f64 {
         match self {
             Self::Sine => 1.0,
@@ -126,7 +121,6 @@ impl Waveform {
     }
 
     /// Largest size of the slope against 2 pi phase.
-    #[must_use]
     pub fn steepest(self) -> f64 {
         match self {
             Self::Sine | Self::Bolus => 1.0,
@@ -135,7 +129,6 @@ impl Waveform {
     }
 
     /// Largest size of the second derivative against 2 pi phase.
-    #[must_use]
     pub fn most_curved(self) -> f64 {
         match self {
             Self::Sine => 1.0,

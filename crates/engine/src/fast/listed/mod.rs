@@ -170,19 +170,15 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
             time_step,
             tally: &mut tally,
         });
-        match wall {
-            Wall::Elastic(wall) => {
-                self.mean_wall_force = instructions.run(WallForces {
-                    wall,
-                    rows,
-                    spheres,
-                    tally: &mut tally,
-                });
-            }
-            Wall::Prescribed(wall) => {
-                let memory = &mut self.reference.contacts.wall;
-                wall.add_forces(law, spheres, memory, time_step, &mut tally);
-            }
+        let memory = &mut self.reference.contacts.wall;
+        wall.add_forces(law, spheres, memory, time_step, &mut tally);
+        if let Some(wall) = wall.elastic() {
+            self.mean_wall_force = instructions.run(WallForces {
+                wall,
+                rows,
+                spheres,
+                tally: &mut tally,
+            });
         }
         tally
     }

@@ -218,16 +218,9 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
         grains
             .near
             .find::<M>(&self.spheres.position, self.length, 0.0, touching);
-        add_contacts::<M, _, _>(
-            self.law,
-            grains,
-            touching,
-            self.spheres,
-            histories,
-            self.length,
-            self.time_step,
-            self.tally,
-        );
+        let step = (self.length, self.time_step);
+        add_contacts::<M, _, _>(self.law, grains, touching, self.spheres, histories, step)
+            .add_to(self.tally);
         if T::ROTATES {
             *now = now.wrapping_add(1);
             for at in touching.iter_mut() {
@@ -249,19 +242,10 @@ impl<N: NormalLaw, T: PackedHistory> Work for PairForces<'_, N, T> {
             wall.near
                 .find::<M>(&self.spheres.position, self.length, 0.0, touching);
             let smooth = self.law.frictionless();
-            let mut of_wall = Tally::default();
-            add_contacts::<M, _, _>(
-                &smooth,
-                wall,
-                touching,
-                self.spheres,
-                &mut [],
-                self.length,
-                self.time_step,
-                &mut of_wall,
-            );
-            self.tally.contact_energy += of_wall.contact_energy;
-            self.tally.normal_dissipation += of_wall.normal_dissipation;
+            let of_wall =
+                add_contacts::<M, _, _>(&smooth, wall, touching, self.spheres, &mut [], step);
+            self.tally.contact_energy += of_wall.contact_energy.sum();
+            self.tally.normal_dissipation += of_wall.normal_dissipation.sum();
         }
     }
 }
@@ -292,18 +276,16 @@ impl<M: Machine> Sums<M> {
     }
 }
 
+/// Adds the forces and torques of the pairs that touch; answers their sums.
 #[inline(always)]
-#[allow(clippy::too_many_arguments)]
 fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
     law: &ContactLaw<N, T>,
     pairs: &Pruned,
     touching: &[u32],
     spheres: &mut Spheres,
     histories: &mut [Packed],
-    length: f64,
-    time_step: f64,
-    tally: &mut Tally,
-) {
+    (length, time_step): (f64, f64),
+) -> Sums<M> {
     let grains = spheres.grains;
     let position = &spheres.position[..];
     let velocity = &spheres.velocity[..];
@@ -366,5 +348,5 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
             }
         }
     }
-    sums.add_to(tally);
+    sums
 }

@@ -49,7 +49,6 @@ impl Default for Instructions {
 
 impl Instructions {
     /// The widest that this machine has.
-    #[must_use]
     pub fn widest() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
@@ -70,7 +69,6 @@ impl Instructions {
     }
 
     /// Whether this machine has them.
-    #[must_use]
     pub fn available(self) -> bool {
         match Self::widest() {
             Self::Avx512 => true,

@@ -5,26 +5,19 @@ use rayon::prelude::*;
 use super::rows::{Key, PIECE, Row, Scratch};
 use super::state::Sorted;
 use crate::bodies::fold;
-use crate::fast::columns::Columns;
 
 impl Sorted {
     /// Notes the keys of all grains strip by strip, folding them back into the tube; in each strip those come first that
     /// left the tube at its end, and those last that left it at its beginning: what then remains to be done is little.
     pub(super) fn note_strips(&mut self) {
-        let Self {
-            strips,
-            length,
-            rows,
-            turns,
-            position: Columns { x, y, z },
-            scratch: Scratch { keys, counts, .. },
-            ..
-        } = self;
-        let strip = |place: usize| strips.at(x[place], y[place]);
+        let (z, length) = (&mut self.position.z, self.length);
+        let (x, y) = (&self.position.x, &self.position.y);
+        let strip = |place: usize| self.strips.at(x[place], y[place]);
+        let Scratch { keys, counts, .. } = &mut self.scratch;
         counts.clear();
-        counts.resize(strips.number(), [0; 3]);
-        for place in rows.iter().flat_map(Row::own) {
-            counts[strip(place)][side(z[place], *length)] += 1;
+        counts.resize(self.strips.number(), [0; 3]);
+        for place in self.rows.iter().flat_map(Row::own) {
+            counts[strip(place)][side(z[place], length)] += 1;
         }
         let mut end = 0;
         for count in counts.iter_mut().flatten() {
@@ -32,11 +25,11 @@ impl Sorted {
         }
         keys.clear();
         keys.resize(end as usize, (0.0, 0));
-        for place in rows.iter().flat_map(Row::own) {
-            let next = &mut counts[strip(place)][side(z[place], *length)];
-            let (folded, more) = fold(z[place], *length);
+        for place in self.rows.iter().flat_map(Row::own) {
+            let next = &mut counts[strip(place)][side(z[place], length)];
+            let (folded, more) = fold(z[place], length);
             z[place] = folded;
-            turns[place] += more;
+            self.turns[place] += more;
             keys[*next as usize] = (folded, place as u32);
             *next += 1;
         }
@@ -45,28 +38,24 @@ impl Sorted {
 
     /// Does the same in a narrow tube, several threads at a time.
     pub(super) fn note_row_in_pieces(&mut self) {
-        let Self {
-            length,
-            rows,
-            turns,
-            position: Columns { z, .. },
-            scratch:
-                Scratch {
-                    keys,
-                    counts,
-                    of_pieces,
-                    ..
-                },
+        let (row, length) = (self.rows.first().map_or(0..0, Row::own), self.length);
+        let (z, turns) = (
+            &mut self.position.z[row.clone()],
+            &mut self.turns[row.clone()],
+        );
+        let Scratch {
+            keys,
+            counts,
+            of_pieces,
             ..
-        } = self;
-        let row = rows.first().map_or(0..0, Row::own);
+        } = &mut self.scratch;
         keys.resize(row.len(), (0.0, 0));
         of_pieces.clear();
         of_pieces.resize(row.len().div_ceil(PIECE), [0; 3]);
-        let pieces = z[row.clone()].par_chunks(PIECE);
+        let pieces = z.par_chunks(PIECE);
         pieces.zip(&mut *of_pieces).for_each(|(piece, count)| {
             for &z in piece {
-                count[side(z, *length)] += 1;
+                count[side(z, length)] += 1;
             }
         });
         let sum = |side: usize| of_pieces.iter().map(|count| count[side] as usize).sum();
@@ -82,17 +71,15 @@ impl Sorted {
                 own
             }));
         }
-        let pieces = z[row.clone()].par_chunks_mut(PIECE);
-        let pieces = pieces
-            .zip(turns[row.clone()].par_chunks_mut(PIECE))
-            .zip(room);
+        let pieces = z.par_chunks_mut(PIECE).zip(turns.par_chunks_mut(PIECE));
+        let pieces = pieces.zip(room);
         pieces.enumerate().for_each(|(piece, ((z, turns), keys))| {
             let first = (row.start + piece * PIECE) as u32;
             let mut keys = keys.map(|keys| keys.iter_mut());
             for (place, (z, turns)) in (first..).zip(z.iter_mut().zip(turns)) {
-                let key = keys[side(*z, *length)].next();
+                let key = keys[side(*z, length)].next();
                 let more;
-                (*z, more) = fold(*z, *length);
+                (*z, more) = fold(*z, length);
                 *turns += more;
                 *key.expect("room for as many as were counted") = (*z, place);
             }
@@ -111,55 +98,29 @@ fn side(z: f64, length: f64) -> usize {
     }
 }
 
-/// Sorts the keys of strips, which begin at `begin` and end where the last of their counts says.
-pub(super) fn put_strips_in_order(
-    keys: &mut [Key],
-    begin: usize,
-    counts: &[[u32; 3]],
-    parallel: bool,
-) {
-    if parallel && counts.len() > 1 && keys.len() > PIECE {
-        let (front, back) = counts.split_at(counts.len() / 2);
-        let middle = front.last().map_or(begin, |count| count[2] as usize);
-        let (front_keys, back_keys) = keys.split_at_mut(middle - begin);
-        rayon::join(
-            || put_strips_in_order(front_keys, begin, front, parallel),
-            || put_strips_in_order(back_keys, middle, back, parallel),
-        );
-        return;
-    }
-    let mut from = 0;
-    for count in counts {
-        let to = count[2] as usize - begin;
-        put_in_order(&mut keys[from..to], parallel);
-        from = to;
-    }
-}
-
-/// Sorts keys that are nearly in order. The order is stable, and so the same whoever makes it.
-fn put_in_order(keys: &mut [Key], parallel: bool) {
-    if parallel && keys.len() > PIECE {
-        let middle = keys.len() / 2;
-        let (front, back) = keys.split_at_mut(middle);
-        rayon::join(|| put_in_order(front, true), || put_in_order(back, true));
-        // Once one is in place, so are those behind it.
-        insert(keys, middle, Until::OneStays);
+/// Sorts the keys of strips, each of which ends where the last of its counts says.
+pub(super) fn put_strips_in_order(mut keys: &mut [Key], counts: &[[u32; 3]], parallel: bool) {
+    let parallel = parallel && keys.len() > PIECE;
+    let mut begin = 0;
+    let strips = counts.iter().map(|count| {
+        let end = count[2] as usize;
+        let (strip, rest) = core::mem::take(&mut keys).split_at_mut(end - begin);
+        (keys, begin) = (rest, end);
+        strip
+    });
+    if parallel {
+        let strips: Vec<&mut [Key]> = strips.collect();
+        let sort = |strip: &mut [Key]| strip.par_sort_by(|one, other| one.0.total_cmp(&other.0));
+        strips.into_par_iter().for_each(sort);
     } else {
-        insert(keys, 1, Until::End);
+        strips.for_each(put_in_order);
     }
 }
 
-/// How far to insert.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Until {
-    OneStays,
-    End,
-}
-
-/// Inserts the keys from the `first` on into those before, which are in order; where that takes long, sorts as one does.
-fn insert(keys: &mut [Key], first: usize, until: Until) {
+/// Sorts keys that are nearly in order. The order is stable, and so the same however it is made.
+fn put_in_order(keys: &mut [Key]) {
     let mut steps_left = 64 * keys.len();
-    for unsorted in first..keys.len() {
+    for unsorted in 1..keys.len() {
         let key = keys[unsorted];
         let mut hole = unsorted;
         while hole > 0 && key.0 < keys[hole - 1].0 {
@@ -167,9 +128,6 @@ fn insert(keys: &mut [Key], first: usize, until: Until) {
             hole -= 1;
         }
         keys[hole] = key;
-        if hole == unsorted && until == Until::OneStays {
-            return;
-        }
         steps_left = steps_left.saturating_sub(unsorted - hole);
         if steps_left == 0 {
             keys.sort_by(|one, other| one.0.total_cmp(&other.0));
@@ -191,25 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn halves_put_in_order_and_joined_are_the_one_stable_order() {
+    fn strips_are_put_in_the_one_stable_order_whoever_does_it() {
         let number = 3 * PIECE as u32 + 17;
+        // Strips of many lengths, none among them.
+        let ends = [0, 5, 5, PIECE as u32 + 1, 2 * PIECE as u32, number];
         for disorder in [0.0, 0.5, 40.0, 1e9] {
-            let mut expected = keys(number, disorder);
-            expected.sort_by(|one, other| one.0.total_cmp(&other.0));
             for parallel in [false, true] {
-                let mut keys = keys(number, disorder);
-                put_in_order(&mut keys, parallel);
-                assert!(keys == expected, "{disorder} {parallel}");
-                // Strips of many lengths, none among them.
-                let ends = [0, 5, 5, PIECE as u32 + 1, 2 * PIECE as u32, number];
-                let counts = ends.map(|end| [0, 0, end]);
-                let mut of_strips = self::keys(number, disorder);
-                put_strips_in_order(&mut of_strips, 0, &counts, parallel);
+                let mut found = keys(number, disorder);
+                put_strips_in_order(&mut found, &ends.map(|end| [0, 0, end]), parallel);
                 let mut begin = 0;
                 for end in ends.map(|end| end as usize) {
-                    let mut expected = self::keys(number, disorder)[begin..end].to_vec();
+                    let mut expected = keys(number, disorder)[begin..end].to_vec();
                     expected.sort_by(|one, other| one.0.total_cmp(&other.0));
-                    assert!(of_strips[begin..end] == expected, "{disorder} {parallel}");
+                    assert!(found[begin..end] == expected, "{disorder} {parallel}");
                     begin = end;
                 }
             }

@@ -36,20 +36,9 @@ pub(super) struct Motion {
 impl Sorted {
     /// Moves all grains; makes the order anew where it no longer holds.
     pub(super) fn go(&mut self, phase: Phase, motion: Motion) -> Result<(), Runaway> {
-        let Self {
-            mass,
-            position,
-            velocity,
-            acceleration,
-            force,
-            origin,
-            moved,
-            instructions,
-            pool,
-            ..
-        } = self;
-        moved.resize(origin.len().div_ceil(TILE), Moved::default());
-        let (per_mass, instructions) = (1.0 / *mass, *instructions);
+        let (per_mass, instructions) = (1.0 / self.mass, self.instructions);
+        let stretches = self.origin.len().div_ceil(TILE);
+        self.moved.resize(stretches, Moved::default());
         // The columns of a stretch of places, as they come zipped.
         let work = move |(((((moved, position), velocity), acceleration), force), origin)| Move {
             moved,
@@ -62,27 +51,23 @@ impl Sorted {
             motion,
             per_mass,
         };
-        if pool.is_some() {
-            moved
-                .par_iter_mut()
-                .zip(position.par_tiles())
-                .zip(velocity.par_tiles())
-                .zip(acceleration.par_tiles())
-                .zip(force.par_tiles())
-                .zip(origin.par_chunks(TILE))
+        if self.pool.is_some() {
+            let stretches = self.moved.par_iter_mut().zip(self.position.par_tiles());
+            stretches
+                .zip(self.velocity.par_tiles())
+                .zip(self.acceleration.par_tiles())
+                .zip(self.force.par_tiles())
+                .zip(self.origin.par_chunks(TILE))
                 .with_max_len(OF_LIGHT_WORK)
-                .map(work)
-                .for_each(|work| instructions.run(work));
+                .for_each(|stretch| instructions.run(work(stretch)));
         } else {
-            moved
-                .iter_mut()
-                .zip(position.tiles())
-                .zip(velocity.tiles())
-                .zip(acceleration.tiles())
-                .zip(force.tiles())
-                .zip(origin.chunks(TILE))
-                .map(work)
-                .for_each(|work| instructions.run(work));
+            let stretches = self.moved.iter_mut().zip(self.position.tiles());
+            stretches
+                .zip(self.velocity.tiles())
+                .zip(self.acceleration.tiles())
+                .zip(self.force.tiles())
+                .zip(self.origin.chunks(TILE))
+                .for_each(|stretch| instructions.run(work(stretch)));
         }
         if phase == Phase::Kick {
             return Ok(());

@@ -183,7 +183,7 @@ impl Sorted {
             self.note_strips();
         }
         let Scratch { keys, counts, .. } = &mut self.scratch;
-        put_strips_in_order(keys, 0, counts, parallel);
+        put_strips_in_order(keys, counts, parallel);
         let counts = core::mem::take(counts);
         let ends = counts.iter().map(|count| count[2] as usize);
         let begins = core::iter::once(0).chain(ends.clone());
@@ -196,15 +196,8 @@ impl Sorted {
         let several = self.strips.several();
         let cutoff = self.pairs.reach + self.skin;
         let mut place = self.first_place();
-        let Scratch {
-            keys,
-            column,
-            order,
-            turns,
-            ..
-        } = &mut self.scratch;
         self.rows.clear();
-        let mut rest = &keys[..];
+        let mut rest = &self.scratch.keys[..];
         for grains in strips {
             let row;
             (row, rest) = rest.split_at(grains);
@@ -223,30 +216,27 @@ impl Sorted {
             place = row.places().end + LANES;
             self.rows.push(row);
         }
-        let parallel = self.pool.is_some();
-        let (rows, places) = (&self.rows, place.next_multiple_of(LANES));
+        let places = place.next_multiple_of(LANES);
+        let gather = Gather {
+            rows: &self.rows,
+            keys: &self.scratch.keys,
+            places,
+            parallel: self.pool.is_some(),
+        };
         for columns in [
             &mut self.position,
             &mut self.velocity,
             &mut self.acceleration,
         ] {
             for values in columns.each() {
-                gather(rows, keys, values, 0.0, column, places, parallel);
+                gather.bring(values, 0.0, &mut self.scratch.column);
             }
         }
-        for gap in gaps(rows, places) {
+        for gap in gather.gaps() {
             self.position.z[gap].fill(NOWHERE);
         }
-        gather(
-            rows,
-            keys,
-            &mut self.order,
-            u32::MAX,
-            order,
-            places,
-            parallel,
-        );
-        gather(rows, keys, &mut self.turns, 0, turns, places, parallel);
+        gather.bring(&mut self.order, u32::MAX, &mut self.scratch.order);
+        gather.bring(&mut self.turns, 0, &mut self.scratch.turns);
 
         self.force.clear(places);
         for row in &self.rows {
@@ -285,45 +275,47 @@ impl Sorted {
     }
 }
 
-/// The stretches of places between the grains of the rows, and before and behind them.
-fn gaps(rows: &[Row], places: usize) -> impl Iterator<Item = core::ops::Range<usize>> {
-    let ends = core::iter::once(0).chain(rows.iter().map(|row| row.own().end));
-    let begins = rows.iter().map(|row| row.first);
-    ends.zip(begins.chain(core::iter::once(places)))
-        .map(|(end, begin)| end..begin)
-}
-
-/// Brings values into the order of the keys, row by row; `filler` stands where there is no grain.
-fn gather<T: Copy + Send + Sync>(
-    rows: &[Row],
-    keys: &[Key],
-    values: &mut Vec<T>,
-    filler: T,
-    scratch: &mut Vec<T>,
+/// The order of the keys, row by row, that values are to be brought into.
+struct Gather<'a> {
+    rows: &'a [Row],
+    keys: &'a [Key],
     places: usize,
     parallel: bool,
-) {
-    scratch.resize(places, filler);
-    for gap in gaps(rows, places) {
-        scratch[gap].fill(filler);
+}
+
+impl Gather<'_> {
+    /// The stretches of places between the grains of the rows, and before and behind them.
+    fn gaps(&self) -> impl Iterator<Item = core::ops::Range<usize>> {
+        let ends = core::iter::once(0).chain(self.rows.iter().map(|row| row.own().end));
+        let begins = self.rows.iter().map(|row| row.first);
+        ends.zip(begins.chain(core::iter::once(self.places)))
+            .map(|(end, begin)| end..begin)
     }
-    let from = &values[..];
-    let one = |(gathered, keys): (&mut [T], &[Key])| {
-        for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
-            *gathered = from[place as usize];
+
+    /// Brings values into the order; `filler` stands where there is no grain.
+    fn bring<T: Copy + Send + Sync>(&self, values: &mut Vec<T>, filler: T, scratch: &mut Vec<T>) {
+        scratch.resize(self.places, filler);
+        for gap in self.gaps() {
+            scratch[gap].fill(filler);
         }
-    };
-    let mut keys = keys;
-    for row in rows {
-        let own;
-        (own, keys) = keys.split_at(row.grains);
-        let gathered = &mut scratch[row.own()];
-        if parallel && row.grains > PIECE {
-            let pieces = gathered.par_chunks_mut(PIECE);
-            pieces.zip(own.par_chunks(PIECE)).for_each(one);
-        } else {
-            one((gathered, own));
+        let from = &values[..];
+        let one = |(gathered, keys): (&mut [T], &[Key])| {
+            for (gathered, &(_, place)) in gathered.iter_mut().zip(keys) {
+                *gathered = from[place as usize];
+            }
+        };
+        let mut keys = self.keys;
+        for row in self.rows {
+            let own;
+            (own, keys) = keys.split_at(row.grains);
+            let gathered = &mut scratch[row.own()];
+            if self.parallel && row.grains > PIECE {
+                let pieces = gathered.par_chunks_mut(PIECE);
+                pieces.zip(own.par_chunks(PIECE)).for_each(one);
+            } else {
+                one((gathered, own));
+            }
         }
+        core::mem::swap(values, scratch);
     }
-    core::mem::swap(values, scratch);
 }

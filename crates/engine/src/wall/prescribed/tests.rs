@@ -5,7 +5,11 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 
 use super::*;
+use crate::bodies::Bodies;
+use crate::ledger::Tally;
 use crate::neighbours::periodic;
+use crate::wall::Wall;
+use crate::wall::memory::WallMemory;
 
 const COARSE: Lattice = Lattice {
     spheres_per_ring: 12,
@@ -166,7 +170,7 @@ fn the_velocity_is_the_derivative_of_the_place() {
 /// The force on a grain and the wall's power are sums over those spheres.
 #[test]
 fn forces_are_sums_over_the_spheres() {
-    use peristalsis_physics::contact::{Frictionless, LinearSpringDashpot};
+    use peristalsis_physics::contact::{ContactLaw, Frictionless, LinearSpringDashpot};
     let normal = LinearSpringDashpot {
         normal_stiffness: 2.0,
         normal_damping: 0.3,
@@ -184,13 +188,9 @@ fn forces_are_sums_over_the_spheres() {
         );
         bodies.velocity = vec![DVec3::new(0.1, 0.2, -0.3), DVec3::new(-0.2, 0.1, 0.05)];
         let mut tally = Tally::default();
-        wall.add_forces(
-            &law,
-            &mut bodies,
-            &mut WallMemory::default(),
-            0.05,
-            &mut tally,
-        );
+        let memory = &mut WallMemory::default();
+        let rigid = Wall::Prescribed(wall.clone());
+        rigid.add_forces(&law, &mut bodies, memory, 0.05, &mut tally);
         let (mut power, mut contacts) = (0.0, 0);
         for grain in 0..2 {
             let (centre, diameter) = (bodies.position[grain], bodies.diameter[grain]);
