@@ -209,8 +209,11 @@ fn what_ended_contacts_held_is_lost_once() {
         ] {
             for skin in [0.0, 0.02, 0.1, 0.3, 0.7] {
                 // One grain in a sphere of the wall, and two in each other, all slipping.
-                let beside_wall =
-                    DVec3::new(radius - 0.8, 0.0, wall.lattice().unwrap().axial_position(2));
+                let beside_wall = DVec3::new(
+                    radius - 0.8,
+                    0.0,
+                    wall.lattice().expect("a wall of spheres").axial_position(2),
+                );
                 let on_axis = DVec3::new(0.0, 0.0, 5.0);
                 let bodies = grains(&[
                     (beside_wall, DVec3::Z),

@@ -45,7 +45,10 @@ struct Map {
 impl Map {
     /// Turns or mirrors; `image` is the wall sphere that a wall sphere comes to stand on. Grains keep their numbers.
     fn of(state: &State, turn: DMat3, image: impl Fn(&Lattice, WallSphere) -> WallSphere) -> Self {
-        let (lattice, grains) = (*state.wall.lattice().unwrap(), state.bodies.grains);
+        let (lattice, grains) = (
+            *state.wall.lattice().expect("a wall of spheres"),
+            state.bodies.grains,
+        );
         let of_wall = (0..state.bodies.number() - grains)
             .map(|sphere| grains + lattice.index(image(&lattice, lattice.sphere(sphere))));
         Self {
@@ -183,7 +186,11 @@ fn mirrored(original: &State) -> f64 {
 
 /// By so many steps of the lattice about the axis.
 fn turned(original: &State, steps: u32) -> f64 {
-    let per_ring = original.wall.lattice().unwrap().spheres_per_ring;
+    let per_ring = original
+        .wall
+        .lattice()
+        .expect("a wall of spheres")
+        .spheres_per_ring;
     let angle = core::f64::consts::TAU * f64::from(steps) / f64::from(per_ring);
     let turn = DMat3::from_rotation_z(angle);
     let map = Map::of(original, turn, |_, sphere| WallSphere {
@@ -195,7 +202,11 @@ fn turned(original: &State, steps: u32) -> f64 {
 
 /// By a wavelength along the tube; one of an odd number of rings must be shifted by two, for the seam to close.
 fn shifted(original: &State) -> f64 {
-    let rings_per_wave = original.wall.lattice().unwrap().rings_per_wave;
+    let rings_per_wave = original
+        .wall
+        .lattice()
+        .expect("a wall of spheres")
+        .rings_per_wave;
     let waves = 1 + rings_per_wave % 2;
     let map = Map {
         shift: f64::from(waves) * original.wall.wavelength(),
@@ -400,7 +411,14 @@ proptest! {
 fn half_a_step_of_the_lattice_is_something_else() {
     let row = rows(Tube::Narrow)[0];
     let state = moving(row, 1);
-    let angle = core::f64::consts::PI / f64::from(state.wall.lattice().unwrap().spheres_per_ring);
+    let angle = core::f64::consts::PI
+        / f64::from(
+            state
+                .wall
+                .lattice()
+                .expect("a wall of spheres")
+                .spheres_per_ring,
+        );
     let half_turned = Map {
         turn: DMat3::from_rotation_z(angle),
         ..Map::identity(&state)

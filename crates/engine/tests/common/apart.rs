@@ -164,8 +164,8 @@ fn histories(expected: &Simulation, found: &Simulation) -> f64 {
 /// Largest difference of the fields of two structs, each in units of its value, or of the scale of a field whose terms
 /// cancel. Panics where whole numbers differ.
 fn fields<T: Serialize>(one: &T, other: &T, scale: impl Fn(&str) -> f64) -> f64 {
-    let [one, other] = [one, other].map(|it| serde_json::to_value(it).unwrap());
-    let fields = one.as_object().unwrap().iter();
+    let [one, other] = [one, other].map(|it| serde_json::to_value(it).expect("numbers"));
+    let fields = one.as_object().expect("a struct").iter();
     most(fields.map(|(name, one)| {
         let other = &other[name];
         assert!(!one.is_u64() || one == other, "{name}: {one} and {other}");

@@ -1,5 +1,7 @@
 //! The keys that the grains are sorted by.
 
+use core::cmp::Ordering;
+
 use rayon::prelude::*;
 
 use super::rows::{Key, PIECE, Row, Scratch};
@@ -98,6 +100,11 @@ fn side(z: f64, length: f64) -> usize {
     }
 }
 
+/// The order along the tube, with one zero.
+fn by_place(one: &Key, other: &Key) -> Ordering {
+    (one.0 + 0.0).total_cmp(&(other.0 + 0.0))
+}
+
 /// Sorts the keys of strips, each of which ends where the last of its counts says.
 pub(super) fn put_strips_in_order(mut keys: &mut [Key], counts: &[[u32; 3]], parallel: bool) {
     let parallel = parallel && keys.len() > PIECE;
@@ -110,7 +117,7 @@ pub(super) fn put_strips_in_order(mut keys: &mut [Key], counts: &[[u32; 3]], par
     });
     if parallel {
         let strips: Vec<&mut [Key]> = strips.collect();
-        let sort = |strip: &mut [Key]| strip.par_sort_by(|one, other| one.0.total_cmp(&other.0));
+        let sort = |strip: &mut [Key]| strip.par_sort_by(by_place);
         strips.into_par_iter().for_each(sort);
     } else {
         strips.for_each(put_in_order);
@@ -130,7 +137,7 @@ fn put_in_order(keys: &mut [Key]) {
         keys[hole] = key;
         steps_left = steps_left.saturating_sub(unsorted - hole);
         if steps_left == 0 {
-            keys.sort_by(|one, other| one.0.total_cmp(&other.0));
+            keys.sort_by(by_place);
             return;
         }
     }
