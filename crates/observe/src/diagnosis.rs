@@ -42,7 +42,6 @@ pub struct WallFault {
 
 impl WallFault {
     /// What happened, where, when, and what probably causes it.
-    #[must_use]
     pub fn in_words(&self) -> String {
         let Self {
             time,

@@ -33,7 +33,6 @@ struct Origin {
 
 impl AxialDispersion {
     /// Begins at the present places.
-    #[must_use]
     pub fn new(observer: &Observer) -> Self {
         let mut dispersion = Self {
             stride: 1,
@@ -44,7 +43,6 @@ impl AxialDispersion {
     }
 
     /// Whether it can be what was seen of so many grains.
-    #[must_use]
     pub fn fits(&self, grains: usize) -> bool {
         let times = self.times.len();
         (1..=2 * times).contains(&self.stride)
@@ -96,7 +94,6 @@ impl AxialDispersion {
     ///
     /// Since the first origin from then on, but for its first period, in which grains do not yet forget how they moved; or
     /// since the last origin before, where none has two periods more behind it.
-    #[must_use]
     pub fn rates_from(&self, start: f64) -> Vec<f64> {
         // Rounding must not make an origin at the start itself one before it.
         let earliest = start - 1e-9 * start.abs();

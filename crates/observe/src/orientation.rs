@@ -19,7 +19,6 @@ pub struct Orientations {
 
 impl Orientations {
     /// Begins with every grain's frame along the laboratory's.
-    #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
         let bodies = simulation.bodies();
         Self {
@@ -30,7 +29,6 @@ impl Orientations {
     }
 
     /// Whether their number fits so many grains.
-    #[must_use]
     pub fn fit(&self, grains: usize) -> bool {
         [self.turned.len(), self.angular_velocity.len()] == [grains; 2]
     }
@@ -51,7 +49,6 @@ impl Orientations {
     }
 
     /// Unit quaternions (w, x, y, z) that turn a grain's frame into the laboratory's, grain by grain.
-    #[must_use]
     pub fn quaternions(&self) -> &[[f64; 4]] {
         &self.turned
     }

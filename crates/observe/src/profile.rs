@@ -193,7 +193,6 @@ pub struct ProfileBin {
 
 impl WaveFrameProfile {
     /// An empty profile with `bins` bins; a block begins with `samples_per_block` samples, a wave period for instance.
-    #[must_use]
     pub fn new(bins: usize, samples_per_block: u64) -> Self {
         Self {
             bins: bins.max(1),
@@ -205,7 +204,6 @@ impl WaveFrameProfile {
     }
 
     /// Whether it can be a profile with so many bins and samples in a block.
-    #[must_use]
     pub fn fits(&self, bins: usize, samples_per_block: u64) -> bool {
         let first = samples_per_block.max(1);
         // Blocks are doubled when there are many of them.
@@ -340,7 +338,6 @@ impl WaveFrameProfile {
     /// The profile over the last part of what was added, at least one block; `wavelength` in d.
     ///
     /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one.
-    #[must_use]
     pub fn late(&self, fraction: f64, wavelength: f64) -> Vec<ProfileBin> {
         let groups = self.late_groups(fraction);
         let totals: Vec<Sums> = (0..self.bins)

@@ -50,7 +50,6 @@ pub enum Value {
 
 impl<Of> Quantity<Of> {
     /// A quantity by name, unit and meaning.
-    #[must_use]
     pub const fn new(
         name: &'static str,
         unit: &'static str,
@@ -66,7 +65,6 @@ impl<Of> Quantity<Of> {
     }
 
     /// Names and meanings of its columns: the quantity, and where it is measured its standard error.
-    #[must_use]
     pub fn headings(&self) -> Vec<(String, &'static str)> {
         let mut headings = vec![(self.name.to_owned(), self.text)];
         if self.is_measured() {
@@ -76,7 +74,6 @@ impl<Of> Quantity<Of> {
     }
 
     /// The values of its columns.
-    #[must_use]
     pub fn values(&self, of: &Of) -> Vec<Value> {
         let optional = |value: Option<f64>| value.map_or(Value::Missing, Value::Real);
         match self.reading {
@@ -100,7 +97,6 @@ impl<Of> Quantity<Of> {
     }
 
     /// Whether it has a standard error.
-    #[must_use]
     pub fn is_measured(&self) -> bool {
         matches!(
             self.reading,

@@ -96,7 +96,6 @@ pub struct Observer {
 
 impl Observer {
     /// Begins an interval now, and counts displacements from here.
-    #[must_use]
     pub fn new(simulation: &Simulation) -> Self {
         let now = Self::at(simulation, Vec::new());
         Self {
@@ -121,7 +120,6 @@ impl Observer {
     }
 
     /// Whether it can be the observer of so many grains.
-    #[must_use]
     pub fn fits(&self, grains: usize) -> bool {
         [self.unfolded.len(), self.start.len()] == [grains; 2]
     }
@@ -141,7 +139,6 @@ impl Observer {
 
 impl Sample {
     /// The interval between two states of an observer, seen from its end.
-    #[must_use]
     pub fn of(before: &Observer, after: &Observer, view: &View<'_>) -> Self {
         let View {
             simulation, shape, ..

@@ -36,7 +36,6 @@ impl Slice {
 
 impl TubeShape {
     /// The shape now.
-    #[must_use]
     pub fn of(simulation: &Simulation) -> Self {
         let wall = simulation.wall();
         match wall.wave() {
@@ -46,7 +45,6 @@ impl TubeShape {
     }
 
     /// Mean, least and largest radius at z in \[0, L) \[d\].
-    #[must_use]
     pub fn slice(&self, z: f64) -> Slice {
         match self {
             Self::Wave(wave, cycles) => Slice::round(wave.radius(z, *cycles)),
@@ -58,7 +56,6 @@ impl TubeShape {
     }
 
     /// Mean radius at z \[d\].
-    #[must_use]
     pub fn radius(&self, z: f64) -> f64 {
         self.slice(z).mean
     }
@@ -73,7 +70,6 @@ impl TubeShape {
     }
 
     /// Least radius anywhere \[d\]: twice it is the smallest bottleneck.
-    #[must_use]
     pub fn narrowest(&self) -> f64 {
         match self {
             Self::Wave(wave, _) => wave.mean_radius - wave.amplitude.abs(),

@@ -15,7 +15,6 @@ pub struct View<'a> {
 
 impl<'a> View<'a> {
     /// The simulation now.
-    #[must_use]
     pub fn of(simulation: &'a Simulation) -> Self {
         let shape = TubeShape::of(simulation);
         let bodies = simulation.bodies();
@@ -28,7 +27,6 @@ impl<'a> View<'a> {
     }
 
     /// J from the velocities of the grains inside the tube, along the wave \[1/t\].
-    #[must_use]
     pub fn instantaneous_flow_rate(&self) -> f64 {
         let (bodies, wall) = (self.simulation.bodies(), self.simulation.wall());
         let grains = bodies.velocity.iter().zip(&self.inside);

@@ -47,7 +47,6 @@ pub struct WaveByWave {
 
 impl WaveByWave {
     /// Begins a period of so many samples.
-    #[must_use]
     pub fn new(simulation: &Simulation, samples_per_period: u64) -> Self {
         let waves = simulation.wall().waves() as usize;
         Self {
@@ -60,7 +59,6 @@ impl WaveByWave {
     }
 
     /// Whether it can be what was seen of so many waves, with so many samples a period.
-    #[must_use]
     pub fn fits(&self, waves: usize, samples_per_period: u64) -> bool {
         self.sums.len() == waves
             && self.samples_per_period == samples_per_period.max(1)
@@ -115,7 +113,6 @@ impl WaveByWave {
     }
 
     /// Every wave of every whole period so far, period by period.
-    #[must_use]
     pub fn flows(&self) -> &[WaveFlow] {
         &self.flows
     }

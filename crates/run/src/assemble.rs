@@ -87,7 +87,6 @@ fn heading(configuration: &Configuration) -> f64 {
 }
 
 /// The wall of a configuration, at time 0.
-#[must_use]
 pub fn walls(configuration: &Configuration) -> Wall {
     let Configuration {
         tube, drive, wall, ..

@@ -125,7 +125,6 @@ impl RunError {
     }
 
     /// What to do about a run that diverged; `None` for other errors.
-    #[must_use]
     pub fn against_divergence(&self) -> Option<&'static str> {
         match self {
             Self::Engine(EngineError::Diverged { grain, grains, .. }) if grain >= grains => Some(

@@ -126,31 +126,26 @@ impl Recorder {
     }
 
     /// The samples so far.
-    #[must_use]
     pub fn samples(&self) -> &[Sample] {
         &self.samples
     }
 
     /// J/Jmax averaged over each whole period so far.
-    #[must_use]
     pub fn averages(&self) -> &[f64] {
         &self.averages
     }
 
     /// The profile in the wave's frame.
-    #[must_use]
     pub fn profile(&self) -> &WaveFrameProfile {
         &self.profile
     }
 
     /// The flow of each wave over each whole period, period by period.
-    #[must_use]
     pub fn waves(&self) -> &[WaveFlow] {
         self.waves.flows()
     }
 
     /// How the grains disperse along the tube.
-    #[must_use]
     pub fn dispersion(&self) -> &AxialDispersion {
         &self.dispersion
     }
@@ -161,25 +156,21 @@ impl Recorder {
     }
 
     /// The transition, or how long none was seen; `None` where there is no ratio of flow rates to watch.
-    #[must_use]
     pub fn transition(&self) -> Option<Transition> {
         Some(self.detector.as_ref()?.outcome())
     }
 
     /// Time of the transition \[t\], if it has been found.
-    #[must_use]
     pub fn transition_time(&self) -> Option<f64> {
         self.transition()?.observed()
     }
 
     /// Time of the transition \[t\] at each of [`THRESHOLDS`], where it has been found.
-    #[must_use]
     pub fn transition_times(&self) -> [Option<f64>; THRESHOLDS.len()] {
         core::array::from_fn(|place| self.ladder.get(place)?.outcome().observed())
     }
 
     /// The samples of the last part of what was measured, at least one.
-    #[must_use]
     pub fn late(&self, fraction: f64) -> &[Sample] {
         let number = self.samples.len();
         let taken = ((number as f64 * fraction).round() as usize).clamp(1.min(number), number);

@@ -205,7 +205,6 @@ impl Run {
     }
 
     /// How the grains have turned since [`Run::follow_orientations`].
-    #[must_use]
     pub fn orientations(&self) -> Option<&Orientations> {
         self.orientations.as_ref()
     }
@@ -250,13 +249,11 @@ impl Run {
     }
 
     /// Whether all samples have been taken, or the run may end before.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.recorder.samples().len() as u64 >= self.configuration.run.samples || self.is_settled()
     }
 
     /// Whether the run may end since its transition has been found and has settled.
-    #[must_use]
     pub fn is_settled(&self) -> bool {
         self.stopping
             .is_some_and(|stopping| stopping.is_settled(&self.recorder))
@@ -264,7 +261,6 @@ impl Run {
 
     /// The part at the end of what was measured that late means are taken over: as configured, unless the run
     /// [has settled](Self::is_settled), when it is the second half of the periods that it was given for that.
-    #[must_use]
     pub fn late_fraction(&self) -> f64 {
         match self.stopping {
             Some(stopping) if self.is_settled() => stopping.late_fraction(&self.recorder),
@@ -273,7 +269,6 @@ impl Run {
     }
 
     /// How far it is.
-    #[must_use]
     pub fn progress(&self) -> Progress {
         let samples = self.recorder.samples();
         let last_sample = samples
@@ -296,31 +291,26 @@ impl Run {
     }
 
     /// The configuration; of a run that was steered, with the course that it has taken.
-    #[must_use]
     pub fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
     /// The simulation.
-    #[must_use]
     pub fn simulation(&self) -> &Simulation {
         &self.simulation
     }
 
     /// The record of measurements.
-    #[must_use]
     pub fn recorder(&self) -> &Recorder {
         &self.recorder
     }
 
     /// How the grains were packed.
-    #[must_use]
     pub fn packing(&self) -> &PackingReport {
         &self.packing
     }
 
     /// Time spent.
-    #[must_use]
     pub fn elapsed(&self) -> Duration {
         self.elapsed
     }

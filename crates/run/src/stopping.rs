@@ -17,7 +17,6 @@ pub struct Stopping {
 
 impl Stopping {
     /// Whether a run with this record may end.
-    #[must_use]
     pub fn is_settled(self, recorder: &Recorder) -> bool {
         match recorder.transition() {
             Some(Transition::At { period, .. }) => {

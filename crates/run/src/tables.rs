@@ -65,7 +65,6 @@ pub(crate) fn kind<Of>(reading: &Reading<Of>) -> ValueKind {
 }
 
 /// A column from its values; a missing value is NaN.
-#[must_use]
 pub fn gathered(kind: ValueKind, values: impl Iterator<Item = Value>) -> Values {
     let mut gathered = Values::empty(kind);
     for value in values {

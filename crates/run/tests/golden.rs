@@ -4,10 +4,7 @@
 //! `GOLDEN=write cargo test -p peristalsis-run --test golden` writes the record anew. Where that is right, the physics has
 //! changed: raise `PHYSICS_VERSION`.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod common;
 

@@ -1,9 +1,6 @@
 //! Pictures of runs: red grains flow along the wave, blue ones against it, and the wall stands around.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod common;
 

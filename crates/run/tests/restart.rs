@@ -1,9 +1,6 @@
 //! Stopped anywhere and gone on with, a run gives the same bits as in one go, for every kind of model.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod common;
 

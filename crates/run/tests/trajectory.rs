@@ -1,10 +1,7 @@
 //! Trajectories of runs: they show the simulation as it is, change nothing of it, and go on after a kill as if there had
 //! been none.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod common;
 

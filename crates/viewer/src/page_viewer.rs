@@ -58,7 +58,6 @@ impl PageViewer {
     }
 
     /// The bytes of a frame; `None` without a tube.
-    #[must_use]
     pub fn frame(&self) -> Option<Vec<u8>> {
         self.tube.as_ref().map(Tube::frame)
     }

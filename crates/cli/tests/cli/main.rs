@@ -1,9 +1,6 @@
 //! The program as a person or a script meets it: arguments in; exit code, streams and files out.
 
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod bad_input;
 mod checking;

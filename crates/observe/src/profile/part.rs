@@ -33,7 +33,6 @@ impl WaveFrameProfile {
     ///
     /// Errors are standard errors from up to ten equal groups of blocks, NaN where there is only one. A straight tube has
     /// no proper parts: all is NaN.
-    #[must_use]
     pub fn late_part(&self, fraction: f64, part: WavePart) -> PartOfWave {
         let groups = self.late_groups(fraction);
         let radius = |bin: usize| {

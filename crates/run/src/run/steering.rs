@@ -12,7 +12,6 @@ const LARGEST: f64 = 1e6;
 impl Run {
     /// The value of a parameter of the drive for the next step, in the units of its key; `None` for the amplitude of the other
     /// control.
-    #[must_use]
     pub fn driven(&self, parameter: ScheduledParameter) -> Option<f64> {
         let own = self.configuration.drive.own(parameter)?;
         let schedule = self.schedule(parameter);
@@ -20,7 +19,6 @@ impl Run {
     }
 
     /// Whether a parameter of the drive stays what it is.
-    #[must_use]
     pub fn is_at_rest(&self, parameter: ScheduledParameter) -> bool {
         self.schedule(parameter)
             .is_none_or(|schedule| schedule.rest() <= self.soonest())

@@ -109,7 +109,6 @@ pub struct Summary {
 
 impl Summary {
     /// The outcome of a run so far.
-    #[must_use]
     pub fn of(run: &Run, status: Status, message: Option<String>) -> Self {
         let configuration = run.configuration();
         let recorder = run.recorder();
@@ -169,19 +168,16 @@ impl Summary {
     }
 
     /// Late mean of J \[1/t\].
-    #[must_use]
     pub fn flow_rate(&self) -> f64 {
         self.mean(|sample| sample.flow_rate)
     }
 
     /// Late mean power that wall or drive put in \[m d^2/t^3\].
-    #[must_use]
     pub fn wall_power(&self) -> f64 {
         self.mean(|sample| sample.wall_power)
     }
 
     /// Grains times steps over the seconds that engine and observables took.
-    #[must_use]
     pub fn grain_steps_per_second(&self) -> f64 {
         let grain_steps = self.configuration.grains.number as f64 * self.steps as f64;
         if self.seconds > 0.0 {
@@ -192,7 +188,6 @@ impl Summary {
     }
 
     /// A number in SI, by the SI value of its unit; `None` where the configuration does not say its units.
-    #[must_use]
     pub fn in_si(&self, value: f64, unit: fn(&Units) -> f64) -> Option<f64> {
         let units = self.configuration.units.as_ref()?;
         Some(value * unit(units))

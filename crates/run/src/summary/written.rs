@@ -66,7 +66,6 @@ impl RunQuantity {
 }
 
 /// The columns of a run's quantities in the rows of studies.
-#[must_use]
 pub fn row_columns() -> &'static [RowColumn] {
     static COLUMNS: LazyLock<Vec<RowColumn>> = LazyLock::new(|| {
         let in_rows = QUANTITIES.iter().filter(|quantity| quantity.in_rows);
@@ -76,7 +75,6 @@ pub fn row_columns() -> &'static [RowColumn] {
 }
 
 /// The columns of rows that a configuration alone decides, with their values for this one.
-#[must_use]
 pub fn set_by(configuration: &Configuration) -> Vec<(&'static str, Value)> {
     QUANTITIES
         .iter()
@@ -91,7 +89,6 @@ pub fn set_by(configuration: &Configuration) -> Vec<(&'static str, Value)> {
 }
 
 /// Words or symbol of a column at an axis; `None` where its name serves.
-#[must_use]
 pub fn label(column: &str) -> Option<&'static str> {
     QUANTITIES
         .iter()
@@ -105,14 +102,12 @@ pub fn label(column: &str) -> Option<&'static str> {
 
 impl Summary {
     /// The values of [`row_columns`].
-    #[must_use]
     pub fn row(&self) -> Vec<Value> {
         let in_rows = QUANTITIES.iter().filter(|quantity| quantity.in_rows);
         in_rows.flat_map(|quantity| quantity.values(self)).collect()
     }
 
     /// As JSON, indented.
-    #[must_use]
     pub fn to_json(&self) -> String {
         let mut text = serde_json::to_string_pretty(self)
             .expect("a summary is plain numbers and text, which always serialise");

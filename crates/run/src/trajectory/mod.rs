@@ -158,7 +158,6 @@ impl Trajectory {
     }
 
     /// Steps to the next frame, if there is one more.
-    #[must_use]
     pub fn steps_to_next(&self, run: &Run) -> Option<u64> {
         self.plan.steps_to_next(run.simulation().step())
     }
@@ -191,7 +190,6 @@ impl Trajectory {
     }
 
     /// What has been written.
-    #[must_use]
     pub fn report(&self) -> TrajectoryReport {
         let names = self.plan.formats.iter().map(|format| format.file_name());
         TrajectoryReport {

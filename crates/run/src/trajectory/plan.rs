@@ -188,13 +188,11 @@ impl TrajectoryPlan {
     }
 
     /// Steps between two frames.
-    #[must_use]
     pub fn interval(&self) -> u64 {
         self.interval
     }
 
     /// Frames in all.
-    #[must_use]
     pub fn frames(&self) -> u64 {
         self.frames_through(u64::MAX)
     }

@@ -113,7 +113,6 @@ impl FrameSource {
     }
 
     /// The frames that a run goes through on a plan, which must not begin before its present state.
-    #[must_use]
     pub fn of_run(run: Run, plan: TrajectoryPlan, with_contacts: bool) -> Self {
         Self {
             frames: plan.frames() as usize,
@@ -151,19 +150,16 @@ impl FrameSource {
     }
 
     /// The present state of a run, as a frame.
-    #[must_use]
     pub fn now(run: &Run, with_contacts: bool) -> Frame {
         frame(run, with_contacts)
     }
 
     /// Frames in all.
-    #[must_use]
     pub fn frames(&self) -> usize {
         self.frames
     }
 
     /// Frames of the file that a kill or a full disk left in parts.
-    #[must_use]
     pub fn lost_frames(&self) -> u64 {
         match &self.from {
             From::File(reader, _) => reader.lost_frames(),
@@ -228,7 +224,6 @@ impl FrameSource {
     }
 
     /// Whether there are no more frames.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.next >= self.frames
     }

@@ -19,7 +19,6 @@ const STEPS_PER_CONTACT: f64 = 15.0;
 /// Overlap at which contact stiffness is judged, in units of the least diameter.
 const USUAL_OVERLAP: f64 = 0.1;
 /// The warnings of a configuration.
-#[must_use]
 pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let contact_time = contact_time(configuration);

@@ -97,7 +97,6 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
 }
 
 /// That grains overlapped by more, when they were packed or since, than solid ones do, where the units are said in SI.
-#[must_use]
 pub fn overlap_warning(run: &Run) -> Option<Warning> {
     let configuration = run.configuration();
     let units = configuration.units.as_ref()?;

@@ -63,13 +63,11 @@ impl Recording {
     }
 
     /// Number of frames.
-    #[must_use]
     pub fn frames(&self) -> usize {
         self.times.len()
     }
 
     /// Number of frames lost where the file was cut short.
-    #[must_use]
     pub fn lost_frames(&self) -> u64 {
         self.reader.lost_frames()
     }

@@ -138,19 +138,16 @@ impl Study {
     }
 
     /// Its name.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.name
     }
 
     /// Finished runs in it.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.table.rows()
     }
 
     /// Rows whose run can be watched.
-    #[must_use]
     pub fn watchable(&self) -> usize {
         self.numbers_of_rows().iter().flatten().count()
     }

@@ -174,7 +174,6 @@ impl Viewer {
     }
 
     /// The address to open in a browser; whoever knows it can drive the run.
-    #[must_use]
     pub fn address(&self) -> String {
         format!("http://127.0.0.1:{}/{}/", self.port, self.token)
     }

@@ -276,10 +276,7 @@ fn requests_are_short_and_one_is_one() {
 }
 
 /// A WebSocket that is spoken by hand; waits until the server has a place for one more client.
-#[allow(
-    clippy::unwrap_used,
-    reason = "a test fails where what it needs is missing"
-)]
+#[allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 fn by_hand(served: &Served) -> TcpStream {
     let request = format!(
         "GET {}live HTTP/1.1\r\n{}\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
