@@ -250,8 +250,8 @@ fn keys_of(schedule: &Schedule) -> Vec<(&'static str, Value)> {
                 keys.map(|(key, value)| (key, Value::from(*value))).to_vec(),
             )
         }
-        ScheduleForm::Steps { steps } => ("steps", keys_of_points(steps)),
-        ScheduleForm::Course { knots } => ("course", keys_of_points(knots)),
+        ScheduleForm::Steps(steps) => ("steps", keys_of_points(steps)),
+        ScheduleForm::Course(knots) => ("course", keys_of_points(knots)),
     };
     let parameter = name(schedule.parameter);
     let names = [("form", form.into()), ("parameter", parameter.into())];

@@ -54,7 +54,7 @@ pub use peristalsis_physics::wall::{
 };
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;
-pub use schedule::{Schedule, ScheduleForm, ScheduledParameter};
+pub use schedule::{Schedule, ScheduledParameter};
 pub use schema::schema;
 pub use source::{Origin, SourceFile, Sources};
 pub use units::Units;

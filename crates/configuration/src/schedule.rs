@@ -20,35 +20,26 @@ pub struct Schedule {
     /// What follows the schedule.
     pub parameter: ScheduledParameter,
     /// How.
-    pub form: ScheduleForm,
+    pub(crate) form: ScheduleForm,
     /// The parameter's own value, which holds before the first step.
     pub(crate) before: f64,
 }
 
 /// Form of a [`Schedule`].
 #[derive(Clone, Debug, PartialEq)]
-pub enum ScheduleForm {
-    /// `from` until `start`, then linear in time to `to` at `end`, `to` from there on.
+pub(crate) enum ScheduleForm {
+    /// `from` until `start`, then linear in time to `to` at `end`, `to` from there on; times in periods, 0 or more.
     Ramp {
-        /// First value.
         from: f64,
-        /// Last value.
         to: f64,
-        /// Begin, in periods, 0 or more.
         start: f64,
-        /// End, in periods, after the begin.
         end: f64,
     },
-    /// Each value from its time on.
-    Steps {
-        /// (time in periods, value), times ascending, at least one.
-        steps: Vec<(f64, f64)>,
-    },
-    /// Linear in time from each value to the next, constant before the first and after the last.
-    Course {
-        /// (time in periods, value), times ascending, at least one; of two at one time the later holds from then on.
-        knots: Vec<(f64, f64)>,
-    },
+    /// (time in periods, value), times ascending, at least one: each value from its time on.
+    Steps(Vec<(f64, f64)>),
+    /// Such places between which the value is linear in time, constant before the first and after the last; of two at one
+    /// time the later holds from then on.
+    Course(Vec<(f64, f64)>),
 }
 
 impl Schedule {
@@ -56,9 +47,7 @@ impl Schedule {
     pub fn resting(parameter: ScheduledParameter, value: f64) -> Self {
         Self {
             parameter,
-            form: ScheduleForm::Course {
-                knots: vec![(0.0, value)],
-            },
+            form: ScheduleForm::Course(vec![(0.0, value)]),
             before: value,
         }
     }
@@ -81,7 +70,7 @@ impl Schedule {
         }
         knots.push((end, value));
         Some(Self {
-            form: ScheduleForm::Course { knots },
+            form: ScheduleForm::Course(knots),
             ..self.clone()
         })
     }
@@ -101,7 +90,7 @@ impl Schedule {
                 start,
                 end,
             } => vec![(*start, *from), (*end, *to)],
-            ScheduleForm::Steps { steps } => {
+            ScheduleForm::Steps(steps) => {
                 let mut knots = Vec::with_capacity(2 * steps.len());
                 let mut last = self.before;
                 for &(time, value) in steps {
@@ -110,7 +99,7 @@ impl Schedule {
                 }
                 knots
             }
-            ScheduleForm::Course { knots } => knots.clone(),
+            ScheduleForm::Course(knots) => knots.clone(),
         }
     }
 
@@ -139,13 +128,13 @@ impl Schedule {
                 let progress = ((periods - start) / (end - start)).clamp(0.0, 1.0);
                 from + (to - from) * progress
             }
-            ScheduleForm::Steps { steps } => {
+            ScheduleForm::Steps(steps) => {
                 let passed = steps.partition_point(|(time, _)| *time <= periods);
                 passed
                     .checked_sub(1)
                     .map_or(self.before, |last| steps[last].1)
             }
-            ScheduleForm::Course { knots } => {
+            ScheduleForm::Course(knots) => {
                 let passed = knots.partition_point(|(time, _)| *time <= periods);
                 let (_, from) = knots[passed.saturating_sub(1)];
                 match (passed.checked_sub(1), knots.get(passed)) {
@@ -173,8 +162,7 @@ mod tests {
     }
 
     fn steps(steps: &[(f64, f64)]) -> Schedule {
-        let steps = steps.to_vec();
-        width(ScheduleForm::Steps { steps })
+        width(ScheduleForm::Steps(steps.to_vec()))
     }
 
     fn assert_values(schedule: &Schedule, values: &[(f64, f64)]) {
@@ -201,9 +189,7 @@ mod tests {
     #[test]
     fn a_course_goes_from_value_to_value() {
         let knots = vec![(1.0, 3.0), (2.0, 4.0), (6.0, 2.0)];
-        let course = width(ScheduleForm::Course {
-            knots: knots.clone(),
-        });
+        let course = width(ScheduleForm::Course(knots.clone()));
         let values = [(0.0, 3.0), (1.5, 3.5), (2.0, 4.0), (5.0, 2.5), (9.0, 2.0)];
         assert_values(&course, &values);
         assert_eq!(course.knots(), knots);

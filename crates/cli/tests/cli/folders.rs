@@ -38,6 +38,27 @@ fn nested_relative_folders_are_made_and_filled() {
     assert!(figure.starts_with(b"\x89PNG\r\n\x1a\n"));
     let drawing = std::fs::read_to_string(place.path("a/b/c/flow.svg")).unwrap();
     assert!(drawing.contains("<svg") && drawing.trim_end().ends_with("</svg>"));
+    let flow = [
+        "flow rate, J/Jmax",
+        "time, t/T",
+        "threshold",
+        "mean over a period",
+        "Newtonian fluid (Shapiro et al. 1969), φ = b/a",
+        "the same, clear bore, φ = b/(a − d/2)",
+    ];
+    assert_labels(&place.path("a/b/c/flow.svg"), &flow);
+    let phase = "position in the wave frame, (z − ct)/λ";
+    let profile = ["r/d", "n1 d", "vz/c", "Tg", "(d)", phase];
+    assert_labels(&place.path("a/b/c/profile.svg"), &profile);
+}
+
+/// A drawing bears each of these texts once.
+fn assert_labels(drawing: &Path, labels: &[&str]) {
+    let drawing = std::fs::read_to_string(drawing).unwrap();
+    for label in labels {
+        let label = format!("aria-label=\"{label}\"");
+        assert_eq!(drawing.matches(&label).count(), 1, "{label}");
+    }
 }
 
 #[test]
@@ -48,6 +69,13 @@ fn an_elastic_wall_has_a_figure_of_its_own() {
     for name in ["wall.svg", "wall.png"] {
         assert!(place.path("results").join(name).is_file(), "{name}");
     }
+    let labels = [
+        "wall radius, R/d",
+        "least to largest",
+        "mean",
+        "tube at rest",
+    ];
+    assert_labels(&place.path("results/wall.svg"), &labels);
 }
 
 #[test]

@@ -154,12 +154,8 @@ impl Scope<'_> {
         check_keys(keys)?;
         let form = match keys.form {
             ScheduleFormName::Ramp => self.ramp(keys, &target)?,
-            ScheduleFormName::Steps => ScheduleForm::Steps {
-                steps: self.points(keys, &target)?,
-            },
-            ScheduleFormName::Course => ScheduleForm::Course {
-                knots: self.points(keys, &target)?,
-            },
+            ScheduleFormName::Steps => ScheduleForm::Steps(self.points(keys, &target)?),
+            ScheduleFormName::Course => ScheduleForm::Course(self.points(keys, &target)?),
         };
         Ok(Schedule {
             parameter: target.resolved,
