@@ -21,7 +21,7 @@ fn a_finished_run_is_drawn_from_every_side() {
         .does("render results --width 300")
         .shows(&["300 x ", "results/tube-side.png"]);
     let section = "render results --view section --phase 0.25 --width 64 --bare --out section.png";
-    place.does(&section).shows(&["64 x 64 pixels: section.png"]);
+    place.does(section).shows(&["64 x 64 pixels: section.png"]);
     for options in [
         "--view space-time",
         "--format svg --colour coordination --wall glass --paper dark",
@@ -129,7 +129,7 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
         ("render results --from state --at 2", "one instant"),
         ("render results --waves 0", "positive number of waves"),
     ] {
-        let outcome = place.call(&call).expect_code(2);
+        let outcome = place.call(call).expect_code(2);
         let message = outcome.message();
         assert!(message.contains(expected), "{call}: {message}");
     }
