@@ -266,7 +266,8 @@ pub fn setting(path: &str, key: &Origin, item: Item) -> Table {
 }
 
 /// The tree as a plain TOML table, for serde.
-pub(crate) fn to_toml(table: &Table) -> toml::Table {
+#[must_use]
+pub fn to_toml(table: &Table) -> toml::Table {
     table
         .iter()
         .map(|(key, entry)| (key.clone(), to_value(&entry.item.node)))

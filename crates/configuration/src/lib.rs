@@ -55,6 +55,6 @@ pub use peristalsis_physics::wall::{
 pub use presets::{PRESETS, Preset, preset};
 pub use reference::reference;
 pub use schedule::{Schedule, ScheduledParameter};
-pub use schema::schema;
+pub use schema::{schema, schema_of};
 pub use source::{Origin, SourceFile, Sources};
 pub use units::Units;

@@ -32,6 +32,14 @@ pub(crate) fn of<T: JsonSchema>() -> Value {
         .to_value()
 }
 
+/// The JSON schema of the keys of a document of another kind, tidied for TOML.
+#[must_use]
+pub fn schema_of<T: JsonSchema>() -> Value {
+    let mut schema = of::<T>();
+    tidy(&mut schema);
+    schema
+}
+
 /// A key whose value decides which other keys of its table have a meaning.
 pub(crate) struct Choice {
     pub(crate) table: &'static str,

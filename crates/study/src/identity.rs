@@ -1,25 +1,53 @@
 //! The identity of a run: a hash of all that determines its products.
 
 use std::fmt;
+use std::ops::Not;
 use std::str::FromStr;
 
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::hexadecimal;
+use peristalsis_observe::COLUMNS;
 pub use peristalsis_run::PHYSICS_VERSION;
 use peristalsis_run::Stopping;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-/// The tables of a run that are kept besides its row of numbers.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+/// What is kept of each run besides its row of numbers. How often it is sampled is base.observe.samples_per_period.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
 pub struct Record {
-    /// Columns of the time series; `None`: all.
+    /// Columns of the time series. Missing: all.
+    #[schemars(extend("minItems" = 1, "items" = {"type": "string", "enum": column_names()}))]
     pub columns: Option<Vec<String>>,
     /// Whether the profile in the wave's frame is kept.
     pub profile: bool,
-    /// Whether the flow of each wave over each period is kept.
+    /// Whether the flow of each wave over each period is kept, waves.parquet: J/Jmax and number of the grains between two
+    /// throats, a row for each wave of each period.
+    #[serde(skip_serializing_if = "Not::not")]
+    #[schemars(extend("default" = false))]
     pub waves: bool,
-    /// Whether the spheres as they stand at the end are kept.
+    /// Whether the spheres as they stand at the end are kept, snapshot.parquet: places along the wave and across it,
+    /// diameters, axial velocities, a row a sphere.
+    #[serde(skip_serializing_if = "Not::not")]
+    #[schemars(extend("default" = false))]
     pub snapshot: bool,
+}
+
+impl Default for Record {
+    fn default() -> Self {
+        Self {
+            columns: None,
+            profile: true,
+            waves: false,
+            snapshot: false,
+        }
+    }
+}
+
+/// Names of the columns of a time series.
+pub(crate) fn column_names() -> Vec<&'static str> {
+    COLUMNS.iter().map(|column| column.quantity.name).collect()
 }
 
 /// Identity of a run: the first 128 bits of a SHA-256 of all that determines its products.

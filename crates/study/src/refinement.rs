@@ -47,11 +47,9 @@ impl Bracket {
     }
 }
 
-/// The points that differ in one axis alone.
-struct Line<'a> {
-    /// Points by ascending value.
-    points: Vec<(f64, usize, &'a Point)>,
-}
+/// The points that differ in one axis alone, with their values, which ascend, and their places in the plan.
+#[derive(Default)]
+struct Line<'a>(Vec<(f64, usize, &'a Point)>);
 
 /// Runs of a point: how many had a transition, how many had none, how many have not ended.
 #[derive(Clone, Copy, Default)]
@@ -104,13 +102,13 @@ fn lines<'a>(study: &Specification, plan: &'a Plan, axis: usize) -> Vec<Line<'a>
         let value = value.expect("a watched axis is one of numbers");
         lines
             .entry((others, state_name(point.state)))
-            .or_insert(Line { points: Vec::new() })
-            .points
+            .or_default()
+            .0
             .push((value, index, point));
     }
     let mut lines: Vec<Line<'a>> = lines.into_values().collect();
     for line in &mut lines {
-        line.points.sort_by(|one, other| one.0.total_cmp(&other.0));
+        line.0.sort_by(|one, other| one.0.total_cmp(&other.0));
     }
     lines
 }
@@ -132,7 +130,7 @@ fn counts(plan: &Plan, found: &dyn Fn(&Identity) -> Option<Finding>) -> HashMap<
 impl Line<'_> {
     /// Values of the points whose runs say something, with what they say.
     fn known(&self, counts: &HashMap<usize, Count>) -> Vec<(f64, Count)> {
-        self.points
+        self.0
             .iter()
             .filter_map(|(value, point, _)| Some((*value, *counts.get(point)?)))
             .filter(|(_, count)| count.majority().is_some())
@@ -187,7 +185,7 @@ pub fn brackets(
     let counts = counts(plan, found);
     let of_line = |line: Line<'_>| {
         let (lower, upper) = line.bracket(&counts)?;
-        let point = line.points[0].2;
+        let point = line.0[0].2;
         let mut words: Vec<String> = point
             .settings
             .iter()
@@ -233,7 +231,7 @@ pub fn refine(
         let mut added = Vec::new();
         for line in lines(study, plan, refine.axis) {
             let all_ended = line
-                .points
+                .0
                 .iter()
                 .all(|(_, point, _)| counts.get(point).is_some_and(|count| count.open == 0));
             if !all_ended {
@@ -244,7 +242,7 @@ pub fn refine(
                 if upper - lower <= refine.tolerance || middle <= lower || middle >= upper {
                     continue;
                 }
-                let model = line.points[0].2;
+                let model = line.0[0].2;
                 let item = Item {
                     origin: refine.origin.clone(),
                     node: Node::Float(middle),
@@ -270,21 +268,13 @@ pub(crate) fn usual_added_points(study: &Specification, plan: &Plan) -> usize {
     let Some(refine) = &study.refinement else {
         return 0;
     };
-    let widest_gap = study.axes[refine.axis]
-        .rows
-        .iter()
-        .map(|row| number(&row[0].node))
-        .collect::<Vec<_>>();
-    let mut values = widest_gap;
+    let rows = study.axes[refine.axis].rows.iter();
+    let mut values: Vec<f64> = rows.map(|row| number(&row[0].node)).collect();
     values.sort_by(f64::total_cmp);
-    let gap = values
-        .windows(2)
-        .map(|pair| pair[1] - pair[0])
-        .fold(0.0, f64::max);
-    let mut halvings = 0;
-    let mut left = gap;
-    while left > refine.tolerance && halvings < 60 {
-        left *= 0.5;
+    let gaps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let (mut gap, mut halvings) = (gaps.fold(0.0, f64::max), 0);
+    while gap > refine.tolerance && halvings < 60 {
+        gap *= 0.5;
         halvings += 1;
     }
     ((1_usize << halvings.min(20)) - 1) * lines(study, plan, refine.axis).len()

@@ -12,27 +12,10 @@ use crate::report::markup::plain_text;
 
 /// The figures of all claims, each with the name of its files.
 pub(crate) struct FigureFiles<'a> {
-    files: Vec<(String, &'a ReportFigure)>,
-    /// For each claim, the place in `files` of each of its figures.
-    places: Vec<Vec<usize>>,
-}
-
-impl<'a> FigureFiles<'a> {
-    pub(crate) fn is_empty(&self) -> bool {
-        self.files.is_empty()
-    }
-
     /// Each file once.
-    pub(crate) fn files(&self) -> impl Iterator<Item = (&str, &'a ReportFigure)> {
-        self.files.iter().map(|(name, figure)| (&**name, *figure))
-    }
-
-    /// Names of the files of a claim's figures, in their order.
-    pub(crate) fn names_of(&self, claim: usize) -> impl Iterator<Item = &str> {
-        self.places[claim]
-            .iter()
-            .map(|place| &*self.files[*place].0)
-    }
+    pub(crate) files: Vec<(String, &'a ReportFigure)>,
+    /// For each claim, the place in `files` of each of its figures.
+    pub(crate) places: Vec<Vec<usize>>,
 }
 
 /// Names every figure after itself; one that two claims show is one file, and of two with the same name the second gets a
@@ -125,18 +108,9 @@ type ClaimQuantity<'a> = (&'a str, &'a Quantity);
 
 fn quantities(examinations: &[Examination]) -> Vec<ClaimQuantity<'_>> {
     let mut all = Vec::new();
-    for Examination {
-        experiment,
-        finding,
-        ..
-    } in examinations
-    {
-        all.extend(
-            finding
-                .quantities
-                .iter()
-                .map(|quantity| (experiment.id, quantity)),
-        );
+    for one in examinations {
+        let id = one.experiment.id;
+        all.extend(one.finding.quantities.iter().map(|quantity| (id, quantity)));
     }
     all
 }

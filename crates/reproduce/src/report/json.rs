@@ -114,11 +114,11 @@ fn claim<'a>(
         quantities: &finding.quantities,
         paragraphs: &finding.paragraphs,
         weaknesses: &finding.weaknesses,
-        figures: figures
-            .names_of(place)
+        figures: figures.places[place]
+            .iter()
             .zip(&finding.figures)
-            .map(|(name, figure)| Figure {
-                file: format!("figures/{name}.svg"),
+            .map(|(file, figure)| Figure {
+                file: format!("figures/{}.svg", figures.files[*file].0),
                 caption: &figure.caption,
             })
             .collect(),

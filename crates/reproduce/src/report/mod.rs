@@ -98,13 +98,13 @@ impl Report {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, ClaimError> {
         let (figures, tables) = (figure_files(&self.examinations), table_files(self)?);
         make_folder(folder)?;
-        if !figures.is_empty() {
+        if !figures.files.is_empty() {
             make_folder(&folder.join("figures"))?;
         }
         if !tables.is_empty() {
             make_folder(&folder.join("tables"))?;
         }
-        for (name, figure) in figures.files() {
+        for (name, figure) in &figures.files {
             write_drawing(&folder.join("figures"), name, &figure.drawing)?;
         }
         for (name, table) in &tables {

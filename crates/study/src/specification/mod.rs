@@ -1,25 +1,26 @@
 //! The study file: base, axes, replicates and stopping rule.
 
 mod axis;
-mod schema;
+mod keys;
 
 use std::fs;
 use std::path::Path;
 
-use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
+use peristalsis_configuration::document::{self, Item, Node, Table};
 use peristalsis_configuration::{
     Configuration, ConfigurationError, InitialState, Origin, Problem, ProblemKind, Problems,
     SourceFile, Sources, check_against, join,
 };
-use peristalsis_observe::COLUMNS;
 use peristalsis_run::Stopping;
+use serde::Deserialize;
 
 use crate::error::StudyError;
-use crate::identity::Record;
+use crate::identity::{Record, column_names};
 use crate::plan::{Plan, state_name};
 use axis::Axis;
 pub(crate) use axis::{neat, number};
-pub use schema::schema;
+pub use keys::schema;
+use keys::{Keys, RefineKeys};
 
 /// Most runs of a study before refinement.
 const MOST_RUNS: u64 = 1_000_000;
@@ -109,46 +110,42 @@ impl Specification {
         let mut problems = Problems::default();
         let table = document::parse_file(SourceFile { name, text }, &mut problems);
         problems.check()?;
-        check_against(schema::cached(), &table, &mut problems);
+        check_against(keys::cached(), &table, &mut problems);
         check_keys(&table, &mut problems);
         problems.check()?;
+        let keys = Keys::deserialize(document::to_toml(&table))
+            .expect("a file that follows the schema can be read");
         let axes = axes(&table, &mut problems);
-        let refinement = refinement(&table, &axes, &mut problems);
+        let refinement = keys
+            .refine
+            .and_then(|keys| refinement(&keys, &table, &axes, &mut problems));
         problems.check()?;
         let span_of = |key| document::entry(&table, key).map(|entry| entry.item.origin.span());
         let base = Base {
-            preset: text_of(&table, "preset"),
-            file: match text_of(&table, "file") {
-                Some(name) => Some(file(&name)?),
-                None => None,
-            },
-            table: match document::entry(&table, "base") {
-                Some(Entry {
-                    item:
-                        Item {
-                            node: Node::Table(base),
-                            ..
-                        },
-                    ..
-                }) => base.clone(),
+            preset: keys.preset,
+            file: keys.file.map(|name| file(&name)).transpose()?,
+            table: match document::entry(&table, "base").map(|entry| &entry.item.node) {
+                Some(Node::Table(base)) => base.clone(),
                 _ => Table::new(),
             },
         };
         let mut study = Self {
-            name: text_of(&table, "name").expect("the schema requires a name"),
-            title: text_of(&table, "title").unwrap_or_default(),
-            replicates: whole(&table, "replicates").unwrap_or(1),
-            stopping: whole(&table, "stop.settled_periods")
-                .map(|settled_periods| Stopping { settled_periods }),
+            name: keys.name,
+            title: keys.title.unwrap_or_default(),
+            replicates: keys.replicates,
+            stopping: keys.stop.map(|keys| Stopping {
+                settled_periods: keys.settled_periods,
+            }),
             record: Record {
-                columns: columns(&table),
-                profile: boolean(&table, "record.profile").unwrap_or(true),
-                waves: boolean(&table, "record.waves").unwrap_or(false),
-                snapshot: boolean(&table, "record.snapshot").unwrap_or(false),
+                columns: keys.record.columns.and_then(in_order),
+                ..keys.record
             },
             refinement,
             axes,
-            states: states(&table),
+            states: keys.states.map(|mut states| {
+                states.dedup();
+                states
+            }),
             plan: Plan::default(),
             base,
             text: text.to_owned(),
@@ -368,24 +365,28 @@ fn axes(table: &Table, problems: &mut Problems) -> Vec<Axis> {
     axes
 }
 
-fn refinement(table: &Table, axes: &[Axis], problems: &mut Problems) -> Option<Refine> {
-    let key = text_of(table, "refine.key")?;
+fn refinement(
+    keys: &RefineKeys,
+    table: &Table,
+    axes: &[Axis],
+    problems: &mut Problems,
+) -> Option<Refine> {
+    let RefineKeys { key, tolerance } = keys;
     let origin = &document::entry(table, "refine.key")?.item.origin;
-    let axis = axes
+    let can_be = |axis: &Axis| axis.is_numeric() && axis.rows.len() > 1;
+    let place = axes
         .iter()
-        .position(|axis| axis.is_numeric() && axis.keys[0].0 == key);
-    if let Some(axis) = axis
-        && axes[axis].rows.len() > 1
-    {
+        .position(|axis| can_be(axis) && axis.keys[0].0 == *key);
+    if let Some(axis) = place {
         return Some(Refine {
             axis,
-            tolerance: number(&document::entry(table, "refine.tolerance")?.item.node),
+            tolerance: *tolerance,
             origin: origin.clone(),
         });
     }
     let candidates: Vec<&str> = axes
         .iter()
-        .filter(|axis| axis.is_numeric() && axis.rows.len() > 1)
+        .filter(|axis| can_be(axis))
         .map(|axis| axis.keys[0].0.as_str())
         .collect();
     let problem = Problem::new(
@@ -402,60 +403,15 @@ fn refinement(table: &Table, axes: &[Axis], problems: &mut Problems) -> Option<R
     None
 }
 
-fn states(table: &Table) -> Option<Vec<InitialState>> {
-    let mut states: Vec<InitialState> = texts(table, "states")?
-        .iter()
-        .map(|name| match name.as_str() {
-            "jammed" => InitialState::Jammed,
-            _ => InitialState::Rest,
-        })
-        .collect();
-    states.dedup();
-    Some(states)
-}
-
 /// The columns kept, in the order of all; `None` where these are all.
-fn columns(table: &Table) -> Option<Vec<String>> {
-    let wanted = texts(table, "record.columns")?;
-    let kept: Vec<String> = COLUMNS
+fn in_order(wanted: Vec<String>) -> Option<Vec<String>> {
+    let all = column_names();
+    let kept: Vec<String> = all
         .iter()
-        .map(|column| column.quantity.name.to_owned())
+        .map(|name| (*name).to_owned())
         .filter(|name| wanted.contains(name))
         .collect();
-    (kept.len() < COLUMNS.len()).then_some(kept)
-}
-
-fn text_of(table: &Table, path: &str) -> Option<String> {
-    match &document::entry(table, path)?.item.node {
-        Node::Text(text) => Some(text.clone()),
-        _ => None,
-    }
-}
-
-fn boolean(table: &Table, path: &str) -> Option<bool> {
-    match document::entry(table, path)?.item.node {
-        Node::Boolean(boolean) => Some(boolean),
-        _ => None,
-    }
-}
-
-/// A whole number within 32 bits, which the schema has checked.
-fn whole(table: &Table, path: &str) -> Option<u32> {
-    match document::entry(table, path)?.item.node {
-        Node::Integer(integer) => u32::try_from(integer).ok(),
-        _ => None,
-    }
-}
-
-fn texts(table: &Table, path: &str) -> Option<Vec<String>> {
-    let Node::Array(items) = &document::entry(table, path)?.item.node else {
-        return None;
-    };
-    let texts = items.iter().filter_map(|item| match &item.node {
-        Node::Text(text) => Some(text.clone()),
-        _ => None,
-    });
-    Some(texts.collect())
+    (kept.len() < all.len()).then_some(kept)
 }
 
 /// One error of all that was found at the points, each problem once.

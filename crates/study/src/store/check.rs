@@ -87,7 +87,7 @@ impl Store {
     }
 
     pub(super) fn fill(&self, index: &mut Index) -> Result<Verification, StudyError> {
-        let before = index.states()?;
+        let before = index.findings()?;
         let mut found = Verification::default();
         let mut entries = self.imported()?;
         let leases = index.leases(LEASE_TIMEOUT)?;

@@ -1,14 +1,16 @@
 //! The tables of a study: a row a run.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use peristalsis_formats::{Column, Table, Values, csv, parquet};
+use serde_json::Value;
 
-use super::run_files::{TIMESERIES, TIMING};
+use super::run_files::{TIMES, TIMESERIES, TIMING};
 use super::{Index, Store, Survey, Verdict};
 use crate::error::StudyError;
 use crate::identity::{Identity, PHYSICS_VERSION};
-use crate::plan::{Plan, PlannedRun, SettingValue};
+use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
 use crate::row::Row;
 use crate::store::entry::{Entry, State};
 
@@ -91,7 +93,7 @@ impl Store {
         let survey = self.survey()?;
         let mut index = self.index_to_read()?;
         let (finished, quarantined) = self.finished(&survey, &mut index)?;
-        std::fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
+        fs::create_dir_all(folder).map_err(StudyError::io("make", folder))?;
         let name = &survey.study.name;
         let mut exported = Exported {
             files: Vec::new(),
@@ -170,79 +172,69 @@ impl Store {
     }
 
     fn timing_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
-        let mut identities = Vec::new();
-        let (mut seconds, mut speeds) = (Vec::new(), Vec::new());
-        for one in finished.iter().filter(|one| !one.imported) {
-            let path = self.run_folder(one.run.identity).join(TIMING);
-            let timing: serde_json::Value = std::fs::read_to_string(path)
-                .ok()
-                .and_then(|text| serde_json::from_str(&text).ok())
-                .unwrap_or_default();
-            let number = |name: &str| timing[name].as_f64().unwrap_or(f64::NAN);
-            identities.push(one.run.identity.to_string());
-            seconds.push(number("seconds"));
-            speeds.push(number("grain_steps_per_second"));
-        }
-        Ok(Table::builder()
-            .column("identity", "", "the run", Values::Text(identities))
-            .column(
-                "seconds",
-                "s",
-                "seconds that engine and observables took",
-                Values::Real(seconds),
-            )
-            .column(
-                "grain_steps_per_second",
-                "1/s",
-                "grains times steps over these seconds",
-                Values::Real(speeds),
-            )
-            .build()?)
+        let columns = [
+            ["seconds", "s", "seconds that engine and observables took"],
+            [TIMES[1], "1/s", "grains times steps over these seconds"],
+        ];
+        let timed = computed(finished).map(|identity| {
+            let text = fs::read_to_string(self.run_folder(identity).join(TIMING)).ok();
+            let timing: Option<Value> = text.and_then(|text| serde_json::from_str(&text).ok());
+            let timing = timing.unwrap_or_default();
+            let numbers = TIMES.map(|name| vec![timing[name].as_f64().unwrap_or(f64::NAN)]);
+            (identity, numbers)
+        });
+        by_run(columns, timed)
     }
 
     /// J/Jmax in time of every run that was computed here.
     fn series_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
-        let mut identities = Vec::new();
-        let names = ["time", "period", "flow_rate_ratio"];
-        let mut columns: [Vec<f64>; 3] = Default::default();
-        for one in finished.iter().filter(|one| !one.imported) {
-            let path = self.run_folder(one.run.identity).join(TIMESERIES);
-            let table = parquet::read(&path)?;
-            identities.extend(std::iter::repeat_n(
-                one.run.identity.to_string(),
-                table.rows(),
-            ));
-            for (column, name) in columns.iter_mut().zip(names) {
-                // A study may keep other columns.
-                match table.reals(name) {
-                    Ok(values) => column.extend(values),
-                    Err(_) => column.extend(std::iter::repeat_n(f64::NAN, table.rows())),
-                }
-            }
+        let ratio = "J/Jmax, mean over the interval, grains inside";
+        let columns = [
+            ["time", "t", "end of the interval that the row is about"],
+            ["period", "1", "wavelengths that the wave has run"],
+            ["flow_rate_ratio", "1", ratio],
+        ];
+        let mut series = Vec::new();
+        for identity in computed(finished) {
+            let table = parquet::read(&self.run_folder(identity).join(TIMESERIES))?;
+            // A study may keep other columns.
+            let missing = || vec![f64::NAN; table.rows()];
+            let values = |name| {
+                table
+                    .reals(name)
+                    .map_or_else(|_| missing(), <[f64]>::to_vec)
+            };
+            series.push((identity, columns.map(|[name, ..]| values(name))));
         }
-        let [time, period, ratio] = columns;
-        Ok(Table::builder()
-            .column("identity", "", "the run", Values::Text(identities))
-            .column(
-                "time",
-                "t",
-                "end of the interval that the row is about",
-                Values::Real(time),
-            )
-            .column(
-                "period",
-                "1",
-                "wavelengths that the wave has run",
-                Values::Real(period),
-            )
-            .column(
-                "flow_rate_ratio",
-                "1",
-                "J/Jmax, mean over the interval, grains inside",
-                Values::Real(ratio),
-            )
-            .build()?)
+        by_run(columns, series)
     }
+}
+
+/// The runs that were computed here.
+fn computed(finished: &[Finished]) -> impl Iterator<Item = Identity> {
+    let computed = finished.iter().filter(|one| !one.imported);
+    computed.map(|one| one.run.identity)
+}
+
+/// A table of the numbers of runs, with name, unit and meaning of each column.
+fn by_run<const N: usize>(
+    columns: [[&str; 3]; N],
+    runs: impl IntoIterator<Item = (Identity, [Vec<f64>; N])>,
+) -> Result<Table, StudyError> {
+    let mut identities = Vec::new();
+    let mut numbers = [const { Vec::new() }; N];
+    for (identity, of_run) in runs {
+        identities.extend(std::iter::repeat_n(identity.to_string(), of_run[0].len()));
+        for (numbers, of_run) in numbers.iter_mut().zip(of_run) {
+            numbers.extend(of_run);
+        }
+    }
+    let identities = Values::Text(identities);
+    let mut table = Table::builder().column("identity", "", "the run", identities);
+    for ([name, unit, meaning], numbers) in columns.into_iter().zip(numbers) {
+        table = table.column(name, unit, meaning, Values::Real(numbers));
+    }
+    Ok(table.build()?)
 }
 
 /// The rows with the keys of the axes before them.
@@ -271,24 +263,19 @@ fn axis_columns(plan: &Plan, runs: &[PlannedRun]) -> Vec<Column> {
     let Some(first) = plan.points().first() else {
         return Vec::new();
     };
-    let column = |(index, key): (usize, &String)| {
+    let column = |(index, setting): (usize, &Setting)| {
         let values: Vec<&SettingValue> = runs
             .iter()
             .map(|run| &plan.point(run).settings[index].value)
             .collect();
         Column {
-            name: key.clone(),
+            name: setting.key.clone(),
             unit: String::new(),
             description: "key of an axis of the study".to_owned(),
             values: column_values(&values),
         }
     };
-    let keys: Vec<String> = first
-        .settings
-        .iter()
-        .map(|setting| setting.key.clone())
-        .collect();
-    keys.iter().enumerate().map(column).collect()
+    first.settings.iter().enumerate().map(column).collect()
 }
 
 /// Values as numbers where all are, else as text.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
+use rusqlite::types::{FromSql, FromSqlError, FromSqlResult, ToSql, ToSqlOutput, ValueRef};
 use rusqlite::{
     Connection, OpenFlags, OptionalExtension, Transaction, TransactionBehavior, params,
 };
@@ -48,6 +49,8 @@ const TABLES: &str = "
 
 /// Selects the entries of all runs.
 const ENTRIES: &str = "SELECT identity, state, reason, row, transition_time, stamp FROM runs";
+/// The same without rows and stamps, which are most of it.
+const FINDINGS: &str = "SELECT identity, state, reason, NULL, transition_time, NULL FROM runs";
 
 impl Index {
     /// Opens the index, and answers whether it is new and has to be filled from the files.
@@ -85,12 +88,8 @@ impl Index {
     }
 
     fn try_open(path: &Path) -> Result<(Self, bool), StudyError> {
-        let failed = |source| StudyError::Index {
-            path: path.to_owned(),
-            source,
-        };
-        let mut connection = Connection::open(path).map_err(failed)?;
-        let is_new = prepare(&mut connection).map_err(failed)?;
+        let mut connection = Connection::open(path).map_err(failed(path))?;
+        let is_new = prepare(&mut connection).map_err(failed(path))?;
         let index = Self {
             path: path.to_owned(),
             connection,
@@ -98,42 +97,37 @@ impl Index {
         Ok((index, is_new))
     }
 
-    fn failed(&self, source: rusqlite::Error) -> StudyError {
-        StudyError::Index {
-            path: self.path.clone(),
-            source,
-        }
+    fn read<T>(
+        &self,
+        answer: impl FnOnce(&Connection) -> rusqlite::Result<T>,
+    ) -> Result<T, StudyError> {
+        answer(&self.connection).map_err(failed(&self.path))
     }
 
     /// The entries of all runs that are not merely pending.
     pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
-        select_entries(&self.connection, ENTRIES).map_err(|error| self.failed(error))
+        self.read(|connection| select_entries(connection, ENTRIES))
     }
 
-    /// The same without rows and stamps, which are most of it.
+    /// The same without rows and stamps.
     pub(crate) fn findings(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
-        select_entries(
-            &self.connection,
-            "SELECT identity, state, reason, NULL, transition_time, NULL FROM runs",
-        )
-        .map_err(|error| self.failed(error))
+        self.read(|connection| select_entries(connection, FINDINGS))
     }
 
     /// The entry of a run.
     pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>, StudyError> {
-        self.connection
-            .query_row(
-                "SELECT state, reason, row, transition_time, stamp FROM runs WHERE identity = ?1",
-                [identity.to_string()],
-                |row| entry_from(row, 0),
-            )
-            .optional()
-            .map_err(|error| self.failed(error))
+        let query = format!("{ENTRIES} WHERE identity = ?1");
+        self.read(|connection| {
+            connection
+                .query_row(&query, [identity], entry_from)
+                .optional()
+        })
+        .map(|found| found.map(|(_, entry)| entry))
     }
 
     /// All leases that hold.
     pub(crate) fn leases(&self, timeout: Duration) -> Result<HashMap<Identity, Lease>, StudyError> {
-        let mut leases = all_leases(&self.connection).map_err(|error| self.failed(error))?;
+        let mut leases = self.read(all_leases)?;
         leases.retain(|_, lease| !lease.is_void(timeout));
         Ok(leases)
     }
@@ -151,26 +145,23 @@ impl Index {
         })
     }
 
-    /// The state of each run.
-    pub(crate) fn states(&self) -> Result<HashMap<Identity, State>, StudyError> {
-        all_states(&self.connection).map_err(|error| self.failed(error))
-    }
-
     /// Replaces all entries by these, which were read from the files. Leases stay, and so do entries that other processes have
     /// noted since `before`, when the reading of the files began.
     pub(crate) fn replace(
         &mut self,
         entries: &HashMap<Identity, Entry>,
-        before: &HashMap<Identity, State>,
+        before: &HashMap<Identity, Entry>,
     ) -> Result<(), StudyError> {
         self.change(|transaction| {
-            let now = all_states(transaction)?;
+            let now = select_entries(transaction, FINDINGS)?;
+            let state_in = |entries: &HashMap<Identity, Entry>, identity: &Identity| {
+                entries.get(identity).map(|entry| entry.state)
+            };
             let is_news = |identity: &Identity| {
-                now.contains_key(identity) && now.get(identity) != before.get(identity)
+                now.contains_key(identity) && state_in(&now, identity) != state_in(before, identity)
             };
             for identity in now.keys().filter(|identity| !is_news(identity)) {
-                let text = identity.to_string();
-                transaction.execute("DELETE FROM runs WHERE identity = ?1", [text])?;
+                transaction.execute("DELETE FROM runs WHERE identity = ?1", [identity])?;
             }
             for (identity, entry) in entries.iter().filter(|(identity, _)| !is_news(identity)) {
                 put(transaction, *identity, entry)?;
@@ -187,12 +178,12 @@ impl Index {
         timeout: Duration,
     ) -> Result<Claim, StudyError> {
         self.change(|transaction| {
-            let entries = all_states(transaction)?;
+            let entries = select_entries(transaction, FINDINGS)?;
             let leases = all_leases(transaction)?;
             let mut others = 0;
             for identity in order {
-                let state = entries.get(identity).copied().unwrap_or(State::Pending);
-                if matches!(state, State::Done | State::Failed) {
+                let state = entries.get(identity).map(|entry| entry.state);
+                if matches!(state, Some(State::Done | State::Failed)) {
                     continue;
                 }
                 if let Some(lease) = leases.get(identity)
@@ -204,7 +195,7 @@ impl Index {
                 transaction.execute(
                     "INSERT OR REPLACE INTO leases VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
                     params![
-                        identity.to_string(),
+                        identity,
                         owner.host,
                         owner.process,
                         owner.started,
@@ -230,7 +221,7 @@ impl Index {
                 params![now(), owner.token],
             )?;
             let mut held = transaction.prepare("SELECT identity FROM leases WHERE token = ?1")?;
-            let held = held.query_map([&owner.token], |row| identity_from(row, 0))?;
+            let held = held.query_map([&owner.token], |row| row.get(0))?;
             held.collect()
         })
     }
@@ -246,7 +237,7 @@ impl Index {
         self.change(|transaction| {
             let given = transaction.execute(
                 "DELETE FROM leases WHERE identity = ?1 AND token = ?2",
-                params![identity.to_string(), owner.token],
+                params![identity, owner.token],
             )?;
             if let Some(entry) = entry
                 && given > 0
@@ -261,7 +252,6 @@ impl Index {
         &mut self,
         action: impl FnOnce(&Transaction<'_>) -> rusqlite::Result<T>,
     ) -> Result<T, StudyError> {
-        let path = &self.path;
         let transaction = self
             .connection
             .transaction_with_behavior(TransactionBehavior::Immediate);
@@ -271,11 +261,13 @@ impl Index {
                 transaction.commit()?;
                 Ok(outcome)
             })
-            .map_err(|source| StudyError::Index {
-                path: path.clone(),
-                source,
-            })
+            .map_err(failed(&self.path))
     }
+}
+
+fn failed(path: &Path) -> impl FnOnce(rusqlite::Error) -> StudyError {
+    let path = path.to_owned();
+    |source| StudyError::Index { path, source }
 }
 
 /// Outcome of asking for work.
@@ -343,26 +335,31 @@ pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
     )
 }
 
-fn identity_from(row: &rusqlite::Row<'_>, column: usize) -> rusqlite::Result<Identity> {
-    let text: String = row.get(column)?;
-    text.parse().map_err(|error: crate::NotAnIdentity| {
-        rusqlite::Error::FromSqlConversionFailure(
-            column,
-            rusqlite::types::Type::Text,
-            Box::new(error),
-        )
-    })
+impl ToSql for Identity {
+    fn to_sql(&self) -> rusqlite::Result<ToSqlOutput<'_>> {
+        Ok(self.to_string().into())
+    }
 }
 
-fn entry_from(row: &rusqlite::Row<'_>, first: usize) -> rusqlite::Result<Entry> {
-    let state: String = row.get(first)?;
-    Ok(Entry {
+impl FromSql for Identity {
+    fn column_result(value: ValueRef<'_>) -> FromSqlResult<Self> {
+        value
+            .as_str()?
+            .parse()
+            .map_err(FromSqlError::other::<crate::NotAnIdentity>)
+    }
+}
+
+fn entry_from(row: &rusqlite::Row<'_>) -> rusqlite::Result<(Identity, Entry)> {
+    let state: String = row.get(1)?;
+    let entry = Entry {
         state: State::of_name(&state),
-        reason: row.get(first + 1)?,
-        row: row.get(first + 2)?,
-        transition_time: row.get(first + 3)?,
-        stamp: row.get(first + 4)?,
-    })
+        reason: row.get(2)?,
+        row: row.get(3)?,
+        transition_time: row.get(4)?,
+        stamp: row.get(5)?,
+    };
+    Ok((row.get(0)?, entry))
 }
 
 fn select_entries(
@@ -370,17 +367,7 @@ fn select_entries(
     query: &str,
 ) -> rusqlite::Result<HashMap<Identity, Entry>> {
     let mut statement = connection.prepare(query)?;
-    let rows = statement.query_map([], |row| Ok((identity_from(row, 0)?, entry_from(row, 1)?)))?;
-    rows.collect()
-}
-
-fn all_states(connection: &Connection) -> rusqlite::Result<HashMap<Identity, State>> {
-    let mut statement = connection.prepare("SELECT identity, state FROM runs")?;
-    let rows = statement.query_map([], |row| {
-        let state: String = row.get(1)?;
-        Ok((identity_from(row, 0)?, State::of_name(&state)))
-    })?;
-    rows.collect()
+    statement.query_map([], entry_from)?.collect()
 }
 
 fn all_leases(connection: &Connection) -> rusqlite::Result<HashMap<Identity, Lease>> {
@@ -396,7 +383,7 @@ fn all_leases(connection: &Connection) -> rusqlite::Result<HashMap<Identity, Lea
             },
             heartbeat: row.get(5)?,
         };
-        Ok((identity_from(row, 0)?, lease))
+        Ok((row.get(0)?, lease))
     })?;
     rows.collect()
 }
@@ -406,7 +393,7 @@ fn put(connection: &Connection, identity: Identity, entry: &Entry) -> rusqlite::
         .execute(
             "INSERT OR REPLACE INTO runs VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
             params![
-                identity.to_string(),
+                identity,
                 entry.state.name(),
                 entry.reason,
                 entry.row,

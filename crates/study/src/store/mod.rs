@@ -98,10 +98,7 @@ impl Store {
             copies.insert(0, (BASE, base.to_owned()));
         }
         for (name, text) in copies {
-            let path = store.file(name);
-            if fs::read(&path).ok().as_deref() != Some(text.as_bytes()) {
-                atomic::write(&path, text.as_bytes())?;
-            }
+            write_if_other(&store.file(name), &text)?;
         }
         *store.study() = Some(study.clone());
         Ok(store)
@@ -220,6 +217,14 @@ pub(crate) fn done(row: &Row, stamp: Option<String>) -> Entry {
         stamp,
         ..Entry::new(State::Done, None)
     }
+}
+
+/// Writes a text unless the file has it already.
+fn write_if_other(path: &Path, text: &str) -> Result<(), StudyError> {
+    if fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
+        return Ok(());
+    }
+    Ok(atomic::write(path, text.as_bytes())?)
 }
 
 /// The first name that is not taken.

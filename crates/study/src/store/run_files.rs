@@ -12,6 +12,7 @@ use peristalsis_run::{
 use serde_json::Value;
 
 use super::seal::{SEAL, Seal};
+use super::write_if_other;
 use crate::error::StudyError;
 use crate::identity::{Identity, PHYSICS_VERSION, Record};
 use crate::plan::{Plan, PlannedRun};
@@ -30,6 +31,8 @@ const SUMMARY: &str = "summary.json";
 const ROW: &str = "row.csv";
 /// The time that the run took: the one file of a finished run without a hash in the seal, for it differs each time.
 pub(crate) const TIMING: &str = "timing.json";
+/// The numbers of a summary that go into it.
+pub(crate) const TIMES: [&str; 2] = ["seconds", "grain_steps_per_second"];
 const FAILED: &str = "failed.json";
 
 /// The state of a run as its files tell it.
@@ -159,16 +162,10 @@ impl RunFiles {
                 fs::remove_file(&path).map_err(StudyError::io("remove", &path))?;
             }
         }
-        self.write_if_other(CONFIGURATION, &assignment.configuration.to_toml())?;
-        self.write_if_other(STATEPOINT, &format!("{:#}\n", statepoint(assignment)))
-    }
-
-    fn write_if_other(&self, name: &str, text: &str) -> Result<(), StudyError> {
-        let path = self.file(name);
-        if fs::read(&path).is_ok_and(|found| found == text.as_bytes()) {
-            return Ok(());
-        }
-        Ok(atomic::write(&path, text.as_bytes())?)
+        let configuration = assignment.configuration.to_toml();
+        write_if_other(&self.file(CONFIGURATION), &configuration)?;
+        let statepoint = format!("{:#}\n", statepoint(assignment));
+        write_if_other(&self.file(STATEPOINT), &statepoint)
     }
 
     /// The run from its newest whole checkpoint, or from the start. `aside` moves each damaged checkpoint away.
@@ -177,29 +174,25 @@ impl RunFiles {
         assignment: &Assignment,
         aside: &mut dyn FnMut(&Path, &str) -> Result<(), StudyError>,
     ) -> Result<Run, StudyError> {
-        let failed = |source| StudyError::Run {
-            identity: self.identity,
-            source,
-        };
-        let mut resumed = None;
-        for name in CHECKPOINTS {
-            let path = self.file(name);
+        let configuration = || assignment.configuration.clone();
+        let mut run = None;
+        for path in CHECKPOINTS.map(|name| self.file(name)) {
             let bytes = match fs::read(&path) {
                 Ok(bytes) => bytes,
                 Err(error) if error.kind() == ErrorKind::NotFound => continue,
                 Err(error) => return Err(StudyError::io("read", path)(error)),
             };
-            match Run::from_checkpoint(assignment.configuration.clone(), &bytes) {
-                Ok(run) => {
-                    resumed = Some(run);
+            match Run::from_checkpoint(configuration(), &bytes) {
+                Ok(found) => {
+                    run = Some(found);
                     break;
                 }
                 Err(error) => aside(&path, &error.to_string())?,
             }
         }
-        let mut run = match resumed {
+        let mut run = match run {
             Some(run) => run,
-            None => Run::new(assignment.configuration.clone()).map_err(failed)?,
+            None => Run::new(configuration()).map_err(|source| self.failed(source))?,
         };
         if let Some(stopping) = assignment.stopping {
             run.stop_when(stopping);
@@ -226,7 +219,7 @@ impl RunFiles {
         run: &Run,
         summary: &Summary,
         assignment: &Assignment,
-    ) -> Result<Row, StudyError> {
+    ) -> Result<(), StudyError> {
         let row = Row::of(self.identity, assignment.replicate, summary);
         let timeseries = kept(timeseries_table(run)?, assignment.record.columns.as_deref());
         let (science, timing) = split(summary);
@@ -254,7 +247,7 @@ impl RunFiles {
         atomic::write(&self.file(TIMING), timing.as_bytes())?;
         Seal::write(&self.path, self.identity, &products)?;
         self.remove_checkpoints();
-        Ok(row)
+        Ok(())
     }
 
     /// Takes the checkpoints of a finished run away; one that stays does no harm.
@@ -289,17 +282,9 @@ impl RunFiles {
 
 /// A summary as JSON in two parts: the results, and the time that they took.
 fn split(summary: &Summary) -> (String, String) {
-    const TIMES: [&str; 2] = ["seconds", "grain_steps_per_second"];
     let mut science = serde_json::to_value(summary).expect("a summary is plain numbers and text");
-    let mut timing = serde_json::Map::new();
-    if let Some(object) = science.as_object_mut() {
-        for name in TIMES {
-            if let Some(value) = object.remove(name) {
-                timing.insert(name.to_owned(), value);
-            }
-        }
-    }
-    let timing = Value::from(timing);
+    let take = |name: &str| Some((name.to_owned(), science.as_object_mut()?.remove(name)?));
+    let timing: Value = TIMES.into_iter().filter_map(take).collect();
     (format!("{science:#}\n"), format!("{timing:#}\n"))
 }
 
@@ -339,16 +324,7 @@ pub(crate) fn statepoint(assignment: &Assignment) -> Value {
         Some(stopping) => serde_json::json!({ "settled_periods": stopping.settled_periods }),
         None => Value::Null,
     };
-    statepoint["record"] = serde_json::json!({
-        "columns": assignment.record.columns,
-        "profile": assignment.record.profile,
-    });
-    // Said only where it is so, as in the identity.
-    if assignment.record.waves {
-        statepoint["record"]["waves"] = true.into();
-    }
-    if assignment.record.snapshot {
-        statepoint["record"]["snapshot"] = true.into();
-    }
+    statepoint["record"] =
+        serde_json::to_value(&assignment.record).expect("a record is names and choices");
     statepoint
 }

@@ -138,49 +138,18 @@ fn overview(report: &Report) -> Markup {
     }
 }
 
-/// How numbers are written and verdicts given.
+/// How numbers are written and verdicts given: a text with places for numbers, whose line breaks are for its writers.
 fn reading(report: &Report) -> Markup {
     let needed = Statistics::FOR_A_VERDICT;
-    html! {
-        section #reading {
-            h2 { "How to read this" }
-            dl.legend {
-                div {
-                    dt { "Numbers" }
-                    dd {
-                        "2.794 ± 0.003 is a value with one standard error: in one digit, or in two where the first is 1. "
-                        (rich("2.79^{+0.09}_{−0.03}"))
-                        " has different errors upward and downward; ∞ is a side that the runs leave open."
-                    }
-                }
-                div {
-                    dt { "Intervals" }
-                    dd { "The 95 % interval covers the truth in 95 of 100 repetitions. How each number and its interval were got stands beside it." }
-                }
-                div {
-                    dt { "Difference" }
-                    dd { "Ours minus the source's, in standard errors on that side." }
-                }
-                div {
-                    dt { "Verdicts" }
-                    dd {
-                        "A claim is " b { "reproduced" } " if it holds within our errors, and " b { "differs" } " if it does not; a question that the source left open is " b { "answered" } ". It is " b { "open" }
-                        " while there is too little to say, or if what we see is neither. A verdict takes "
-                        (needed.strain_rates) " strain rates, " (needed.widths) " widths at each and " (needed.replicates)
-                        " runs of each point, unless a claim says otherwise."
-                    }
-                }
-                div {
-                    dt { "Again" }
-                    dd {
-                        code { "peristalsis reproduce --" (report.size.name()) }
-                        " makes this page; the same program and runs give the same bytes. "
-                        code { "claims.json" } ", " code { "figures/" } " and " code { "tables/" } " beside it hold the same for programs and papers."
-                    }
-                }
-            }
-        }
-    }
+    let lines = include_str!("reading.html").lines().map(str::trim_start);
+    PreEscaped(
+        lines
+            .collect::<String>()
+            .replace("{size}", report.size.name())
+            .replace("{strain_rates}", &needed.strain_rates.to_string())
+            .replace("{widths}", &needed.widths.to_string())
+            .replace("{replicates}", &needed.replicates.to_string()),
+    )
 }
 
 fn colophon(report: &Report) -> Markup {

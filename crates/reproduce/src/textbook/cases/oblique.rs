@@ -21,31 +21,14 @@ pub(super) const PROSE: Prose = Prose::new(include_str!("oblique.md"));
 const FRICTION: f64 = 0.092;
 const RESTITUTION: f64 = 0.98;
 
-/// A quantity of a rebound.
-struct Quantity {
-    column: &'static str,
-    name: &'static str,
-    label: &'static str,
-}
-
-/// In units of the motion before the impact; the angle is that between the normal and the velocity of the surface where it
-/// touched.
-const QUANTITIES: [Quantity; 3] = [
-    Quantity {
-        column: "tangential_restitution",
-        name: "v_t'/v_t",
-        label: "tangential restitution *v*_{t}′/*v*_{t}",
-    },
-    Quantity {
-        column: "spin",
-        name: "r omega'/v",
-        label: "spin *rω*′/*v*",
-    },
-    Quantity {
-        column: "rebound_angle",
-        name: "angle of rebound (degrees)",
-        label: "angle of rebound (degrees)",
-    },
+/// The quantities of a rebound, in units of the motion before the impact; the angle is that between the normal and the
+/// velocity of the surface where it touched.
+const NAMES: [&str; 3] = ["v_t'/v_t", "r omega'/v", "angle of rebound (degrees)"];
+const COLUMNS: [&str; 3] = ["tangential_restitution", "spin", "rebound_angle"];
+const LABELS: [&str; 3] = [
+    "tangential restitution *v*_{t}′/*v*_{t}",
+    "spin *rω*′/*v*",
+    "angle of rebound (degrees)",
 ];
 
 /// The quantities at one angle of incidence by each of [`METHODS`].
@@ -134,7 +117,7 @@ impl Experiment {
         let mut checks = Vec::new();
         for angle in [5.0, 15.0, 25.0, 60.0] {
             let (found, expected) = (self.simulated(angle)?, self.integrated(angle));
-            for (place, Quantity { name, .. }) in QUANTITIES[..2].iter().enumerate() {
+            for (place, name) in NAMES[..2].iter().enumerate() {
                 let setting = format!("{angle} degrees");
                 let check = Check::absolute(name, &setting, expected[place], found[place], 1e-3);
                 checks.push(check.by("equation of motion"));
@@ -142,7 +125,7 @@ impl Experiment {
         }
         for angle in [45.0, 60.0, 80.0] {
             let (found, expected) = (self.simulated(angle)?, self.sliding(angle));
-            for (place, Quantity { name, .. }) in QUANTITIES.iter().enumerate() {
+            for (place, name) in NAMES.iter().enumerate() {
                 let setting = format!("{angle} degrees");
                 let check = Check::relative(name, &setting, expected[place], found[place], 2e-3);
                 checks.push(check.by("sliding throughout"));
@@ -157,7 +140,7 @@ fn beside_mindlin(place: usize, rows: &[Row], tolerance: f64) -> Check {
     let largest = rows.iter().fold(0.0_f64, |largest, Row { by, .. }| {
         largest.max((by[0][place] - by[2][place]).abs())
     });
-    let name = format!("{}, largest difference", QUANTITIES[place].name);
+    let name = format!("{}, largest difference", NAMES[place]);
     Check::absolute(&name, "all angles", 0.0, largest, tolerance).by("Maw et al. 1976")
 }
 
@@ -204,7 +187,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     ];
     let incidence = "angle of incidence";
     let mut data = Columns::of(&rows).number("angle", "degrees", incidence, |row| row.angle);
-    for (place, Quantity { column, .. }) in QUANTITIES.iter().enumerate() {
+    for (place, column) in COLUMNS.iter().enumerate() {
         for (method, ending) in METHODS.into_iter().enumerate() {
             let name = format!("{column}{ending}");
             data = data.number(&name, "", "", |row| row.by[method][place]);
@@ -217,32 +200,29 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
 fn drawing(experiment: &Experiment, rows: &[Row]) -> Result<Drawing, FigureError> {
     let dense = spaced(1.0, 89.0, 89);
     let expected: Vec<[[f64; 3]; 3]> = dense.iter().map(|x| experiment.expected(*x)).collect();
-    let panels = QUANTITIES
-        .iter()
-        .enumerate()
-        .map(|(place, Quantity { label, .. })| {
-            let line = |name: &str, of: &dyn Fn(&[[f64; 3]; 3]) -> f64| {
-                Line::new(name, &dense, &expected.iter().map(of).collect::<Vec<f64>>())
-            };
-            // Sliding throughout makes sense only where the slip that is left is not far below zero.
-            let sliding = line("sliding throughout", &|[.., slid]| {
-                if slid[2] > -10.0 {
-                    slid[place]
-                } else {
-                    f64::NAN
-                }
-            });
-            let mindlin = line("Mindlin (Maw et al. 1976)", &|[_, mindlin, _]| {
-                mindlin[place]
-            });
-            let integrated = line("equation of motion", &|[integrated, ..]| integrated[place]);
-            ChartPanel::new("angle of incidence (degrees)", label)
-                .x_range(0.0..=90.0)
-                .with(sliding.tint(Tint::Grey).weight(2.4))
-                .with(mindlin.pattern(Pattern::Dashed).tint(Tint::Vermillion))
-                .with(integrated.tint(Tint::Black))
-                .with(points("engine", rows, |row| (row.angle, row.by[0][place])).series(0))
+    let panels = LABELS.iter().enumerate().map(|(place, label)| {
+        let line = |name: &str, of: &dyn Fn(&[[f64; 3]; 3]) -> f64| {
+            Line::new(name, &dense, &expected.iter().map(of).collect::<Vec<f64>>())
+        };
+        // Sliding throughout makes sense only where the slip that is left is not far below zero.
+        let sliding = line("sliding throughout", &|[.., slid]| {
+            if slid[2] > -10.0 {
+                slid[place]
+            } else {
+                f64::NAN
+            }
         });
+        let mindlin = line("Mindlin (Maw et al. 1976)", &|[_, mindlin, _]| {
+            mindlin[place]
+        });
+        let integrated = line("equation of motion", &|[integrated, ..]| integrated[place]);
+        ChartPanel::new("angle of incidence (degrees)", label)
+            .x_range(0.0..=90.0)
+            .with(sliding.tint(Tint::Grey).weight(2.4))
+            .with(mindlin.pattern(Pattern::Dashed).tint(Tint::Vermillion))
+            .with(integrated.tint(Tint::Black))
+            .with(points("engine", rows, |row| (row.angle, row.by[0][place])).series(0))
+    });
     ChartFigure::grid(3, panels)
         .description("Steep impacts stick, turn back and spin; grazing ones slide. The engine lies on the equation of motion of its own law, and near Mindlin's contact.")
         .width(Width::DoubleColumn)

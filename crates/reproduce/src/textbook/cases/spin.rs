@@ -23,50 +23,50 @@ const ALUMINIUM_ALLOY: Material = Material::new("aluminium alloy", 7.0e10, 0.33,
 const SPEED: f64 = 0.2;
 const FRICTION: f64 = 0.4;
 const RESTITUTION: f64 = 0.5;
-/// Radius of the other sphere over that of the spinning one, where sizes differ.
-const RATIO: f64 = 2.0;
 
 /// Largest r omega/v of the figure.
 const LARGEST_SPIN: f64 = 6.0;
 
 /// The partner of the spinning sphere.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Meets {
-    Plane,
-    Twin,
-    Larger,
+struct Meets {
+    name: &'static str,
+    /// Its diameter over that of the spinning sphere; `None`: it is a plane.
+    diameter: Option<f64>,
+    is_spinning: bool,
 }
 
-const MEETS: [Meets; 3] = [Meets::Plane, Meets::Twin, Meets::Larger];
+const MEETS: [Meets; 3] = [
+    Meets::new("a plane", None, false),
+    Meets::new("a sphere alike, not spinning", Some(1.0), false),
+    Meets::new("one twice as large, spinning too", Some(2.0), true),
+];
 
 impl Meets {
-    fn name(self) -> &'static str {
-        match self {
-            Self::Plane => "a plane",
-            Self::Twin => "a sphere alike, not spinning",
-            Self::Larger => "one twice as large, spinning too",
+    const fn new(name: &'static str, diameter: Option<f64>, is_spinning: bool) -> Self {
+        Self {
+            name,
+            diameter,
+            is_spinning,
         }
     }
 
     /// The impact without friction or spin.
-    fn smooth_impact(self, dissipation_time: f64) -> Impact {
+    fn smooth_impact(&self, dissipation_time: f64) -> Impact {
         let speed = SPEED / ALUMINIUM_ALLOY.speed();
-        let partner = |diameter: f64| {
-            Partner::Grain(Sphere {
-                diameter,
-                mass: diameter.powi(3),
-                velocity: DVec3::new(speed, 0.0, 0.0),
-                spin: 0.0,
-            })
-        };
-        let spheres = ALUMINIUM_ALLOY.spheres(dissipation_time);
-        let (law, partner) = match self {
-            Self::Plane => {
-                let law = ALUMINIUM_ALLOY.against_rigid(dissipation_time);
-                (law, Partner::Plane)
+        let (law, partner) = match self.diameter {
+            None => (
+                ALUMINIUM_ALLOY.against_rigid(dissipation_time),
+                Partner::Plane,
+            ),
+            Some(diameter) => {
+                let partner = Partner::Grain(Sphere {
+                    diameter,
+                    mass: diameter.powi(3),
+                    velocity: DVec3::new(speed, 0.0, 0.0),
+                    spin: 0.0,
+                });
+                (ALUMINIUM_ALLOY.spheres(dissipation_time), partner)
             }
-            Self::Twin => (spheres, partner(1.0)),
-            Self::Larger => (spheres, partner(RATIO)),
         };
         Impact {
             contact: smooth(Normal::Hertz(law)),
@@ -78,7 +78,7 @@ impl Meets {
 
 /// An experiment with its constants.
 struct Experiment {
-    meets: Meets,
+    meets: &'static Meets,
     speed: f64,
     without_spin: Trial,
 }
@@ -88,7 +88,9 @@ impl Sweep<2> for Experiment {
     fn trial(&self, spin: f64) -> Trial {
         let mut trial = self.without_spin;
         trial.impact.sphere.spin = 2.0 * spin * self.speed;
-        if let (Meets::Larger, Partner::Grain(other)) = (self.meets, &mut trial.impact.partner) {
+        if let Partner::Grain(other) = &mut trial.impact.partner
+            && self.meets.is_spinning
+        {
             other.spin = trial.impact.sphere.spin;
         }
         trial
@@ -101,7 +103,7 @@ impl Sweep<2> for Experiment {
 }
 
 impl Experiment {
-    fn new(meets: Meets) -> Self {
+    fn new(meets: &'static Meets) -> Self {
         let time = dissipation_time(RESTITUTION, |time| meets.smooth_impact(time));
         let smooth = Trial::of(meets.smooth_impact(time));
         Self {
@@ -132,19 +134,19 @@ impl Experiment {
         ] {
             let found = self.simulated(spin)?;
             for (place, name) in ["v_t'/v", "r omega'/v"].into_iter().enumerate() {
-                let setting = format!("{}, r omega/v = {spin}", self.meets.name());
+                let setting = format!("{}, r omega/v = {spin}", self.meets.name);
                 let check = Check::absolute(name, &setting, expected[place], found[place], 4e-3);
                 checks.push(check.by(reference));
             }
         }
-        checks.push(self.trial(1.5).kernels_agree(self.meets.name())?);
+        checks.push(self.trial(1.5).kernels_agree(self.meets.name)?);
         Ok(checks)
     }
 }
 
 /// Velocity and spin after an impact: by the engine and by the equation of motion.
 struct Row {
-    meets: Meets,
+    meets: &'static str,
     /// r omega/v before.
     spin: f64,
     found: [f64; 2],
@@ -153,14 +155,14 @@ struct Row {
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
     let mut finding = Finding::described(&PROSE, &[]);
-    let experiments = MEETS.map(Experiment::new);
+    let experiments = MEETS.each_ref().map(Experiment::new);
     let mut rows: Vec<Row> = Vec::new();
     for experiment in &experiments {
         circumstances.go_on()?;
         let meets = experiment.meets;
         for spin in spaced(0.25, LARGEST_SPIN, circumstances.size.choose(12, 24)) {
             rows.push(Row {
-                meets,
+                meets: meets.name,
                 spin,
                 found: experiment.simulated(spin)?,
                 expected: experiment.integrated(spin),
@@ -172,14 +174,14 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
         // Over the spin before: the spin after may be next to nothing.
         let before = trial.impact.sphere.spin;
         let error = |rebound: &Rebound| (rebound.spin[0] - expected) / before;
-        let setting = format!("{}, r omega/v = 1.5", meets.name());
+        let setting = format!("{}, r omega/v = 1.5", meets.name);
         let errors = trial.convergences(("spin", &setting), [0.7, 3.0], error)?;
         finding.convergences.extend(errors);
     }
     finding.figures = vec![PROSE.figure("spin", &[], drawing(&experiments, &rows)?)];
     finding.data = Some(
         Columns::of(&rows)
-            .word("meets", "partner", |row| row.meets.name().to_owned())
+            .word("meets", "partner", |row| row.meets.to_owned())
             .number("spin_before", "", "r omega/v", |row| row.spin)
             .number("velocity", "", "v_t'/v", |row| row.found[0])
             .number("velocity_expected", "", "v_t'/v", |row| row.expected[0])
@@ -199,9 +201,9 @@ fn drawing(experiments: &[Experiment], rows: &[Row]) -> Result<Drawing, FigureEr
         let sliding = over(&|spin| experiment.sliding(spin));
         // A contact without slip at all has no scale of its own.
         let integrated = over(&|spin| experiment.integrated(spin.max(1e-3)));
-        let mine = || rows.iter().filter(|row| row.meets == experiment.meets);
+        let mine = || rows.iter().filter(|row| row.meets == experiment.meets.name);
         let mut panel = ChartPanel::new("*rω*/*v* before", "after the impact")
-            .title(experiment.meets.name())
+            .title(experiment.meets.name)
             .x_range(0.0..=6.2);
         for (place, name) in ["*v*_{t}′/*v*", "*rω*′/*v*"].into_iter().enumerate() {
             let line = |name: &str, values: &[[f64; 2]]| {

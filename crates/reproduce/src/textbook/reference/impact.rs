@@ -1,7 +1,7 @@
 //! The equations of motion of an impact, integrated to twelve digits.
 
 use glam::DVec3;
-use peristalsis_physics::contact::{CundallStrack, DissipationForm, Normal};
+use peristalsis_physics::contact::{DissipationForm, Normal};
 
 use super::{hertz, ode};
 use crate::textbook::experiment::impact::Impact;
@@ -41,20 +41,13 @@ impl Law {
         } else {
             unreachable!("the cases have impacts of these two laws")
         };
-        let (tangential_stiffness, friction) = match impact.contact.friction {
-            None => (0.0, 0.0),
-            Some(CundallStrack {
-                tangential_stiffness,
-                kinetic_friction,
-                ..
-            }) => (tangential_stiffness, kinetic_friction),
-        };
+        let friction = impact.contact.friction;
         Self {
             is_hertz,
             stiffness,
             damping,
-            tangential_stiffness,
-            friction,
+            tangential_stiffness: friction.map_or(0.0, |law| law.tangential_stiffness),
+            friction: friction.map_or(0.0, |law| law.kinetic_friction),
         }
     }
 
@@ -275,7 +268,7 @@ fn natural_time(law: &Law, reduced_mass: f64, speed: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use peristalsis_physics::contact::{ContactModel, LinearSpringDashpot, Sliding};
+    use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDashpot, Sliding};
 
     use super::*;
 

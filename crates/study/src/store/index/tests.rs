@@ -153,7 +153,7 @@ fn what_others_note_while_the_files_are_looked_at_stays() {
     case.index()
         .note([(first, &saved), (second, &failed)])
         .unwrap();
-    let before = case.index().states().unwrap();
+    let before = case.index().findings().unwrap();
     // The files of both are seen as they are now; then another process finishes the first.
     case.index().note([(first, &done)]).unwrap();
     let seen = HashMap::from([(first, saved.clone())]);
@@ -197,7 +197,7 @@ fn values_that_cannot_be_make_the_index_a_new_one() {
             .note([(second, &Entry::new(State::Done, None))])
             .unwrap();
         index
-            .replace(&HashMap::new(), &index.states().unwrap())
+            .replace(&HashMap::new(), &index.findings().unwrap())
             .unwrap();
         index
             .note([(second, &Entry::new(State::Done, None))])
