@@ -79,34 +79,24 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
         .map(|point| work(&point.configuration))
         .sum::<f64>()
         * replicates;
-    let columns = study
-        .record
-        .columns
-        .as_ref()
-        .map_or(COLUMNS.len(), Vec::len) as f64;
+    let record = &study.record;
+    let columns = record.columns.as_ref().map_or(COLUMNS.len(), Vec::len) as f64;
+    let kept = |is_kept: bool, numbers: f64| if is_kept { numbers } else { 0.0 };
     let bytes: f64 = points
         .iter()
         .map(|point| {
             let configuration = &point.configuration;
-            let profile = if study.record.profile {
-                columns_of(PROFILE) * f64::from(configuration.observe.profile_bins)
-            } else {
-                0.0
-            };
+            let observe = &configuration.observe;
             let samples = configuration.run.samples as f64;
-            let waves = if study.record.waves {
-                let periods = samples / f64::from(configuration.observe.samples_per_period);
-                columns_of(WAVES) * periods * f64::from(configuration.tube.waves)
-            } else {
-                0.0
-            };
-            let snapshot = if study.record.snapshot {
-                let spheres = configuration.grains.number + configuration.tube.wall_spheres();
-                SNAPSHOT_COLUMNS * spheres as f64
-            } else {
-                0.0
-            };
-            BYTES_A_RUN + BYTES_A_NUMBER * (columns * samples + profile + waves + snapshot)
+            let bins = f64::from(observe.profile_bins);
+            let periods = samples / f64::from(observe.samples_per_period);
+            let waves = f64::from(configuration.tube.waves);
+            let spheres = configuration.grains.number + configuration.tube.wall_spheres();
+            let numbers = columns * samples
+                + kept(record.profile, columns_of(PROFILE) * bins)
+                + kept(record.waves, columns_of(WAVES) * periods * waves)
+                + kept(record.snapshot, SNAPSHOT_COLUMNS * spheres as f64);
+            BYTES_A_RUN + BYTES_A_NUMBER * numbers
         })
         .sum();
     Ok(StudyEstimate {

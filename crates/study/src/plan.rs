@@ -93,12 +93,17 @@ impl Point {
     /// The settings in words, such as "drive.width 2.7, from rest".
     #[must_use]
     pub fn in_words(&self) -> String {
-        let mut words: Vec<String> = self
-            .settings
-            .iter()
-            .map(|setting| format!("{} {}", setting.key, setting.value))
+        self.in_words_without(usize::MAX)
+    }
+
+    /// The settings in words but for the one at this place.
+    pub(crate) fn in_words_without(&self, left_out: usize) -> String {
+        let settings = self.settings.iter().enumerate();
+        let mut words: Vec<String> = settings
+            .filter(|(place, _)| *place != left_out)
+            .map(|(_, setting)| format!("{} {}", setting.key, setting.value))
             .collect();
-        words.push(in_words(self.state).to_owned());
+        words.push(format!("from {}", state_name(self.state)));
         words.join(", ")
     }
 
@@ -113,14 +118,6 @@ impl Point {
                     .cmp(state_name(other.state))
                     .reverse()
             })
-    }
-}
-
-/// A state as a phrase.
-pub(crate) fn in_words(state: InitialState) -> &'static str {
-    match state {
-        InitialState::Rest => "from rest",
-        InitialState::Jammed => "from jammed",
     }
 }
 

@@ -6,7 +6,7 @@ use peristalsis_configuration::document::{Item, Node};
 use peristalsis_configuration::{ConfigurationError, InitialState};
 
 use crate::identity::Identity;
-use crate::plan::{Plan, Point, choice, in_words, point, state_name};
+use crate::plan::{Plan, Point, choice, point, state_name};
 use crate::specification::{Specification, neat, number};
 
 /// Axis along which a change is looked for where the study does not refine one.
@@ -186,17 +186,9 @@ pub fn brackets(
     let of_line = |line: Line<'_>| {
         let (lower, upper) = line.bracket(&counts)?;
         let point = line.0[0].2;
-        let mut words: Vec<String> = point
-            .settings
-            .iter()
-            .enumerate()
-            .filter(|(index, _)| *index != setting)
-            .map(|(_, setting)| format!("{} {}", setting.key, setting.value))
-            .collect();
-        words.push(in_words(point.state).to_owned());
         Some(Bracket {
             key: point.settings[setting].key.clone(),
-            of: words.join(", "),
+            of: point.in_words_without(setting),
             state: point.state,
             lower,
             upper,

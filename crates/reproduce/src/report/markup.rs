@@ -19,29 +19,21 @@ struct Stretch {
 /// A text in the markup of figures as HTML; everything that is not markup is escaped.
 pub(crate) fn rich(markup: &str) -> Markup {
     let stretches = stretches(&letters(markup));
-    let mut rest = stretches.as_slice();
-    let mut parts: Vec<Markup> = Vec::new();
-    while let [first, after @ ..] = rest {
-        rest = after;
-        if first.level == Level::Base {
-            parts.push(set(first));
-            continue;
-        }
-        let (first, after) = script(first, rest);
-        // A superscript and a subscript side by side stand above each other.
-        match after {
-            [next, ..] if next.level != Level::Base => {
-                let (second, after) = script(next, after.get(1..).unwrap_or_default());
-                rest = after;
-                parts.push(html! { span.scripts { (first) (second) } });
-            }
-            _ => {
-                rest = after;
-                parts.push(first);
+    let scripts: Vec<&[Stretch]> = stretches
+        .chunk_by(|one, other| one.level == other.level)
+        .collect();
+    let is_script = |stretches: &[Stretch]| stretches[0].level != Level::Base;
+    let groups = scripts.chunk_by(|one, other| is_script(one) && is_script(other));
+    html! {
+        @for pair in groups.flat_map(|group| group.chunks(2)) {
+            // A superscript and a subscript side by side stand above each other.
+            @if let [one, other] = pair {
+                span.scripts { (script(one)) (script(other)) }
+            } @else {
+                (script(pair[0]))
             }
         }
     }
-    html! { @for part in &parts { (part) } }
 }
 
 /// A text in the markup of figures as plain text: italics are dropped, scripts begin with `_` or `^`.
@@ -67,19 +59,14 @@ pub fn plain_text(markup: &str) -> String {
     plain
 }
 
-/// A whole subscript or superscript; `first` is its first stretch, `rest` the stretches after it.
-fn script<'a>(first: &Stretch, rest: &'a [Stretch]) -> (Markup, &'a [Stretch]) {
-    let more = rest
-        .iter()
-        .take_while(|stretch| stretch.level == first.level)
-        .count();
-    let (own, after) = rest.split_at(more);
-    let content = html! { (set(first)) @for stretch in own { (set(stretch)) } };
-    let markup = match first.level {
+/// Stretches of one level.
+fn script(stretches: &[Stretch]) -> Markup {
+    let content = html! { @for stretch in stretches { (set(stretch)) } };
+    match stretches[0].level {
+        Level::Base => content,
         Level::Superscript => html! { sup { (content) } },
-        _ => html! { sub { (content) } },
-    };
-    (markup, after)
+        Level::Subscript => html! { sub { (content) } },
+    }
 }
 
 fn set(stretch: &Stretch) -> Markup {

@@ -69,8 +69,6 @@ struct Shared<'a> {
 struct Common {
     index: Index,
     plan: Plan,
-    /// Where each run stands in the plan.
-    places: HashMap<Identity, usize>,
     /// What the index said last, rows apart.
     entries: HashMap<Identity, Entry>,
     news: Vec<String>,
@@ -85,26 +83,9 @@ impl Common {
     fn refresh(&mut self, study: &Specification) -> Result<bool, StudyError> {
         self.entries = self.index.findings()?;
         let entries = &self.entries;
-        let grown = refine(study, &mut self.plan, &|identity| {
-            finding(entries, identity)
-        })?;
-        if grown {
-            self.places = places(&self.plan);
-        }
-        Ok(grown)
+        let found = |identity: &Identity| finding(entries, identity);
+        Ok(refine(study, &mut self.plan, &found)?)
     }
-
-    fn planned(&self, identity: Identity) -> PlannedRun {
-        self.plan.runs()[self.places[&identity]]
-    }
-}
-
-fn places(plan: &Plan) -> HashMap<Identity, usize> {
-    plan.runs()
-        .iter()
-        .enumerate()
-        .map(|(place, run)| (run.identity, place))
-        .collect()
 }
 
 impl Shared<'_> {
@@ -162,9 +143,11 @@ impl Shared<'_> {
 
     fn assignment(&self, identity: Identity) -> (Assignment, String) {
         let common = self.common();
-        let run = common.planned(identity);
-        let assignment = Assignment::of(&common.plan, &run);
-        let words = common.plan.point(&run).in_words();
+        let mut runs = common.plan.runs().iter();
+        let run = runs.find(|run| run.identity == identity);
+        let run = run.expect("what is claimed is a run of the plan");
+        let assignment = Assignment::of(&common.plan, run);
+        let words = common.plan.point(run).in_words();
         (assignment, format!("{words}, replicate {}", run.replicate))
     }
 }
@@ -184,13 +167,11 @@ pub fn work_on(
     watch: &mut dyn FnMut(&Board),
 ) -> Result<Ending, StudyError> {
     let mut index = store.index()?;
-    let plan = study.plan().clone();
     let news = store.check_changed(&mut index, LEASE_TIMEOUT)?;
     let workers = effort.workers.max(1);
     let mut common = Common {
         index,
-        places: places(&plan),
-        plan,
+        plan: study.plan().clone(),
         entries: HashMap::new(),
         news,
         error: None,
@@ -323,16 +304,11 @@ impl Gauge {
 
     fn measure(&mut self, study: &Specification, common: &Common) {
         let runs = common.plan.runs();
-        let count = |state: State| {
+        let entries = || {
             runs.iter()
-                .filter(|run| {
-                    common
-                        .entries
-                        .get(&run.identity)
-                        .is_some_and(|entry| entry.state == state)
-                })
-                .count()
+                .filter_map(|run| common.entries.get(&run.identity))
         };
+        let count = |state: State| entries().filter(|entry| entry.state == state).count();
         let (done, failed) = (count(State::Done), count(State::Failed));
         if self.brackets.0 != done + failed {
             let found = |identity: &Identity| finding(&common.entries, identity);

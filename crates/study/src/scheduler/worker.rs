@@ -120,10 +120,7 @@ fn carry_out(
             "{} of run {identity} is damaged ({reason}): moved aside",
             path.file_name().unwrap_or_default().display()
         ));
-        shared
-            .store
-            .quarantine_file(path, identity, reason)
-            .map(|_| ())
+        shared.store.quarantine(path, identity, reason).map(|_| ())
     };
     let mut run = match files.resume(assignment, &mut aside) {
         Ok(run) => run,

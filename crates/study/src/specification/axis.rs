@@ -30,18 +30,15 @@ impl Axis {
         let Node::Table(table) = &entry.node else {
             return None;
         };
-        let forms: [&[&str]; 4] = [
-            &["key", "values"],
-            &["count", "from", "key", "to"],
-            &["from", "key", "step", "to"],
-            &["keys", "rows"],
-        ];
         let given: Vec<&str> = table.keys().map(String::as_str).collect();
-        let axis = match forms.iter().position(|form| given == *form) {
-            Some(0) => Self::of_values(table),
-            Some(1) => Self::of_count(table),
-            Some(2) => Self::of_step(table, problems)?,
-            Some(3) => Self::of_rows(table, problems)?,
+        let axis = match given.as_slice() {
+            ["key", "values"] => Self::of_values(table),
+            ["count", "from", "key", "to"] => {
+                let count = number(&item(table, "count").node) as u64;
+                Self::of_range(table, count - 1)
+            }
+            ["from", "key", "step", "to"] => Self::of_step(table, problems)?,
+            ["keys", "rows"] => Self::of_rows(table, problems)?,
             _ => {
                 let problem = Problem::new(
                     ProblemKind::Conflict,
@@ -80,13 +77,6 @@ impl Axis {
                 .map(|value| vec![value.clone()])
                 .collect(),
         }
-    }
-
-    fn of_count(table: &Table) -> Self {
-        let Node::Integer(count) = item(table, "count").node else {
-            unreachable!("the schema takes whole numbers only");
-        };
-        Self::of_range(table, (count - 1) as u64)
     }
 
     fn of_step(table: &Table, problems: &mut Problems) -> Option<Self> {

@@ -239,20 +239,13 @@ impl Specification {
 
     /// All points of the axes: one index into the rows of each, the last axis fastest.
     pub(crate) fn grid(&self) -> Vec<Vec<usize>> {
-        let mut grid = vec![Vec::new()];
-        for axis in &self.axes {
-            grid = grid
-                .into_iter()
-                .flat_map(|point| {
-                    (0..axis.rows.len()).map(move |row| {
-                        let mut point = point.clone();
-                        point.push(row);
-                        point
-                    })
-                })
-                .collect();
-        }
-        grid
+        self.axes.iter().fold(vec![Vec::new()], |grid, axis| {
+            let with_rows = |point: &Vec<usize>| {
+                let point = point.clone();
+                (0..axis.rows.len()).map(move |row| [point.as_slice(), &[row]].concat())
+            };
+            grid.iter().flat_map(with_rows).collect()
+        })
     }
 }
 

@@ -10,7 +10,7 @@ use peristalsis_formats::atomic;
 use super::{RUNS, Store, Verdict, done};
 use crate::error::StudyError;
 use crate::identity::Identity;
-use crate::store::entry::State;
+use crate::store::entry::Entry;
 use crate::store::run_files::RunFiles;
 
 /// What an archive holds.
@@ -32,7 +32,7 @@ impl Store {
             .index()?
             .entries()?
             .into_iter()
-            .filter(|(_, entry)| entry.state == State::Done && entry.reason.is_none())
+            .filter(|(_, entry)| entry.is_computed())
             .map(|(identity, _)| identity)
             .collect();
         identities.sort();
@@ -103,9 +103,7 @@ impl Store {
             taken: 0,
         };
         for identity in identities {
-            let finished = known
-                .get(identity)
-                .is_some_and(|entry| entry.state == State::Done && entry.reason.is_none());
+            let finished = known.get(identity).is_some_and(Entry::is_computed);
             let unpacked = RunFiles::new(scratch, *identity);
             if finished || leases.contains_key(identity) {
                 continue;

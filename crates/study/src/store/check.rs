@@ -28,21 +28,14 @@ pub struct Verification {
 }
 
 impl Store {
-    /// Makes the index again from the files, every hash checked.
+    /// Checks every hash of every finished run, and makes the index again from the files; what does not match is moved
+    /// aside, and will be computed again.
     ///
     /// # Errors
     /// Errors of reading or moving files.
     pub fn scan(&self) -> Result<Verification, StudyError> {
         let (mut index, _) = Index::open(&self.file(INDEX))?;
         self.fill(&mut index)
-    }
-
-    /// Checks every hash of every finished run; what does not match is moved aside, and will be computed again.
-    ///
-    /// # Errors
-    /// Errors of moving files.
-    pub fn verify(&self) -> Result<Verification, StudyError> {
-        self.scan()
     }
 
     /// Looks whether the files of finished runs have changed since their hashes were checked, checks those that have, and
@@ -57,8 +50,7 @@ impl Store {
         let mut news = Vec::new();
         let mut changed = Vec::new();
         for (identity, entry) in index.entries()? {
-            let computed = entry.state == State::Done && entry.reason.is_none();
-            if !computed || leases.contains_key(&identity) {
+            if !entry.is_computed() || leases.contains_key(&identity) {
                 continue;
             }
             match self.run_files(identity).verdict(entry.stamp.as_deref()) {
@@ -160,35 +152,24 @@ impl Store {
         identity: Identity,
         reason: &str,
     ) -> Result<PathBuf, StudyError> {
-        self.quarantine(&self.run_folder(identity), identity, reason, false)
+        self.quarantine(&self.run_folder(identity), identity, reason)
     }
 
-    /// Moves one file of a run aside, with the reason.
-    pub(crate) fn quarantine_file(
-        &self,
-        file: &Path,
-        identity: Identity,
-        reason: &str,
-    ) -> Result<PathBuf, StudyError> {
-        self.quarantine(file, identity, reason, true)
-    }
-
-    fn quarantine(
+    /// Moves the folder of a run, or one file of it, aside, with the reason.
+    pub(crate) fn quarantine(
         &self,
         from: &Path,
         identity: Identity,
         reason: &str,
-        into_new_folder: bool,
     ) -> Result<PathBuf, StudyError> {
         let quarantine = self.file(QUARANTINE);
         fs::create_dir_all(&quarantine).map_err(StudyError::io("make", &quarantine))?;
         let folder = free(|number| quarantine.join(format!("{identity}.{number}")));
-        let target = if into_new_folder {
+        let mut target = folder.clone();
+        if from.is_file() {
             fs::create_dir(&folder).map_err(StudyError::io("make", &folder))?;
-            folder.join(from.file_name().unwrap_or_default())
-        } else {
-            folder.clone()
-        };
+            target.extend(from.file_name());
+        }
         fs::rename(from, &target).map_err(StudyError::io("move aside", from))?;
         atomic::write(&folder.join(REASON), format!("{reason}\n").as_bytes())?;
         Ok(folder)

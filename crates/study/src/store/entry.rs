@@ -75,6 +75,11 @@ impl Entry {
             stamp: None,
         }
     }
+
+    /// Whether the run was finished here, rather than imported.
+    pub(crate) fn is_computed(&self) -> bool {
+        self.state == State::Done && self.reason.is_none()
+    }
 }
 
 /// A lease: who works on a run.

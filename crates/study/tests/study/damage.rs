@@ -26,7 +26,7 @@ fn a_bit_that_flipped_in_any_product_is_found_and_computed_again() {
     for (index, (folder, product)) in folders.iter().zip(products).enumerate() {
         flip(&folder.join(product), index as f64 / 5.0);
     }
-    let found = place.store().verify().unwrap();
+    let found = place.store().scan().unwrap();
     assert_eq!((found.whole, found.quarantined.len()), (0, 6), "{found:?}");
     for ((identity, reason), (folder, product)) in
         found.quarantined.iter().zip(folders.iter().zip(products))
@@ -44,7 +44,7 @@ fn a_bit_that_flipped_in_any_product_is_found_and_computed_again() {
     }
     place.complete();
     assert_eq!(place.tables(), tables);
-    assert_eq!(place.store().verify().unwrap().whole, 6);
+    assert_eq!(place.store().scan().unwrap().whole, 6);
 }
 
 #[test]
@@ -58,7 +58,7 @@ fn a_snapshot_is_kept_where_it_is_asked_for_and_guarded_like_the_rest() {
         assert!(table.booleans("grain").unwrap().iter().all(|grain| *grain));
     }
     flip(&place.run_folders()[0].join("snapshot.parquet"), 0.5);
-    assert_eq!(place.store().verify().unwrap().quarantined.len(), 1);
+    assert_eq!(place.store().scan().unwrap().quarantined.len(), 1);
     let without = Place::new(SMALL);
     without.complete();
     assert!(!without.run_folders()[0].join("snapshot.parquet").exists());
