@@ -26,7 +26,7 @@ pub enum SettingValue {
 }
 
 impl SettingValue {
-    fn of(node: &Node) -> Self {
+    pub(crate) fn of(node: &Node) -> Self {
         match node {
             Node::Integer(whole) => Self::Whole(*whole),
             Node::Float(number) => Self::Number(*number),

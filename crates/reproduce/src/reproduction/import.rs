@@ -127,23 +127,18 @@ fn import_into(store: &Store, tables: &[Rows]) -> Result<(usize, usize), StudyEr
         };
         let mut taken: HashSet<&Identity> = HashSet::new();
         for table in tables {
-            let lacked = table.identities.iter().filter(is_lacked);
             let before = taken.len();
-            taken.extend(lacked);
+            taken.extend(table.identities.iter().filter(is_lacked));
             if taken.len() > before {
                 store.import_table(&table.path)?;
             }
         }
         if taken.is_empty() {
-            let found = planned
-                .iter()
-                .filter(|identity| {
-                    tables
-                        .iter()
-                        .any(|table| table.identities.contains(identity))
-                })
-                .count();
-            return Ok((found, planned.len()));
+            let is_in = |identity: &&Identity| {
+                let mut tables = tables.iter();
+                tables.any(|table| table.identities.contains(*identity))
+            };
+            return Ok((planned.iter().filter(is_in).count(), planned.len()));
         }
         // Runs that were just found may let refinement ask for more.
     }

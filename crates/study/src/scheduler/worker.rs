@@ -11,15 +11,8 @@ use crate::error::StudyError;
 use crate::identity::Identity;
 use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
 
-/// What became of a run in the hands of a worker.
-enum Outcome {
-    /// It ended, well or not, with this result.
-    Ended(Entry),
-    /// It was saved, to go on later.
-    Saved,
-    /// Another process has it now.
-    Lost,
-}
+/// What is known of a run that has ended, well or not, or was saved to go on later; `None` where another process has it now.
+type Outcome = Option<Entry>;
 
 /// Works until nothing is left or the process is to stop; an error stops the whole process.
 pub(super) fn work(shared: &Shared<'_>, slot: usize) {
@@ -71,17 +64,11 @@ fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<(), St
         ),
     };
     match outcome {
-        Ok(Outcome::Ended(entry)) => {
+        Ok(Some(entry)) => {
             shared.release(identity, Some(&entry))?;
-            let mut common = shared.common();
-            common.entries.insert(identity, entry);
+            shared.common().entries.insert(identity, entry);
         }
-        Ok(Outcome::Saved) => {
-            shared.release(identity, Some(&Entry::new(State::Checkpointed, None)))?;
-        }
-        Ok(Outcome::Lost) => {
-            shared.tell(format!("run {identity} was taken over by another process"));
-        }
+        Ok(None) => shared.tell(format!("run {identity} was taken over by another process")),
         Err(error) => {
             // The error itself is what matters; a lease that cannot be given back is void once this process has ended.
             drop(shared.release(identity, None));
@@ -101,10 +88,10 @@ fn carry_out(
     match files.verdict(None) {
         Verdict::Done { row, stamp } => {
             files.remove_checkpoints();
-            return Ok(Outcome::Ended(done(&row, stamp)));
+            return Ok(Some(done(&row, stamp)));
         }
         Verdict::Failed(reason) => {
-            return Ok(Outcome::Ended(Entry::new(State::Failed, Some(reason))));
+            return Ok(Some(Entry::new(State::Failed, Some(reason))));
         }
         Verdict::Damaged(reason) => {
             shared.store.quarantine_run(identity, &reason)?;
@@ -149,11 +136,11 @@ fn advance(
         let is_stopped = shared.is_stopped();
         if is_stopped || saved.elapsed() >= shared.effort.checkpoint_interval {
             if !shared.holds(identity)? {
-                return Ok(Outcome::Lost);
+                return Ok(None);
             }
             files.save(run)?;
             if is_stopped {
-                return Ok(Outcome::Saved);
+                return Ok(Some(Entry::new(State::Checkpointed, None)));
             }
             saved = Instant::now();
         }
@@ -169,7 +156,7 @@ fn advance(
         }
     }
     if !shared.holds(identity)? {
-        return Ok(Outcome::Lost);
+        return Ok(None);
     }
     let status = if run.is_settled() {
         Status::Settled
@@ -179,7 +166,7 @@ fn advance(
     let summary = Summary::of(run, status, None);
     files.finish(run, &summary, assignment)?;
     match files.verdict(None) {
-        Verdict::Done { row, stamp } => Ok(Outcome::Ended(done(&row, stamp))),
+        Verdict::Done { row, stamp } => Ok(Some(done(&row, stamp))),
         other => Err(StudyError::NotWritten {
             identity,
             reason: match other {
@@ -198,14 +185,11 @@ fn give_up(
     reason: &str,
 ) -> Result<Outcome, StudyError> {
     if !shared.holds(identity)? {
-        return Ok(Outcome::Lost);
+        return Ok(None);
     }
     files.fail(reason)?;
     shared.tell(format!("run {identity} failed: {reason}"));
-    Ok(Outcome::Ended(Entry::new(
-        State::Failed,
-        Some(reason.to_owned()),
-    )))
+    Ok(Some(Entry::new(State::Failed, Some(reason.to_owned()))))
 }
 
 fn said(panic: &(dyn std::any::Any + Send)) -> &str {

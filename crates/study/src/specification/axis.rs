@@ -3,6 +3,8 @@
 use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
 use peristalsis_configuration::{Origin, Problem, ProblemKind, Problems};
 
+use crate::plan::SettingValue;
+
 /// Keys that an axis cannot vary, with what to do instead.
 const NOT_VARIED: [(&str, &str); 2] = [
     (
@@ -159,11 +161,8 @@ pub(crate) fn neat(number: f64) -> f64 {
 
 /// A number of the file.
 pub(crate) fn number(node: &Node) -> f64 {
-    match node {
-        Node::Integer(integer) => *integer as f64,
-        Node::Float(number) => *number,
-        other => unreachable!("the schema takes numbers here, not {}", other.description()),
-    }
+    let number = SettingValue::of(node).number();
+    number.expect("the schema takes numbers here")
 }
 
 fn item<'a>(table: &'a Table, key: &str) -> &'a Item {

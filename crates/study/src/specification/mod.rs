@@ -4,6 +4,7 @@ mod axis;
 mod keys;
 
 use std::fs;
+use std::ops::Range;
 use std::path::Path;
 
 use peristalsis_configuration::document::{self, Item, Node, Table};
@@ -48,9 +49,9 @@ pub struct Specification {
     base: Base,
     text: String,
     /// Where `file` names the base in `text`, quotes included.
-    file_span: Option<std::ops::Range<usize>>,
+    file_span: Option<Range<usize>>,
     /// Where `replicates` is given in `text`.
-    replicates_span: Option<std::ops::Range<usize>>,
+    replicates_span: Option<Range<usize>>,
 }
 
 /// The base of every run.
@@ -168,14 +169,9 @@ impl Specification {
     /// # Errors
     /// [`StudyError::Configuration`] where so many are not allowed.
     pub fn with_replicates(&self, replicates: u32) -> Result<Self, StudyError> {
-        let text = match &self.replicates_span {
-            Some(span) => format!(
-                "{}{replicates}{}",
-                &self.text[..span.start],
-                &self.text[span.end..]
-            ),
-            None => format!("replicates = {replicates}\n{}", self.text),
-        };
+        let text = self
+            .text_with(&self.replicates_span, &replicates.to_string())
+            .unwrap_or_else(|| format!("replicates = {replicates}\n{}", self.text));
         Self::from_toml(&self.name, &text, |name| {
             Ok(self
                 .base
@@ -187,14 +183,14 @@ impl Specification {
 
     /// The file's text with its base under another name: what a store keeps beside a copy of the base.
     pub(crate) fn text_with_base(&self, base: &str) -> String {
-        match &self.file_span {
-            Some(span) => format!(
-                "{}\"{base}\"{}",
-                &self.text[..span.start],
-                &self.text[span.end..]
-            ),
-            None => self.text.clone(),
-        }
+        self.text_with(&self.file_span, &format!("\"{base}\""))
+            .unwrap_or_else(|| self.text.clone())
+    }
+
+    /// The file's text with something else at a place; `None` where it has no such place.
+    fn text_with(&self, place: &Option<Range<usize>>, instead: &str) -> Option<String> {
+        let Range { start, end } = place.clone()?;
+        Some([&self.text[..start], instead, &self.text[end..]].concat())
     }
 
     /// Whether this is what a study file and the file of its base say now.

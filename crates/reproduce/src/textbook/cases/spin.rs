@@ -11,7 +11,7 @@ use super::trial::{Sweep, Trial, dissipation_time};
 use crate::columns::Columns;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
-use crate::textbook::experiment::impact::{Impact, Partner, Rebound, Sphere};
+use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
 use crate::textbook::experiment::smooth;
 use crate::textbook::reference::impact::outcome;
 use crate::{Check, ClaimError, Finding, Prose};
@@ -53,20 +53,15 @@ impl Meets {
     /// The impact without friction or spin.
     fn smooth_impact(&self, dissipation_time: f64) -> Impact {
         let speed = SPEED / ALUMINIUM_ALLOY.speed();
-        let (law, partner) = match self.diameter {
-            None => (
-                ALUMINIUM_ALLOY.against_rigid(dissipation_time),
-                Partner::Plane,
-            ),
-            Some(diameter) => {
-                let partner = Partner::Grain(Sphere {
-                    diameter,
-                    mass: diameter.powi(3),
-                    velocity: DVec3::new(speed, 0.0, 0.0),
-                    spin: 0.0,
-                });
-                (ALUMINIUM_ALLOY.spheres(dissipation_time), partner)
-            }
+        let partner = self.diameter.map(|diameter| Sphere {
+            diameter,
+            mass: diameter.powi(3),
+            velocity: DVec3::new(speed, 0.0, 0.0),
+            spin: 0.0,
+        });
+        let law = match partner {
+            None => ALUMINIUM_ALLOY.against_rigid(dissipation_time),
+            Some(_) => ALUMINIUM_ALLOY.spheres(dissipation_time),
         };
         Impact {
             contact: smooth(Normal::Hertz(law)),
@@ -88,7 +83,7 @@ impl Sweep<2> for Experiment {
     fn trial(&self, spin: f64) -> Trial {
         let mut trial = self.without_spin;
         trial.impact.sphere.spin = 2.0 * spin * self.speed;
-        if let Partner::Grain(other) = &mut trial.impact.partner
+        if let Some(other) = &mut trial.impact.partner
             && self.meets.is_spinning
         {
             other.spin = trial.impact.sphere.spin;

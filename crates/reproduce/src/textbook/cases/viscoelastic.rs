@@ -11,7 +11,7 @@ use super::trial::{FINE, PER_CONTACT, Trial, expected_restitution};
 use crate::columns::Columns;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
-use crate::textbook::experiment::impact::{Impact, Partner, Rebound, Sphere};
+use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
 use crate::textbook::experiment::smooth;
 use crate::textbook::reference::hertz::{HertzImpact, viscoelastic_series};
 use crate::{Check, ClaimError, Finding, Prose};
@@ -54,7 +54,7 @@ fn impact(form: DissipationForm, speed: f64) -> Impact {
     Impact {
         contact: smooth(Normal::Hertz(law(form))),
         sphere: sphere(-0.5 * speed),
-        partner: Partner::Grain(sphere(0.5 * speed)),
+        partner: Some(sphere(0.5 * speed)),
     }
 }
 

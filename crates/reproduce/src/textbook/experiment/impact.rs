@@ -38,21 +38,14 @@ impl Sphere {
     }
 }
 
-/// The body that a sphere meets.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Partner {
-    /// Another grain, at the side of negative x.
-    Grain(Sphere),
-    /// A sphere of the wall, at rest and very large.
-    Plane,
-}
-
 /// A sphere that arrives at positive x, and its partner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Impact {
     pub(crate) contact: ContactModel,
     pub(crate) sphere: Sphere,
-    pub(crate) partner: Partner,
+    /// Another grain, at the side of negative x; `None`: a sphere of the wall, at rest and so large that it stands for a
+    /// plane.
+    pub(crate) partner: Option<Sphere>,
 }
 
 /// Motion after an impact, and extremes in it.
@@ -85,7 +78,7 @@ impl Impact {
         Self {
             contact,
             sphere: Sphere::unit(one, 0.0),
-            partner: Partner::Grain(Sphere::unit(other, 0.0)),
+            partner: Some(Sphere::unit(other, 0.0)),
         }
     }
 
@@ -94,7 +87,7 @@ impl Impact {
         Self {
             contact,
             sphere: Sphere::unit(velocity, 0.0),
-            partner: Partner::Plane,
+            partner: None,
         }
     }
 
@@ -105,14 +98,11 @@ impl Impact {
 
     /// The partner as a sphere; a plane is at rest, very large and infinitely heavy.
     pub(crate) fn other(&self) -> Sphere {
-        match self.partner {
-            Partner::Grain(other) => other,
-            Partner::Plane => Sphere {
-                diameter: PLANE_DIAMETER,
-                mass: f64::INFINITY,
-                ..Sphere::unit(DVec3::ZERO, 0.0)
-            },
-        }
+        self.partner.unwrap_or(Sphere {
+            diameter: PLANE_DIAMETER,
+            mass: f64::INFINITY,
+            ..Sphere::unit(DVec3::ZERO, 0.0)
+        })
     }
 
     /// Half the sum of the diameters \[d\].
@@ -134,10 +124,8 @@ impl Impact {
     /// m_i m_j/(m_i + m_j).
     pub(crate) fn reduced_mass(&self) -> f64 {
         let mass = self.sphere.mass;
-        match self.partner {
-            Partner::Grain(other) => mass * other.mass / (mass + other.mass),
-            Partner::Plane => mass,
-        }
+        let reduced = |other: Sphere| mass * other.mass / (mass + other.mass);
+        self.partner.map_or(mass, reduced)
     }
 
     /// v_i - v_j before the impact.
@@ -217,7 +205,7 @@ impl Experiment {
         let reach = impact.reach();
         let skin = 0.3 * sphere.diameter;
         let (wall, mut spheres, plane) = match impact.partner {
-            Partner::Grain(other) => {
+            Some(other) => {
                 let length = 40.0 * reach;
                 let wall = far_away(100.0 * reach, length);
                 let centre = DVec3::new(0.0, 0.0, 0.5 * length);
@@ -225,7 +213,7 @@ impl Experiment {
                 let spheres = vec![(sphere, centre + half), (other, centre - half)];
                 (wall, spheres, None)
             }
-            Partner::Plane => {
+            None => {
                 let wall = plane(PLANE_DIAMETER, reach);
                 // The sphere of the second ring stands at the side of negative x.
                 let centre = wall
