@@ -6,6 +6,9 @@ use peristalsis_configuration::ConfigurationError;
 use peristalsis_formats::FormatError;
 use peristalsis_run::RunError;
 
+/// A result of this crate.
+pub(crate) type Result<T, E = StudyError> = std::result::Result<T, E>;
+
 /// Errors of a study.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

@@ -3,7 +3,7 @@
 use peristalsis_observe::{COLUMNS, PROFILE, Quantity, WAVES};
 use peristalsis_run::{Warning, estimate, warnings};
 
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::plan::Plan;
 use crate::refinement::usual_added_points;
 use crate::specification::Specification;
@@ -59,7 +59,7 @@ pub(crate) fn work(configuration: &peristalsis_run::Configuration) -> f64 {
 ///
 /// # Errors
 /// [`StudyError::Trial`] where grains do not fit.
-pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimate, StudyError> {
+pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimate> {
     let points = plan.points();
     let mut trials: Vec<usize> = (0..TRIALS)
         .map(|trial| trial * (points.len() - 1) / (TRIALS - 1))

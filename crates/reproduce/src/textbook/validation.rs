@@ -7,7 +7,7 @@ use peristalsis_formats::{atomic, csv};
 use serde::Serialize;
 
 use crate::check::verdict;
-use crate::error::make_folder;
+use crate::error::{Result, make_folder};
 use crate::examination::without_panic;
 use crate::report::{json_text, markdown, write_drawing};
 use crate::textbook::case::{Case, Circumstances};
@@ -38,7 +38,7 @@ impl Validation {
         cases: &[Case],
         stops: &dyn Fn() -> bool,
         tell: &mut dyn FnMut(&Examination<Case>),
-    ) -> Result<Self, ClaimError> {
+    ) -> Result<Self> {
         let mut examinations = Vec::with_capacity(cases.len());
         for case in cases {
             let outcome = without_panic(|| (case.examine)(Circumstances { size, stops }));
@@ -76,7 +76,7 @@ impl Validation {
     ///
     /// # Errors
     /// Errors of making folders, drawing and writing.
-    pub fn write(&self, folder: &Path) -> Result<(), ClaimError> {
+    pub fn write(&self, folder: &Path) -> Result<()> {
         let figures = folder.join("figures");
         make_folder(&figures)?;
         for examination in &self.examinations {
@@ -98,7 +98,7 @@ impl Validation {
     ///
     /// # Errors
     /// [`ClaimError::Read`] and [`ClaimError::NoPlace`].
-    pub fn check_places(path: &Path, cases: &[Case]) -> Result<(), ClaimError> {
+    pub fn check_places(path: &Path, cases: &[Case]) -> Result<()> {
         let document = document(path)?;
         for case in cases {
             markdown::replaced(path, &document, case.name, "")?;
@@ -111,7 +111,7 @@ impl Validation {
     ///
     /// # Errors
     /// [`ClaimError::Read`], and [`ClaimError::NoPlace`] where a marker is missing; nothing is changed then.
-    pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<(), ClaimError> {
+    pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<()> {
         let mut document = document(path)?;
         for examination in &self.examinations {
             let (name, block) = (examination.experiment.name, block(examination, FIGURES));
@@ -182,7 +182,7 @@ fn block(examination: &Examination<Case>, figures: &str) -> String {
 }
 
 /// The text of a document with places for findings.
-fn document(path: &Path) -> Result<String, ClaimError> {
+fn document(path: &Path) -> Result<String> {
     fs::read_to_string(path).map_err(|source| ClaimError::Read {
         path: path.to_owned(),
         source,

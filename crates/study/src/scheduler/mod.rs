@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::estimate::work;
 use crate::identity::Identity;
 use crate::plan::{Plan, PlannedRun};
@@ -80,7 +80,7 @@ struct Common {
 
 impl Common {
     /// Reads the index again, and adds the points that refinement asks for; answers whether there are any.
-    fn refresh(&mut self, study: &Specification) -> Result<bool, StudyError> {
+    fn refresh(&mut self, study: &Specification) -> Result<bool> {
         self.entries = self.index.findings()?;
         let entries = &self.entries;
         let found = |identity: &Identity| finding(entries, identity);
@@ -104,7 +104,7 @@ impl Shared<'_> {
     }
 
     /// Takes a run that is free.
-    fn claim(&self) -> Result<Claim, StudyError> {
+    fn claim(&self) -> Result<Claim> {
         let mut common = self.common();
         loop {
             common.refresh(self.study)?;
@@ -119,13 +119,13 @@ impl Shared<'_> {
     }
 
     /// Whether this process still has the lease of a run.
-    fn holds(&self, identity: Identity) -> Result<bool, StudyError> {
+    fn holds(&self, identity: Identity) -> Result<bool> {
         let held = self.common().index.renew(&self.owner)?;
         Ok(held.contains(&identity))
     }
 
     /// Gives a lease back with what has become of the run.
-    fn release(&self, identity: Identity, entry: Option<&Entry>) -> Result<bool, StudyError> {
+    fn release(&self, identity: Identity, entry: Option<&Entry>) -> Result<bool> {
         let mut common = self.common();
         let outcome = common.index.release(identity, &self.owner, entry);
         self.ended.notify_all();
@@ -165,9 +165,9 @@ pub fn work_on(
     effort: Effort,
     stop: &dyn Fn() -> bool,
     watch: &mut dyn FnMut(&Board),
-) -> Result<Ending, StudyError> {
+) -> Result<Ending> {
     let mut index = store.index()?;
-    let news = store.check_changed(&mut index, LEASE_TIMEOUT)?;
+    let news = store.check_changed(&mut index)?;
     let workers = effort.workers.max(1);
     let mut common = Common {
         index,

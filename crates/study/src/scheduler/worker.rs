@@ -7,7 +7,7 @@ use std::time::Instant;
 use peristalsis_run::{Run, RunError, Status, Summary};
 
 use super::{IDLE, Shared, Working};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::store::{Assignment, Claim, Entry, RunFiles, State, Verdict, done};
 
@@ -27,7 +27,7 @@ pub(super) fn work(shared: &Shared<'_>, slot: usize) {
     }
 }
 
-fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
+fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<()> {
     while !shared.is_stopped() {
         match shared.claim()? {
             Claim::Taken(identity) => attend(shared, slot, identity)?,
@@ -42,7 +42,7 @@ fn take_turns(shared: &Shared<'_>, slot: usize) -> Result<(), StudyError> {
 }
 
 /// Works on a run that this process has the lease of, and gives the lease back.
-fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<(), StudyError> {
+fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<()> {
     let (assignment, point) = shared.assignment(identity);
     shared.working()[slot] = Some(Working {
         identity,
@@ -83,7 +83,7 @@ fn carry_out(
     slot: usize,
     files: &RunFiles,
     assignment: &Assignment,
-) -> Result<Outcome, StudyError> {
+) -> Result<Outcome> {
     let identity = assignment.identity;
     match files.verdict(None) {
         Verdict::Done { row, stamp } => {
@@ -129,7 +129,7 @@ fn advance(
     files: &RunFiles,
     assignment: &Assignment,
     run: &mut Run,
-) -> Result<Outcome, StudyError> {
+) -> Result<Outcome> {
     let identity = assignment.identity;
     let mut saved = Instant::now();
     while !run.is_complete() {
@@ -183,7 +183,7 @@ fn give_up(
     files: &RunFiles,
     identity: Identity,
     reason: &str,
-) -> Result<Outcome, StudyError> {
+) -> Result<Outcome> {
     if !shared.holds(identity)? {
         return Ok(None);
     }

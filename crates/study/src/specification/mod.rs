@@ -15,7 +15,7 @@ use peristalsis_configuration::{
 use peristalsis_run::Stopping;
 use serde::Deserialize;
 
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::{Record, column_names};
 use crate::plan::{Plan, state_name};
 use axis::Axis;
@@ -84,7 +84,7 @@ impl Specification {
     /// # Errors
     /// [`StudyError::Read`] where a file cannot be read, [`StudyError::Configuration`] with everything that is wrong in
     /// it.
-    pub fn read(path: &Path) -> Result<Self, StudyError> {
+    pub fn read(path: &Path) -> Result<Self> {
         let read = |path: &Path| {
             fs::read_to_string(path).map_err(|source| StudyError::Read {
                 path: path.to_owned(),
@@ -106,8 +106,8 @@ impl Specification {
     pub fn from_toml(
         name: &str,
         text: &str,
-        file: impl FnOnce(&str) -> Result<(String, String), StudyError>,
-    ) -> Result<Self, StudyError> {
+        file: impl FnOnce(&str) -> Result<(String, String)>,
+    ) -> Result<Self> {
         let mut problems = Problems::default();
         let table = document::parse_file(SourceFile { name, text }, &mut problems);
         problems.check()?;
@@ -168,7 +168,7 @@ impl Specification {
     ///
     /// # Errors
     /// [`StudyError::Configuration`] where so many are not allowed.
-    pub fn with_replicates(&self, replicates: u32) -> Result<Self, StudyError> {
+    pub fn with_replicates(&self, replicates: u32) -> Result<Self> {
         let text = self
             .text_with(&self.replicates_span, &replicates.to_string())
             .unwrap_or_else(|| format!("replicates = {replicates}\n{}", self.text));
@@ -247,7 +247,7 @@ impl Specification {
 
 impl Specification {
     /// Refuses a grid that nobody meant.
-    fn check_size(&self, table: &Table) -> Result<(), StudyError> {
+    fn check_size(&self, table: &Table) -> Result<()> {
         let states = self.states.as_ref().map_or(1, Vec::len);
         let runs = self
             .axes

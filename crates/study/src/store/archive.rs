@@ -8,7 +8,7 @@ use std::path::{Component, Path};
 use peristalsis_formats::atomic;
 
 use super::{RUNS, Store, Verdict, done};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::store::entry::Entry;
 use crate::store::run_files::RunFiles;
@@ -27,7 +27,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading and writing.
-    pub fn pack(&self, archive: &Path) -> Result<Packed, StudyError> {
+    pub fn pack(&self, archive: &Path) -> Result<Packed> {
         let mut identities: Vec<Identity> = self
             .index()?
             .entries()?
@@ -58,7 +58,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StudyError::NotRows`] where it is no such archive, errors of reading and writing.
-    pub fn import_archive(&self, path: &Path) -> Result<Packed, StudyError> {
+    pub fn import_archive(&self, path: &Path) -> Result<Packed> {
         let refused = |reason: String| StudyError::NotRows {
             path: path.to_owned(),
             reason,
@@ -94,7 +94,7 @@ impl Store {
         self.take(scratch.path(), &identities)
     }
 
-    fn take(&self, scratch: &Path, identities: &BTreeSet<Identity>) -> Result<Packed, StudyError> {
+    fn take(&self, scratch: &Path, identities: &BTreeSet<Identity>) -> Result<Packed> {
         let mut index = self.index()?;
         let known = index.entries()?;
         let leases = index.leases(super::LEASE_TIMEOUT)?;

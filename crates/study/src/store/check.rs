@@ -2,14 +2,13 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use peristalsis_formats::atomic;
 
 use super::{
     Entry, INDEX, Index, LEASE_TIMEOUT, QUARANTINE, REASON, RUNS, State, Store, Verdict, done, free,
 };
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 
 /// What a check of the files found.
@@ -33,7 +32,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading or moving files.
-    pub fn scan(&self) -> Result<Verification, StudyError> {
+    pub fn scan(&self) -> Result<Verification> {
         let (mut index, _) = Index::open(&self.file(INDEX))?;
         self.fill(&mut index)
     }
@@ -41,12 +40,8 @@ impl Store {
     /// Looks whether the files of finished runs have changed since their hashes were checked, checks those that have, and
     /// moves aside what does not match; answers what happened, in words. A file whose time changed and whose content did
     /// not stays.
-    pub(crate) fn check_changed(
-        &self,
-        index: &mut Index,
-        timeout: Duration,
-    ) -> Result<Vec<String>, StudyError> {
-        let leases = index.leases(timeout)?;
+    pub(crate) fn check_changed(&self, index: &mut Index) -> Result<Vec<String>> {
+        let leases = index.leases(LEASE_TIMEOUT)?;
         let mut news = Vec::new();
         let mut changed = Vec::new();
         for (identity, entry) in index.entries()? {
@@ -78,7 +73,7 @@ impl Store {
         Ok(news)
     }
 
-    pub(super) fn fill(&self, index: &mut Index) -> Result<Verification, StudyError> {
+    pub(super) fn fill(&self, index: &mut Index) -> Result<Verification> {
         let before = index.findings()?;
         let mut found = Verification::default();
         let mut entries = self.imported()?;
@@ -127,7 +122,7 @@ impl Store {
     }
 
     /// Identities that the folders below name; other names are skipped.
-    fn identities(&self, folder: &str) -> Result<Vec<Identity>, StudyError> {
+    fn identities(&self, folder: &str) -> Result<Vec<Identity>> {
         let folder = self.file(folder);
         let entries = match fs::read_dir(&folder) {
             Ok(entries) => entries,
@@ -147,11 +142,7 @@ impl Store {
     }
 
     /// Moves all files of a run aside, with the reason.
-    pub(crate) fn quarantine_run(
-        &self,
-        identity: Identity,
-        reason: &str,
-    ) -> Result<PathBuf, StudyError> {
+    pub(crate) fn quarantine_run(&self, identity: Identity, reason: &str) -> Result<PathBuf> {
         self.quarantine(&self.run_folder(identity), identity, reason)
     }
 
@@ -161,7 +152,7 @@ impl Store {
         from: &Path,
         identity: Identity,
         reason: &str,
-    ) -> Result<PathBuf, StudyError> {
+    ) -> Result<PathBuf> {
         let quarantine = self.file(QUARANTINE);
         fs::create_dir_all(&quarantine).map_err(StudyError::io("make", &quarantine))?;
         let folder = free(|number| quarantine.join(format!("{identity}.{number}")));
@@ -196,7 +187,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of moving files, and of the index.
-    pub fn retry(&self, identity: Identity) -> Result<bool, StudyError> {
+    pub fn retry(&self, identity: Identity) -> Result<bool> {
         let mut index = self.index()?;
         let state = index.entry(identity)?.map(|entry| entry.state);
         let leased = index.leases(LEASE_TIMEOUT)?.contains_key(&identity);

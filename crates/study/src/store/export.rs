@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use super::run_files::{TIMES, TIMESERIES, TIMING};
 use super::{Index, Store, Survey, Verdict};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION};
 use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
 use crate::row::Row;
@@ -40,7 +40,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading the store.
-    pub fn rows(&self) -> Result<Table, StudyError> {
+    pub fn rows(&self) -> Result<Table> {
         let survey = self.survey()?;
         let (finished, _) = self.finished(&survey, &mut self.index_to_read()?)?;
         rows_table(&survey, &finished)
@@ -53,7 +53,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading study file or index.
-    pub fn look(&self) -> Result<(Survey, Table), StudyError> {
+    pub fn look(&self) -> Result<(Survey, Table)> {
         let survey = self.survey()?;
         let mut finished = Vec::new();
         for run in survey.plan.sorted_runs() {
@@ -67,7 +67,7 @@ impl Store {
     }
 
     /// A finished run with the row that the index has of it.
-    fn finished_by_index(&self, run: PlannedRun, entry: &Entry) -> Result<Finished, StudyError> {
+    fn finished_by_index(&self, run: PlannedRun, entry: &Entry) -> Result<Finished> {
         let text = entry.row.as_deref().unwrap_or_default();
         let row = Row::from_csv(text).map_err(|reason| StudyError::NotRows {
             path: self.path().to_owned(),
@@ -89,7 +89,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading the store and of writing.
-    pub fn export(&self, folder: &Path, series: bool) -> Result<Exported, StudyError> {
+    pub fn export(&self, folder: &Path, series: bool) -> Result<Exported> {
         let survey = self.survey()?;
         let mut index = self.index_to_read()?;
         let (finished, quarantined) = self.finished(&survey, &mut index)?;
@@ -135,7 +135,7 @@ impl Store {
         &self,
         survey: &Survey,
         index: &mut Index,
-    ) -> Result<(Vec<Finished>, Vec<(Identity, String)>), StudyError> {
+    ) -> Result<(Vec<Finished>, Vec<(Identity, String)>)> {
         let (mut finished, mut quarantined) = (Vec::new(), Vec::new());
         for run in survey.plan.sorted_runs() {
             let Some(entry) = survey.entries.get(&run.identity) else {
@@ -171,7 +171,7 @@ impl Store {
         Ok((finished, quarantined))
     }
 
-    fn timing_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
+    fn timing_table(&self, finished: &[Finished]) -> Result<Table> {
         let columns = [
             ["seconds", "s", "seconds that engine and observables took"],
             [TIMES[1], "1/s", "grains times steps over these seconds"],
@@ -187,7 +187,7 @@ impl Store {
     }
 
     /// J/Jmax in time of every run that was computed here.
-    fn series_table(&self, finished: &[Finished]) -> Result<Table, StudyError> {
+    fn series_table(&self, finished: &[Finished]) -> Result<Table> {
         let ratio = "J/Jmax, mean over the interval, grains inside";
         let columns = [
             ["time", "t", "end of the interval that the row is about"],
@@ -220,7 +220,7 @@ fn computed(finished: &[Finished]) -> impl Iterator<Item = Identity> {
 fn by_run<const N: usize>(
     columns: [[&str; 3]; N],
     runs: impl IntoIterator<Item = (Identity, [Vec<f64>; N])>,
-) -> Result<Table, StudyError> {
+) -> Result<Table> {
     let mut identities = Vec::new();
     let mut numbers = [const { Vec::new() }; N];
     for (identity, of_run) in runs {
@@ -238,7 +238,7 @@ fn by_run<const N: usize>(
 }
 
 /// The rows with the keys of the axes before them.
-fn rows_table(survey: &Survey, finished: &[Finished]) -> Result<Table, StudyError> {
+fn rows_table(survey: &Survey, finished: &[Finished]) -> Result<Table> {
     let mut rows: Option<Table> = None;
     for one in finished {
         match &mut rows {
@@ -288,7 +288,7 @@ fn column_values(values: &[&SettingValue]) -> Values {
 }
 
 /// The runs of the plan that failed, each with its reason.
-fn failed_table(survey: &Survey) -> Result<Table, StudyError> {
+fn failed_table(survey: &Survey) -> Result<Table> {
     let failed: Vec<(PlannedRun, &Entry)> = survey
         .plan
         .sorted_runs()

@@ -8,7 +8,7 @@ use peristalsis_formats::{atomic, csv, hexadecimal, read_table};
 use sha2::{Digest, Sha256};
 
 use super::{Entry, IMPORTED, State, Store, done, set_aside};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::plan::PlannedRun;
 use crate::row::Row;
@@ -21,7 +21,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StudyError::NotRows`] and errors of reading.
-    pub fn import_table(&self, path: &Path) -> Result<usize, StudyError> {
+    pub fn import_table(&self, path: &Path) -> Result<usize> {
         let rows = rows_of(path)?;
         let number = rows.len();
         let Some(first) = rows.first() else {
@@ -70,7 +70,7 @@ impl Store {
     }
 
     /// The rows of all imported tables.
-    pub(super) fn imported(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+    pub(super) fn imported(&self) -> Result<HashMap<Identity, Entry>> {
         let folder = self.file(IMPORTED);
         let Ok(entries) = fs::read_dir(&folder) else {
             return Ok(HashMap::new());
@@ -98,7 +98,7 @@ impl Store {
 }
 
 /// The rows in a table of a file, whose ending says how it is written.
-fn rows_of(path: &Path) -> Result<Vec<Row>, StudyError> {
+fn rows_of(path: &Path) -> Result<Vec<Row>> {
     let table = read_table(path)?;
     if table.rows() == 0 {
         return Ok(Vec::new());

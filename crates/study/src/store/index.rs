@@ -14,7 +14,7 @@ use rusqlite::{
 
 use super::entry::{Entry, Lease, State};
 use super::owner::{Owner, now};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 
 /// Layout of the tables; an index of another is made again.
@@ -38,7 +38,7 @@ const FINDINGS: &str = "SELECT identity, state, reason, NULL, transition_time, N
 
 impl Index {
     /// Opens the index, and answers whether it is new and has to be filled from the files.
-    pub(crate) fn open(path: &Path) -> Result<(Self, bool), StudyError> {
+    pub(crate) fn open(path: &Path) -> Result<(Self, bool)> {
         match Self::try_open(path) {
             Err(StudyError::Index { source, .. }) if is_damaged(&source) => {
                 // It is only an index: what it held is in the files.
@@ -51,7 +51,7 @@ impl Index {
 
     /// Opens the index of a store that cannot be written to, to look at it as it stands. `refusal` is the error of opening it
     /// to write, and stays the error where nothing is there that can be read.
-    pub(crate) fn open_to_read(path: &Path, refusal: StudyError) -> Result<Self, StudyError> {
+    pub(crate) fn open_to_read(path: &Path, refusal: StudyError) -> Result<Self> {
         match &refusal {
             StudyError::Index { source, .. } if is_closed(source) => {}
             _ => return Err(refusal),
@@ -71,7 +71,7 @@ impl Index {
         }
     }
 
-    fn try_open(path: &Path) -> Result<(Self, bool), StudyError> {
+    fn try_open(path: &Path) -> Result<(Self, bool)> {
         let mut connection = Connection::open(path).map_err(failed(path))?;
         let is_new = prepare(&mut connection).map_err(failed(path))?;
         let index = Self {
@@ -81,25 +81,22 @@ impl Index {
         Ok((index, is_new))
     }
 
-    fn read<T>(
-        &self,
-        answer: impl FnOnce(&Connection) -> rusqlite::Result<T>,
-    ) -> Result<T, StudyError> {
+    fn read<T>(&self, answer: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> Result<T> {
         answer(&self.connection).map_err(failed(&self.path))
     }
 
     /// The entries of all runs that are not merely pending.
-    pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+    pub(crate) fn entries(&self) -> Result<HashMap<Identity, Entry>> {
         self.read(|connection| select_entries(connection, ENTRIES))
     }
 
     /// The same without rows and stamps.
-    pub(crate) fn findings(&self) -> Result<HashMap<Identity, Entry>, StudyError> {
+    pub(crate) fn findings(&self) -> Result<HashMap<Identity, Entry>> {
         self.read(|connection| select_entries(connection, FINDINGS))
     }
 
     /// The entry of a run.
-    pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>, StudyError> {
+    pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>> {
         let query = format!("{ENTRIES} WHERE identity = ?1");
         self.read(|connection| {
             connection
@@ -110,7 +107,7 @@ impl Index {
     }
 
     /// All leases that hold.
-    pub(crate) fn leases(&self, timeout: Duration) -> Result<HashMap<Identity, Lease>, StudyError> {
+    pub(crate) fn leases(&self, timeout: Duration) -> Result<HashMap<Identity, Lease>> {
         let mut leases = self.read(all_leases)?;
         leases.retain(|_, lease| !lease.is_void(timeout));
         Ok(leases)
@@ -120,7 +117,7 @@ impl Index {
     pub(crate) fn note<'a>(
         &mut self,
         entries: impl IntoIterator<Item = (Identity, &'a Entry)>,
-    ) -> Result<(), StudyError> {
+    ) -> Result<()> {
         self.change(|transaction| {
             for (identity, entry) in entries {
                 put(transaction, identity, entry)?;
@@ -135,7 +132,7 @@ impl Index {
         &mut self,
         entries: &HashMap<Identity, Entry>,
         before: &HashMap<Identity, Entry>,
-    ) -> Result<(), StudyError> {
+    ) -> Result<()> {
         self.change(|transaction| {
             let now = select_entries(transaction, FINDINGS)?;
             let state_in = |entries: &HashMap<Identity, Entry>, identity: &Identity| {
@@ -160,7 +157,7 @@ impl Index {
         order: &[Identity],
         owner: &Owner,
         timeout: Duration,
-    ) -> Result<Claim, StudyError> {
+    ) -> Result<Claim> {
         self.change(|transaction| {
             let entries = select_entries(transaction, FINDINGS)?;
             let leases = all_leases(transaction)?;
@@ -198,7 +195,7 @@ impl Index {
     }
 
     /// Renews every lease of this owner, and answers which runs it holds.
-    pub(crate) fn renew(&mut self, owner: &Owner) -> Result<Vec<Identity>, StudyError> {
+    pub(crate) fn renew(&mut self, owner: &Owner) -> Result<Vec<Identity>> {
         self.change(|transaction| {
             transaction.execute(
                 "UPDATE leases SET heartbeat = ?1 WHERE token = ?2",
@@ -217,7 +214,7 @@ impl Index {
         identity: Identity,
         owner: &Owner,
         entry: Option<&Entry>,
-    ) -> Result<bool, StudyError> {
+    ) -> Result<bool> {
         self.change(|transaction| {
             let given = transaction.execute(
                 "DELETE FROM leases WHERE identity = ?1 AND token = ?2",
@@ -235,7 +232,7 @@ impl Index {
     fn change<T>(
         &mut self,
         action: impl FnOnce(&Transaction<'_>) -> rusqlite::Result<T>,
-    ) -> Result<T, StudyError> {
+    ) -> Result<T> {
         let transaction = self
             .connection
             .transaction_with_behavior(TransactionBehavior::Immediate);

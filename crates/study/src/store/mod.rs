@@ -29,7 +29,7 @@ use std::time::Duration;
 
 use peristalsis_formats::atomic;
 
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::Identity;
 use crate::row::Row;
 use crate::specification::Specification;
@@ -69,7 +69,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StudyError::OtherStudy`], [`StudyError::NoStore`] where the folder holds other files, errors of writing.
-    pub fn create(path: &Path, study: &Specification) -> Result<Self, StudyError> {
+    pub fn create(path: &Path, study: &Specification) -> Result<Self> {
         let store = Self::at(path);
         if store.file(STUDY).exists() {
             match store.name() {
@@ -141,7 +141,7 @@ impl Store {
     ///
     /// # Errors
     /// [`StudyError::NoStore`].
-    pub fn open(path: &Path) -> Result<Self, StudyError> {
+    pub fn open(path: &Path) -> Result<Self> {
         let store = Self::at(path);
         if !store.file(STUDY).is_file() {
             return Err(StudyError::NoStore {
@@ -182,7 +182,7 @@ impl Store {
     ///
     /// # Errors
     /// As [`Specification::read`].
-    pub fn specification(&self) -> Result<Specification, StudyError> {
+    pub fn specification(&self) -> Result<Specification> {
         let (path, base) = (self.file(STUDY), self.file(BASE));
         let mut last = self.study();
         if let Some(study) = last.as_ref().filter(|study| study.is_still(&path, &base)) {
@@ -194,7 +194,7 @@ impl Store {
     }
 
     /// The index, made from the files where there was none.
-    pub(crate) fn index(&self) -> Result<Index, StudyError> {
+    pub(crate) fn index(&self) -> Result<Index> {
         let (mut index, is_new) = Index::open(&self.file(INDEX))?;
         if is_new {
             self.fill(&mut index)?;
@@ -203,7 +203,7 @@ impl Store {
     }
 
     /// The index, to be looked at only; as it stands, where the store cannot be written to.
-    pub(crate) fn index_to_read(&self) -> Result<Index, StudyError> {
+    pub(crate) fn index_to_read(&self) -> Result<Index> {
         self.index()
             .or_else(|refusal| Index::open_to_read(&self.file(INDEX), refusal))
     }
@@ -220,7 +220,7 @@ pub(crate) fn done(row: &Row, stamp: Option<String>) -> Entry {
 }
 
 /// Writes a text unless the file has it already.
-fn write_if_other(path: &Path, text: &str) -> Result<(), StudyError> {
+fn write_if_other(path: &Path, text: &str) -> Result<()> {
     if fs::read(path).is_ok_and(|found| found == text.as_bytes()) {
         return Ok(());
     }
@@ -236,7 +236,7 @@ fn free(name: impl Fn(u32) -> PathBuf) -> PathBuf {
 }
 
 /// Renames a file to one that says why.
-pub(crate) fn set_aside(path: &Path, why: &str) -> Result<(), StudyError> {
+pub(crate) fn set_aside(path: &Path, why: &str) -> Result<()> {
     let aside = free(|number| {
         let mut name = path.file_name().unwrap_or_default().to_owned();
         name.push(format!(".{why}-{number}"));

@@ -13,7 +13,7 @@ use serde_json::Value;
 
 use super::seal::{SEAL, Seal};
 use super::write_if_other;
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION, Record};
 use crate::plan::{Plan, PlannedRun};
 use crate::row::Row;
@@ -150,7 +150,7 @@ impl RunFiles {
     }
 
     /// Makes the folder with the files that do not change during the run, and removes half-written files of a killed process.
-    pub(crate) fn begin(&self, assignment: &Assignment) -> Result<(), StudyError> {
+    pub(crate) fn begin(&self, assignment: &Assignment) -> Result<()> {
         fs::create_dir_all(&self.path).map_err(StudyError::io("make", &self.path))?;
         if let Some(runs) = self.path.parent() {
             atomic::synchronize(runs)?;
@@ -172,8 +172,8 @@ impl RunFiles {
     pub(crate) fn resume(
         &self,
         assignment: &Assignment,
-        aside: &mut dyn FnMut(&Path, &str) -> Result<(), StudyError>,
-    ) -> Result<Run, StudyError> {
+        aside: &mut dyn FnMut(&Path, &str) -> Result<()>,
+    ) -> Result<Run> {
         let configuration = || assignment.configuration.clone();
         let mut run = None;
         for path in CHECKPOINTS.map(|name| self.file(name)) {
@@ -201,7 +201,7 @@ impl RunFiles {
     }
 
     /// Saves the state; the one before becomes the older generation.
-    pub(crate) fn save(&self, run: &Run) -> Result<(), StudyError> {
+    pub(crate) fn save(&self, run: &Run) -> Result<()> {
         let [newer, older] = CHECKPOINTS.map(|name| self.file(name));
         match fs::rename(&newer, &older) {
             Err(error) if error.kind() != ErrorKind::NotFound => {
@@ -219,7 +219,7 @@ impl RunFiles {
         run: &Run,
         summary: &Summary,
         assignment: &Assignment,
-    ) -> Result<(), StudyError> {
+    ) -> Result<()> {
         let row = Row::of(self.identity, assignment.replicate, summary);
         let timeseries = kept(timeseries_table(run)?, assignment.record.columns.as_deref());
         let (science, timing) = split(summary);
@@ -258,7 +258,7 @@ impl RunFiles {
     }
 
     /// Notes the error that the run ended in, beside its last state.
-    pub(crate) fn fail(&self, reason: &str) -> Result<(), StudyError> {
+    pub(crate) fn fail(&self, reason: &str) -> Result<()> {
         let report = serde_json::json!({
             "identity": self.identity.to_string(),
             "reason": reason,

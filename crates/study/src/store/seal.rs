@@ -6,7 +6,7 @@ use peristalsis_formats::{atomic, hexadecimal};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use crate::error::StudyError;
+use crate::error::Result;
 use crate::identity::{Identity, PHYSICS_VERSION};
 
 /// Name of the file.
@@ -49,7 +49,7 @@ impl Seal {
         folder: &Path,
         identity: Identity,
         products: &[(&str, Vec<u8>)],
-    ) -> Result<(), StudyError> {
+    ) -> Result<()> {
         let contents = Contents {
             identity: identity.to_string(),
             physics_version: PHYSICS_VERSION,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::{Entry, LEASE_TIMEOUT, State, Store};
-use crate::error::StudyError;
+use crate::error::{Result, StudyError};
 use crate::estimate::work;
 use crate::identity::Identity;
 use crate::plan::Plan;
@@ -78,7 +78,7 @@ impl Survey {
     ///
     /// # Errors
     /// [`StudyError::NoSuchRun`] unless there is exactly one.
-    pub fn run_beginning(&self, prefix: &str) -> Result<Identity, StudyError> {
+    pub fn run_beginning(&self, prefix: &str) -> Result<Identity> {
         let mut found: Vec<Identity> = self
             .plan
             .runs()
@@ -115,7 +115,7 @@ impl Store {
     ///
     /// # Errors
     /// Errors of reading study file or index.
-    pub fn survey(&self) -> Result<Survey, StudyError> {
+    pub fn survey(&self) -> Result<Survey> {
         let study = self.specification()?;
         let index = self.index_to_read()?;
         let entries = index.entries()?;

@@ -2,20 +2,21 @@
 
 use core::f64::consts::PI;
 
+use peristalsis_figures::Width;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Tint};
-use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_physics::contact::{DissipationForm, Normal, ViscoelasticHertz};
 
-use super::errors::{Steps, convergences, error_drawing};
+use super::errors::{Steps, convergences, error_chart};
 use super::plot::{curve, open_if, points};
 use super::restitution::spring;
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::chain::Chain;
 use crate::textbook::reference::hertz;
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("chain.md"));
 
@@ -69,13 +70,7 @@ impl Experiment {
     }
 
     /// The frequency of a mode; the step is in units of sqrt(m/k).
-    fn frequency(
-        &self,
-        mode: usize,
-        half_periods: usize,
-        means: Means,
-        step: f64,
-    ) -> Result<f64, ClaimError> {
+    fn frequency(&self, mode: usize, half_periods: usize, means: Means, step: f64) -> Result<f64> {
         let time_step = step / self.stiffness.sqrt();
         self.chain.frequency(mode, half_periods, means, time_step)
     }
@@ -92,7 +87,7 @@ struct Row {
     scaled: f64,
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let half_periods = circumstances.size.choose(4, 10);
     let mut finding = Finding::described(&PROSE, &[]);
     let mut rows: Vec<Row> = Vec::new();
@@ -141,14 +136,10 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
         let check = Check::relative("speed of sound", experiment.name, expected, found, 3e-4);
         finding.checks.push(check.by("a sqrt(k/m)"));
     }
-    let errors = error_drawing(
-        "Errors of the frequency fall with the square of the time step.",
-        &STEPS,
-        &[("", &finding.convergences[..2])],
-    );
+    let errors = error_chart(&STEPS, &[("", &finding.convergences[..2])]);
     finding.figures = vec![
-        PROSE.figure("chain", &[], dispersion(&rows)?),
-        PROSE.figure("chain-errors", &[], errors?),
+        PROSE.chart("chain", &[], dispersion(&rows))?,
+        PROSE.chart("chain-errors", &[], errors)?,
     ];
     finding.data = Some(
         Columns::of(&rows)
@@ -161,7 +152,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     Ok(finding)
 }
 
-fn dispersion(rows: &[Row]) -> Result<Drawing, FigureError> {
+fn dispersion(rows: &[Row]) -> ChartFigure {
     let over_pi = spaced(0.0, 1.0, 80);
     let sound = [0.0, 0.6];
     let mut panel = ChartPanel::new("*ka*/π", "*ω* / √(*k*/*m*)")
@@ -179,8 +170,5 @@ fn dispersion(rows: &[Row]) -> Result<Drawing, FigureError> {
         let found = points(rows[0].law, rows, |row| (row.wavenumber / PI, row.scaled));
         panel = panel.with(open_if(series > 0, found.series(series)));
     }
-    ChartFigure::new(panel)
-        .description("Frequencies of both laws lie on 2 sin(ka/2), which leaves the line of sound as waves become short.")
-        .width(Width::SingleColumn)
-        .draw()
+    ChartFigure::new(panel).width(Width::SingleColumn)
 }

@@ -2,10 +2,11 @@
 
 use super::plot::open_if;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Points, Tint};
-use peristalsis_figures::{Drawing, FigureError, Scale, Width};
+use peristalsis_figures::{Scale, Width};
 
+use crate::Convergence;
+use crate::error::Result;
 use crate::textbook::experiment::Means;
-use crate::{ClaimError, Convergence};
 
 /// Time steps at which errors are measured, the longest first.
 pub(super) struct Steps {
@@ -21,10 +22,10 @@ pub(super) fn convergences(
     (quantity, setting): (&str, &str),
     steps: &Steps,
     expected_order: [f64; 2],
-    error: impl Fn(Means, f64) -> Result<f64, ClaimError>,
-) -> Result<Vec<Convergence>, ClaimError> {
+    error: impl Fn(Means, f64) -> Result<f64>,
+) -> Result<Vec<Convergence>> {
     let with = |means: Means| {
-        let errors: Result<Vec<f64>, _> = steps.lengths.iter().map(|h| error(means, *h)).collect();
+        let errors: Result<Vec<f64>> = steps.lengths.iter().map(|h| error(means, *h)).collect();
         Ok(Convergence::new(
             quantity,
             &format!("{setting}, {}", means.name()),
@@ -38,11 +39,7 @@ pub(super) fn convergences(
 }
 
 /// Errors against the time step, one panel for each titled group, with slopes of order 1 and 2 to compare with.
-pub(super) fn error_drawing(
-    description: &str,
-    steps: &Steps,
-    groups: &[(&str, &[Convergence])],
-) -> Result<Drawing, FigureError> {
+pub(super) fn error_chart(steps: &Steps, groups: &[(&str, &[Convergence])]) -> ChartFigure {
     let panels = groups.iter().map(|(title, group)| {
         let panel = ChartPanel::new(steps.label, "relative error")
             .title(title)
@@ -55,8 +52,7 @@ pub(super) fn error_drawing(
     } else {
         Width::SingleColumn
     };
-    let figure = ChartFigure::grid(groups.len(), panels).description(description);
-    figure.width(width).draw()
+    ChartFigure::grid(groups.len(), panels).width(width)
 }
 
 fn error_panel(mut panel: ChartPanel, convergences: &[Convergence]) -> ChartPanel {

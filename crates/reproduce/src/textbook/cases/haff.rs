@@ -1,18 +1,19 @@
 //! Haff's law: a gas of inelastic grains cools.
 
 use peristalsis_analysis::mean_and_error;
+use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Points, Tint};
-use peristalsis_figures::{Drawing, FigureError, Scale};
 
 use super::plot::{curve, open_if};
 use super::restitution::{linear_damping, measured_with, spring};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::gas::Gas;
 use crate::textbook::reference::kinetic::CoolingGas;
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("haff.md"));
 
@@ -38,7 +39,7 @@ struct Experiment {
 }
 
 impl Experiment {
-    fn new(restitution: f64) -> Result<Self, ClaimError> {
+    fn new(restitution: f64) -> Result<Self> {
         let law = spring(linear_damping(restitution));
         let contact_time = law.contact_time(0.5);
         let time_step = contact_time / STEPS_PER_CONTACT;
@@ -100,7 +101,7 @@ struct Row {
     temperature: f64,
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let replicates = circumstances.size.choose(4, 28);
     let mut finding = Finding::described(
         &PROSE,
@@ -140,7 +141,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
             .by("Haff 1983, van Noije & Ernst 1998");
         finding.checks.push(check.with_error(error));
     }
-    finding.figures = vec![PROSE.figure("haff", &[], drawing(&rows)?)];
+    finding.figures = vec![PROSE.chart("haff", &[], drawing(&rows))?];
     finding.data = Some(
         Columns::of(&rows)
             .number("restitution", "", "e", |row| row.restitution)
@@ -152,7 +153,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     Ok(finding)
 }
 
-fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
+fn drawing(rows: &[Row]) -> ChartFigure {
     let law = |time: f64| 1.0 / ((1.0 + time) * (1.0 + time));
     let mut panel = ChartPanel::new("time *t*/*τ*", "temperature *T*/*T*_{0}")
         .x_range(0.0..)
@@ -178,6 +179,4 @@ fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
         panel = panel.with(open_if(series > 0, points));
     }
     ChartFigure::new(panel)
-        .description("Both gases cool along Haff's law.")
-        .draw()
 }

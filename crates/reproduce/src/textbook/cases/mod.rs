@@ -13,7 +13,7 @@ mod spin;
 mod trial;
 mod viscoelastic;
 
-use crate::error::ClaimError;
+use crate::error::Result;
 use crate::examination::experiments_named;
 use crate::textbook::case::Case;
 
@@ -32,7 +32,7 @@ pub const CASES: &[Case] = &[
 /// The cases of these names, in the order of the table; all where none is named.
 ///
 /// # Errors
-/// [`ClaimError::NoSuchExperiment`].
-pub fn chosen(cases: &[Case], names: &[String]) -> Result<Vec<Case>, ClaimError> {
+/// [`ClaimError::NoSuchExperiment`](crate::ClaimError::NoSuchExperiment).
+pub fn chosen(cases: &[Case], names: &[String]) -> Result<Vec<Case>> {
     experiments_named("case", cases, |case| case.name, names)
 }

@@ -5,15 +5,16 @@ use core::f64::consts::PI;
 use glam::DVec3;
 use peristalsis_physics::contact::{Normal, ViscoelasticHertz};
 
-use super::errors::error_drawing;
+use super::errors::error_chart;
 use super::material::Material;
 use super::trial::{PER_CONTACT, Trial};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::{Impact, Rebound};
 use crate::textbook::experiment::{Means, smooth};
 use crate::textbook::reference::hertz::HertzImpact;
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("normal.md"));
 
@@ -109,7 +110,7 @@ fn expected(reference: &HertzImpact) -> [f64; 3] {
     [time, reference.largest_overlap(), force]
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = Finding::described(&PROSE, &[]);
     let mut rows: Vec<(String, &str, f64, f64)> = Vec::new();
     for experiment in &EXPERIMENTS {
@@ -143,11 +144,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
             .number("found", "", "engine", |row| row.3)
             .table()?,
     );
-    let errors = error_drawing(
-        "Errors of contact time, largest overlap and peak force fall with the square of the time step.",
-        &PER_CONTACT,
-        &[("", &finding.convergences[..6])],
-    );
-    finding.figures = vec![PROSE.figure("normal-impact-errors", &[], errors?)];
+    let errors = error_chart(&PER_CONTACT, &[("", &finding.convergences[..6])]);
+    finding.figures = vec![PROSE.chart("normal-impact-errors", &[], errors)?];
     Ok(finding)
 }

@@ -1,20 +1,21 @@
 //! Oblique impact of a sphere on a plane with a constant resultant velocity.
 
 use glam::DVec3;
+use peristalsis_figures::Width;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
-use peristalsis_figures::{Drawing, FigureError, Width};
 
-use super::errors::error_drawing;
+use super::errors::error_chart;
 use super::material::{ALUMINIUM_OXIDE, aluminium_oxide_impact};
 use super::plot::points;
 use super::trial::{PER_CONTACT, Sweep, Trial, dissipation_time};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::Rebound;
 use crate::textbook::reference::impact::outcome;
 use crate::textbook::reference::maw::MindlinImpact;
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("oblique.md"));
 
@@ -113,7 +114,7 @@ impl Experiment {
     }
 
     /// The engine beside the equation of motion, and at large angles beside sliding throughout.
-    fn checks(&self) -> Result<Vec<Check>, ClaimError> {
+    fn checks(&self) -> Result<Vec<Check>> {
         let mut checks = Vec::new();
         for angle in [5.0, 15.0, 25.0, 60.0] {
             let (found, expected) = (self.simulated(angle)?, self.integrated(angle));
@@ -144,7 +145,7 @@ fn beside_mindlin(place: usize, rows: &[Row], tolerance: f64) -> Check {
     Check::absolute(&name, "all angles", 0.0, largest, tolerance).by("Maw et al. 1976")
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let experiment = Experiment::new();
     let angles = circumstances.size.choose(
         vec![2.0, 5.0, 10.0, 15.0, 20.0, 25.0, 30.0, 40.0, 60.0, 80.0],
@@ -173,8 +174,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
         finding.convergences.extend(errors);
     }
     let (sticks, slides) = finding.convergences.split_at(2);
-    let errors = error_drawing(
-        "Errors of the spin fall with the time step.",
+    let errors = error_chart(
         &PER_CONTACT,
         &[
             ("15 degrees, sticks and slides", sticks),
@@ -182,8 +182,8 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
         ],
     );
     finding.figures = vec![
-        PROSE.figure("oblique-impact", &[], drawing(&experiment, &rows)?),
-        PROSE.figure("oblique-impact-errors", &[], errors?),
+        PROSE.chart("oblique-impact", &[], drawing(&experiment, &rows))?,
+        PROSE.chart("oblique-impact-errors", &[], errors)?,
     ];
     let incidence = "angle of incidence";
     let mut data = Columns::of(&rows).number("angle", "degrees", incidence, |row| row.angle);
@@ -197,7 +197,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     Ok(finding)
 }
 
-fn drawing(experiment: &Experiment, rows: &[Row]) -> Result<Drawing, FigureError> {
+fn drawing(experiment: &Experiment, rows: &[Row]) -> ChartFigure {
     let dense = spaced(1.0, 89.0, 89);
     let expected: Vec<[[f64; 3]; 3]> = dense.iter().map(|x| experiment.expected(*x)).collect();
     let panels = LABELS.iter().enumerate().map(|(place, label)| {
@@ -224,8 +224,6 @@ fn drawing(experiment: &Experiment, rows: &[Row]) -> Result<Drawing, FigureError
             .with(points("engine", rows, |row| (row.angle, row.by[0][place])).series(0))
     });
     ChartFigure::grid(3, panels)
-        .description("Steep impacts stick, turn back and spin; grazing ones slide. The engine lies on the equation of motion of its own law, and near Mindlin's contact.")
         .width(Width::DoubleColumn)
         .legend(LegendPlace::Below)
-        .draw()
 }

@@ -2,19 +2,20 @@
 
 use core::f64::consts::PI;
 
+use peristalsis_figures::Width;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line};
-use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_physics::contact::{LinearSpringDashpot, Normal};
 
 use super::material::aluminium_oxide_impact;
 use super::plot::points;
 use super::trial::{FINE, Trial, dissipation_time, expected_restitution};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::Impact;
 use crate::textbook::experiment::{Means, smooth};
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("restitution.md"));
 
@@ -44,7 +45,7 @@ pub(super) fn linear_damping(restitution: f64) -> f64 {
 
 /// Root mean square restitution of two grains under the linear law with exactly so many steps in a contact, over places of
 /// the onset within a step: the restitution of a gas of them.
-pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64, ClaimError> {
+pub(super) fn measured_with(damping: f64, steps: f64) -> Result<f64> {
     const PLACES: usize = 16;
     let impact = linear(damping);
     let time_step = spring(damping).contact_time(0.5) / steps;
@@ -118,7 +119,7 @@ struct Row {
     found: f64,
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = Finding::described(&PROSE, &[]);
     let mut rows: Vec<Row> = Vec::new();
     for series in &SERIES {
@@ -148,7 +149,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
             });
         }
     }
-    finding.figures = vec![PROSE.figure("restitution", &[], drawing(&rows)?)];
+    finding.figures = vec![PROSE.chart("restitution", &[], drawing(&rows))?];
     finding.data = Some(
         Columns::of(&rows)
             .word("law", "normal law", |row| row.law.to_owned())
@@ -160,7 +161,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     Ok(finding)
 }
 
-fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
+fn drawing(rows: &[Row]) -> ChartFigure {
     let of_series = |(series, rows): (&Series, &[Row])| {
         let unit = (series.unit)(&rows[0]);
         let largest = rows.iter().map(|row| row.damping).fold(0.0, f64::max);
@@ -178,10 +179,6 @@ fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
         2,
         SERIES.iter().zip(rows.chunks(WANTED.len())).map(of_series),
     )
-    .description(
-        "Restitution falls with damping; the engine's points lie on the curves of the references.",
-    )
     .width(Width::DoubleColumn)
     .panel_height(52.0)
-    .draw()
 }

@@ -1,16 +1,16 @@
 //! A sphere thrown without spin slides, and ends up rolling.
 
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Pattern, Reference, Tint};
-use peristalsis_figures::{Drawing, FigureError};
 use peristalsis_physics::contact::{CundallStrack, Sliding};
 
 use super::plot::points;
 use super::restitution::spring;
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::sliding::{Instant, Throw};
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("roll.md"));
 
@@ -35,7 +35,7 @@ fn slip_time() -> f64 {
     2.0 * THROW.speed / (7.0 * THROW.friction.kinetic_friction * THROW.gravity)
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = Finding::described(&PROSE, &[]);
     let duration = DURATION * slip_time();
     let mut usual = Vec::new();
@@ -58,7 +58,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
             .number("rolling", "d/t", "r omega", |row| row.rolling)
             .table()?,
     );
-    finding.figures = vec![PROSE.figure("slip-to-roll", &[], drawing(&thinned)?)];
+    finding.figures = vec![PROSE.chart("slip-to-roll", &[], drawing(&thinned))?];
     Ok(finding)
 }
 
@@ -99,7 +99,7 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
     ]
 }
 
-fn drawing(course: &[Instant]) -> Result<Drawing, FigureError> {
+fn drawing(course: &[Instant]) -> ChartFigure {
     let ends = [0.0, slip_time()];
     let slowed = THROW.friction.kinetic_friction * THROW.gravity / THROW.speed;
     let line = |name: &str, of: fn(f64) -> f64| {
@@ -119,8 +119,4 @@ fn drawing(course: &[Instant]) -> Result<Drawing, FigureError> {
         .with(series("velocity *v*", |row| row.velocity).series(0))
         .with(series("spin *rω*", |row| row.rolling).series(1).open());
     ChartFigure::new(panel)
-        .description(
-            "Velocity falls and spin rises until both are 5/7 of the velocity at the start.",
-        )
-        .draw()
 }

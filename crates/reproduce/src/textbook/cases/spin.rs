@@ -1,20 +1,21 @@
 //! Impacts with spin: on a plane, of two equal spheres, and of two of different sizes.
 
 use glam::DVec3;
+use peristalsis_figures::Width;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, LegendPlace, Line, Tint};
-use peristalsis_figures::{Drawing, FigureError, Width};
 use peristalsis_physics::contact::Normal;
 
 use super::material::Material;
 use super::plot::{named_once, points};
 use super::trial::{Sweep, Trial, dissipation_time};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
 use crate::textbook::experiment::smooth;
 use crate::textbook::reference::impact::outcome;
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("spin.md"));
 
@@ -120,7 +121,7 @@ impl Experiment {
     }
 
     /// Slow spins beside the equation of motion, a fast one beside sliding throughout.
-    fn checks(&self) -> Result<Vec<Check>, ClaimError> {
+    fn checks(&self) -> Result<Vec<Check>> {
         let mut checks = Vec::new();
         for (spin, expected, reference) in [
             (0.5, self.integrated(0.5), "equation of motion"),
@@ -148,7 +149,7 @@ struct Row {
     expected: [f64; 2],
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut finding = Finding::described(&PROSE, &[]);
     let experiments = MEETS.each_ref().map(Experiment::new);
     let mut rows: Vec<Row> = Vec::new();
@@ -173,7 +174,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
         let errors = trial.convergences(("spin", &setting), [0.7, 3.0], error)?;
         finding.convergences.extend(errors);
     }
-    finding.figures = vec![PROSE.figure("spin", &[], drawing(&experiments, &rows)?)];
+    finding.figures = vec![PROSE.chart("spin", &[], drawing(&experiments, &rows))?];
     finding.data = Some(
         Columns::of(&rows)
             .word("meets", "partner", |row| row.meets.to_owned())
@@ -187,7 +188,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
     Ok(finding)
 }
 
-fn drawing(experiments: &[Experiment], rows: &[Row]) -> Result<Drawing, FigureError> {
+fn drawing(experiments: &[Experiment], rows: &[Row]) -> ChartFigure {
     let dense = spaced(0.0, LARGEST_SPIN, 121);
     let panels = experiments.iter().map(|experiment| {
         let over = |of: &dyn Fn(f64) -> [f64; 2]| -> Vec<[f64; 2]> {
@@ -215,10 +216,6 @@ fn drawing(experiments: &[Experiment], rows: &[Row]) -> Result<Drawing, FigureEr
         panel
     });
     ChartFigure::grid(3, panels)
-        .description(
-            "Slow spins are held and turned back, fast ones lose what sliding friction takes.",
-        )
         .width(Width::DoubleColumn)
         .legend(LegendPlace::Below)
-        .draw()
 }

@@ -4,11 +4,12 @@ use glam::DVec3;
 
 use super::errors::{Steps, convergences};
 use super::material::Material;
+use crate::error::Result;
 use crate::textbook::experiment::Means;
 use crate::textbook::experiment::impact::{Impact, Rebound};
 use crate::textbook::reference::hertz::contact_time;
 use crate::textbook::reference::impact::outcome;
-use crate::{Check, ClaimError, Convergence};
+use crate::{Check, Convergence};
 
 /// Steps in units of the contact time t_c.
 pub(super) const PER_CONTACT: Steps = Steps {
@@ -48,7 +49,7 @@ impl Trial {
     }
 
     /// The motion after the impact at the finest step.
-    pub(super) fn rebound(&self, means: Means) -> Result<Rebound, ClaimError> {
+    pub(super) fn rebound(&self, means: Means) -> Result<Rebound> {
         self.impact.simulate(means, self.contact_time / FINE, 0.5)
     }
 
@@ -56,12 +57,7 @@ impl Trial {
     /// `steps` and one more fit into the contact.
     ///
     /// Onset and end fall within a step at places that matter alike: with one step only, the two could cancel.
-    fn error(
-        &self,
-        means: Means,
-        steps: f64,
-        error: impl Fn(&Rebound) -> f64,
-    ) -> Result<f64, ClaimError> {
+    fn error(&self, means: Means, steps: f64, error: impl Fn(&Rebound) -> f64) -> Result<f64> {
         let mut sum = 0.0;
         for place in 0..PHASES {
             let part = |number: usize| ((number % PHASES) as f64 + 0.5) / PHASES as f64;
@@ -72,7 +68,7 @@ impl Trial {
     }
 
     /// Restitution by the engine, the root mean square over onsets and steps: its scatter is far below e.
-    pub(super) fn restitution(&self, steps: f64) -> Result<f64, ClaimError> {
+    pub(super) fn restitution(&self, steps: f64) -> Result<f64> {
         self.error(Means::USUAL, steps, |rebound| {
             self.impact.restitution(rebound.velocity)
         })
@@ -84,7 +80,7 @@ impl Trial {
         names: (&str, &str),
         expected_order: [f64; 2],
         error: impl Fn(&Rebound) -> f64,
-    ) -> Result<Vec<Convergence>, ClaimError> {
+    ) -> Result<Vec<Convergence>> {
         convergences(names, &PER_CONTACT, expected_order, |means, step| {
             self.error(means, 1.0 / step, &error)
         })
@@ -92,7 +88,7 @@ impl Trial {
 
     /// The fast kernels against the plain one, with both integrators: largest difference of velocities and spins after the
     /// impact, over its speed.
-    pub(super) fn kernels_agree(&self, setting: &str) -> Result<Check, ClaimError> {
+    pub(super) fn kernels_agree(&self, setting: &str) -> Result<Check> {
         let mut largest = 0.0_f64;
         for means in Means::INTEGRATORS {
             let (fast, plain) = (self.rebound(means)?, self.rebound(means.plainly())?);
@@ -138,7 +134,7 @@ pub(super) trait Sweep<const N: usize> {
     fn read(&self, x: f64, velocity: DVec3, spin: f64) -> [f64; N];
 
     /// By the engine.
-    fn simulated(&self, x: f64) -> Result<[f64; N], ClaimError> {
+    fn simulated(&self, x: f64) -> Result<[f64; N]> {
         let found = self.trial(x).rebound(Means::USUAL)?;
         Ok(self.read(x, found.velocity[0], found.spin[0]))
     }

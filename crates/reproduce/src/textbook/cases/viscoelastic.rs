@@ -1,20 +1,21 @@
 //! Restitution of viscoelastic spheres against the speed of impact.
 
 use glam::DVec3;
+use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Pattern, Reference, Tint};
-use peristalsis_figures::{Drawing, FigureError, Scale};
 use peristalsis_physics::contact::{DissipationForm, Normal, ViscoelasticHertz};
 
-use super::errors::error_drawing;
+use super::errors::error_chart;
 use super::plot::{curve, named_once, points};
 use super::trial::{FINE, PER_CONTACT, Trial, expected_restitution};
 use crate::columns::Columns;
+use crate::error::Result;
 use crate::exhibit::spaced;
 use crate::textbook::case::Circumstances;
 use crate::textbook::experiment::impact::{Impact, Rebound, Sphere};
 use crate::textbook::experiment::smooth;
 use crate::textbook::reference::hertz::{HertzImpact, viscoelastic_series};
-use crate::{Check, ClaimError, Finding, Prose};
+use crate::{Check, Finding, Prose};
 
 pub(super) const PROSE: Prose = Prose::new(include_str!("viscoelastic.md"));
 
@@ -72,7 +73,7 @@ struct Row {
     found: [f64; 2],
 }
 
-pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, ClaimError> {
+pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     const PRESET: DissipationForm = DissipationForm::Viscoelastic;
     let preset = |speed: f64| Trial::of(impact(PRESET, speed));
     let mut finding = Finding::described(&PROSE, &[]);
@@ -107,14 +108,10 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding, Claim
             found: [one.restitution(FINE)?, other.restitution(FINE)?],
         });
     }
-    let errors = error_drawing(
-        "Errors of the restitution fall with the power 3/2 to 2 of the time step.",
-        &PER_CONTACT,
-        &[("", &finding.convergences)],
-    );
+    let errors = error_chart(&PER_CONTACT, &[("", &finding.convergences)]);
     finding.figures = vec![
-        PROSE.figure("viscoelastic", &[], drawing(&rows)?),
-        PROSE.figure("viscoelastic-errors", &[], errors?),
+        PROSE.chart("viscoelastic", &[], drawing(&rows))?,
+        PROSE.chart("viscoelastic-errors", &[], errors)?,
     ];
     let mut data = Columns::of(&rows).number("speed", "d/t", "relative speed", |row| row.speed);
     for (place, (name, ..)) in FORMS.into_iter().enumerate() {
@@ -138,7 +135,7 @@ fn speeds(number: usize) -> Vec<f64> {
         .collect()
 }
 
-fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
+fn drawing(rows: &[Row]) -> ChartFigure {
     let dense = speeds(61);
     let mut panel = ChartPanel::new("speed *v* (*d*/*t*\\*)", "restitution *e*")
         .x_scale(Scale::Logarithmic)
@@ -159,6 +156,4 @@ fn drawing(rows: &[Row]) -> Result<Drawing, FigureError> {
     }
     let source = Reference::horizontal(0.85).label("0.85, the source at *v* = 1");
     ChartFigure::new(panel.with(source))
-        .description("Restitution falls slowly with speed; the engine lies on the equation of motion, and on the series at small speed.")
-        .draw()
 }

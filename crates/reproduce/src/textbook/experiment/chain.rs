@@ -7,7 +7,7 @@ use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::Normal;
 
 use super::{Means, far_away, smooth};
-use crate::error::ClaimError;
+use crate::error::Result;
 
 /// A ring of grains of diameter and mass 1, closed by the period of the tube; each overlaps both neighbours.
 ///
@@ -43,7 +43,7 @@ impl Chain {
         half_periods: usize,
         means: Means,
         time_step: f64,
-    ) -> Result<f64, ClaimError> {
+    ) -> Result<f64> {
         let spacing = self.spacing();
         let shape: Vec<f64> = (0..self.grains)
             .map(|j| libm::cos(TAU * (mode * j % self.grains) as f64 / self.grains as f64))

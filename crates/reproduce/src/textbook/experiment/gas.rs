@@ -9,7 +9,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 use super::{Means, far_away, smooth};
-use crate::error::ClaimError;
+use crate::error::Result;
 use crate::textbook::case::Circumstances;
 
 /// Grains of diameter and mass 1 in a cylinder that is periodic along its axis and whose side is a mirror for centres.
@@ -105,7 +105,7 @@ impl Gas {
         time_step: f64,
         [duration, samples]: [f64; 2],
         circumstances: Circumstances<'_>,
-    ) -> Result<Vec<[f64; 2]>, ClaimError> {
+    ) -> Result<Vec<[f64; 2]>> {
         let contact = smooth(Normal::Linear(self.law));
         let radius = self.radius();
         let wall = far_away(radius + 3.0, self.length);
@@ -133,7 +133,7 @@ impl Gas {
 /// The simulation with the grains turned back that will be outside in a time `ahead`.
 ///
 /// Half of the time between two looks: so the mirror stands where it should in the mean.
-fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulation, ClaimError> {
+fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulation> {
     let leaves = |position: &DVec3, velocity: &DVec3| {
         let outward = position.x * velocity.x + position.y * velocity.y;
         let place = *position + ahead * *velocity;

@@ -5,7 +5,7 @@ use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::ContactModel;
 
 use super::{Means, far_away, plane};
-use crate::error::ClaimError;
+use crate::error::{ClaimError, Result};
 
 /// Diameter of the wall's sphere that stands for a plane \[d\].
 ///
@@ -138,12 +138,7 @@ impl Impact {
     ///
     /// # Errors
     /// Errors of the engine, and spheres that do not part.
-    pub(crate) fn simulate(
-        &self,
-        means: Means,
-        time_step: f64,
-        phase: f64,
-    ) -> Result<Rebound, ClaimError> {
+    pub(crate) fn simulate(&self, means: Means, time_step: f64, phase: f64) -> Result<Rebound> {
         let lead = (1.0 + phase) * time_step;
         let mut experiment = Experiment::new(self, means, time_step, lead);
         let mut past = [experiment.look(); 3];

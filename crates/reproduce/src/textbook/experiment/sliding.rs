@@ -5,7 +5,7 @@ use peristalsis_engine::{Bodies, Parameters, Simulation};
 use peristalsis_physics::contact::{ContactModel, CundallStrack, LinearSpringDashpot, Normal};
 
 use super::{Means, plane};
-use crate::error::ClaimError;
+use crate::error::Result;
 
 /// Diameter of the sphere that stands for the plane \[d\]: a path of a few d inclines it by some 1e-5 only.
 const PLANE_DIAMETER: f64 = 1e6;
@@ -46,7 +46,7 @@ impl Throw {
         means: Means,
         time_step: f64,
         duration: f64,
-    ) -> Result<Vec<Instant>, ClaimError> {
+    ) -> Result<Vec<Instant>> {
         // A ring of one sphere (almost) on the axis: its top is a plane across the axis, along which the weight acts.
         let off_axis = 1e-3;
         let height = 0.5 * (1.0 + PLANE_DIAMETER) - self.overlap();
