@@ -7,14 +7,14 @@
 use std::collections::HashSet;
 
 use libfuzzer_sys::fuzz_target;
-use peristalsis_study::{Plan, Specification, StudyError};
+use peristalsis_study::{Specification, StudyError};
 
 fuzz_target!(|input: &str| {
     let (text, base) = input.split_once("\n---\n").unwrap_or((input, ""));
     let file = |name: &str| Ok((name.to_owned(), base.to_owned()));
     match Specification::from_toml("fuzz.toml", text, file) {
         Ok(study) => {
-            let plan = Plan::of(&study).expect("it was checked when the study was read");
+            let plan = study.plan();
             let identities: HashSet<_> = plan.runs().iter().map(|run| run.identity).collect();
             assert_eq!(identities.len(), plan.runs().len());
             assert!(!plan.runs().is_empty());

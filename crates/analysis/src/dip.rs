@@ -42,7 +42,7 @@ struct Place {
 ///
 /// ```
 /// use peristalsis_analysis::{Bootstrap, dip_test};
-/// let simulations = Bootstrap::new(200, 1 );
+/// let simulations = Bootstrap::new(200, 1);
 /// let found = dip_test(&[0.1, 0.1, 0.1, 0.9, 0.9, 0.9], simulations)?;
 /// assert!((found.dip - 0.25).abs() < 1e-12);
 /// # Ok::<(), peristalsis_analysis::Error>(())

@@ -293,7 +293,7 @@ mod tests {
             if let (Some(odd), Some(run)) = (odd, runs.first_mut()) {
                 run.push(odd);
             }
-            let bootstrap = Bootstrap::new(20, 0 );
+            let bootstrap = Bootstrap::new(20, 0);
             for after_end in [AfterEnd::Leave, AfterEnd::Hold { samples }] {
                 if let Ok(found) = second_moment(&runs, after_end) {
                     prop_assert!(found.iter().all(|moment| moment.variance >= 0.0));

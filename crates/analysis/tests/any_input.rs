@@ -34,9 +34,9 @@ fn table() -> impl Strategy<Value = Vec<(f64, f64, f64, bool)>> {
     ]
 }
 
-/// Runs at up to six widths, at times of all orders of magnitude, one of them odd at times.
+/// Runs at up to six widths, at times over eight orders of magnitude, one of them odd at times.
 fn runs() -> impl Strategy<Value = (Vec<f64>, Vec<Transition>)> {
-    let rows = prop::collection::vec((0_u8..6, -4.0..6.0_f64, any::<bool>()), 0..25);
+    let rows = prop::collection::vec((0_u8..6, -8.0..8.0_f64, any::<bool>()), 0..25);
     let spacing = prop_oneof![1 => Just(0.0), 3 => Just(0.1), 1 => Just(1e-9), 1 => Just(1e8)];
     let odd = prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(-1.0), Just(0.0)];
     (rows, spacing, prop::option::weighted(0.3, odd)).prop_map(|(rows, spacing, odd)| {
@@ -64,7 +64,7 @@ fn is_whole(numbers: &[Uncertain]) -> bool {
 const FEW: Bootstrap = Bootstrap::new(20, 1);
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(48))]
+    #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
     fn fits_to_runs_are_finite((width, runs) in runs()) {
@@ -243,6 +243,61 @@ proptest! {
                 let _ = collapse.bootstrap(&fit, &steps, FEW);
             }
             let _ = collapse.leave_one_out(&start, &steps, 1, 0);
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn any_values_are_judged(
+        values in prop::collection::vec(prop_oneof![any::<f64>(), 0.0..1.0_f64], 0..30),
+    ) {
+        if let Ok(found) = two_peaks(&values) {
+            prop_assert!(found.lower.mean <= found.upper.mean);
+        }
+        if let Ok(found) = histogram(&values, -0.5, 0.5, 7) {
+            prop_assert_eq!(found.counts.iter().sum::<usize>() + found.outside, values.len());
+        }
+    }
+
+    #[test]
+    fn any_curves_have_a_quality_or_an_error(
+        curves in prop::collection::vec(
+            prop::collection::vec((any::<f64>(), -1.0..1.0_f64, any::<f64>()), 0..6), 0..5),
+    ) {
+        let point = |&(x, y, error): &(f64, f64, f64)| CurvePoint { x, y, error };
+        let curves: Vec<Vec<CurvePoint>> =
+            curves.iter().map(|curve| curve.iter().map(point).collect()).collect();
+        if let Ok(found) = collapse_quality(&curves) {
+            prop_assert!(found.overlap > 0.0 && found.overlap <= 1.0);
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn curves_that_may_collapse_give_a_fit_or_an_error(
+        curves in prop::collection::vec(
+            (0.01..1.0_f64, prop::collection::vec((2.0..3.0_f64, -1.0..9.0_f64), 0..6)), 0..4),
+    ) {
+        let point = |&(x, y): &(f64, f64)| CurvePoint { x, y, error: 0.2 };
+        let curves: Vec<Curve> = curves
+            .iter()
+            .map(|(parameter, points)| Curve {
+                parameter: *parameter,
+                points: points.iter().map(point).collect(),
+            })
+            .collect();
+        let transform = |p: &[f64], k: usize, rate: f64, point| {
+            Scaling::CriticalLine.apply(p, k, rate, point)
+        };
+        let collapse = Collapse { curves: &curves, transform: &transform, least_overlap: 0.3 };
+        let steps = [0.3, 0.3, 0.3, 0.1];
+        if let Ok(fit) = collapse.fit(&[1.0, 1.0, 0.0, 3.1], &steps, 1, 0) {
+            prop_assert!(fit.quality.overlap >= 0.3);
+            let _ = collapse.bootstrap(&fit, &steps, FEW);
         }
     }
 }

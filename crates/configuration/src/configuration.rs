@@ -300,7 +300,7 @@ pub struct Observe {
     /// Samples of the time series in one wave period; a static run has 200 samples in all.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub samples_per_period: u32,
-    /// Bins of the profiles over one wavelength. The largest pressure on the wall is the largest of a bin.
+    /// Bins of the profiles over one wavelength. The largest pressure on the wall is that of one of them.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 100_000))]
     pub profile_bins: u32,
     /// Part of the run, at its end, that late means and profiles are taken over.

@@ -38,7 +38,7 @@ impl Course {
         self.step as f64 * self.time_step
     }
 
-    /// Advances by `steps` steps; at a runaway it stops in the step that failed.
+    /// Advances by `steps` steps; at a runaway the time is the one of the step that failed.
     #[inline(always)]
     pub(crate) fn advance(&mut self, kernel: &mut impl Stepper, steps: u64) -> Result<(), Runaway> {
         if steps == 0 {

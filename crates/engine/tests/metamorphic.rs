@@ -138,13 +138,13 @@ fn turned_round(wall: &Wall) -> Wall {
     match wall {
         Wall::Prescribed(wall) => {
             let wave = wall.wave();
-            let (heading, rate) = (-wave.heading, wall.frequency(0.0));
-            prescribed(
+            waving(
                 *wall.lattice(),
                 wave.mean_radius,
-                heading,
-                wave.amplitude,
-                rate,
+                wave.waveform,
+                -wave.heading,
+                Schedule::constant(wave.amplitude),
+                Schedule::constant(wall.frequency(0.0)),
             )
         }
         Wall::Elastic(wall) => elastic(ElasticParameters {

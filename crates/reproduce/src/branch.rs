@@ -87,7 +87,7 @@ impl Step {
         Self {
             controls: [one.control, other.control],
             flows: [one.flow.value, other.flow.value],
-            height: difference(&other.flow, &one.flow),
+            height: distance(&other.flow, &one.flow),
         }
     }
 
@@ -107,10 +107,15 @@ impl Step {
     }
 }
 
-/// One number less another, of independent errors; an error that is not known counts as none.
+/// One number less another, of independent errors.
 pub(crate) fn difference(one: &Uncertain, other: &Uncertain) -> Uncertain {
-    let error = one.error.max(0.0).hypot(other.error.max(0.0));
-    Uncertain::normal(one.value - other.value, error)
+    Uncertain::normal(one.value - other.value, one.error.hypot(other.error))
+}
+
+/// The same where an error that is not known, of a single run for instance, counts as none.
+pub(crate) fn distance(one: &Uncertain, other: &Uncertain) -> Uncertain {
+    let known = |number: &Uncertain| Uncertain::normal(number.value, number.error.max(0.0));
+    difference(&known(one), &known(other))
 }
 
 /// Numbers with errors as columns for fits: abscissa, value, and error, which is at least `least`.

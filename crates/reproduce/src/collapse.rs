@@ -267,7 +267,8 @@ impl Collapsed {
         let curves = scaled.iter();
         let curves = curves.map(|(rate, curve)| (*rate, points("", curve.iter().copied())));
         let all = || scaled.iter().flat_map(|(_, curve)| curve);
-        let ends = ends(all().map(|point| point.0)).unwrap_or_default();
+        let first = all().next().map_or(1.0, |point| point.0);
+        let ends = ends(all().map(|point| point.0)).unwrap_or((first, first));
         let middle = all()
             .map(|(x, y)| y.value.ln() - slope * x.ln())
             .sum::<f64>()

@@ -147,7 +147,7 @@ pub(crate) fn fluid(
     })
 }
 
-/// The band of so many standard errors about a curve.
+/// The band of one standard error about a curve.
 pub(crate) fn error_band(x: &[f64], value: &[f64], error: &[f64]) -> Band {
     let end = |sign: f64| -> Vec<f64> {
         let pairs = value.iter().zip(error);

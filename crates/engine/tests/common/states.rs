@@ -201,9 +201,12 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
 fn narrow_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
     let lattice = numbers.one_of(&[
         lattice(24, 26, 2, 10.0),
+        lattice(24, 26, 1, 10.0),
         lattice(12, 14, 1, 10.0),
+        lattice(12, 14, 3, 10.0),
         lattice(5, 8, 1, 10.0),
         lattice(17, 13, 2, 10.0),
+        lattice(17, 13, 4, 10.0),
         lattice(12, 6, 1, 2.62),
         lattice(12, 2, 1, 2.05),
     ]);
@@ -216,7 +219,7 @@ fn wide_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
     let lattice = Lattice {
         spheres_per_ring: numbers.one_of(&[31, 36, 50]),
         rings_per_wave: numbers.one_of(&[16, 20]),
-        waves: 1,
+        waves: numbers.one_of(&[1, 2]),
         wavelength: 14.0,
         sphere_diameter: 1.0,
     };

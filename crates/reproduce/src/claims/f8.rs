@@ -79,7 +79,7 @@ impl Judged {
     fn of(densities: &[Density<'_>]) -> Self {
         let flows: Option<Vec<Uncertain>> = densities.iter().map(|density| density.flow).collect();
         let falls = |pair: &[Uncertain]| {
-            let fall = difference(&pair[0], &pair[1]);
+            let fall = distance(&pair[0], &pair[1]);
             fall.value > AGREES_WITHIN * fall.error
         };
         let critical = densities

@@ -8,7 +8,9 @@ pub(super) use peristalsis_figures::chart::{
 pub(super) use peristalsis_figures::{Quantity as Axis, Scale, Width};
 pub(super) use peristalsis_formats::Table;
 
-pub(super) use crate::branch::{Branch, Branches, Control, Point, Step, columns, difference};
+pub(super) use crate::branch::{
+    Branch, Branches, Control, Point, Step, columns, difference, distance,
+};
 pub(super) use crate::claim::Claim;
 pub(super) use crate::critical::{DIVERGENCES, OnLattice, bar, crossing, slope, weighted_mean};
 pub(super) use crate::draft::Draft;

@@ -123,7 +123,7 @@ impl Loop {
 
     /// Width of the loop; `None` where one way did not pass.
     fn width(&self) -> Option<Uncertain> {
-        Some(difference(&self.up?, &self.down?))
+        Some(distance(&self.up?, &self.down?))
     }
 
     /// Its width in words.

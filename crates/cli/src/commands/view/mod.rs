@@ -116,7 +116,7 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     Ok(Viewer::play(recording, name(folder), port)?)
 }
 
-/// The run to show, and its state.
+/// The run to show, and how to serve it.
 fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
     let options = |title: String, record| Options {
         port: arguments.port,
