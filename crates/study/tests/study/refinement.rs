@@ -195,8 +195,8 @@ fn the_estimate_runs_along_before_everything_has_ended() {
         .filter(|run| run.replicate == 0)
         .map(|run| run.identity)
         .collect();
-    let found = |identity: &Identity| first.contains(identity).then(|| truth(&plan, identity));
-    let brackets = brackets(&study, &plan, &found);
+    let found = |identity: &Identity| first.contains(identity).then(|| truth(plan, identity));
+    let brackets = brackets(&study, plan, &found);
     assert_eq!(brackets.len(), 4);
     assert_eq!((brackets[2].lower, brackets[2].upper), (2.7, 2.9));
     assert!((brackets[2].middle() - 2.8).abs() < 1e-12);
