@@ -266,7 +266,6 @@ pub fn setting(path: &str, key: &Origin, item: Item) -> Table {
 }
 
 /// The tree as a plain TOML table, for serde.
-#[must_use]
 pub fn to_toml(table: &Table) -> toml::Table {
     table
         .iter()

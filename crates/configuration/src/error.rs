@@ -69,7 +69,6 @@ pub enum ProblemKind {
 /// One thing wrong with a configuration.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", paragraph(self))]
-#[must_use]
 pub struct Problem {
     /// What sort of problem.
     pub kind: ProblemKind,

@@ -33,7 +33,6 @@ pub(crate) fn of<T: JsonSchema>() -> Value {
 }
 
 /// The JSON schema of the keys of a document of another kind, tidied for TOML.
-#[must_use]
 pub fn schema_of<T: JsonSchema>() -> Value {
     let mut schema = of::<T>();
     tidy(&mut schema);

@@ -70,7 +70,6 @@ impl Pending {
     }
 
     /// Where it is meanwhile.
-    #[must_use]
     pub fn partial_path(&self) -> &Path {
         self.partial.path()
     }

@@ -261,7 +261,6 @@ pub struct TableBuilder {
 
 impl TableBuilder {
     /// Adds a column to the right.
-    #[must_use]
     pub fn column(
         mut self,
         name: impl Into<String>,

@@ -30,7 +30,6 @@ pub struct Check {
 
 impl Check {
     /// A check of the deviation relative to the expected value.
-    #[must_use]
     pub fn relative(
         quantity: &str,
         setting: &str,
@@ -45,7 +44,6 @@ impl Check {
     }
 
     /// A check of the deviation itself.
-    #[must_use]
     pub fn absolute(
         quantity: &str,
         setting: &str,
@@ -133,7 +131,6 @@ const ROUNDING: f64 = 1e-10;
 
 impl Convergence {
     /// Errors at time steps, the longest first, with the range of orders that pass.
-    #[must_use]
     pub fn new(
         quantity: &str,
         setting: &str,

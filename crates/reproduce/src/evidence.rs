@@ -89,7 +89,6 @@ pub(crate) fn first_kept<'a>(
 
 impl StudyResults {
     /// The finished runs in the order of the axes.
-    #[must_use]
     pub fn rows(&self) -> Vec<Row<'_>> {
         rows_of(&self.table)
     }

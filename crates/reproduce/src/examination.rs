@@ -37,13 +37,11 @@ impl<E> Examination<E> {
     }
 
     /// Whether there was enough for a verdict.
-    #[must_use]
     pub fn is_sufficient(&self) -> bool {
         self.finding.statistics.suffice(&self.finding.needed)
     }
 
     /// Whether the experiment agrees with its expectation.
-    #[must_use]
     pub fn passed(&self) -> bool {
         self.finding.verdict == Verdict::Reproduced
     }

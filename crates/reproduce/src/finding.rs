@@ -29,7 +29,6 @@ impl Verdict {
     }
 
     /// The word for it.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Reproduced => "reproduced",
@@ -91,7 +90,6 @@ impl Statistics {
 
     /// Statistics of several parts that are compared: all strain rates and runs, and the fewest widths and replicates of any
     /// part; zero where there is no part.
-    #[must_use]
     pub fn weakest(parts: impl Iterator<Item = Self>) -> Self {
         parts
             .reduce(|one, other| Self {
@@ -112,7 +110,6 @@ impl Statistics {
     }
 
     /// Whether these are at least the needed ones in every respect.
-    #[must_use]
     pub fn suffice(&self, needed: &Self) -> bool {
         self.strain_rates >= needed.strain_rates
             && self.widths >= needed.widths
@@ -153,7 +150,6 @@ pub struct Finding {
 
 impl Finding {
     /// A finding with a verdict and nothing else yet; the verdict is open where the statistics do not suffice.
-    #[must_use]
     pub fn new(
         verdict: Verdict,
         summary: String,
@@ -190,7 +186,6 @@ impl Finding {
     }
 
     /// A finding for which there are too few runs to say anything.
-    #[must_use]
     pub fn nothing(reason: &str, statistics: Statistics, needed: &Statistics) -> Self {
         Self::new(Verdict::Open, reason.to_owned(), statistics, needed)
     }

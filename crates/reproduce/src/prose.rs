@@ -63,20 +63,17 @@ pub struct Prose {
 
 impl Prose {
     /// The text of a Markdown file.
-    #[must_use]
     pub const fn new(markdown: &'static str) -> Self {
         Self { markdown }
     }
 
     /// What the claim is about, a few words.
-    #[must_use]
     pub fn title(&self) -> &'static str {
         let line = self.markdown.lines().next().unwrap_or_default();
         line.trim_start_matches("# ")
     }
 
     /// Where the source says it.
-    #[must_use]
     pub fn source(&self) -> &'static str {
         self.opening()
             .lines()
@@ -85,7 +82,6 @@ impl Prose {
     }
 
     /// What the source says, in our words; or the question.
-    #[must_use]
     pub fn statement(&self) -> String {
         joined(
             self.opening()

@@ -60,7 +60,6 @@ impl Lattice {
     };
 
     /// "fine", "coarse", or the numbers.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::FINE => "fine".to_owned(),
@@ -145,7 +144,6 @@ impl<'a> Row<'a> {
     }
 
     /// Name of the run.
-    #[must_use]
     pub fn identity(&self) -> &'a str {
         self.text("identity")
     }

@@ -21,7 +21,6 @@ impl Size {
     }
 
     /// "quick" or "full".
-    #[must_use]
     pub fn name(self) -> &'static str {
         self.choose("quick", "full")
     }
@@ -53,7 +52,6 @@ pub struct StudyFile {
 
 impl StudyFile {
     /// A study from the texts of its two files; `path` is that of the full one.
-    #[must_use]
     pub const fn new(
         name: &'static str,
         path: &'static str,
@@ -76,7 +74,6 @@ impl StudyFile {
     }
 
     /// The text of the study file.
-    #[must_use]
     pub fn text(&self, size: Size) -> &'static str {
         size.choose(self.quick, self.full)
     }
@@ -95,7 +92,6 @@ impl StudyFile {
     }
 
     /// The study of this name.
-    #[must_use]
     pub fn named(name: &str) -> Option<&'static Self> {
         STUDIES.iter().find(|study| study.name == name)
     }

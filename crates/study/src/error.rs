@@ -102,11 +102,10 @@ pub enum StudyError {
 
 impl StudyError {
     /// Whether the store is there and cannot be written to.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         use std::io::ErrorKind::{PermissionDenied, ReadOnlyFilesystem};
         match self {
-            Self::Index { source, .. } => crate::store::is_closed(source),
+            Self::Index { source, .. } => is_closed(source),
             Self::Io { source, .. } | Self::Format(FormatError::Io { source, .. }) => {
                 matches!(source.kind(), PermissionDenied | ReadOnlyFilesystem)
             }
@@ -126,4 +125,13 @@ impl StudyError {
             source,
         }
     }
+}
+
+/// Whether the database exists and cannot be written to.
+pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
+    use rusqlite::ErrorCode;
+    matches!(
+        error.sqlite_error_code(),
+        Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied)
+    )
 }

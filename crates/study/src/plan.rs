@@ -3,14 +3,13 @@
 use std::cmp::Ordering;
 use std::collections::HashMap;
 
-use peristalsis_configuration::document::{Item, Node};
+use peristalsis_configuration::document::Node;
 use peristalsis_configuration::{
     Configuration, ConfigurationError, InitialState, Problem, ProblemKind, Problems,
 };
 use peristalsis_run::Stopping;
 
 use crate::identity::{Identity, Record};
-use crate::specification::{Choice, Specification, joined};
 
 /// The value of a key of an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,7 +36,6 @@ impl SettingValue {
     }
 
     /// The value as a number, if it is one.
-    #[must_use]
     pub fn number(&self) -> Option<f64> {
         match self {
             Self::Number(number) => Some(*number),
@@ -91,7 +89,6 @@ pub struct Point {
 
 impl Point {
     /// The settings in words, such as "drive.width 2.7, from rest".
-    #[must_use]
     pub fn in_words(&self) -> String {
         self.in_words_without(usize::MAX)
     }
@@ -155,37 +152,14 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The runs of a study before refinement.
-    ///
-    /// # Errors
-    /// Faults of the configurations of its points, and points that are the same.
-    pub(crate) fn of(study: &Specification) -> Result<Self, ConfigurationError> {
-        let states: Vec<Option<InitialState>> = match &study.states {
-            None => vec![None],
-            Some(states) => states.iter().copied().map(Some).collect(),
-        };
-        let mut points = Vec::new();
-        let mut errors = Vec::new();
-        for rows in study.grid() {
-            let choice = choice(study, &rows);
-            for state in &states {
-                match point(study, &choice, &rows, *state) {
-                    Ok(point) => points.push(point),
-                    Err(error) => errors.push(error),
-                }
-            }
+    /// Without points yet.
+    pub(crate) fn new(replicates: u32, stopping: Option<Stopping>, record: Record) -> Self {
+        Self {
+            replicates,
+            stopping,
+            record,
+            ..Self::default()
         }
-        joined(errors)?;
-        let mut plan = Self {
-            points: Vec::new(),
-            runs: Vec::new(),
-            replicates: study.replicates,
-            stopping: study.stopping,
-            record: study.record.clone(),
-        };
-        plan.add(points);
-        plan.check_distinct()?;
-        Ok(plan)
     }
 
     /// Adds points and the runs of each.
@@ -208,7 +182,8 @@ impl Plan {
         self.runs.sort_by_key(|run| (run.replicate, run.point));
     }
 
-    fn check_distinct(&self) -> Result<(), ConfigurationError> {
+    /// No two points are the same run.
+    pub(crate) fn check_distinct(&self) -> Result<(), ConfigurationError> {
         let mut problems = Problems::default();
         let mut seen: HashMap<Identity, usize> = HashMap::new();
         for run in self.runs.iter().filter(|run| run.replicate == 0) {
@@ -228,19 +203,16 @@ impl Plan {
     }
 
     /// The points; refinement's come after the others.
-    #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// The runs in the order in which they are begun.
-    #[must_use]
     pub fn runs(&self) -> &[PlannedRun] {
         &self.runs
     }
 
     /// The runs in the order of the values of the axes, as tables list them.
-    #[must_use]
     pub fn sorted_runs(&self) -> Vec<PlannedRun> {
         let mut runs = self.runs.clone();
         runs.sort_by(|one, other| {
@@ -252,53 +224,14 @@ impl Plan {
     }
 
     /// The point of a run.
-    #[must_use]
     pub fn point(&self, run: &PlannedRun) -> &Point {
         &self.points[run.point]
     }
 
     /// The configuration of a run, its seed included.
-    #[must_use]
     pub fn configuration(&self, run: &PlannedRun) -> Configuration {
         let mut configuration = self.points[run.point].configuration.clone();
         configuration.run.seed = run.seed;
         configuration
     }
-}
-
-/// The value of each key at one row of each axis.
-pub(crate) fn choice<'a>(study: &'a Specification, rows: &[usize]) -> Choice<'a> {
-    study
-        .axes
-        .iter()
-        .zip(rows)
-        .flat_map(|(axis, row)| {
-            axis.keys
-                .iter()
-                .zip(&axis.rows[*row])
-                .map(|((key, origin), value)| (key.as_str(), origin, value))
-        })
-        .collect()
-}
-
-/// The point that a choice makes.
-pub(crate) fn point(
-    study: &Specification,
-    choice: &Choice<'_>,
-    rows: &[usize],
-    state: Option<InitialState>,
-) -> Result<Point, ConfigurationError> {
-    let configuration = study.configuration(choice, state)?;
-    Ok(Point {
-        settings: choice
-            .iter()
-            .map(|(key, _, value): &(&str, _, &Item)| Setting {
-                key: (*key).to_owned(),
-                value: SettingValue::of(&value.node),
-            })
-            .collect(),
-        state: configuration.initial.state,
-        configuration,
-        rows: rows.to_vec(),
-    })
 }

@@ -6,7 +6,7 @@ use peristalsis_configuration::document::{Item, Node};
 use peristalsis_configuration::{ConfigurationError, InitialState};
 
 use crate::identity::Identity;
-use crate::plan::{Plan, Point, choice, point, state_name};
+use crate::plan::{Plan, Point, state_name};
 use crate::specification::{Specification, neat, number};
 
 /// Axis along which a change is looked for where the study does not refine one.
@@ -41,7 +41,6 @@ pub struct Bracket {
 
 impl Bracket {
     /// Midway between the two values.
-    #[must_use]
     pub fn middle(&self) -> f64 {
         0.5 * (self.lower + self.upper)
     }
@@ -172,7 +171,6 @@ impl Line<'_> {
 
 /// Where the majority of the runs that have ended changes, for each combination of the other axes and each state; empty
 /// where nothing has changed yet, or no axis of numbers is watched.
-#[must_use]
 pub fn brackets(
     study: &Specification,
     plan: &Plan,
@@ -239,10 +237,10 @@ pub fn refine(
                     origin: refine.origin.clone(),
                     node: Node::Float(middle),
                 };
-                let mut choice = choice(study, &model.rows);
+                let mut choice = study.choice(&model.rows);
                 choice[setting_of(study, refine.axis)].2 = &item;
                 let state = study.states.as_ref().map(|_| model.state);
-                added.push(point(study, &choice, &model.rows, state)?);
+                added.push(study.point(&choice, &model.rows, state)?);
             }
         }
         if added.is_empty() {
@@ -255,7 +253,6 @@ pub fn refine(
 
 /// Points that refinement adds where every line changes within one gap between its points and runs differ all the way
 /// between; more are added where runs differ over several gaps. For an estimate beforehand.
-#[must_use]
 pub(crate) fn usual_added_points(study: &Specification, plan: &Plan) -> usize {
     let Some(refine) = &study.refinement else {
         return 0;

@@ -118,19 +118,16 @@ impl Row {
     }
 
     /// The identity of its run.
-    #[must_use]
     pub fn identity(&self) -> Identity {
         self.identity
     }
 
     /// As a table of one row.
-    #[must_use]
     pub fn table(&self) -> &Table {
         &self.table
     }
 
     /// tau \[t\]; `None` without a transition.
-    #[must_use]
     pub fn transition_time(&self) -> Option<f64> {
         self.table
             .reals("transition_time")

@@ -80,7 +80,6 @@ pub struct FrameContact {
 
 impl Frame {
     /// A value of the instant by its name.
-    #[must_use]
     pub fn value(&self, name: &str) -> Option<f64> {
         let mut values = self.values.iter();
         values
@@ -89,7 +88,6 @@ impl Frame {
     }
 
     /// Number of spheres, those of the wall included.
-    #[must_use]
     pub fn spheres(&self) -> usize {
         self.position.len()
     }
@@ -127,7 +125,6 @@ impl TrajectoryFormat {
     pub const ALL: [Self; 3] = [Self::Gsd, Self::Vtp, Self::Lammps];
 
     /// The file in a folder that a reader opens; that of the contacts in VTP is beside its own.
-    #[must_use]
     pub fn file_name(self) -> &'static str {
         match self {
             Self::Gsd => gsd::FILE,
@@ -137,7 +134,6 @@ impl TrajectoryFormat {
     }
 
     /// Whether it holds contacts, which a frame must then have.
-    #[must_use]
     pub fn has_contacts(self) -> bool {
         self == Self::Vtp
     }
@@ -176,7 +172,6 @@ impl TrajectoryFormat {
     }
 
     /// Bytes that a frame like this takes on disk, but for the first, which may hold more.
-    #[must_use]
     pub fn frame_bytes(self, frame: &Frame) -> u64 {
         match self {
             Self::Gsd => gsd::frame_bytes(frame),

@@ -41,7 +41,6 @@ pub(crate) fn rich(markup: &str) -> Markup {
 /// ```
 /// assert_eq!(peristalsis_reproduce::report::plain_text("*J*_{max} = 10^{−3}"), "J_max = 10^−3");
 /// ```
-#[must_use]
 pub fn plain_text(markup: &str) -> String {
     let mut plain = String::with_capacity(markup.len());
     let mut level = Level::Base;

@@ -43,7 +43,6 @@ pub struct Program {
 
 impl Program {
     /// The program that this is part of.
-    #[must_use]
     pub fn this() -> Self {
         Self {
             version: peristalsis_run::VERSION.to_owned(),
@@ -68,7 +67,6 @@ pub struct Report {
 
 impl Report {
     /// The report of what this program found.
-    #[must_use]
     pub fn of(size: Size, outcome: Outcome) -> Self {
         Self {
             size,
@@ -79,13 +77,11 @@ impl Report {
     }
 
     /// A page that needs no other file, with every figure in it.
-    #[must_use]
     pub fn html(&self) -> String {
         page::page(self).into_string()
     }
 
     /// The findings for programs, as `docs/claims-json.md` describes them.
-    #[must_use]
     pub fn json(&self) -> String {
         json::text(self)
     }

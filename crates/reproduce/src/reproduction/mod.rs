@@ -121,7 +121,6 @@ pub struct StudyOutcome {
 
 impl StudyOutcome {
     /// Runs that have neither finished nor failed.
-    #[must_use]
     pub fn missing(&self) -> usize {
         self.runs.saturating_sub(self.done + self.failed)
     }
@@ -188,7 +187,6 @@ impl Reproduction {
     }
 
     /// The size of the designs.
-    #[must_use]
     pub fn size(&self) -> Size {
         self.size
     }

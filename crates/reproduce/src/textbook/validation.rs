@@ -55,13 +55,11 @@ impl Validation {
     }
 
     /// Whether every case passed.
-    #[must_use]
     pub fn passed(&self) -> bool {
         self.examinations.iter().all(Examination::passed)
     }
 
     /// Everything for programs.
-    #[must_use]
     pub fn json(&self) -> String {
         json_text(&Document {
             format: FORMAT,

@@ -114,7 +114,6 @@ enum AxisValue {
 ///
 /// Every key has a description and its range or its names; no other key is allowed. The table `base` is a
 /// configuration. The reader checks which keys go together, and every configuration that follows.
-#[must_use]
 pub fn schema() -> Value {
     cached().clone()
 }

@@ -2,6 +2,7 @@
 
 mod axis;
 mod keys;
+mod points;
 
 use std::fs;
 use std::ops::Range;
@@ -154,12 +155,11 @@ impl Specification {
             replicates_span: span_of("replicates"),
         };
         study.check_size(&table)?;
-        study.plan = Plan::of(&study)?;
+        study.plan = study.planned()?;
         Ok(study)
     }
 
     /// The runs of the study before refinement.
-    #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.plan
     }

@@ -174,7 +174,6 @@ impl Store {
     }
 
     /// The folders that files of a run were moved aside to, in this order.
-    #[must_use]
     pub fn quarantines(&self, identity: Identity) -> Vec<PathBuf> {
         (1_u32..)
             .map(|number| self.file(QUARANTINE).join(format!("{identity}.{number}")))

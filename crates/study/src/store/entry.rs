@@ -27,7 +27,6 @@ pub enum State {
 
 impl State {
     /// Its name in files and tables.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Pending => "pending",

@@ -53,7 +53,7 @@ impl Index {
     /// to write, and stays the error where nothing is there that can be read.
     pub(crate) fn open_to_read(path: &Path, refusal: StudyError) -> Result<Self> {
         match &refusal {
-            StudyError::Index { source, .. } if is_closed(source) => {}
+            StudyError::Index { .. } if refusal.is_closed() => {}
             _ => return Err(refusal),
         }
         let opened = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).and_then(
@@ -305,15 +305,6 @@ fn is_damaged(error: &rusqlite::Error) -> bool {
         // A value that we never write.
         None => true,
     }
-}
-
-/// Whether the database exists and cannot be written to.
-pub(crate) fn is_closed(error: &rusqlite::Error) -> bool {
-    use rusqlite::ErrorCode;
-    matches!(
-        error.sqlite_error_code(),
-        Some(ErrorCode::ReadOnly | ErrorCode::CannotOpen | ErrorCode::PermissionDenied)
-    )
 }
 
 impl ToSql for Identity {

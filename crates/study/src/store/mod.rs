@@ -37,7 +37,7 @@ pub use archive::Packed;
 pub use check::Verification;
 pub use entry::{Entry, State};
 pub use export::Exported;
-pub(crate) use index::{Claim, Index, is_closed};
+pub(crate) use index::{Claim, Index};
 pub(crate) use owner::Owner;
 pub(crate) use run_files::{Assignment, RunFiles, Verdict};
 pub use staleness::Staleness;
@@ -153,7 +153,6 @@ impl Store {
     }
 
     /// Where it is.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
@@ -163,13 +162,11 @@ impl Store {
     }
 
     /// The folder of a run, which may not be there.
-    #[must_use]
     pub fn run_folder(&self, identity: Identity) -> PathBuf {
         self.file(RUNS).join(identity.to_string())
     }
 
     /// Whether the products of a finished run are here: of one that was imported there may be its row only.
-    #[must_use]
     pub fn holds_products(&self, identity: Identity) -> bool {
         self.run_files(identity).is_sealed()
     }

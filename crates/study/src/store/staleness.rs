@@ -19,7 +19,6 @@ pub struct Staleness {
 
 impl Store {
     /// Compares a run with those of the study; `None` where it is one of them, or its files are not here.
-    #[must_use]
     pub fn staleness(&self, survey: &Survey, identity: Identity) -> Option<Staleness> {
         let runs = survey.plan.runs();
         if runs.iter().any(|run| run.identity == identity) {

@@ -25,7 +25,6 @@ pub struct Survey {
 
 impl Survey {
     /// What has become of a run.
-    #[must_use]
     pub fn state(&self, identity: Identity) -> State {
         let state = self
             .entries
@@ -38,7 +37,6 @@ impl Survey {
     }
 
     /// Runs of the plan in each state.
-    #[must_use]
     pub fn counts(&self) -> BTreeMap<&'static str, usize> {
         let mut counts = BTreeMap::new();
         for run in self.plan.runs() {
@@ -48,13 +46,11 @@ impl Survey {
     }
 
     /// The work of all runs of the plan, in grains times steps.
-    #[must_use]
     pub fn work(&self) -> f64 {
         self.work_of(|_| true)
     }
 
     /// The work of the runs that have not ended, in grains times steps.
-    #[must_use]
     pub fn work_left(&self) -> f64 {
         self.work_of(|identity| self.finding(identity).is_none())
     }
@@ -69,7 +65,6 @@ impl Survey {
     }
 
     /// What a run that has ended says of its point.
-    #[must_use]
     pub fn finding(&self, identity: &Identity) -> Option<Finding> {
         finding(&self.entries, identity)
     }

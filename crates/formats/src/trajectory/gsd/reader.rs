@@ -95,13 +95,11 @@ impl GsdReader {
     }
 
     /// Whole frames.
-    #[must_use]
     pub fn frames(&self) -> usize {
         self.frames.len()
     }
 
     /// Frames that were begun and are not whole.
-    #[must_use]
     pub fn lost_frames(&self) -> u64 {
         self.lost
     }
