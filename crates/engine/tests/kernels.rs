@@ -19,12 +19,13 @@ const LISTED: Apart = Apart {
     ledger: 2e-14,
 };
 
-/// The kernel that sorts takes inverse roots by iteration.
+/// The kernel that sorts takes inverse roots by iteration; where grains lie deep in one another, the forces of contacts are
+/// many times their sum.
 const SORTED: Apart = Apart {
     velocities: 1e-12,
-    forces: 1e-11,
-    tally: 1e-11,
-    ledger: 1e-11,
+    forces: 5e-11,
+    tally: 1e-9,
+    ledger: 1e-10,
     ..LISTED
 };
 
@@ -94,11 +95,11 @@ proptest! {
         seed: u64, steps in 0..3_u64,
     ) {
         let state = random(row, number, seed);
-        if let Some(fast) = step_from(&state, &prepare(&state, steps)) {
-            // Shorter tubes are the other kernel's.
-            let sorted = fast.snapshot().sorting.is_some();
-            prop_assert!(sorted || state.wall.length() < 10.0, "another kernel ran");
-        }
+        let prepared = prepare(&state, steps);
+        step_from(&state, &prepared);
+        let sorted = state.go_on(&prepared, Kernel::Fast).snapshot().sorting.is_some();
+        // Shorter tubes are the other kernel's.
+        prop_assert!(sorted || state.wall.length() < 10.0, "another kernel ran");
     }
 }
 
