@@ -321,17 +321,8 @@ impl<'a> Branch<'a> {
 
     /// How much is behind it, at its one strain rate.
     pub(crate) fn statistics(&self, runs: usize) -> Statistics {
-        Statistics {
-            strain_rates: 1,
-            widths: self.points.len(),
-            replicates: self
-                .points
-                .iter()
-                .map(|point| point.runs)
-                .min()
-                .unwrap_or(0),
-            runs,
-        }
+        let replicates = self.points.iter().map(|point| point.runs).min();
+        Statistics::of(1, self.points.len(), replicates.unwrap_or(0), runs)
     }
 
     /// Control and flow of each point, for figures.

@@ -4,11 +4,11 @@ use peristalsis_analysis::number::decimal as number;
 use peristalsis_analysis::{
     Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, Scaling, Uncertain, WidthEnsemble,
 };
+use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
-use peristalsis_figures::{Scale, Width};
 
 use crate::critical::OnLattice;
-use crate::exhibit::{cell_of, coloured, ends, points, rate_colours};
+use crate::exhibit::{cell_of, coloured, ends, grid, points, rate_colours};
 use crate::finding::{Quantity, ReportTable};
 use crate::judgement::{agrees, all_hold};
 use crate::thresholds::{COLLAPSED, OVERLAP, RESOLVED};
@@ -303,7 +303,6 @@ pub(crate) fn chart(
         panels.push(collapsed.panel(best, &title, labels, slope));
     }
     let curves = found.iter().flat_map(|(_, collapsed)| &collapsed.curves);
-    ChartFigure::grid(panels.len().min(2), panels)
+    grid(panels.len().min(2), panels)
         .colour_scale(rate_colours(curves.map(|curve| curve.parameter)))
-        .width(Width::DoubleColumn)
 }

@@ -2,8 +2,10 @@
 
 use peristalsis_analysis::number::decimal as number;
 use peristalsis_analysis::{Bootstrap, Uncertain, dip_test, histogram, two_peaks};
-use peristalsis_figures::chart::{Band, Bars, ChartPanel, Line as Curve, Pattern, Points, Tint};
-use peristalsis_figures::{ColourScale, Quantity, Units};
+use peristalsis_figures::chart::{
+    Band, Bars, ChartFigure, ChartPanel, Line as Curve, Pattern, Points, Tint,
+};
+use peristalsis_figures::{ColourScale, Quantity, Units, Width};
 
 use crate::branch::{Branch, Branches};
 use crate::critical::Line;
@@ -68,6 +70,11 @@ pub(crate) fn label(quantity: Quantity) -> String {
 /// An empty panel of one quantity of the prescribed tube against another.
 pub(crate) fn panel(x: Quantity, y: Quantity) -> ChartPanel {
     ChartPanel::new(&label(x), &label(y))
+}
+
+/// Panels over both columns of a page, so many beside one another.
+pub(crate) fn grid(columns: usize, panels: impl IntoIterator<Item = ChartPanel>) -> ChartFigure {
+    ChartFigure::grid(columns, panels).width(Width::DoubleColumn)
 }
 
 /// A panel of J/Jmax against the width.

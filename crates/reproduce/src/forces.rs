@@ -227,12 +227,7 @@ fn behind(rows: &[Row<'_>]) -> Statistics {
         (forces.count(), replicates)
     };
     let (rest, jammed) = (of(Start::Rest), of(Start::Jammed));
-    Statistics {
-        strain_rates: 1,
-        widths: rest.0.min(jammed.0),
-        replicates: rest.1.min(jammed.1),
-        runs: rows.len(),
-    }
+    Statistics::of(1, rest.0.min(jammed.0), rest.1.min(jammed.1), rows.len())
 }
 
 /// What is behind some lines that are compared: as many strain rates as a verdict takes, those with most behind them, and

@@ -12,10 +12,15 @@ pub(super) const SOURCE_RATE: f64 = 4.01e-3;
 const WHAT_COUNTS: &str = "What a verdict takes is counted in runs that average over 50 periods of a flow which no longer drifts, at forces that have \
      such runs from both starts; tables and figures show all stationary flows.";
 
+/// The studies that [`branch_rows`] reads.
+pub(super) const BRANCHES: &[&str] = &["elastic-branches", "elastic-extremes"];
+
 /// The runs of frictional grains at all strain rates and forces.
 pub(super) fn branch_rows(evidence: &Evidence) -> Result<Vec<Row<'_>>> {
-    let mut rows = evidence.study("elastic-branches")?.rows();
-    rows.extend(evidence.study("elastic-extremes")?.rows());
+    let mut rows = Vec::new();
+    for study in BRANCHES {
+        rows.extend(evidence.study(study)?.rows());
+    }
     Ok(rows)
 }
 

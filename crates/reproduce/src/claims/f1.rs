@@ -4,7 +4,6 @@ use peristalsis_configuration::Configuration;
 use peristalsis_run::{Run, RunError, snapshot_stack};
 
 use super::prelude::*;
-use crate::thresholds::{BELOW_THE_JUMP, NEAR_ONE, NEARLY_ALL, SLOW};
 
 const PROSE: Prose = Prose::new(include_str!("f1.md"));
 const STUDIES: &[&str] = &["flow-in-time", "branches-fine", "branches-coarse"];
@@ -138,10 +137,10 @@ fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
         return Ok(());
     };
     let (all, otherwise) = (widths.iter().copied(), (*first, first + 0.01));
-    let chart = ChartFigure::grid(2, panels)
-        .share_y()
-        .colour_scale(colours(&label(Axis::Width), all, otherwise))
-        .width(Width::DoubleColumn);
+    let chart =
+        grid(2, panels)
+            .share_y()
+            .colour_scale(colours(&label(Axis::Width), all, otherwise));
     draft.chart("flow-in-time", &[], chart)
 }
 

@@ -3,9 +3,6 @@
 use peristalsis_analysis::WidthEnsemble;
 
 use super::prelude::*;
-use crate::critical::{Divergence, Exponent, Line};
-use crate::exhibit::fitted_curve;
-use crate::thresholds::{MOST_ESCAPED, WINDOW};
 
 const PROSE: Prose = Prose::new(include_str!("f2.md"));
 
@@ -44,10 +41,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("exponents", &[], rows);
     draft.table("sensitivity", &[], sensitivity);
     let lines = lattices.iter().flat_map(|one| &one.lines);
-    let chart = ChartFigure::grid(2, lattices.iter().filter_map(times))
+    let chart = grid(2, lattices.iter().filter_map(times))
         .share_y()
-        .colour_scale(rate_colours(lines.map(|line| line.strain_rate)))
-        .width(Width::DoubleColumn);
+        .colour_scale(rate_colours(lines.map(|line| line.strain_rate)));
     draft.chart("transition-times", &[], chart)?;
     Ok(draft.concluded(verdict, summary, statistics, &needed))
 }

@@ -3,7 +3,6 @@
 use peristalsis_analysis::WidthEnsemble;
 
 use super::prelude::*;
-use crate::collapse::{Collapsed, chart, collapse};
 
 const PROSE: Prose = Prose::new(include_str!("f3.md"));
 

@@ -3,9 +3,6 @@
 use peristalsis_analysis::WidthEnsemble;
 
 use super::prelude::*;
-use crate::collapse::{chart, collapse};
-use crate::critical::Exponent;
-use crate::exhibit::{fitted_curve, probability};
 
 const PROSE: Prose = Prose::new(include_str!("f4.md"));
 
@@ -52,10 +49,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let summary = PROSE.text("summary", values!(means = means.join(", "), why));
     draft.table("exponents", &[], rows);
     let lines = lattices.iter().flat_map(OnLattice::fitted);
-    let variances = ChartFigure::grid(2, lattices.iter().filter_map(variances))
+    let variances = grid(2, lattices.iter().filter_map(variances))
         .share_y()
-        .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)))
-        .width(Width::DoubleColumn);
+        .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)));
     draft.chart("transition-time-variance", &[], variances)?;
     if !collapses.is_empty() {
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*χ_{τ}ε̇*^{7}"];

@@ -5,10 +5,6 @@ use peristalsis_analysis::{
 };
 
 use super::prelude::*;
-use crate::collapse::{Collapsed, Curves, chart};
-use crate::thresholds::{
-    BOUNDED_MOMENT, LEAST_ERROR_OF_A_MOMENT, LEAST_RUNS_OF_A_MOMENT, SAME_CURVE,
-};
 
 const PROSE: Prose = Prose::new(include_str!("f5.md"));
 

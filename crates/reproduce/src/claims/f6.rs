@@ -3,8 +3,6 @@
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
 use super::prelude::*;
-use crate::exhibit::{cells_of_peaks, flow_histogram};
-use crate::thresholds::NEAR_THE_JUMP;
 
 const PROSE: Prose = Prose::new(include_str!("f6.md"));
 
@@ -105,10 +103,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
     let rates = both.iter().flat_map(|one| &one.all);
-    let chart = ChartFigure::grid(2, both.iter().map(beside_a_fluid))
+    let chart = grid(2, both.iter().map(beside_a_fluid))
         .share_y()
-        .colour_scale(rate_colours(rates.map(|line| line.strain_rate)))
-        .width(Width::DoubleColumn);
+        .colour_scale(rate_colours(rates.map(|line| line.strain_rate)));
     draft.chart("stationary-flow", &[], chart)?;
     let [fine, _] = &both;
     let near: Vec<f64> = fine.tight().flat_map(|line| &line.near).copied().collect();

@@ -3,8 +3,6 @@
 use peristalsis_analysis::{LineFit, fit_line, fit_parabola};
 
 use super::prelude::*;
-use crate::critical::Line;
-use crate::thresholds::{LEAST_ERROR_OF_A_WIDTH, LEAST_RATES_OF_A_SLOPE};
 
 const PROSE: Prose = Prose::new(include_str!("f7.md"));
 

@@ -4,10 +4,6 @@ use peristalsis_analysis::fit_line;
 use peristalsis_figures::chart::{Corner, Note};
 
 use super::prelude::*;
-use crate::critical::Line;
-use crate::thresholds::{
-    AGREES_WITHIN, COMPARED_WIDTH, F8_NEEDED, HARDLY, LEAST_DENSITIES, LEAST_ERROR_OF_A_WIDTH,
-};
 
 const PROSE: Prose = Prose::new(include_str!("f8.md"));
 
@@ -171,7 +167,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (compared, hardly) = (COMPARED_WIDTH, 100.0 * HARDLY);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared, hardly));
     draft.table("densities", values!(compared), rows);
-    let chart = ChartFigure::grid(3, panels).width(Width::DoubleColumn);
+    let chart = grid(3, panels);
     draft.chart("density", &[], chart)?;
     Ok(draft.concluded(verdict, summary, found, &F8_NEEDED))
 }

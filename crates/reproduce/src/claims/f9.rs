@@ -5,7 +5,6 @@ use peristalsis_analysis::{
 };
 
 use super::prelude::*;
-use crate::thresholds::{CLEAR_LOOP, ONE_WIDTH_BY_CHANCE};
 
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
 const STUDIES: &[&str] = &["branches-fine", "branches-coarse", "jam-lifetime"];
@@ -145,8 +144,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let panels = [coarse, fine].map(|one| widest(&one.all));
     let panels: Vec<ChartPanel> = panels.into_iter().flatten().collect();
     if !panels.is_empty() {
-        let chart = ChartFigure::grid(2, panels).share_y();
-        let chart = chart.width(Width::DoubleColumn);
+        let chart = grid(2, panels).share_y();
         draft.chart("hysteresis", &[], chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &needed))

@@ -1,7 +1,6 @@
 //! Q1: small strain rates.
 
 use super::prelude::*;
-use crate::thresholds::{CLEAR_TURN, HALF, LEAST_FALL, MOST_ESCAPED, Q1_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q1.md"));
 const STUDIES: &[&str] = &[
@@ -206,5 +205,5 @@ fn figure(lines: &[Line]) -> ChartFigure {
         let heights = joined(&format!("{lattice} lattice"), heights);
         height = height.with_all(heights.map(numbered));
     }
-    ChartFigure::grid(2, [width, height]).width(Width::DoubleColumn)
+    grid(2, [width, height])
 }

@@ -1,12 +1,7 @@
 //! Q10: how far the conclusions on the elastic tube depend on what the source does not give.
 
-use super::elastic::{flow_against_force, is_frictionless};
+use super::elastic::*;
 use super::prelude::*;
-use crate::forces::{leaking, outside};
-use crate::thresholds::{
-    GIVEN_WAY, LEAST_BACK_FLOW, LEAST_FORCES, LEAST_JUMP_AGAINST_FORCE, LEAST_SETTINGS, Q10_NEEDED,
-    SIGNED_BY,
-};
 
 const PROSE: Prose = Prose::new(include_str!("q10.md"));
 
@@ -221,8 +216,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.table("settings", &[], outcomes.iter().map(Outcome::cells));
     let panels: Vec<ChartPanel> = outcomes.iter().filter_map(flow_of).collect();
     if !panels.is_empty() {
-        let chart = ChartFigure::grid(3, panels).share_x().share_y();
-        let chart = chart.width(Width::DoubleColumn);
+        let chart = grid(3, panels).share_x().share_y();
         draft.chart("sensitivity", &[], chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &Q10_NEEDED))

@@ -3,7 +3,6 @@
 use peristalsis_analysis::mean_and_error;
 
 use super::prelude::*;
-use crate::thresholds::Q11_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q11.md"));
 
@@ -139,7 +138,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     let summary = PROSE.text("summary", values!(lattices = words.join("; ")));
     draft.table("methods", &[], rows);
-    let chart = ChartFigure::grid(panels.len(), panels).width(Width::DoubleColumn);
+    let chart = grid(panels.len(), panels);
     draft.chart("method", &[], chart)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q11_NEEDED))
 }

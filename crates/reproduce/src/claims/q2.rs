@@ -1,7 +1,6 @@
 //! Q2: roughness of the wall.
 
 use super::prelude::*;
-use crate::thresholds::{ESCAPED_WITHIN, LEAST_LATTICES, MOST_ESCAPED, Q2_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 

@@ -1,7 +1,6 @@
 //! Q3: softness or geometry.
 
 use super::prelude::*;
-use crate::thresholds::Q3_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q3.md"));
 const STUDIES: &[&str] = &["restitution", "softness", "wavelength", "radius"];
@@ -148,7 +147,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("critical width", values!(varied, value, speed), width);
     }
     let panels = found.iter().map(|(varied, of)| against(varied, of));
-    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    let chart = grid(2, panels);
     draft.chart("softness-or-geometry", &[], chart)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q3_NEEDED))
 }

@@ -7,7 +7,6 @@ use peristalsis_figures::ColourScale;
 use peristalsis_figures::chart::Field;
 
 use super::prelude::*;
-use crate::thresholds::{LEAST_LENGTHS, Q4_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q4.md"));
 
@@ -127,7 +126,7 @@ fn figure(tubes: &[Tube<'_>]) -> ChartFigure {
         .with_all(numbered(times));
     let timed = tubes.iter().any(|tube| !tube.times.is_empty());
     let panels = [flow].into_iter().chain(timed.then_some(times));
-    ChartFigure::grid(2, panels).width(Width::DoubleColumn)
+    grid(2, panels)
 }
 
 /// The flow of each wave in time, of the longest tube at the widest bottleneck that jammed it.
@@ -161,8 +160,7 @@ fn space_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
     let field = Field::new(&values, rows, (0.0, columns as f64), (0.0, rows as f64));
     let chart = ChartFigure::new(panel(Axis::Period, Axis::Wave).with(field))
         .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
-        .panel_height(50.0)
-        .width(Width::DoubleColumn);
+        .panel_height(50.0);
     let (waves, width) = (rows, row.width());
     draft.chart("space-time", values!(waves, width), chart)
 }

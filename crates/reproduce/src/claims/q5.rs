@@ -6,9 +6,6 @@ use peristalsis_analysis::{
 use peristalsis_figures::ColourScale;
 
 use super::prelude::*;
-use crate::critical::Line;
-use crate::exhibit::probability;
-use crate::thresholds::{EXCLUDED, WINDOW, WORSE};
 
 const PROSE: Prose = Prose::new(include_str!("q5.md"));
 

@@ -3,7 +3,6 @@
 mod figures;
 
 use super::prelude::*;
-use crate::thresholds::{FREE_FLIGHT, Q6_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q6.md"));
 

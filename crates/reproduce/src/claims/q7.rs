@@ -3,7 +3,6 @@
 mod figures;
 
 use super::prelude::*;
-use crate::thresholds::{FAST, LEAST_BACK_FLOW, LEAST_JUMP, MOST_ESCAPED, Q7_NEEDED, SIGNED_BY};
 
 const PROSE: Prose = Prose::new(include_str!("q7.md"));
 const STUDIES: &[&str] = &["two-by-two-strain", "two-by-two-stress"];

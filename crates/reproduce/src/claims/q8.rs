@@ -5,7 +5,6 @@ mod figures;
 use peristalsis_analysis::power_exponent;
 
 use super::prelude::*;
-use crate::thresholds::{LEAST_JUMP, LEAST_LENGTHS, PASSED, Q8_NEEDED};
 
 const PROSE: Prose = Prose::new(include_str!("q8.md"));
 const STUDIES: &[&str] = &["small-speed-size", "sweep-up", "sweep-down"];
@@ -255,8 +254,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed = PASSED));
     let panels = figures::panels(&rates);
     if !panels.is_empty() {
-        let chart = ChartFigure::grid(rates.len(), panels)
-            .width(Width::DoubleColumn)
+        let chart = grid(rates.len(), panels)
             .panel_height(36.0)
             .legend(LegendPlace::Below);
         draft.chart("small-speed", values!(passed = PASSED), chart)?;

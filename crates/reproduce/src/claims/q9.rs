@@ -5,7 +5,6 @@ mod figures;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 
 use super::prelude::*;
-use crate::thresholds::Q9_NEEDED;
 
 const PROSE: Prose = Prose::new(include_str!("q9.md"));
 const STUDIES: &[&str] = &["pumping-frictionless", "pumping-frictional"];

@@ -1,12 +1,11 @@
 //! S1: the flow fields at three forces, and the last of them without friction.
 
-use peristalsis_figures::{Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall};
+use peristalsis_figures::{
+    Snapshot, SnapshotFigure, SnapshotGrain, SnapshotSphere, SnapshotWall, Width,
+};
 
-use super::elastic::{NEEDED, draft, is_frictionless, judged, nothing};
+use super::elastic::*;
 use super::prelude::*;
-use crate::branch::flow_of;
-use crate::forces::together;
-use crate::thresholds::CLEAR;
 
 const PROSE: Prose = Prose::new(include_str!("s1.md"));
 

@@ -2,19 +2,14 @@
 
 use peristalsis_analysis::{Family, Survival, Transition, fit_lifetime, mean_and_error};
 
-use super::elastic::{NEEDED, draft, judged, label, nothing};
+use super::elastic::label;
+use super::elastic::*;
 use super::prelude::*;
-use crate::forces::together;
-use crate::thresholds::GIVEN_WAY;
 
 const PROSE: Prose = Prose::new(include_str!("s2.md"));
+const STUDIES: &[&str] = &["elastic-yielding", "elastic-branches"];
 
-pub(super) const CLAIM: Claim = Claim::new(
-    "S2",
-    PROSE,
-    &["elastic-yielding", "elastic-branches"],
-    examine,
-);
+pub(super) const CLAIM: Claim = Claim::new("S2", PROSE, STUDIES, examine);
 
 /// The runs from jammed at one force.
 struct Rung<'a> {
@@ -150,7 +145,7 @@ fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ChartFigure> {
         .then_some(in_time)
         .into_iter()
         .chain([times(ladder)]);
-    let mut chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    let mut chart = grid(2, panels);
     if is_coloured {
         let first = ladder[0].force;
         let forces = ladder.iter().map(|rung| rung.force);

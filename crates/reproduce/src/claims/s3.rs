@@ -1,23 +1,12 @@
 //! S3: the stationary flow against the force, a jump at large strain rates and none at small ones.
 
-use super::elastic::{
-    NEEDED, branch_rows, colours_of_rates, draft, flow_against_force, judged, label, nothing,
-    with_branches,
-};
+use super::elastic::label;
+use super::elastic::*;
 use super::prelude::*;
-use crate::branch::bracket;
-use crate::exhibit::{cells_of_peaks, flow_histogram};
-use crate::forces::{Kind, outside, together};
-use crate::thresholds::{LEAST_JUMP_AGAINST_FORCE, MOST_ESCAPED};
 
 const PROSE: Prose = Prose::new(include_str!("s3.md"));
 
-pub(super) const CLAIM: Claim = Claim::new(
-    "S3",
-    PROSE,
-    &["elastic-branches", "elastic-extremes"],
-    examine,
-);
+pub(super) const CLAIM: Claim = Claim::new("S3", PROSE, BRANCHES, examine);
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let rows = branch_rows(evidence)?;
@@ -58,7 +47,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     draft.chart("branches", &[], branches(&lines, &tight))?;
     let panels = peaks(&rows, &tight);
     if !panels.is_empty() {
-        let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+        let chart = grid(2, panels);
         draft.chart("peaks-against-force", &[], chart)?;
     }
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
@@ -139,10 +128,9 @@ fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> ChartFigure {
     let flow = with_branches(flow_against_force(), tight)
         .with_all(window.map(|(first, last)| Window::new("", first, last)))
         .title("filled: from rest, open: from jammed");
-    ChartFigure::grid(2, [flow].into_iter().chain(heights(tight)))
+    grid(2, [flow].into_iter().chain(heights(tight)))
         .legend(LegendPlace::Hidden)
         .colour_scale(colours_of_rates(lines))
-        .width(Width::DoubleColumn)
 }
 
 /// The height of the rise against the strain rate; `None` where no height is known.

@@ -1,21 +1,11 @@
 //! S4: back flow at small forces.
 
-use super::elastic::{
-    NEEDED, branch_rows, colours_of_rates, draft, flow_against_force, judged, nothing,
-    with_branches,
-};
+use super::elastic::*;
 use super::prelude::*;
-use crate::forces::{counted, is_below, together};
-use crate::thresholds::{LEAST_BACK_FLOW, LEAST_JUMP_AGAINST_FORCE};
 
 const PROSE: Prose = Prose::new(include_str!("s4.md"));
 
-pub(super) const CLAIM: Claim = Claim::new(
-    "S4",
-    PROSE,
-    &["elastic-branches", "elastic-extremes"],
-    examine,
-);
+pub(super) const CLAIM: Claim = Claim::new("S4", PROSE, BRANCHES, examine);
 
 /// The forces at which the flow of a line is negative from rest and, where that start was run too, from jammed, unless the
 /// jam lasts there.

@@ -1,13 +1,8 @@
 //! S5: no back flow without friction?
 
-use super::elastic::{
-    NEEDED, SOURCE_RATE, branch_rows, colours_of_rates, draft, flow_against_force, judged, nothing,
-    with_branches,
-};
+use super::elastic::*;
 use super::prelude::*;
 use super::s4::negative;
-use crate::forces::together;
-use crate::thresholds::{LEAST_BACK_FLOW, NO_BACK_FLOW_BY};
 
 const PROSE: Prose = Prose::new(include_str!("s5.md"));
 const STUDIES: &[&str] = &[
@@ -130,9 +125,8 @@ fn figure(lines: &[ForceLine<'_>], pairs: &[Pair<'_, '_>]) -> ChartFigure {
             let title = format!("from rest, *ε̇* = {}", without.strain_rate);
             empty().with_all(numbered(points)).title(&title)
         });
-    ChartFigure::grid(2, [all].into_iter().chain(beside))
+    grid(2, [all].into_iter().chain(beside))
         .share_y()
         .legend(LegendPlace::Inside)
         .colour_scale(colours_of_rates(lines))
-        .width(Width::DoubleColumn)
 }

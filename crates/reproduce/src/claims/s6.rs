@@ -6,10 +6,8 @@ use std::ops::Range;
 
 use peristalsis_analysis::mean_and_error;
 
-use super::elastic::{NEEDED, SOURCE_RATE, draft, is_frictionless, judged, nothing};
+use super::elastic::*;
 use super::prelude::*;
-use crate::forces::together;
-use crate::thresholds::{CLEAR, LEAST_DIFFERENCE, LEAST_RATIO, MOST_ESCAPED, UNJAMMED};
 
 const PROSE: Prose = Prose::new(include_str!("s6.md"));
 const STUDIES: &[&str] = &["elastic-flow", "elastic-branches", "unjammed-frictionless"];

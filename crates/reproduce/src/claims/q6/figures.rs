@@ -58,7 +58,7 @@ pub(super) fn causes(draft: &mut Draft, samples: &Samples<'_>) -> Result<()> {
     let of_wall = "force of the wall, 10^{3}*F*/*Yd*^{2}";
     let forces = panel(&label(Axis::StaticFriction), of_wall).with_all(numbered(forces));
     let panels = [friction, tether, rate, forces];
-    let chart = ChartFigure::grid(2, panels).width(Width::DoubleColumn);
+    let chart = grid(2, panels);
     let (friction, tether, rate) = (PRESET.friction, PRESET.tether, PRESET.rate);
     draft.chart("cause-of-back-flow", values!(friction, tether, rate), chart)
 }
@@ -85,8 +85,7 @@ pub(super) fn balance(
         .clone()
         .with(Note::corner(Corner::BottomLeft, "wave →"));
     let panels = (0..3).flat_map(|row| columns.iter().map(move |column| column[row].clone()));
-    let chart = ChartFigure::grid(columns.len(), panels)
-        .width(Width::DoubleColumn)
+    let chart = grid(columns.len(), panels)
         .panel_height(34.0)
         .share_x()
         .legend(LegendPlace::Below);

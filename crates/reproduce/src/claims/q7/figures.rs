@@ -15,8 +15,7 @@ pub(super) fn chart(corners: &[Corner<'_>]) -> ChartFigure {
     let least = widths().fold(f64::INFINITY, f64::min);
     let largest = widths().fold(0.0, f64::max);
     let panels = corners.iter().map(|corner| panel(corner, least, largest));
-    ChartFigure::grid(2, panels)
-        .width(Width::DoubleColumn)
+    grid(2, panels)
         .share_x()
         .share_y()
         .legend(LegendPlace::Below)

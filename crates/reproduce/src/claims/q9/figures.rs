@@ -12,8 +12,7 @@ const LEAST_FLOW: f64 = -0.5;
 pub(super) fn characteristic(pumps: &[Pump<'_>]) -> ChartFigure {
     let panels = [flow_panel, efficiency_panel, dispersion_panel];
     let panels = panels.into_iter().flat_map(|panel| pumps.iter().map(panel));
-    ChartFigure::grid(pumps.len(), panels)
-        .width(Width::DoubleColumn)
+    grid(pumps.len(), panels)
         .panel_height(38.0)
         .share_x()
         .legend(LegendPlace::Below)
@@ -130,8 +129,7 @@ pub(super) fn on_the_wall(draft: &mut Draft, pumps: &[Pump<'_>]) -> Result<()> {
             panels.push(with_profiles(panel, profiles, column)?);
         }
     }
-    let chart = ChartFigure::grid(columns.len(), panels)
-        .width(Width::DoubleColumn)
+    let chart = grid(columns.len(), panels)
         .panel_height(32.0)
         .share_x()
         .legend(LegendPlace::Below);

@@ -1,8 +1,8 @@
 //! The figure of S6: profiles of the flows that are compared.
 
-use crate::claims::elastic::{is_frictionless, label};
+use crate::claims::elastic::label;
+use crate::claims::elastic::*;
 use crate::claims::prelude::*;
-use crate::thresholds::UNJAMMED;
 
 /// A profile about the throat: place, density over its mean, v/c, T/(m c^2), each with its error.
 struct Curves {
@@ -103,8 +103,6 @@ pub(super) fn profiles(
                 .with(Curve::new(&curve.name, &curve.place, value).series(series))
         })
     });
-    let chart = ChartFigure::grid(3, panels)
-        .legend(LegendPlace::Below)
-        .width(Width::DoubleColumn);
+    let chart = grid(3, panels).legend(LegendPlace::Below);
     draft.chart("profiles", &[], chart)
 }
