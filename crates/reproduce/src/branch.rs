@@ -1,9 +1,9 @@
 //! The stationary flow against a control from one start: where it falls or rises, and the jump there.
 
-use peristalsis_analysis::{Interval, Jump, Uncertain, jump_height, mean_and_error};
+use peristalsis_analysis::{Interval, Jump, Uncertain, jump_height};
 
 use crate::finding::Statistics;
-use crate::row::{Row, Start, escaped, grouped, mean};
+use crate::row::{Row, Start, escaped, grouped, mean, scattered};
 use crate::thresholds::{
     CLEAR, CONTINUED, ESCAPED_WITHIN, LEAST_ERROR_AGAINST_FORCE, LEAST_ERROR_AGAINST_WIDTH,
     LEAST_FALL, LEAST_JUMP, SPLIT,
@@ -163,14 +163,11 @@ pub(crate) fn stationary<'a>(all: &[Row<'a>]) -> Option<(Vec<Row<'a>>, Uncertain
 
 /// The mean of J/Jmax with its error from the scatter, or from the blocks of the run where there is but one.
 pub(crate) fn flow_of(rows: &[Row<'_>]) -> Uncertain {
-    let ratios: Vec<f64> = rows.iter().map(Row::flow_rate_ratio).collect();
-    let (mean, scatter) = mean_and_error(&ratios);
-    let error = if scatter.is_finite() {
-        scatter
-    } else {
-        rows[0].number("flow_rate_ratio_error")
-    };
-    Uncertain::normal(mean, error)
+    let flow = scattered(rows, Row::flow_rate_ratio);
+    if flow.error.is_finite() {
+        return flow;
+    }
+    Uncertain::normal(flow.value, rows[0].number("flow_rate_ratio_error"))
 }
 
 /// Whether replicates ended in two flows.

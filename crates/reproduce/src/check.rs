@@ -88,10 +88,10 @@ impl Check {
                 check.setting.clone(),
                 check.reference.clone(),
                 significant(check.expected, 6),
-                check.standard_error.map_or_else(
-                    || significant(check.found, 6),
-                    |error| number::with_error(check.found, error),
-                ),
+                match check.standard_error {
+                    Some(error) => number::with_error(check.found, error),
+                    None => significant(check.found, 6),
+                },
                 significant(check.deviation, 2),
                 significant(check.tolerance, 2),
                 verdict(check.passed).to_owned(),
@@ -164,29 +164,20 @@ impl Convergence {
 
     /// Errors at the same steps.
     fn table(group: &[Self]) -> ReportTable {
-        let row = |convergence: &Self| {
-            let mut row = vec![convergence.quantity.clone(), convergence.setting.clone()];
-            row.extend(
-                convergence
-                    .errors
-                    .iter()
-                    .map(|error| significant(*error, 2)),
-            );
-            let [least, largest] = convergence.expected_order;
-            row.push(
-                convergence
-                    .order
-                    .map_or_else(|| "rounding".to_owned(), |order| format!("{order:.2}")),
-            );
-            row.push(format!("{least} – {largest}"));
-            row.push(verdict(convergence.passed).to_owned());
+        let row = |one: &Self| {
+            let mut row = vec![one.quantity.clone(), one.setting.clone()];
+            row.extend(one.errors.iter().map(|error| significant(*error, 2)));
+            let order = one.order.map(|order| format!("{order:.2}"));
+            let [least, largest] = one.expected_order;
+            row.extend([
+                order.unwrap_or("rounding".to_owned()),
+                format!("{least} – {largest}"),
+                verdict(one.passed).to_owned(),
+            ]);
             row
         };
-        let unit = &group[0].unit;
-        let steps = group[0]
-            .steps
-            .iter()
-            .map(|step| format!("h = {step} {unit}"));
+        let Self { unit, steps, .. } = &group[0];
+        let steps = steps.iter().map(|step| format!("h = {step} {unit}"));
         let before = ["relative error of", "experiment"].map(str::to_owned);
         let behind = ["order", "allowed", ""].map(str::to_owned);
         ReportTable::new(

@@ -7,12 +7,13 @@ use peristalsis_analysis::{
 use peristalsis_run::THRESHOLDS;
 
 use crate::branch::{Branch, Control};
+use crate::draft::Draft;
 use crate::error::Result;
 use crate::evidence::Evidence;
-use crate::finding::{Quantity, Statistics};
+use crate::finding::Statistics;
 use crate::judgement::{Part, agrees};
 use crate::lattices::LATTICES;
-use crate::prose::{Prose, values};
+use crate::prose::values;
 use crate::row::{
     Row, Start, behind, by_strain_rate, escaped, grouped, longest, nearest_threshold,
 };
@@ -356,38 +357,24 @@ pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
     Some(Uncertain::normal(mean, ratio / weights.sqrt()))
 }
 
-/// The mean exponent on one lattice beside that of the source.
-pub(crate) struct Exponent {
-    /// Whether it agrees.
-    pub(crate) part: Part,
-    /// It in words, section `mean`.
-    pub(crate) words: Option<String>,
-    /// It as a number, section `quantity: exponent`.
-    pub(crate) quantity: Option<Quantity>,
-}
-
-impl Exponent {
-    /// Of the exponents at each strain rate.
-    pub(crate) fn of(
-        prose: &Prose,
-        lattice: &OnLattice<'_>,
-        source: f64,
-        exponents: &[Uncertain],
-    ) -> Self {
-        let mean = weighted_mean(exponents);
-        let name = &lattice.name;
-        let words = |mean| prose.text("mean", values!(mean, lattice = name));
-        let quantity = |mean| {
-            let (lattice, rates, window) = (name, exponents.len(), WINDOW);
-            let found = prose.quantity("exponent", values!(lattice, rates, window), mean);
-            found.sourced(source)
-        };
-        Self {
-            part: lattice.part(mean.and_then(|mean| agrees(&mean, source))),
-            words: mean.map(words),
-            quantity: mean.map(quantity),
-        }
-    }
+/// Compares the mean of the exponents at each strain rate of a lattice with that of the source: whether it agrees, and it in
+/// words, section `mean`. The draft gets it as a number, section `quantity: exponent`.
+pub(crate) fn mean_exponent(
+    draft: &mut Draft,
+    lattice: &OnLattice<'_>,
+    source: f64,
+    exponents: &[Uncertain],
+) -> (Part, Option<String>) {
+    let mean = weighted_mean(exponents);
+    let prose = draft.prose;
+    let words = mean.map(|mean| {
+        let (lattice, rates, window) = (&lattice.name, exponents.len(), WINDOW);
+        let found = prose.quantity("exponent", values!(lattice, rates, window), mean);
+        draft.finding.quantities.push(found.sourced(source));
+        prose.text("mean", values!(mean, lattice))
+    });
+    let agrees = mean.and_then(|mean| agrees(&mean, source));
+    (lattice.part(agrees), words)
 }
 
 /// The slope of a line, its error stretched to the scatter about the line.

@@ -9,7 +9,8 @@ use crate::prose::{Prose, Values};
 
 /// A finding while it is written, in the words of its claim.
 pub(crate) struct Draft {
-    prose: Prose,
+    /// The text of its claim.
+    pub(crate) prose: Prose,
     /// What is written already.
     pub(crate) finding: Finding,
 }

@@ -98,31 +98,18 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, "timeseries.parquet")
+        self.product(row, "timeseries")
     }
 
-    /// The flow of each wave over each period of a run; `None` where it was not kept, or only its row was imported.
-    pub(crate) fn waves(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, "waves.parquet")
-    }
-
-    /// The profile in the wave's frame of a run, late means; `None` where it was not kept, or only its row was imported.
-    pub(crate) fn profile(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, "profile.parquet")
-    }
-
-    /// The spheres at the end of a run; `None` where they were not kept, or only its row was imported.
-    pub(crate) fn snapshot(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, "snapshot.parquet")
-    }
-
-    fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>> {
+    /// A table that a run may have kept: its `waves`, the flow of each over each period, its `profile` in the wave's frame, late
+    /// means, or its `snapshot`, the spheres at the end; `None` where it was not kept, or only its row was imported.
+    pub(crate) fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>> {
         let Ok(identity) = row.identity().parse() else {
             return Ok(None);
         };
         let stores = [&self.store, &self.again].into_iter().flatten();
         let path = stores
-            .map(|store| store.run_folder(identity).join(name))
+            .map(|store| store.run_folder(identity).join(format!("{name}.parquet")))
             .find(|path| path.is_file());
         Ok(path.map(|path| parquet::read(&path)).transpose()?)
     }

@@ -73,8 +73,9 @@ pub(crate) fn outside(escaped: f64, left_out: &[f64]) -> String {
 /// Number of runs that count for a verdict.
 pub(crate) fn counted(rows: &[Row<'_>]) -> usize {
     // Means over a whole number of samples may miss whole periods by one of them.
-    let counts =
-        |row: &&Row<'_>| row.is_stationary() && row.late_periods() >= STATIONARY_PERIODS - 0.5;
+    let counts = |row: &&Row<'_>| {
+        row.is_stationary() && row.number("late_periods") >= STATIONARY_PERIODS - 0.5
+    };
     rows.iter().filter(counts).count()
 }
 

@@ -171,7 +171,12 @@ impl Prose {
 
     /// The number of a section `quantity: name`, of which the source gives none: its name, symbol, unit and method are written
     /// there.
-    pub(crate) fn quantity(&self, name: &str, values: &Values<'_>, ours: Uncertain) -> Quantity {
+    pub(crate) fn quantity(
+        &self,
+        name: &str,
+        values: &Values<'_>,
+        ours: impl Into<Option<Uncertain>>,
+    ) -> Quantity {
         let section = filled(self.section(&format!("quantity: {name}")), values);
         let item = |key: &str| {
             let item = section.lines().find_map(|line| line.strip_prefix(key));
@@ -182,7 +187,7 @@ impl Prose {
             symbol: item("- symbol: "),
             unit: item("- unit: "),
             source: None,
-            ours: Some(ours),
+            ours: ours.into(),
             method: item("- method: "),
         }
     }
@@ -293,7 +298,7 @@ mod tests {
         files.push(claims.join(format!("{id}.rs")));
         let read = |file: &PathBuf| fs::read_to_string(file).unwrap();
         let mut code: String = files.iter().map(read).collect();
-        if code.contains("Exponent::of(&PROSE") {
+        if code.contains("mean_exponent(&mut draft") {
             code += &read(&claims.join("../critical.rs")).replace("prose.", "PROSE.");
         }
         code

@@ -127,6 +127,11 @@ impl<'a> Row<'a> {
         }
     }
 
+    /// A number with its error, which stands in the column of the same name with `_error`.
+    pub(crate) fn number_and_error(&self, column: &str) -> (f64, f64) {
+        (self.number(column), self.number(&format!("{column}_error")))
+    }
+
     /// A text; empty where the column is missing or holds no texts.
     pub(crate) fn text(&self, column: &str) -> &'a str {
         match self.table.column(column).map(|column| &column.values) {
@@ -207,12 +212,6 @@ impl<'a> Row<'a> {
     /// Late mean of J/Jmax.
     pub(crate) fn flow_rate_ratio(&self) -> f64 {
         self.number("flow_rate_ratio")
-    }
-
-    /// Periods that its late mean is over; 0 where the table does not say.
-    pub(crate) fn late_periods(&self) -> f64 {
-        let periods = self.number("late_periods");
-        if periods.is_finite() { periods } else { 0.0 }
     }
 
     /// Whether its late mean belongs to a stationary flow: the halves of the late part differ by at most `MOST_DRIFT`, or
@@ -298,8 +297,7 @@ pub(crate) fn longest<'a>(rows: impl IntoIterator<Item = &'a Row<'a>>) -> f64 {
 /// The mean of the finite values in a column; its standard error is the larger of two: from the errors in the column of the
 /// same name with `_error`, and from the scatter of the values. NaN where neither is known; `None` without a finite value.
 pub(crate) fn mean(rows: &[Row<'_>], column: &str) -> Option<Uncertain> {
-    let errors = format!("{column}_error");
-    mean_of(rows, |row| (row.number(column), row.number(&errors)))
+    mean_of(rows, |row| row.number_and_error(column))
 }
 
 /// [`mean`] of a value with its error.
@@ -317,6 +315,13 @@ pub(crate) fn mean_of(
     // The maximum takes the one that is known where the other is not.
     let error = (squares.sqrt() / values.len() as f64).max(scatter);
     (!values.is_empty()).then(|| Uncertain::normal(mean, error))
+}
+
+/// The mean of a number over some rows, with its error from their scatter; not known of a single row.
+pub(crate) fn scattered<'a>(rows: &[Row<'a>], value: impl Fn(&Row<'a>) -> f64) -> Uncertain {
+    let values: Vec<f64> = rows.iter().map(value).collect();
+    let (mean, error) = mean_and_error(&values);
+    Uncertain::normal(mean, error)
 }
 
 /// How much is behind some rows of one strain rate that differ in a control, which counts as the width, and in the replicate.

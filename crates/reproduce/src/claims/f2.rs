@@ -20,10 +20,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut rows, mut sensitivity) = (Vec::new(), Vec::new());
     for one in &lattices {
         let exponents: Vec<Uncertain> = one.fitted().map(|(_, fit)| fit.exponent).collect();
-        let found = Exponent::of(&PROSE, one, EXPONENT, &exponents);
-        parts.push(found.part);
-        means.extend(found.words);
-        draft.finding.quantities.extend(found.quantity);
+        let (part, words) = mean_exponent(&mut draft, one, EXPONENT, &exponents);
+        parts.push(part);
+        means.extend(words);
         for (line, fit) in one.fitted() {
             rows.push(row(&one.name, line, fit));
             sensitivity.push(shifted(&one.name, line));

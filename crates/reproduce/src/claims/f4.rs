@@ -20,10 +20,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for one in &lattices {
         let exponents = one.scattered().map(|(_, fit)| fit.variance_exponent);
         let exponents: Vec<Uncertain> = exponents.collect();
-        let found = Exponent::of(&PROSE, one, EXPONENT, &exponents);
-        parts.push(found.part);
-        means.extend(found.words);
-        draft.finding.quantities.extend(found.quantity);
+        let (part, words) = mean_exponent(&mut draft, one, EXPONENT, &exponents);
+        parts.push(part);
+        means.extend(words);
         rows.extend(one.scattered().map(|(line, fit)| {
             vec![
                 one.name.clone(),

@@ -116,18 +116,9 @@ impl Judged {
 
     fn quantities(&self, lattice: &str) -> [Quantity; 2] {
         // What is not known stands there without a number.
-        let quantity = |quantity: Quantity, source, ours| Quantity {
-            source: Some(source),
-            ours,
-            ..quantity
-        };
-        let none = Uncertain::normal(f64::NAN, f64::NAN);
-        let change = PROSE.quantity("change", values!(lattice), none);
-        let exponent = PROSE.quantity("exponent", values!(lattice), none);
-        [
-            quantity(change, 0.0, self.change),
-            quantity(exponent, EXPONENT, self.exponent),
-        ]
+        let change = PROSE.quantity("change", values!(lattice), self.change);
+        let exponent = PROSE.quantity("exponent", values!(lattice), self.exponent);
+        [change.sourced(0.0), exponent.sourced(EXPONENT)]
     }
 }
 

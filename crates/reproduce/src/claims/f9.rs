@@ -1,8 +1,6 @@
 //! F9: hysteresis.
 
-use peristalsis_analysis::{
-    Family, Hysteresis, Transition, fit_lifetime, hysteresis, mean_and_error,
-};
+use peristalsis_analysis::{Family, Hysteresis, Transition, fit_lifetime, hysteresis};
 
 use super::prelude::*;
 
@@ -160,8 +158,7 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
         // Runs that did not end count with the time that they were watched.
         let lifetime = fit_lifetime(Family::Gamma, &transitions)
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
-        let ratios: Vec<f64> = group.iter().map(Row::flow_rate_ratio).collect();
-        let (ratio, error) = mean_and_error(&ratios);
+        let ratio = scattered(&group, Row::flow_rate_ratio);
         vec![
             lattice.name(),
             number(rate, 3),
@@ -171,7 +168,7 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
                 |_| format!("> {}", number(group[0].time() * rate, 0)),
                 |fit| with_error(fit.mean.value * rate, fit.mean.error * rate),
             ),
-            with_error(ratio, error),
+            with_error(ratio.value, ratio.error),
         ]
     };
     grouped(jammed, key).into_iter().map(lifetime).collect()

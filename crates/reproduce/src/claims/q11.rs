@@ -1,7 +1,5 @@
 //! Q11: what the method of computing does to the numbers.
 
-use peristalsis_analysis::mean_and_error;
-
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q11.md"));
@@ -58,10 +56,9 @@ impl Outcome {
         let critical = crossing(rows)?.width;
         let at_widths = grouped(rows.iter().copied(), Row::width);
         let mean = |(_, here): &(f64, Vec<Row<'_>>)| {
-            let ratios: Vec<f64> = here.iter().map(Row::flow_rate_ratio).collect();
-            let (mean, error) = mean_and_error(&ratios);
+            let flow = scattered(here, Row::flow_rate_ratio);
             // A single run has no scatter.
-            Uncertain::normal(mean, if ratios.len() > 1 { error } else { 0.0 })
+            Uncertain::normal(flow.value, if here.len() > 1 { flow.error } else { 0.0 })
         };
         Some(Self {
             method,

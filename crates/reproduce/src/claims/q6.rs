@@ -53,11 +53,8 @@ impl Sampled<'_> {
     /// The rest of a force, in thousandths: that of the rear, or of the bulge.
     fn rest(&self, whole: &str, part: &str) -> Option<Uncertain> {
         let rest = mean_of(&self.rows, |row| {
-            let error = |column: &str| row.number(&format!("{column}_error"));
-            (
-                row.number(whole) - row.number(part),
-                error(whole).hypot(error(part)),
-            )
+            let (whole, part) = (row.number_and_error(whole), row.number_and_error(part));
+            (whole.0 - part.0, whole.1.hypot(part.1))
         });
         Some(rest?.scaled(1e3))
     }
@@ -65,9 +62,8 @@ impl Sampled<'_> {
     /// A velocity over the speed of the wave.
     fn velocity(&self, column: &str) -> Option<Uncertain> {
         mean_of(&self.rows, |row| {
-            let error = row.number(&format!("{column}_error"));
-            let speed = row.wave_speed();
-            (row.number(column) / speed, error / speed)
+            let ((velocity, error), speed) = (row.number_and_error(column), row.wave_speed());
+            (velocity / speed, error / speed)
         })
     }
 
@@ -166,7 +162,8 @@ struct FreeFlight {
 impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>> {
-        let Some((row, profile)) = first_kept(&one.rows, |row| results.profile(row))? else {
+        let Some((row, profile)) = first_kept(&one.rows, |row| results.product(row, "profile"))?
+        else {
             return Ok(None);
         };
         let (pressure, density) = (profile.reals("wall_pressure")?, profile.reals("density")?);

@@ -99,13 +99,9 @@ impl<'a> Corner<'a> {
     }
 
     fn highest(&self) -> Option<&Point<'a>> {
-        self.flow.points().reduce(|best, one| {
-            if one.flow.value > best.flow.value {
-                one
-            } else {
-                best
-            }
-        })
+        // The first where several are alike.
+        let points = self.flow.points();
+        points.min_by(|one, other| other.flow.value.total_cmp(&one.flow.value))
     }
 
     fn is_bistable(&self) -> bool {

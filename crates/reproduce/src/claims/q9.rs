@@ -77,10 +77,9 @@ fn dispersion(point: &Point<'_>) -> Option<Uncertain> {
 
 /// Mean of a column times a scale of each run.
 fn scaled(point: &Point<'_>, column: &str, scale: fn(&Row<'_>) -> f64) -> Option<Uncertain> {
-    let errors = format!("{column}_error");
     mean_of(&point.rows, |row| {
-        let scale = scale(row);
-        (row.number(column) * scale, row.number(&errors) * scale)
+        let ((value, error), scale) = (row.number_and_error(column), scale(row));
+        (value * scale, error * scale)
     })
 }
 

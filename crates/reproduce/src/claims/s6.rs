@@ -4,8 +4,6 @@ mod figures;
 
 use std::ops::Range;
 
-use peristalsis_analysis::mean_and_error;
-
 use super::elastic::*;
 use super::prelude::*;
 
@@ -76,11 +74,8 @@ impl<'a> Flow<'a> {
         (!rows.is_empty()).then_some(Self { name, rows })
     }
 
-    /// Mean of a number over the runs with its error; without an error from a single run.
     fn mean(&self, value: fn(&Row<'_>) -> f64) -> Uncertain {
-        let values: Vec<f64> = self.rows.iter().map(value).collect();
-        let (mean, error) = mean_and_error(&values);
-        Uncertain::normal(mean, error)
+        scattered(&self.rows, value)
     }
 
     /// In what it differs from another flow.
