@@ -1,7 +1,7 @@
 //! Atomic writing: after a crash, a kill or a full disk, a file is the old one or the new one, never a part of one.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
@@ -51,8 +51,8 @@ impl Pending {
     /// [`FormatError::Io`] where it cannot be made.
     pub fn create(path: &Path) -> Result<Self, FormatError> {
         let folder = folder_of(path).map_err(FormatError::io("write", path))?;
-        let partial =
-            create_partial(folder).map_err(FormatError::io("create a file beside", path))?;
+        let partial = create_partial(folder);
+        let partial = partial.map_err(FormatError::io("create a file beside", path))?;
         Ok(Self {
             partial,
             path: path.to_owned(),
@@ -120,7 +120,7 @@ fn folder_of(path: &Path) -> io::Result<&Path> {
         (Some(_), Some(folder)) if folder.as_os_str().is_empty() => Ok(Path::new(".")),
         (Some(_), Some(folder)) => Ok(folder),
         _ => Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
+            ErrorKind::InvalidInput,
             "the path names no file",
         )),
     }
@@ -142,7 +142,7 @@ fn synchronize_folder(folder: &Path) -> io::Result<()> {
         Err(error)
             if matches!(
                 error.kind(),
-                io::ErrorKind::InvalidInput | io::ErrorKind::Unsupported
+                ErrorKind::InvalidInput | ErrorKind::Unsupported
             ) =>
         {
             Ok(())
@@ -160,7 +160,6 @@ fn synchronize_folder(_folder: &Path) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use std::fs;
-    use std::io::ErrorKind;
 
     use super::*;
 

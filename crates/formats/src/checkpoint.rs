@@ -110,13 +110,13 @@ pub fn decode<State: DeserializeOwned>(
     let plain = decompress(&header, header.payload_of(bytes)?)?;
     match postcard::take_from_bytes(&plain) {
         Ok((state, [])) => Ok(state),
-        Ok((_, rest)) => Err(FormatError::corrupt_checkpoint(format!(
-            "{} bytes remain after the end of the state",
-            rest.len()
-        ))),
-        Err(error) => Err(FormatError::corrupt_checkpoint(format!(
-            "the payload is not such a state: {error}"
-        ))),
+        Ok((_, rest)) => {
+            let number = rest.len();
+            Err(corrupt(format!(
+                "{number} bytes remain after the end of the state"
+            )))
+        }
+        Err(error) => Err(corrupt(format!("the payload is not such a state: {error}"))),
     }
 }
 
@@ -201,9 +201,7 @@ impl Header {
         }
         let bytes = bytes.get(..HEADER_BYTES).ok_or(truncated)?;
         if crc32fast::hash(&bytes[..80]) != u32::from_le_bytes(field(bytes, 80)) {
-            return Err(FormatError::corrupt_checkpoint(
-                "the header does not match its checksum",
-            ));
+            return Err(corrupt("the header does not match its checksum"));
         }
         let header = Self {
             identity: CheckpointIdentity {
@@ -217,7 +215,7 @@ impl Header {
             payload_checksum: u32::from_le_bytes(field(bytes, 72)),
         };
         if header.payload_bytes.max(header.state_bytes) > MAXIMUM_STATE_BYTES {
-            return Err(FormatError::corrupt_checkpoint(format!(
+            return Err(corrupt(format!(
                 "it claims a state of {} bytes in a payload of {}, beyond the limit of {MAXIMUM_STATE_BYTES}",
                 header.state_bytes, header.payload_bytes
             )));
@@ -236,14 +234,10 @@ impl Header {
             });
         }
         if found > expected {
-            return Err(FormatError::corrupt_checkpoint(
-                "bytes follow the end of the payload",
-            ));
+            return Err(corrupt("bytes follow the end of the payload"));
         }
         if crc32fast::hash(payload) != self.payload_checksum {
-            return Err(FormatError::corrupt_checkpoint(
-                "the payload does not match its checksum",
-            ));
+            return Err(corrupt("the payload does not match its checksum"));
         }
         Ok(payload)
     }
@@ -256,17 +250,19 @@ fn field<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
         .expect("the range is N bytes long")
 }
 
+fn corrupt(reason: impl Into<String>) -> FormatError {
+    FormatError::CorruptCheckpoint(reason.into())
+}
+
 fn decompress(header: &Header, payload: &[u8]) -> Result<Vec<u8>, FormatError> {
     // Grows with what really comes out, not with what the header claims, and stops one byte past the claim.
     let mut plain = Vec::new();
     FrameDecoder::new(payload)
         .take(header.state_bytes + 1)
         .read_to_end(&mut plain)
-        .map_err(|error| {
-            FormatError::corrupt_checkpoint(format!("the payload cannot be decompressed: {error}"))
-        })?;
+        .map_err(|error| corrupt(format!("the payload cannot be decompressed: {error}")))?;
     if plain.len() as u64 != header.state_bytes {
-        return Err(FormatError::corrupt_checkpoint(
+        return Err(corrupt(
             "the payload does not decompress to the length in the header",
         ));
     }

@@ -66,11 +66,8 @@ pub fn decode(text: &str) -> Result<Table, FormatError> {
     let mut line = scanner.line;
     while let Some(record) = scanner.record()? {
         if record.len() != columns.len() {
-            let reason = format!(
-                "{} fields under {} column names",
-                record.len(),
-                columns.len()
-            );
+            let (found, named) = (record.len(), columns.len());
+            let reason = format!("{found} fields under {named} column names");
             return Err(FormatError::Csv { line, reason });
         }
         for (column, field) in columns.iter_mut().zip(record) {
@@ -120,12 +117,8 @@ fn values_of(fields: Vec<Field<'_>>) -> Values {
             .or_else(|| parsed(&fields, real).map(Values::Real))
     });
     found.flatten().unwrap_or_else(|| {
-        Values::Text(
-            fields
-                .into_iter()
-                .map(|field| field.text.into_owned())
-                .collect(),
-        )
+        let texts = fields.into_iter().map(|field| field.text.into_owned());
+        Values::Text(texts.collect())
     })
 }
 
@@ -327,7 +320,7 @@ mod tests {
             }
         }
         assert_refused!(decode("a,a\n1,2\n") => DuplicateColumn { .. });
-        assert_refused!(decode("a,\n1,2\n") => UnnamedColumn { index: 1 });
+        assert_refused!(decode("a,\n1,2\n") => UnnamedColumn(1));
     }
 
     #[test]

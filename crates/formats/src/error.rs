@@ -24,17 +24,11 @@ pub enum FormatError {
     #[error("a table needs at least one column")]
     NoColumns,
     /// A column must have a name.
-    #[error("column {index} (counted from 0) has no name")]
-    UnnamedColumn {
-        /// Position of the column, counted from 0.
-        index: usize,
-    },
+    #[error("column {0} (counted from 0) has no name")]
+    UnnamedColumn(usize),
     /// Two columns have the same name.
-    #[error("two columns are named `{name}`")]
-    DuplicateColumn {
-        /// The name that occurs twice.
-        name: String,
-    },
+    #[error("two columns are named `{0}`")]
+    DuplicateColumn(String),
     /// The columns of a table must be equally long.
     #[error("column `{name}` has {found} rows, the columns before it {expected}")]
     UnequalLength {
@@ -46,25 +40,16 @@ pub enum FormatError {
         expected: usize,
     },
     /// A metadata key is taken by the file format.
-    #[error("the metadata key `{key}` is reserved for the file format")]
-    ReservedMetadata {
-        /// The key in question.
-        key: String,
-    },
-    /// Two tables to be joined differ in their columns.
+    #[error("the metadata key `{0}` is reserved for the file format")]
+    ReservedMetadata(String),
+    /// Two tables to be joined differ in their columns; the first that has no equal in the other table.
     #[error(
-        "the tables differ at column `{name}`: appending needs the same names, kinds, units and descriptions in the same order"
+        "the tables differ at column `{0}`: appending needs the same names, kinds, units and descriptions in the same order"
     )]
-    DifferentColumns {
-        /// The first column that has no equal in the other table.
-        name: String,
-    },
+    DifferentColumns(String),
     /// The table has no such column.
-    #[error("no column named `{name}`")]
-    MissingColumn {
-        /// The name asked for.
-        name: String,
-    },
+    #[error("no column named `{0}`")]
+    MissingColumn(String),
     /// The column holds values of another kind.
     #[error("column `{name}` holds {found} values, not {expected}")]
     OtherKind {
@@ -88,12 +73,9 @@ pub enum FormatError {
     /// The Parquet library refused to write or read.
     #[error("Parquet: {0}")]
     Parquet(#[from] ::parquet::errors::ParquetError),
-    /// A Parquet file is not what was once written.
-    #[error("the Parquet file is corrupt: {reason}")]
-    CorruptParquet {
-        /// What betrayed it.
-        reason: String,
-    },
+    /// A Parquet file is not what was once written, and what betrayed it.
+    #[error("the Parquet file is corrupt: {0}")]
+    CorruptParquet(String),
     /// A Parquet column has a type that no [`Values`](crate::Values) holds, or lacks a value where that kind cannot.
     #[error("Parquet column `{name}`: {reason}")]
     UnsupportedParquet {
@@ -181,12 +163,9 @@ pub enum FormatError {
         /// Bytes present.
         found: u64,
     },
-    /// The checkpoint is complete in length but not what was once written.
-    #[error("the checkpoint is corrupt: {reason}")]
-    CorruptCheckpoint {
-        /// What betrayed it.
-        reason: String,
-    },
+    /// The checkpoint is complete in length but not what was once written, and what betrayed it.
+    #[error("the checkpoint is corrupt: {0}")]
+    CorruptCheckpoint(String),
     /// The state is larger than a checkpoint may be.
     #[error("a state of {bytes} bytes is beyond the limit of {limit} bytes for one checkpoint")]
     StateTooLarge {
@@ -216,19 +195,6 @@ impl FormatError {
     pub(crate) fn not_a_trajectory(path: &Path, reason: impl Into<String>) -> Self {
         Self::NotATrajectory {
             path: path.to_owned(),
-            reason: reason.into(),
-        }
-    }
-
-    pub(crate) fn unreadable_trajectory(path: &Path, reason: impl Into<String>) -> Self {
-        Self::UnreadableTrajectory {
-            path: path.to_owned(),
-            reason: reason.into(),
-        }
-    }
-
-    pub(crate) fn corrupt_checkpoint(reason: impl Into<String>) -> Self {
-        Self::CorruptCheckpoint {
             reason: reason.into(),
         }
     }

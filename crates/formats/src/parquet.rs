@@ -61,12 +61,9 @@ struct Meaning {
 pub fn encode(table: &Table) -> Result<Vec<u8>, FormatError> {
     let schema = Arc::new(schema_of(table)?);
     let mut writer = SerializedFileWriter::new(Vec::new(), schema, Arc::new(properties_of(table)))?;
-    writer
-        .write_all(&SEAL_SIGNATURE)
-        .map_err(ParquetError::from)?;
-    writer
-        .write_all(&[0; SEAL_CHECKSUM_RANGE.end - SEAL_CHECKSUM_RANGE.start])
-        .map_err(ParquetError::from)?;
+    // The checksum's place: it is known at the end.
+    let seal = [&SEAL_SIGNATURE[..], &[0; 4]].concat();
+    writer.write_all(&seal).map_err(ParquetError::from)?;
     for start in (0..table.rows()).step_by(MAXIMUM_ROWS_OF_GROUP) {
         let rows = start..table.rows().min(start + MAXIMUM_ROWS_OF_GROUP);
         let mut group = writer.next_row_group()?;
@@ -97,15 +94,11 @@ pub fn decode(bytes: Vec<u8>) -> Result<Table, FormatError> {
             .get(SEAL_CHECKSUM_RANGE)
             .is_some_and(|seal| seal == checksum_of(&bytes).to_le_bytes());
         if !unbroken {
-            let reason = "it is cut short or changed, by its checksum".into();
-            return Err(FormatError::CorruptParquet { reason });
+            return Err(corrupt("it is cut short or changed, by its checksum"));
         }
     }
-    panic::catch_unwind(|| decode_unchecked(bytes)).unwrap_or_else(|_| {
-        Err(FormatError::CorruptParquet {
-            reason: "its structure contradicts itself".into(),
-        })
-    })
+    panic::catch_unwind(|| decode_unchecked(bytes))
+        .unwrap_or_else(|_| Err(corrupt("its structure contradicts itself")))
 }
 
 fn decode_unchecked(bytes: Vec<u8>) -> Result<Table, FormatError> {
@@ -188,26 +181,17 @@ fn write_rows(
         (Values::Real(values), ColumnWriter::DoubleColumnWriter(chunk)) => {
             let values = &values[rows];
             // The level of a row is 1 if its value is there, which then stands among the present ones, and 0 if not.
-            let levels: Vec<i16> = values
-                .iter()
-                .map(|value| (!value.is_nan()).into())
-                .collect();
-            let present: Vec<f64> = values
-                .iter()
-                .copied()
-                .filter(|value| !value.is_nan())
-                .collect();
+            let is_there = |value: &f64| !value.is_nan();
+            let levels: Vec<i16> = values.iter().map(|value| is_there(value).into()).collect();
+            let present: Vec<f64> = values.iter().copied().filter(is_there).collect();
             chunk.write_batch(&present, Some(&levels), None)
         }
         (Values::Integer(values), ColumnWriter::Int64ColumnWriter(chunk)) => {
             chunk.write_batch(&values[rows], None, None)
         }
         (Values::Text(values), ColumnWriter::ByteArrayColumnWriter(chunk)) => {
-            let values: Vec<ByteArray> = values[rows]
-                .iter()
-                .map(|value| value.as_str().into())
-                .collect();
-            chunk.write_batch(&values, None, None)
+            let values = values[rows].iter().map(|value| value.as_str().into());
+            chunk.write_batch(&values.collect::<Vec<ByteArray>>(), None, None)
         }
         (Values::Boolean(values), ColumnWriter::BoolColumnWriter(chunk)) => {
             chunk.write_batch(&values[rows], None, None)
@@ -229,8 +213,8 @@ fn properties_of(table: &Table) -> WriterProperties {
     for column in table.columns() {
         // Measured reals hardly repeat: a dictionary of them would be larger than the values.
         if column.values.kind() == ValueKind::Real {
-            properties = properties
-                .set_column_dictionary_enabled(ColumnPath::from(column.name.as_str()), false);
+            let path = ColumnPath::from(column.name.as_str());
+            properties = properties.set_column_dictionary_enabled(path, false);
         }
     }
     properties.build()
@@ -262,8 +246,9 @@ fn meanings_in(entries: &[KeyValue]) -> Result<BTreeMap<String, Meaning>, Format
         .find(|entry| entry.key == COLUMNS_KEY)
         .and_then(|entry| entry.value.as_deref())
         .map_or(Ok(BTreeMap::new()), serde_json::from_str)
-        .map_err(|error| FormatError::CorruptParquet {
-            reason: format!("its metadata `{COLUMNS_KEY}` do not describe columns: {error}"),
+        .map_err(|error| {
+            let reason = format!("its metadata `{COLUMNS_KEY}` do not describe columns: {error}");
+            FormatError::CorruptParquet(reason)
         })
 }
 
@@ -274,10 +259,8 @@ fn column_of(field: &Type, meaning: Meaning) -> Result<Column, FormatError> {
         print_schema(&mut declaration, field);
         let declaration = String::from_utf8_lossy(&declaration);
         let words: Vec<&str> = declaration.split_whitespace().collect();
-        unsupported(
-            field.name(),
-            format!("the type in `{}` is not supported", words.join(" ")),
-        )
+        let reason = format!("the type in `{}` is not supported", words.join(" "));
+        unsupported(field.name(), reason)
     })?;
     Ok(Column {
         name: field.name().to_owned(),
@@ -368,6 +351,10 @@ fn read_values<T: DataType, V>(
         }
         levels.clear();
     }
+}
+
+fn corrupt(reason: &str) -> FormatError {
+    FormatError::CorruptParquet(reason.to_owned())
 }
 
 fn unsupported(name: &str, reason: String) -> FormatError {

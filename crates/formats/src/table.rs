@@ -165,9 +165,7 @@ impl Table {
         self.columns
             .iter()
             .find(|column| column.name == name)
-            .ok_or_else(|| FormatError::MissingColumn {
-                name: name.to_owned(),
-            })
+            .ok_or_else(|| FormatError::MissingColumn(name.to_owned()))
     }
 
     /// The values of a column of reals; NaN is a missing value.
@@ -227,9 +225,7 @@ impl Table {
             }
         });
         if let Some(column) = differing {
-            return Err(FormatError::DifferentColumns {
-                name: column.name.clone(),
-            });
+            return Err(FormatError::DifferentColumns(column.name.clone()));
         }
         for (upper, lower) in self.columns.iter_mut().zip(other.columns) {
             match (&mut upper.values, lower.values) {
@@ -302,12 +298,10 @@ impl TableBuilder {
         let mut names = HashSet::with_capacity(columns.len());
         for (index, column) in columns.iter().enumerate() {
             if column.name.is_empty() {
-                return Err(FormatError::UnnamedColumn { index });
+                return Err(FormatError::UnnamedColumn(index));
             }
             if !names.insert(column.name.as_str()) {
-                return Err(FormatError::DuplicateColumn {
-                    name: column.name.clone(),
-                });
+                return Err(FormatError::DuplicateColumn(column.name.clone()));
             }
             let found = column.values.len();
             if found != expected {
@@ -319,7 +313,7 @@ impl TableBuilder {
             }
         }
         if let Some(key) = metadata.keys().find(|key| is_reserved(key)) {
-            return Err(FormatError::ReservedMetadata { key: key.clone() });
+            return Err(FormatError::ReservedMetadata(key.clone()));
         }
         Ok(Table { columns, metadata })
     }

@@ -203,7 +203,7 @@ fn a_panic_of_the_library_becomes_an_error() {
             changed[index] ^= flip;
             matches!(
                 decode(changed),
-                Err(FormatError::CorruptParquet { reason }) if reason.contains("contradicts itself")
+                Err(FormatError::CorruptParquet(reason)) if reason.contains("contradicts itself")
             )
         });
     assert!(caught.count() > 0);

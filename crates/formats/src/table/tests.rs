@@ -13,10 +13,10 @@ fn reals(name: &str, values: &[f64]) -> Column {
 fn the_builder_refuses_what_is_not_a_table() {
     let build = |columns: Vec<Column>| Table::builder().columns(columns).build();
     assert!(matches!(build(vec![]), Err(FormatError::NoColumns)));
-    assert_refused!(build(vec![reals("a", &[]), reals("", &[])]) => UnnamedColumn { index: 1 });
+    assert_refused!(build(vec![reals("a", &[]), reals("", &[])]) => UnnamedColumn(1));
     assert!(matches!(
         build(vec![reals("a", &[1.0]), reals("b", &[1.0]), reals("a", &[1.0])]),
-        Err(FormatError::DuplicateColumn { name }) if name == "a"
+        Err(FormatError::DuplicateColumn(name)) if name == "a"
     ));
     assert!(matches!(
         build(vec![reals("a", &[1.0, 2.0]), reals("b", &[1.0])]),
@@ -27,7 +27,7 @@ fn the_builder_refuses_what_is_not_a_table() {
             .columns([reals("a", &[])])
             .metadata(taken, "x")
             .build();
-        assert!(matches!(reserved, Err(FormatError::ReservedMetadata { key }) if key == taken));
+        assert!(matches!(reserved, Err(FormatError::ReservedMetadata(key)) if key == taken));
     }
 }
 
@@ -44,7 +44,7 @@ fn columns_are_found_by_name_and_kind() {
     assert_eq!(table.integers("b").unwrap(), [7]);
     assert_eq!(table.texts("c").unwrap(), ["x"]);
     assert_eq!(table.booleans("d").unwrap(), [true]);
-    assert!(matches!(table.reals("z"), Err(FormatError::MissingColumn { name }) if name == "z"));
+    assert!(matches!(table.reals("z"), Err(FormatError::MissingColumn(name)) if name == "z"));
     assert_refused!(
         table.reals("b") =>
         OtherKind { expected: ValueKind::Real, found: ValueKind::Integer, .. }
@@ -94,7 +94,7 @@ fn appending_joins_rows_of_like_tables_only() {
         ),
     ] {
         let refused = upper.append(table(other));
-        assert!(matches!(refused, Err(FormatError::DifferentColumns { name }) if name == culprit));
+        assert!(matches!(refused, Err(FormatError::DifferentColumns(name)) if name == culprit));
         assert_eq!(upper, before);
     }
 }

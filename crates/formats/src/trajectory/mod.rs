@@ -81,10 +81,8 @@ pub struct FrameContact {
 impl Frame {
     /// A value of the instant by its name.
     pub fn value(&self, name: &str) -> Option<f64> {
-        let mut values = self.values.iter();
-        values
-            .find(|(known, _)| known == name)
-            .map(|(_, value)| *value)
+        let value = self.values.iter().find(|(known, _)| known == name);
+        value.map(|(_, value)| *value)
     }
 
     /// Number of spheres, those of the wall included.
@@ -98,11 +96,8 @@ impl Frame {
         of_grains: &'a [[f64; N]],
         rest: [f64; N],
     ) -> impl Iterator<Item = [f64; N]> + use<'a, N> {
-        let wall = self.spheres() - self.grains;
-        of_grains
-            .iter()
-            .copied()
-            .chain(std::iter::repeat_n(rest, wall))
+        let wall = std::iter::repeat_n(rest, self.spheres() - self.grains);
+        of_grains.iter().copied().chain(wall)
     }
 }
 
@@ -147,12 +142,11 @@ impl TrajectoryFormat {
         folder: &Path,
         frames: u64,
     ) -> Result<Box<dyn TrajectoryFile>, FormatError> {
+        let path = folder.join(self.file_name());
         Ok(match self {
-            Self::Gsd => Box::new(gsd::GsdTrajectory::create(&folder.join(gsd::FILE), frames)?),
+            Self::Gsd => Box::new(gsd::create(&path, frames)?),
             Self::Vtp => Box::new(vtp::VtpTrajectory::create(folder)?),
-            Self::Lammps => Box::new(lammps::LammpsTrajectory::create(
-                &folder.join(lammps::FILE),
-            )?),
+            Self::Lammps => Box::new(lammps::LammpsTrajectory::create(&path)?),
         })
     }
 
@@ -161,13 +155,11 @@ impl TrajectoryFormat {
     /// # Errors
     /// [`FormatError::Io`]; [`FormatError::NotATrajectory`] where a file is not what was written.
     pub fn resume(self, folder: &Path, step: u64) -> Result<Box<dyn TrajectoryFile>, FormatError> {
+        let path = folder.join(self.file_name());
         Ok(match self {
-            Self::Gsd => Box::new(gsd::GsdTrajectory::resume(&folder.join(gsd::FILE), step)?),
+            Self::Gsd => Box::new(gsd::resume(&path, step)?),
             Self::Vtp => Box::new(vtp::VtpTrajectory::resume(folder, step)?),
-            Self::Lammps => Box::new(lammps::LammpsTrajectory::resume(
-                &folder.join(lammps::FILE),
-                step,
-            )?),
+            Self::Lammps => Box::new(lammps::LammpsTrajectory::resume(&path, step)?),
         })
     }
 

@@ -6,7 +6,6 @@
 //! leaves it on one side. The values of the instant are field data. See
 //! <https://docs.vtk.org/en/latest/design_documents/VTKFileFormats.html>.
 
-use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -25,7 +24,7 @@ const BEGINNING: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" v
                          byte_order=\"LittleEndian\">\n<Collection>\n";
 
 /// A trajectory in VTP that is being written.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct VtpTrajectory {
     folder: PathBuf,
     listed: Vec<Listed>,
@@ -76,9 +75,7 @@ impl VtpTrajectory {
         fs::create_dir_all(&frames).map_err(FormatError::io("create", &frames))?;
         let mut trajectory = Self {
             folder: folder.to_owned(),
-            listed: Vec::new(),
-            synchronized: 0,
-            bytes: 0,
+            ..Self::default()
         };
         trajectory.cut(&[])?;
         Ok(trajectory)
@@ -105,16 +102,13 @@ impl VtpTrajectory {
         let kept = listed.partition_point(|frame| frame.step <= step);
         let mut trajectory = Self {
             folder: folder.to_owned(),
-            listed: Vec::new(),
             synchronized: kept,
-            bytes: 0,
+            ..Self::default()
         };
-        for frame in &listed[..kept] {
-            for content in &CONTENTS {
-                let file = folder.join(content.file(frame.step));
-                let found = fs::metadata(&file).map_err(FormatError::io("read", &file))?;
-                trajectory.bytes += found.len();
-            }
+        for file in listed[..kept].iter().flat_map(files_of) {
+            let file = folder.join(file);
+            let found = fs::metadata(&file).map_err(FormatError::io("read", &file))?;
+            trajectory.bytes += found.len();
         }
         trajectory.cut(&listed[..kept])?;
         Ok(trajectory)
@@ -140,13 +134,8 @@ impl VtpTrajectory {
         for content in &CONTENTS {
             let mut text = String::from(BEGINNING);
             for frame in frames {
-                writeln!(
-                    text,
-                    "<DataSet timestep=\"{:?}\" part=\"0\" file=\"{}\"/>",
-                    frame.time,
-                    content.file(frame.step)
-                )
-                .expect("writing to a String cannot fail");
+                let (time, file) = (frame.time, content.file(frame.step));
+                text += &format!("<DataSet timestep=\"{time:?}\" part=\"0\" file=\"{file}\"/>\n");
             }
             text.push_str("</Collection>\n</VTKFile>\n");
             atomic::replace(&self.folder.join(content.index), text.as_bytes())?;
@@ -164,22 +153,16 @@ impl TrajectoryFile for VtpTrajectory {
             atomic::replace(&self.folder.join(content.file(frame.step)), &encoded)?;
             bytes += encoded.len() as u64;
         }
-        let mut listed = self.listed.clone();
-        listed.push(Listed {
-            step: frame.step,
-            time: frame.time,
-        });
-        self.list(&listed)?;
+        let (step, time) = (frame.step, frame.time);
+        self.list(&[&self.listed[..], &[Listed { step, time }]].concat())?;
         self.bytes += bytes;
         Ok(())
     }
 
     fn synchronize(&mut self) -> Result<(), FormatError> {
-        let new = &self.listed[self.synchronized..];
-        let frames = |content: &'static Content| new.iter().map(|frame| content.file(frame.step));
-        let files: Vec<String> = CONTENTS.iter().flat_map(frames).collect();
+        let files = self.listed[self.synchronized..].iter().flat_map(files_of);
         let indices = CONTENTS.iter().map(|content| content.index.to_owned());
-        for name in files.into_iter().chain(indices) {
+        for name in files.chain(indices) {
             let path = self.folder.join(name);
             File::open(&path)
                 .and_then(|file| file.sync_all())
@@ -204,6 +187,11 @@ impl TrajectoryFile for VtpTrajectory {
 pub(super) fn frame_bytes(frame: &Frame) -> u64 {
     let bytes = CONTENTS.iter().map(|content| (content.encode)(frame).len());
     bytes.sum::<usize>() as u64
+}
+
+/// The files of a frame, from the folder of the index on.
+fn files_of(frame: &Listed) -> [String; 2] {
+    CONTENTS.each_ref().map(|content| content.file(frame.step))
 }
 
 /// The frame of a line of an index.

@@ -140,14 +140,14 @@ impl Entry {
 
 /// A GSD file that is being written.
 #[derive(Debug)]
-pub(super) struct Container {
-    file: Growing,
+pub(in crate::trajectory) struct Container {
+    pub(super) file: Growing,
     /// Entries that the index has room for.
     capacity: u64,
     /// Entries in it.
     entries: u64,
     names: Vec<String>,
-    frames: u64,
+    pub(super) frames: u64,
 }
 
 impl Container {
@@ -254,7 +254,7 @@ impl Container {
     }
 
     /// Writes the arrays of one frame more: arrays, names, and last the entries by which they are found.
-    pub(super) fn append(&mut self, chunks: &[Chunk]) -> Result<(), FormatError> {
+    pub(super) fn append_arrays(&mut self, chunks: &[Chunk]) -> Result<(), FormatError> {
         if self.entries + chunks.len() as u64 > self.capacity {
             let reason = format!("it has room for {} arrays only", self.capacity);
             return Err(FormatError::not_a_trajectory(self.file.path(), reason));
@@ -319,18 +319,6 @@ impl Container {
 
     fn next_entry(&self) -> u64 {
         HEADER_BYTES + self.entries * ENTRY_BYTES
-    }
-
-    pub(super) fn synchronize(&mut self) -> Result<(), FormatError> {
-        self.file.synchronize()
-    }
-
-    pub(super) fn frames(&self) -> u64 {
-        self.frames
-    }
-
-    pub(super) fn bytes(&self) -> u64 {
-        self.file.end()
     }
 }
 

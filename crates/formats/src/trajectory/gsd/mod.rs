@@ -44,44 +44,35 @@ const TIME: &str = "time";
 const GRAIN: &str = "grain";
 const WALL: &str = "wall";
 
-/// A trajectory in GSD that is being written.
-#[derive(Debug)]
-pub(super) struct GsdTrajectory(Container);
-
-impl GsdTrajectory {
-    /// An empty trajectory with room for so many frames.
-    pub(super) fn create(path: &Path, frames: u64) -> Result<Self, FormatError> {
-        Ok(Self(Container::create(
-            path,
-            frames.saturating_mul(MOST_CHUNKS),
-        )?))
-    }
-
-    /// A trajectory to go on with, without its frames after `step`.
-    pub(super) fn resume(path: &Path, step: u64) -> Result<Self, FormatError> {
-        Ok(Self(Container::resume(path, STEP, |found| found <= step)?))
-    }
+/// An empty trajectory with room for so many frames.
+pub(super) fn create(path: &Path, frames: u64) -> Result<Container, FormatError> {
+    Container::create(path, frames.saturating_mul(MOST_CHUNKS))
 }
 
-impl TrajectoryFile for GsdTrajectory {
+/// A trajectory to go on with, without its frames after `step`.
+pub(super) fn resume(path: &Path, step: u64) -> Result<Container, FormatError> {
+    Container::resume(path, STEP, |found| found <= step)
+}
+
+impl TrajectoryFile for Container {
     fn append(&mut self, frame: &Frame) -> Result<(), FormatError> {
         let mut chunks = every_frame(frame);
-        if self.0.frames() == 0 {
+        if self.frames == 0 {
             chunks.extend(first_frame(frame));
         }
-        self.0.append(&chunks)
+        self.append_arrays(&chunks)
     }
 
     fn synchronize(&mut self) -> Result<(), FormatError> {
-        self.0.synchronize()
+        self.file.synchronize()
     }
 
     fn frames(&self) -> u64 {
-        self.0.frames()
+        self.frames
     }
 
     fn bytes(&self) -> u64 {
-        self.0.bytes()
+        self.file.end()
     }
 }
 

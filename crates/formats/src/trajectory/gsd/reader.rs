@@ -42,11 +42,9 @@ impl GsdReader {
     /// or without a whole frame.
     pub fn open(path: &Path) -> Result<Self, FormatError> {
         let mut file = File::open(path).map_err(FormatError::io("open", path))?;
-        let length = file
-            .metadata()
-            .map_err(FormatError::io("read", path))?
-            .len();
-        let refused = |reason: String| FormatError::unreadable_trajectory(path, reason);
+        let about = file.metadata().map_err(FormatError::io("read", path))?;
+        let length = about.len();
+        let refused = |reason: String| unreadable(path, reason);
         let header = read(&mut file, path, 0, HEADER_BYTES.min(length))?;
         if header.len() < 8 || u64::at_start(&header) != MAGIC {
             return Err(refused("it does not begin like a GSD file".to_owned()));
@@ -292,8 +290,13 @@ impl GsdReader {
     }
 
     fn refused(&self, reason: String) -> FormatError {
-        FormatError::unreadable_trajectory(&self.path, reason)
+        unreadable(&self.path, reason)
     }
+}
+
+fn unreadable(path: &Path, reason: String) -> FormatError {
+    let path = path.to_owned();
+    FormatError::UnreadableTrajectory { path, reason }
 }
 
 /// The frames whose arrays are all in the file, and the number of those begun after them.
