@@ -1,7 +1,6 @@
 //! The command line.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use clap::{Args, Parser, Subcommand};
 use peristalsis_engine::Instructions;
@@ -10,7 +9,7 @@ use peristalsis_run::{Span, TrajectoryFormat, Window};
 use crate::choice::{INSTRUCTIONS, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
-use crate::commands::study::{StudyCommand, time_span};
+use crate::commands::study::{StudyCommand, WorkArguments};
 
 /// Grains in a peristaltic tube, by the discrete element method.
 #[derive(Debug, Parser)]
@@ -238,12 +237,8 @@ pub(crate) struct ReproduceArguments {
     /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub(crate) import: Vec<PathBuf>,
-    /// Runs at a time; the default is the number of processors.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) workers: Option<u16>,
-    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
-    #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
-    pub(crate) limit: Option<Duration>,
+    #[command(flatten)]
+    pub(crate) work: WorkArguments,
     /// Print claims.json on standard output, and nothing else there.
     #[arg(long)]
     pub(crate) json: bool,

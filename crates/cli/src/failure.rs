@@ -131,11 +131,10 @@ impl Failure {
 
     /// Prints the error and answers the exit code.
     pub(crate) fn report(&self) -> ExitCode {
-        let renderer = if std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none()
-        {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
+        let is_styled = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
+        let renderer = match is_styled {
+            true => Renderer::styled(),
+            false => Renderer::plain(),
         };
         let (code, help) = self.advice();
         match self {
@@ -148,10 +147,8 @@ impl Failure {
             }
             other => {
                 let message = other.to_string();
-                say(&renderer.render(&[with_help(
-                    Group::with_title(Level::ERROR.primary_title(&message)),
-                    help.as_deref(),
-                )]));
+                let group = Group::with_title(Level::ERROR.primary_title(&message));
+                say(&renderer.render(&[with_help(group, help.as_deref())]));
             }
         }
         ExitCode::from(code)
@@ -268,10 +265,8 @@ fn of_state(path: &Path, source: &RunError) -> String {
         _ => "put the file back from a copy",
     };
     let configuration = path.with_file_name("config.toml");
-    format!(
-        "{remedy}, or begin anew in another folder: peristalsis run {} --out DIR",
-        configuration.display()
-    )
+    let again = format!("peristalsis run {} --out DIR", configuration.display());
+    format!("{remedy}, or begin anew in another folder: {again}")
 }
 
 /// A problem of a configuration with its places marked in the text.
@@ -282,18 +277,15 @@ fn of_problem(problem: &Problem) -> Group<'_> {
         Group::with_title(Level::ERROR.primary_title(format!("{place}{}", problem.message)));
     if let Some(main) = main {
         // A snippet shows one text; places in others are in the message already.
-        let marked = problem
-            .labels
-            .iter()
-            .filter(|label| label.source_name == main.source_name);
+        let labels = problem.labels.iter();
+        let marked = labels.filter(|label| label.source_name == main.source_name);
         group = group.element(
             Snippet::source(&*main.source_text)
                 .path(&*main.source_name)
                 .annotations(marked.enumerate().map(|(index, label)| {
-                    let kind = if index == 0 {
-                        AnnotationKind::Primary
-                    } else {
-                        AnnotationKind::Context
+                    let kind = match index {
+                        0 => AnnotationKind::Primary,
+                        _ => AnnotationKind::Context,
                     };
                     kind.span(label.span.clone()).label(&label.message)
                 })),

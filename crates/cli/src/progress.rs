@@ -98,11 +98,8 @@ impl Display {
 
     /// Shows how far the run is.
     pub(crate) fn update(&mut self, progress: &Progress) {
-        self.show(
-            [progress.samples, progress.samples_total],
-            progress.elapsed,
-            || found(progress),
-        );
+        let done = [progress.samples, progress.samples_total];
+        self.show(done, progress.elapsed, || found(progress));
     }
 
     /// Shows how many pieces of work are done of how many, with a few words.
@@ -121,12 +118,8 @@ impl Display {
                     *last = LastLine::now(tenth);
                     let part = done as f64 / of.max(1) as f64;
                     let left = elapsed.as_secs_f64() * (1.0 - part) / part;
-                    say(&format!(
-                        "{:3.0} %  {}  {} left",
-                        100.0 * part,
-                        words(),
-                        seconds(left)
-                    ));
+                    let (words, left) = (words(), seconds(left));
+                    say(&format!("{:3.0} %  {words}  {left} left", 100.0 * part));
                 }
             }
         }
@@ -153,11 +146,10 @@ impl Display {
 
 /// What was found so far, in a few words.
 fn found(progress: &Progress) -> String {
-    let mut text = if progress.period > 0.0 {
-        format!("t/T {:.1}", progress.period)
-    } else {
-        // A static wave counts no periods.
-        format!("t {:.1}", progress.time)
+    // A static wave counts no periods.
+    let mut text = match progress.period > 0.0 {
+        true => format!("t/T {:.1}", progress.period),
+        false => format!("t {:.1}", progress.time),
     };
     if progress.flow_rate_ratio.is_finite() {
         text.push_str(&format!("  J/Jmax {:+.3}", progress.flow_rate_ratio));

@@ -10,10 +10,8 @@ use crate::failure::Failure;
 /// The configuration that the arguments describe.
 pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Configuration, Failure> {
     if arguments.file.is_none() && arguments.preset.is_none() && arguments.overrides.is_empty() {
-        return Err(Failure::usage(
-            "nothing to run: give a FILE or a --preset",
-            known_presets(),
-        ));
+        let reason = "nothing to run: give a FILE or a --preset";
+        return Err(Failure::usage(reason, known_presets()));
     }
     let file = match &arguments.file {
         None => None,
@@ -46,29 +44,22 @@ pub(crate) fn locate(error: RunError, arguments: &ConfigurationArguments) -> Fai
     ) {
         return error.into();
     }
-    let of_override = arguments
-        .overrides
-        .iter()
-        .rev()
-        .find(|text| {
-            NUMBER_KEYS
-                .iter()
-                .any(|key| text.trim_start().starts_with(&format!("grains.{key}")))
-        })
-        .map(|text| format!("--set {text}"));
-    let place = of_override.or_else(|| {
+    let is_number = |text: &&String| {
+        let key = text.trim_start().strip_prefix("grains.");
+        key.is_some_and(|key| NUMBER_KEYS.iter().any(|known| key.starts_with(known)))
+    };
+    let of_override = arguments.overrides.iter().rfind(is_number);
+    let place = of_override.map(|text| format!("--set {text}"));
+    let place = place.or_else(|| {
         let path = arguments.file.as_ref()?;
         let text = std::fs::read_to_string(path).ok()?;
-        let line = text.lines().position(|line| {
+        let (index, line) = text.lines().enumerate().find(|(_, line)| {
             let line = line.trim_start();
             let line = line.strip_prefix("grains.").unwrap_or(line);
-            NUMBER_KEYS.iter().any(|key| {
-                line.strip_prefix(key)
-                    .is_some_and(|rest| rest.trim_start().starts_with('='))
-            })
+            let key = line.split_once('=').map(|(key, _)| key.trim_end());
+            key.is_some_and(|key| NUMBER_KEYS.contains(&key))
         })?;
-        let written = text.lines().nth(line)?.trim();
-        Some(format!("{}:{}: {written}", path.display(), line + 1))
+        Some(format!("{}:{}: {}", path.display(), index + 1, line.trim()))
     });
     match place {
         Some(place) => Failure::DoesNotFit { place, error },
@@ -78,11 +69,8 @@ pub(crate) fn locate(error: RunError, arguments: &ConfigurationArguments) -> Fai
 
 /// Short name for a run: its file's stem, or its preset.
 pub(crate) fn name(arguments: &ConfigurationArguments) -> String {
-    arguments
-        .file
-        .as_ref()
-        .and_then(|file| file.file_stem())
-        .map(|stem| stem.to_string_lossy().into_owned())
-        .or_else(|| arguments.preset.clone())
-        .unwrap_or_else(|| "run".to_owned())
+    let stem = arguments.file.as_ref().and_then(|file| file.file_stem());
+    let stem = stem.map(|stem| stem.to_string_lossy().into_owned());
+    let name = stem.or_else(|| arguments.preset.clone());
+    name.unwrap_or_else(|| "run".to_owned())
 }

@@ -20,6 +20,7 @@ pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
 }
 
 fn in_words(estimate: &Estimate) -> String {
+    let duration = estimate.duration;
     let mut lines = vec![
         format!(
             "grains            {} (volume fraction {:.4}, number density {:.4} d^-3)",
@@ -30,14 +31,10 @@ fn in_words(estimate: &Estimate) -> String {
             estimate.wall_spheres, estimate.length
         ),
         match (estimate.period, estimate.periods) {
-            (Some(period), Some(periods)) => format!(
-                "time              {} t: {periods} periods of {period} t",
-                estimate.duration
-            ),
-            _ => format!(
-                "time              {} t, the wave stands still",
-                estimate.duration
-            ),
+            (Some(period), Some(periods)) => {
+                format!("time              {duration} t: {periods} periods of {period} t")
+            }
+            _ => format!("time              {duration} t, the wave stands still"),
         },
         format!(
             "steps             {} of {} t (a contact lasts about {} t)",
@@ -52,12 +49,11 @@ fn in_words(estimate: &Estimate) -> String {
         ));
     }
     if let Some(si) = &estimate.si {
-        let fastest = if si.fastest_wave_frequency_hz == si.wave_frequency_hz {
-            String::new()
-        } else {
-            let fastest = significant(si.fastest_wave_frequency_hz, 4);
-            format!(", by the schedule up to {fastest} Hz")
-        };
+        let mut fastest = String::new();
+        if si.fastest_wave_frequency_hz != si.wave_frequency_hz {
+            let frequency = significant(si.fastest_wave_frequency_hz, 4);
+            fastest = format!(", by the schedule up to {frequency} Hz");
+        }
         lines.push(format!(
             "in SI             d = {:.3e} m, m = {:.3e} kg, t = {:.3e} s; a wave of {} Hz, {:.3e} m/s{fastest}",
             si.unit_length_m,
@@ -81,18 +77,14 @@ fn in_words(estimate: &Estimate) -> String {
             ));
         }
     }
-    lines.push(format!(
-        "expected time     {}",
-        seconds(estimate.expected_seconds)
-    ));
+    let expected = seconds(estimate.expected_seconds);
+    lines.push(format!("expected time     {expected}"));
     if let Some(trajectory) = &estimate.trajectory {
         for (format, bytes) in &trajectory.bytes {
+            let (name, frames, size) = (format.file_name(), trajectory.frames, size(*bytes));
+            let every = format!("one every {} steps", trajectory.interval_steps);
             lines.push(format!(
-                "trajectory        {} of {} frames, one every {} steps: about {}",
-                format.file_name(),
-                trajectory.frames,
-                trajectory.interval_steps,
-                size(*bytes)
+                "trajectory        {name} of {frames} frames, {every}: about {size}"
             ));
         }
     }

@@ -13,6 +13,5 @@ pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, 
     let mut script = Vec::new();
     let mut command = Arguments::command();
     clap_complete::generate(arguments.shell, &mut command, "peristalsis", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
-    Ok(ExitCode::SUCCESS)
+    print(&String::from_utf8_lossy(&script))
 }

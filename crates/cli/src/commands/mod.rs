@@ -21,20 +21,18 @@ use serde::Serialize;
 
 use crate::failure::{Failure, say};
 
-/// Prints on standard output; a reader that has gone away is no failure.
-fn print(text: &str) -> Result<(), Failure> {
+/// Prints on standard output and answers success; a reader that has gone away is no failure.
+fn print(text: &str) -> Result<ExitCode, Failure> {
     let mut output = std::io::stdout().lock();
-    match output
-        .write_all(text.as_bytes())
-        .and_then(|()| output.flush())
-    {
+    let written = output.write_all(text.as_bytes());
+    match written.and_then(|()| output.flush()) {
         Err(error) if error.kind() != std::io::ErrorKind::BrokenPipe => Err(Failure::Output(error)),
-        _ => Ok(()),
+        _ => Ok(ExitCode::SUCCESS),
     }
 }
 
 /// Prints a value as JSON on standard output.
-fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+fn print_json(value: &impl Serialize) -> Result<ExitCode, Failure> {
     let value = serde_json::to_value(value).expect("reports have texts for keys");
     print(&format!("{value:#}\n"))
 }
@@ -46,11 +44,10 @@ fn print_report(
     in_words: impl FnOnce() -> String,
 ) -> Result<ExitCode, Failure> {
     if as_json {
-        print_json(report)?;
+        print_json(report)
     } else {
-        print(&in_words())?;
+        print(&in_words())
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 /// The exit code of work that came to its end, well or not.
@@ -74,10 +71,8 @@ fn warn(warning: &Warning) {
 fn significant(value: f64, digits: usize) -> String {
     let after_the_first = digits - 1;
     let scientific = format!("{value:.after_the_first$e}");
-    let power = scientific
-        .split_once('e')
-        .and_then(|(_, power)| power.parse::<i32>().ok());
-    match power {
+    let power = scientific.split_once('e');
+    match power.and_then(|(_, power)| power.parse::<i32>().ok()) {
         Some(power @ -3..6) => {
             let decimals = usize::try_from(after_the_first as i32 - power).unwrap_or(0);
             format!("{value:.decimals$}")

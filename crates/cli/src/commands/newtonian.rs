@@ -10,12 +10,7 @@ use crate::failure::Failure;
 
 /// Prints what a Newtonian fluid does.
 pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Failure> {
-    let NewtonianArguments {
-        width,
-        radius,
-        pressure,
-        json,
-    } = *arguments;
+    let (width, radius, pressure) = (arguments.width, arguments.radius, arguments.pressure);
     let fluid = NewtonianPeristalsis::from_width(width, radius, pressure).ok_or_else(|| {
         Failure::usage(
             format!("there is no such tube: width {width}, radius {radius}, pressure {pressure}"),
@@ -28,7 +23,7 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
         Trapping::Ring(region) => ("a ring off the axis", Some(region)),
     };
     let reflux = fluid.reflux();
-    if json {
+    if arguments.json {
         let report = serde_json::json!({
             "amplitude_ratio": fluid.amplitude_ratio(),
             "pressure": fluid.pressure(),
@@ -40,18 +35,16 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
             "reflux_volume_fraction": reflux.map(|layer| layer.volume_fraction),
             "reflux_flow_rate": reflux.map(|layer| layer.flow_rate),
         });
-        print_json(&report)?;
-        return Ok(ExitCode::SUCCESS);
+        return print_json(&report);
     }
     let trapping = region.map_or("none".to_owned(), |region| {
         let part = 100.0 * region.volume_fraction;
         format!("{kind}, {part:.2} % of the fluid")
     });
     let reflux = reflux.map_or("none".to_owned(), |layer| {
+        let (part, flow) = (100.0 * layer.volume_fraction, layer.flow_rate);
         format!(
-            "{:.2} % of the fluid, near the wall, moves back on average: {:.4} pi a^2 c",
-            100.0 * layer.volume_fraction,
-            layer.flow_rate
+            "{part:.2} % of the fluid, near the wall, moves back on average: {flow:.4} pi a^2 c"
         )
     });
     let efficiency = fluid.efficiency();
@@ -64,6 +57,5 @@ pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Fail
         fluid.zero_flow_pressure(),
         fluid.flow_rate(),
         fluid.flow_rate_ratio(),
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    ))
 }

@@ -13,27 +13,22 @@ use crate::sources::known_presets;
 pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.name {
         let Some(preset) = preset(name) else {
-            return Err(Failure::usage(
-                format!("there is no preset `{name}`"),
-                known_presets(),
-            ));
+            let unknown = format!("there is no preset `{name}`");
+            return Err(Failure::usage(unknown, known_presets()));
         };
-        print(preset.text)?;
-    } else if arguments.json {
+        return print(preset.text);
+    }
+    if arguments.json {
         let list: Vec<_> = PRESETS
             .iter()
             .map(|preset| serde_json::json!({ "name": preset.name, "summary": preset.summary }))
             .collect();
-        print_json(&list)?;
-    } else {
-        let width = PRESETS
-            .iter()
-            .map(|preset| preset.name.len())
-            .max()
-            .unwrap_or(0);
-        for preset in PRESETS {
-            print(&format!("{:width$}  {}\n", preset.name, preset.summary))?;
-        }
+        return print_json(&list);
+    }
+    let width = PRESETS.iter().map(|preset| preset.name.len()).max();
+    let width = width.unwrap_or(0);
+    for preset in PRESETS {
+        print(&format!("{:width$}  {}\n", preset.name, preset.summary))?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -7,14 +7,12 @@ use peristalsis_reproduce::report::{Report, plain_text};
 use peristalsis_reproduce::{
     CLAIMS, Event, Examination, Import, Outcome, Reproduction, STUDIES, Size, Stage, chosen,
 };
-use peristalsis_study::{Effort, Ending};
+use peristalsis_study::Ending;
 
-use super::study::processors;
-use super::study::progress::{StudyDisplay, Whole};
+use super::study::progress::{StudyDisplay, overall};
 use crate::arguments::ReproduceArguments;
 use crate::commands::{code_of, print, tell};
 use crate::failure::Failure;
-use crate::progress::seconds;
 use crate::stop::Stop;
 
 /// Time between two checkpoints of a run.
@@ -23,15 +21,12 @@ const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 /// Examines the claims.
 pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let size = if arguments.full {
-        Size::Full
-    } else {
-        Size::Quick
-    };
+    let full = arguments.full;
+    let size = if full { Size::Full } else { Size::Quick };
     let claims = chosen(CLAIMS, &arguments.only)?;
     let reproduction = Reproduction::prepare(&arguments.out, size, &claims, STUDIES)?;
     let tell = |text: &str| tell(arguments.quiet, text);
-    let is_default = !arguments.quick && !arguments.full;
+    let is_default = !arguments.quick && !full;
     tell(&format!(
         "{} claim{}, {} design{}, in {}",
         claims.len(),
@@ -47,18 +42,16 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     if !arguments.import.is_empty() {
         tell(&imported(&reproduction.import(&arguments.import)?));
     }
-    let effort = Effort {
-        workers: arguments.workers.map_or_else(processors, usize::from),
-        checkpoint_interval: CHECKPOINT_INTERVAL,
-        limit: arguments.limit,
-    };
+    let effort = arguments.work.effort(CHECKPOINT_INTERVAL);
     stop.keep_results();
     let mut display = StudyDisplay::new(arguments.quiet);
     let outcome = reproduction.run(
         effort,
         &|| stop.requested().is_some(),
         &mut |event| match event {
-            Event::Progress(stage) => display.update_part(stage.board, &whole(&stage)),
+            Event::Progress(stage) => {
+                display.update_part(stage.board, whole(&stage), stage.fraction)
+            }
             Event::Examined(examination) => display.tell(&verdict(examination)),
             Event::Trouble { study, reason } => display.tell(&format!("study {study}: {reason}")),
         },
@@ -90,14 +83,10 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
 
 /// Whether every claim could be examined, every study worked on, and no run failed.
 fn is_well(outcome: &Outcome) -> bool {
-    outcome
-        .examinations
-        .iter()
-        .all(|examination| examination.failure.is_none())
-        && outcome
-            .studies
-            .iter()
-            .all(|study| study.failure.is_none() && study.failed == 0)
+    let mut examinations = outcome.examinations.iter();
+    let mut studies = outcome.studies.iter();
+    examinations.all(|examination| examination.failure.is_none())
+        && studies.all(|study| study.failure.is_none() && study.failed == 0)
 }
 
 /// The result of an import, a line a study.
@@ -107,65 +96,38 @@ fn imported(import: &Import) -> String {
         lines.push(format!("  {} is left out: {reason}", path.display()));
     }
     for study in &import.studies {
-        lines.push(format!(
-            "  {}: {} of {} runs found",
-            study.study, study.found, study.runs
-        ));
+        let (name, found, runs) = (&study.study, study.found, study.runs);
+        lines.push(format!("  {name}: {found} of {runs} runs found"));
     }
     lines.join("\n")
 }
 
 /// How far everything is.
-fn whole(stage: &Stage<'_>) -> Whole {
-    let mut words = format!(
-        "study {} of {}, {}: {} of {} runs done",
-        stage.number, stage.of, stage.study, stage.board.done, stage.board.total
-    );
-    if stage.board.failed > 0 {
-        words.push_str(&format!(", {} failed", stage.board.failed));
-    }
-    words.push_str(&format!("; {:.0} % of all work", 100.0 * stage.fraction));
-    if let Some(left) = stage.left {
-        words.push_str(&format!(", {} left", seconds(left.as_secs_f64())));
-    }
-    Whole {
-        words,
-        fraction: stage.fraction,
-    }
+fn whole(stage: &Stage<'_>) -> String {
+    let place = format!("study {} of {}, {}", stage.number, stage.of, stage.study);
+    let part = format!("; {:.0} % of all work", 100.0 * stage.fraction);
+    format!("{place}: {}", overall(stage.board, &part, stage.left))
 }
 
 /// A claim's verdict in one line.
 fn verdict(examination: &Examination) -> String {
-    let Examination {
-        experiment: claim,
-        finding,
-        failure,
-    } = examination;
+    let (claim, finding) = (&examination.experiment, &examination.finding);
+    let failure = &examination.failure;
     let reason = match failure {
         Some(failure) => format!("could not be examined: {failure}"),
         None => plain_text(&finding.summary),
     };
     let is_thin = failure.is_none() && !examination.is_sufficient();
-    format!(
-        "{} {}{}: {reason}",
-        claim.id,
-        finding.verdict.name(),
-        if is_thin { " (thin statistics)" } else { "" }
-    )
+    let thin = if is_thin { " (thin statistics)" } else { "" };
+    format!("{} {}{thin}: {reason}", claim.id, finding.verdict.name())
 }
 
 /// The claims, a line each.
 fn summary(report: &Report) -> String {
-    report
-        .examinations
-        .iter()
-        .map(|examination| {
-            format!(
-                "{:<4} {:<11} {}\n",
-                examination.experiment.id,
-                examination.finding.verdict.name(),
-                plain_text(examination.experiment.prose.title())
-            )
-        })
-        .collect()
+    let line = |examination: &Examination| {
+        let claim = &examination.experiment;
+        let (verdict, title) = (examination.finding.verdict.name(), claim.prose.title());
+        format!("{:<4} {verdict:<11} {}\n", claim.id, plain_text(title))
+    };
+    report.examinations.iter().map(line).collect()
 }

@@ -54,17 +54,15 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     };
     let mut summary = Summary::of(&run, status, message);
     summary.trajectory = trajectory;
-    let written = if arguments.csv {
-        Written::WithCsv
-    } else {
-        Written::Standard
+    let written = match arguments.csv {
+        true => Written::WithCsv,
+        false => Written::Standard,
     };
     let finished = folder.finish(&run, &summary, written);
-    if arguments.json {
-        print(&summary.to_json())?;
-    } else {
-        print(&in_words(&run, &summary))?;
-    }
+    print(&match arguments.json {
+        true => summary.to_json(),
+        false => in_words(&run, &summary),
+    })?;
     overlap_warning(&run).iter().for_each(warn);
     let tell = |text: String| tell(arguments.quiet, &text);
     if let Some(report) = &summary.trajectory {
@@ -113,10 +111,8 @@ fn instructions(arguments: &RunArguments) -> Result<Instructions, Failure> {
 /// Reads the configuration, packs the grains, makes the folder.
 fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     let configuration = configuration(&arguments.configuration)?;
-    let path = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| new_folder(&name(&arguments.configuration)));
+    let usual = || new_folder(&name(&arguments.configuration));
+    let path = arguments.out.clone().unwrap_or_else(usual);
     // What is refused is refused before anything is made.
     if let Some(request) = request(&arguments.frames) {
         TrajectoryPlan::new(&request, &configuration, 0, configuration.run.steps())?;
@@ -179,9 +175,8 @@ impl Record {
     /// Steps after which a frame is due.
     fn steps_to_next(&self, run: &Run) -> u64 {
         let trajectory = self.trajectory.as_ref();
-        trajectory
-            .and_then(|trajectory| trajectory.steps_to_next(run))
-            .unwrap_or(u64::MAX)
+        let steps = trajectory.and_then(|trajectory| trajectory.steps_to_next(run));
+        steps.unwrap_or(u64::MAX)
     }
 }
 
@@ -194,13 +189,11 @@ fn open_trajectory(
     let request = request(&arguments.frames);
     let there = Trajectory::resume(folder.path(), run)?;
     match (there, request) {
-        (Some(_), Some(_)) => Err(Failure::usage(
-            format!(
-                "{} has a trajectory, which goes on as it was begun",
-                folder.path().display()
-            ),
-            "leave out --trajectory",
-        )),
+        (Some(_), Some(_)) => {
+            let folder = folder.path().display();
+            let reason = format!("{folder} has a trajectory, which goes on as it was begun");
+            Err(Failure::usage(reason, "leave out --trajectory"))
+        }
         (None, Some(request)) => {
             let (now, end) = (run.simulation().step(), run.configuration().run.steps());
             let plan = TrajectoryPlan::new(&request, run.configuration(), now, end)?;
@@ -270,18 +263,14 @@ fn in_words(run: &Run, summary: &Summary) -> String {
     };
     if let Some((newtonian, _)) = summary.newtonian {
         // The load of a fluid counts against its viscosity, which grains do not have.
-        let load = if summary.pumping.is_some() {
-            " without load"
-        } else {
-            ""
-        };
+        let is_loaded = summary.pumping.is_some();
+        let load = if is_loaded { " without load" } else { "" };
         flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian:.4})"));
     }
     if let Some(pumping) = &summary.pumping {
+        let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
         flow.push_str(&format!(
-            "\nagainst a pressure rise of {:.3e} m/(d t^2) a wavelength: useful power {:.3e}, {}",
-            pumping.pressure_rise,
-            pumping.useful_power.0,
+            "\nagainst a pressure rise of {rise:.3e} m/(d t^2) a wavelength: useful power {power:.3e}, {}",
             efficiency(pumping)
         ));
     }
@@ -319,22 +308,20 @@ fn in_words(run: &Run, summary: &Summary) -> String {
 fn efficiency(pumping: &Pumping) -> String {
     let (efficiency, error) = pumping.efficiency;
     if efficiency.is_nan() {
-        return if pumping.useful_power.0 > 0.0 {
-            "efficiency – (the wall gives no power: stored energy is spent)".to_owned()
-        } else {
-            "efficiency – (the grains do not go against the body force)".to_owned()
+        let reason = match pumping.useful_power.0 > 0.0 {
+            true => "the wall gives no power: stored energy is spent",
+            false => "the grains do not go against the body force",
         };
+        return format!("efficiency – ({reason})");
     }
-    let beyond = if efficiency > 1.0 {
-        " (above 1: stored energy is spent; run longer)"
-    } else {
-        ""
-    };
+    let mut text = format!("efficiency {efficiency:.4}");
     if error.is_finite() {
-        format!("efficiency {efficiency:.4} ± {error:.4}{beyond}")
-    } else {
-        format!("efficiency {efficiency:.4}{beyond}")
+        text.push_str(&format!(" ± {error:.4}"));
     }
+    if efficiency > 1.0 {
+        text.push_str(" (above 1: stored energy is spent; run longer)");
+    }
+    text
 }
 
 #[cfg(test)]

@@ -26,13 +26,11 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     };
     let now = run.simulation().step();
     let plan = TrajectoryPlan::onward(&request, run.configuration(), now, arguments.duration)?;
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| folder.path().join(FROM_STATE));
-    std::fs::create_dir_all(&out).map_err(|source| RunError::Folder {
-        folder: out.clone(),
-        source,
+    let usual = || folder.path().join(FROM_STATE);
+    let out = arguments.out.clone().unwrap_or_else(usual);
+    std::fs::create_dir_all(&out).map_err(|source| {
+        let folder = out.clone();
+        RunError::Folder { folder, source }
     })?;
     let mut frames = Trajectory::begin(&out, plan, &mut run)?;
     stop.keep_results();
@@ -67,18 +65,10 @@ pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
 /// What was written, in a line.
 pub(crate) fn in_words(report: &TrajectoryReport) -> String {
     let files = report.files.iter().map(|file| file.display().to_string());
-    format!(
-        "{} {}, one every {} steps, {}: {}",
-        report.frames,
-        if report.frames == 1 {
-            "frame"
-        } else {
-            "frames"
-        },
-        report.interval_steps,
-        size(report.bytes),
-        files.collect::<Vec<_>>().join(", ")
-    )
+    let (files, size) = (files.collect::<Vec<_>>().join(", "), size(report.bytes));
+    let (frames, interval) = (report.frames, report.interval_steps);
+    let plural = if frames == 1 { "" } else { "s" };
+    format!("{frames} frame{plural}, one every {interval} steps, {size}: {files}")
 }
 
 /// Bytes in a unit that suits them.

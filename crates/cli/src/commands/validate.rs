@@ -15,11 +15,8 @@ use crate::stop::Stop;
 /// Runs the cases.
 pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
-    let size = if arguments.quick {
-        Size::Quick
-    } else {
-        Size::Full
-    };
+    let quick = arguments.quick;
+    let size = if quick { Size::Quick } else { Size::Full };
     let cases = chosen(CASES, &arguments.only)?;
     // A document without places for the results is better refused before the work than after it.
     if let Some(document) = &arguments.write {
@@ -72,56 +69,35 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
 /// A case in one line.
 fn line(examination: &Examination<Case>) -> String {
     let finding = &examination.finding;
-    let verdict = if examination.passed() {
-        "passed"
-    } else {
-        "failed"
-    };
-    format!(
-        "{:<15} {verdict}  {} checks, {} orders",
-        examination.experiment.name,
-        finding.checks.len(),
-        finding.convergences.len()
-    )
+    let passed = examination.passed();
+    let verdict = if passed { "passed" } else { "failed" };
+    let (checks, orders) = (finding.checks.len(), finding.convergences.len());
+    let name = &examination.experiment.name;
+    format!("{name:<15} {verdict}  {checks} checks, {orders} orders")
 }
 
 /// The failed parts of a case, a line each.
 fn failures(examination: &Examination<Case>) -> Vec<String> {
     let finding = &examination.finding;
-    let checks = finding
-        .checks
-        .iter()
-        .filter(|check| !check.passed)
-        .map(|check| {
-            format!(
-                "{} ({}): {} instead of {}, a deviation of {:.1e} where {:.1e} is allowed",
-                check.quantity,
-                check.setting,
-                check.found,
-                check.expected,
-                check.deviation,
-                check.tolerance
-            )
-        });
-    let orders = finding
-        .convergences
-        .iter()
-        .filter(|convergence| !convergence.passed)
-        .map(|convergence| {
-            format!(
-                "{} ({}): order {:.2}, not from {} to {}",
-                convergence.quantity,
-                convergence.setting,
-                convergence.order.unwrap_or(f64::NAN),
-                convergence.expected_order[0],
-                convergence.expected_order[1]
-            )
-        });
-    examination
-        .failure
-        .iter()
-        .cloned()
-        .chain(checks)
-        .chain(orders)
-        .collect()
+    let mut failures: Vec<String> = examination.failure.iter().cloned().collect();
+    for check in finding.checks.iter().filter(|check| !check.passed) {
+        failures.push(format!(
+            "{} ({}): {} instead of {}, a deviation of {:.1e} where {:.1e} is allowed",
+            check.quantity,
+            check.setting,
+            check.found,
+            check.expected,
+            check.deviation,
+            check.tolerance
+        ));
+    }
+    for convergence in finding.convergences.iter().filter(|it| !it.passed) {
+        let [least, most] = convergence.expected_order;
+        let order = convergence.order.unwrap_or(f64::NAN);
+        failures.push(format!(
+            "{} ({}): order {order:.2}, not from {least} to {most}",
+            convergence.quantity, convergence.setting
+        ));
+    }
+    failures
 }

@@ -136,10 +136,9 @@ impl RenderArguments {
             waves: self.waves,
             width: self.width.unwrap_or(usual),
             paper: self.paper,
-            writing: if self.bare {
-                Writing::None
-            } else {
-                Writing::Full
+            writing: match self.bare {
+                true => Writing::None,
+                false => Writing::Full,
             },
         }
     }

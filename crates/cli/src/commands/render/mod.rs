@@ -46,29 +46,31 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     }
     let middle = 0.5 * run.simulation().wall().length();
     let look = arguments.look(format.film().is_some(), middle);
-    match format.film() {
-        Some(film) => make_film(arguments, run, look, film, &out, &stop),
-        None => {
-            let drawing = still(arguments, run, look, &stop)?;
-            match drawing {
-                Some(drawing) => finish_picture(arguments, &out, format, &drawing),
-                None => Ok(stop.exit_code()),
-            }
-        }
+    if let Some(film) = format.film() {
+        return make_film(arguments, run, look, film, &out, &stop);
+    }
+    match still(arguments, run, look, &stop)? {
+        Some(drawing) => finish_picture(arguments, &out, format, &drawing),
+        None => Ok(stop.exit_code()),
     }
 }
 
+const ENDINGS: &str =
+    "endings: .png, .svg, .gif, .apng, .mp4, .webm; or name the format with --format";
+
 /// What is to be made.
 fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
-    let by_name =
-        |path: &PathBuf| {
-            let ending = path.extension().and_then(|ending| ending.to_str());
-            let known = ending.and_then(Format::by_ending);
-            known.ok_or_else(|| Failure::usage(
-            format!("{}: no picture or film is known by this ending", path.display()),
-            "endings: .png, .svg, .gif, .apng, .mp4, .webm; or name the format with --format",
-        ))
-        };
+    let by_name = |path: &PathBuf| {
+        let ending = path.extension().and_then(|ending| ending.to_str());
+        let known = ending.and_then(Format::by_ending);
+        known.ok_or_else(|| {
+            let unknown = format!(
+                "{}: no picture or film is known by this ending",
+                path.display()
+            );
+            Failure::usage(unknown, ENDINGS)
+        })
+    };
     let format = match (arguments.format, &arguments.out) {
         (Some(format), _) => format,
         (None, Some(out)) => by_name(out)?,
@@ -86,56 +88,52 @@ fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
 
 /// Refuses what goes together with no picture.
 fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
-    let refused = |reason: &str, help: &str| Err(Failure::usage(reason, help));
     let is_film = format.film().is_some();
-    if arguments.view == ViewName::SpaceTime && is_film {
-        return refused(
+    let is_placed = arguments.place.is_some() || arguments.phase.is_some();
+    let (has_window, has_duration) = (arguments.window.is_some(), arguments.duration.is_some());
+    let is_from_state = arguments.from == Some(Origin::State);
+    let reads_file = matches!(arguments.from, None | Some(Origin::Trajectory));
+    let refusals = [
+        (
+            is_film && arguments.view == ViewName::SpaceTime,
             "the space-time diagram shows all times at once, and makes no film",
             "take --view side or --view section for a film, or --format png or svg for the diagram",
-        );
-    }
-    if arguments.view != ViewName::Section
-        && (arguments.place.is_some() || arguments.phase.is_some())
-    {
-        return refused(
+        ),
+        (
+            is_placed && arguments.view != ViewName::Section,
             "--place and --phase are those of a section",
             "add --view section",
-        );
-    }
-    if is_film && arguments.at.is_some() {
-        return refused(
+        ),
+        (
+            is_film && arguments.at.is_some(),
             "--at is the instant of a picture",
             "a film has a --window FROM:TO",
-        );
-    }
-    let only_of_films =
-        arguments.window.is_some() || arguments.duration.is_some() || arguments.every.is_some();
-    if !is_film && only_of_films {
-        return refused(
+        ),
+        (
+            !is_film && (has_window || has_duration || arguments.every.is_some()),
             "--window, --duration and --every are those of a film",
             "add --film",
-        );
-    }
-    if arguments.trajectory.is_some() && !matches!(arguments.from, None | Some(Origin::Trajectory))
-    {
-        return refused(
+        ),
+        (
+            arguments.trajectory.is_some() && !reads_file,
             "--trajectory names a file that --from then does not read",
             "leave one of them out",
-        );
-    }
-    if arguments.duration.is_some() && arguments.from != Some(Origin::State) {
-        return refused(
+        ),
+        (
+            has_duration && !is_from_state,
             "--duration is how long a film goes on from the saved state",
             "add --from state, or take a --window FROM:TO of the run",
-        );
-    }
-    if arguments.window.is_some() && arguments.from == Some(Origin::State) {
-        return refused(
+        ),
+        (
+            has_window && is_from_state,
             "--from state begins with the saved state",
             "take --duration SPAN",
-        );
+        ),
+    ];
+    match refusals.into_iter().find(|(applies, ..)| *applies) {
+        Some((_, reason, help)) => Err(Failure::usage(reason, help)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// The trajectory that is asked for or, where that is left open, lies in the run's folder.
@@ -187,16 +185,10 @@ fn still(
     let Some(at) = arguments.at else {
         return Ok(Some(draw(&run, look, &[first])?));
     };
-    let window = Window {
-        from: Some(at),
-        to: Some(at),
-    };
-    let plan = TrajectoryPlan::new(
-        &request(None, window),
-        run.configuration(),
-        0,
-        run.configuration().run.steps(),
-    )?;
+    let (from, to) = (Some(at), Some(at));
+    let window = Window { from, to };
+    let steps = run.configuration().run.steps();
+    let plan = TrajectoryPlan::new(&request(None, window), run.configuration(), 0, steps)?;
     let drawn = Run::new(run.configuration().clone())?;
     let mut source = FrameSource::of_run(run, plan, with_contacts);
     while !source.is_over() {
@@ -270,15 +262,13 @@ fn make_film(
         paper: look.paper.srgb(),
     };
     let pending = Pending::create(out).map_err(RunError::from)?;
-    let mut film = format
-        .create(pending.partial_path(), plan)
-        .map_err(RunError::from)?;
+    let film = format.create(pending.partial_path(), plan);
+    let mut film = film.map_err(RunError::from)?;
     // From here on there is something to clear away.
     stop.keep_results();
     let total = source.frames() as u64;
     let mut display = Display::new(arguments.quiet, total);
-    let mut done = 0;
-    let mut size = (0, 0);
+    let (mut done, mut size) = (0, (0, 0));
     while !source.is_over() {
         if stop.requested().is_some() {
             display.finish();
@@ -292,9 +282,8 @@ fn make_film(
         film.add(&picture).map_err(RunError::from)?;
         size = (picture.width(), picture.height());
         done += 1;
-        display.show([done, total], start.elapsed(), || {
-            format!("frame {done} of {total}")
-        });
+        let words = || format!("frame {done} of {total}");
+        display.show([done, total], start.elapsed(), words);
     }
     film.finish().map_err(RunError::from)?;
     display.finish();
@@ -304,9 +293,8 @@ fn make_film(
 
 /// The pixels of a page.
 fn picture(drawing: &Drawing) -> Result<Picture, RunError> {
-    let raster = drawing
-        .raster()
-        .map_err(RunError::of_figure("the picture"))?;
+    let raster = drawing.raster();
+    let raster = raster.map_err(RunError::of_figure("the picture"))?;
     Ok(Picture::new(raster.width, raster.height, raster.pixels))
 }
 
@@ -345,6 +333,5 @@ fn report(
     } else {
         format!("{frames} frames of {width} x {height} pixels: {out}\n")
     };
-    print(&text)?;
-    Ok(ExitCode::SUCCESS)
+    print(&text)
 }

@@ -14,20 +14,13 @@ pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;
     let runs: Vec<Identity> = if arguments.failed {
-        survey
-            .plan
-            .runs()
-            .iter()
-            .map(|run| run.identity)
-            .filter(|identity| survey.state(*identity) == State::Failed)
-            .collect()
+        let planned = survey.plan.runs().iter().map(|run| run.identity);
+        let failed = planned.filter(|identity| survey.state(*identity) == State::Failed);
+        failed.collect()
     } else {
-        let runs: Result<Vec<Identity>, _> = arguments
-            .runs
-            .iter()
-            .map(|prefix| survey.run_beginning(prefix))
-            .collect();
-        runs?
+        let prefixes = arguments.runs.iter();
+        let runs = prefixes.map(|prefix| survey.run_beginning(prefix));
+        runs.collect::<Result<_, _>>()?
     };
     let mut begun = 0;
     for identity in &runs {
@@ -52,9 +45,7 @@ pub(crate) fn verify(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
 
 /// Makes the index again.
 pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
-    let found = Store::open(&arguments.store)?.scan()?;
-    print(&in_words(&found))?;
-    Ok(ExitCode::SUCCESS)
+    print(&in_words(&Store::open(&arguments.store)?.scan()?))
 }
 
 fn in_words(found: &Verification) -> String {
@@ -82,11 +73,9 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     for line in moved_aside(&exported.quarantined) {
         say(&line);
     }
-    if exported.missing > 0 {
-        say(&format!(
-            "{} runs of the study are not finished",
-            exported.missing
-        ));
+    let missing = exported.missing;
+    if missing > 0 {
+        say(&format!("{missing} runs of the study are not finished"));
     }
     for file in &exported.files {
         print(&format!("{}\n", file.display()))?;
@@ -103,12 +92,8 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
         ));
     }
     let packed = Store::open(&arguments.store.store)?.pack(&arguments.archive)?;
-    print(&format!(
-        "{} finished runs in {}\n",
-        packed.runs,
-        arguments.archive.display()
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    let archive = arguments.archive.display();
+    print(&format!("{} finished runs in {archive}\n", packed.runs))
 }
 
 /// Takes finished runs over.
@@ -121,12 +106,8 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     for file in &arguments.files {
         if is_archive(file) {
             let packed = store.import_archive(file)?;
-            print(&format!(
-                "{} of {} runs taken from {}\n",
-                packed.taken,
-                packed.runs,
-                file.display()
-            ))?;
+            let (taken, runs, file) = (packed.taken, packed.runs, file.display());
+            print(&format!("{taken} of {runs} runs taken from {file}\n"))?;
         } else {
             let rows = store.import_table(file)?;
             print(&format!("{rows} rows taken from {}\n", file.display()))?;

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
-use peristalsis_study::Specification;
+use peristalsis_study::{Effort, Specification};
 
 use crate::commands::schema::{SchemaArguments, study_schema};
 use crate::failure::Failure;
@@ -67,12 +67,8 @@ pub(crate) struct RunArguments {
     /// Folder that keeps the runs; the default is stores/NAME, after the study's name.
     #[arg(long, value_name = "DIR")]
     store: Option<PathBuf>,
-    /// Runs at a time; the default is the number of processors.
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    workers: Option<u16>,
-    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
-    #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
-    limit: Option<Duration>,
+    #[command(flatten)]
+    work: WorkArguments,
     /// Time between two checkpoints of a run.
     #[arg(long, value_name = "TIME", default_value = "60s", value_parser = time_span)]
     checkpoint_every: Duration,
@@ -82,6 +78,28 @@ pub(crate) struct RunArguments {
     /// No progress on standard error.
     #[arg(long, short)]
     quiet: bool,
+}
+
+/// How much work is done at a time, and for how long.
+#[derive(Debug, Args)]
+pub(crate) struct WorkArguments {
+    /// Runs at a time; the default is the number of processors.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    workers: Option<u16>,
+    /// Stop after this time, every run saved, such as 90s, 30m, 2h.
+    #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
+    limit: Option<Duration>,
+}
+
+impl WorkArguments {
+    /// The effort, with so much time between two checkpoints of a run.
+    pub(crate) fn effort(&self, checkpoint_interval: Duration) -> Effort {
+        Effort {
+            workers: self.workers.map_or_else(processors, usize::from),
+            checkpoint_interval,
+            limit: self.limit,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -122,14 +140,10 @@ impl SubmitArguments {
     /// What would be more than a line of the script, or none of its options.
     fn further_lines(&self) -> Option<&String> {
         let plain = |text: &&String| text.contains(char::is_control) || text.is_empty();
-        let options = self.options.iter();
-        let wrong = options.clone().find(|option| !option.starts_with('-'));
-        wrong.or_else(|| {
-            options
-                .chain(&self.partition)
-                .chain(&self.account)
-                .find(plain)
-        })
+        let mut options = self.options.iter();
+        let mut named = options.clone().chain(&self.partition).chain(&self.account);
+        let wrong = options.find(|option| !option.starts_with('-'));
+        wrong.or_else(|| named.find(plain))
     }
 }
 
@@ -236,18 +250,16 @@ pub(crate) fn processors() -> usize {
 pub(crate) fn time_span(text: &str) -> Result<Duration, String> {
     let letters = text.find(|letter: char| letter.is_ascii_alphabetic());
     let (number, unit) = text.split_at(letters.unwrap_or(text.len()));
+    let misread = "a number with ms, s, m, h or d, such as 30m";
     let factor = match unit {
         "ms" => 1e-3,
         "s" => 1.0,
         "m" | "min" => 60.0,
         "h" => 3600.0,
         "d" => 86400.0,
-        _ => return Err("a number with ms, s, m, h or d, such as 30m".to_owned()),
+        _ => return Err(misread.to_owned()),
     };
-    let number: f64 = number
-        .trim()
-        .parse()
-        .map_err(|_| "a number with ms, s, m, h or d, such as 30m".to_owned())?;
+    let number: f64 = number.trim().parse().map_err(|_| misread)?;
     if number > 0.0 {
         Duration::try_from_secs_f64(number * factor).map_err(|error| error.to_string())
     } else {

@@ -20,10 +20,8 @@ pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
         Err(error) => return Err(error.into()),
         Ok(store) => {
             let survey = store.survey()?;
-            plan.runs()
-                .iter()
-                .filter(|run| survey.state(run.identity) == State::Done)
-                .count()
+            let states = plan.runs().iter().map(|run| survey.state(run.identity));
+            states.filter(|state| *state == State::Done).count()
         }
     };
     let runs = plan.sorted_runs().into_iter().map(|run| {
@@ -68,25 +66,21 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
     ));
     let processors = processors();
     let share = estimate.processor_seconds / estimate.runs.min(processors).max(1) as f64;
+    let less = match study.stopping {
+        Some(_) => ", less where runs end early",
+        None => "",
+    };
+    let (whole, share) = (seconds(estimate.processor_seconds), seconds(share));
     lines.push(format!(
-        "expected time     {} of one processor, {} of {processors}{}",
-        seconds(estimate.processor_seconds),
-        seconds(share),
-        if study.stopping.is_some() {
-            ", less where runs end early"
-        } else {
-            ""
-        }
+        "expected time     {whole} of one processor, {share} of {processors}{less}"
     ));
     lines.push(format!("disk              {}", bytes(estimate.bytes)));
     for warning in &estimate.warnings {
+        let (key, message) = (&warning.warning.key, &warning.warning.message);
+        let place = format!("{} of {} points", warning.points, estimate.points);
+        let first = &warning.first;
         lines.push(format!(
-            "warning: {}: at {} of {} points, the first at {}: {}",
-            warning.warning.key,
-            warning.points,
-            estimate.points,
-            warning.first,
-            warning.warning.message
+            "warning: {key}: at {place}, the first at {first}: {message}"
         ));
     }
     lines.join("\n") + "\n"

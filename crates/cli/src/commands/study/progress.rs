@@ -1,5 +1,7 @@
 //! Progress of a study on standard error: lines that are redrawn on a terminal, plain ones on a pipe.
 
+use std::time::Duration;
+
 use peristalsis_study::{Board, Working};
 
 use super::status::estimate;
@@ -12,14 +14,6 @@ const ESTIMATES_SHOWN: usize = 6;
 const WORKERS_SHOWN: usize = 8;
 /// Pieces into which a bar divides the work.
 const PIECES: f64 = 1000.0;
-
-/// Progress of the whole work; a board may show a part of it.
-pub(crate) struct Whole {
-    /// In words.
-    pub(crate) words: String,
-    /// Part of the work that is done.
-    pub(crate) fraction: f64,
-}
 
 /// The progress of a study.
 pub(crate) struct StudyDisplay {
@@ -38,26 +32,22 @@ impl StudyDisplay {
 
     /// Shows how far the study is.
     pub(crate) fn update(&mut self, board: &Board) {
-        let whole = Whole {
-            words: overall(board),
-            fraction: board.fraction,
-        };
-        self.update_part(board, &whole);
+        let part = format!(", {:.0} % of the work", 100.0 * board.fraction);
+        self.update_part(board, overall(board, &part, board.left), board.fraction);
     }
 
-    /// Shows how far a study is, and the whole of which it is a part.
-    pub(crate) fn update_part(&mut self, board: &Board, whole: &Whole) {
+    /// Shows how far a study is, and how far the whole of which it is a part, in words and as a fraction.
+    pub(crate) fn update_part(&mut self, board: &Board, words: String, fraction: f64) {
         for news in &board.news {
             self.display.tell(news);
         }
         match &mut self.display {
             Display::Silent => {}
             Display::Bar(bar) => {
-                let done = (PIECES * whole.fraction) as u64;
-                bar.show(done, whole.words.clone(), &below(board));
+                bar.show((PIECES * fraction) as u64, words, &below(board));
             }
             Display::Lines(last) => {
-                let tenth = (10.0 * whole.fraction) as u64;
+                let tenth = (10.0 * fraction) as u64;
                 let ended = board.done + board.failed;
                 let is_news = self.ended.is_none_or(|before| {
                     ended != before && (tenth != last.tenth || board.done == board.total)
@@ -65,7 +55,7 @@ impl StudyDisplay {
                 if is_news || last.is_old() {
                     self.ended = Some(ended);
                     *last = LastLine::now(tenth);
-                    say(&whole.words);
+                    say(&words);
                     for bracket in &board.brackets {
                         say(&format!("  {}", estimate(bracket)));
                     }
@@ -98,13 +88,14 @@ fn below(board: &Board) -> Vec<String> {
     lines
 }
 
-fn overall(board: &Board) -> String {
+/// How far a study is; `part` is said of the work, of which so much time is left.
+pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> String {
     let mut text = format!("{} of {} runs done", board.done, board.total);
     if board.failed > 0 {
         text.push_str(&format!(", {} failed", board.failed));
     }
-    text.push_str(&format!(", {:.0} % of the work", 100.0 * board.fraction));
-    if let Some(left) = board.left {
+    text.push_str(part);
+    if let Some(left) = left {
         text.push_str(&format!(", {} left", seconds(left.as_secs_f64())));
     }
     text

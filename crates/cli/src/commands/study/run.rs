@@ -2,11 +2,11 @@
 
 use std::process::ExitCode;
 
-use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
+use peristalsis_study::{Ending, Specification, Store, work_on};
 
 use super::progress::StudyDisplay;
 use super::status::print_status;
-use super::{RunArguments, processors, store_path};
+use super::{RunArguments, store_path};
 use crate::commands::tell;
 use crate::failure::Failure;
 use crate::stop::Stop;
@@ -17,11 +17,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let study = Specification::read(&arguments.file)?;
     let path = store_path(&arguments.store, &study);
     let store = Store::create(&path, &study)?;
-    let effort = Effort {
-        workers: arguments.workers.map_or_else(processors, usize::from),
-        checkpoint_interval: arguments.checkpoint_every,
-        limit: arguments.limit,
-    };
+    let effort = arguments.work.effort(arguments.checkpoint_every);
     stop.keep_results();
     let mut display = StudyDisplay::new(arguments.quiet);
     let ending = work_on(
@@ -36,35 +32,28 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let survey = store.survey()?;
     print_status(arguments.json, &store, &survey)?;
     let tell = |text: String| tell(arguments.quiet, &text);
-    let again = || {
-        format!(
-            "go on with: peristalsis study run {} --store {}",
-            arguments.file.display(),
-            path.display()
-        )
-    };
+    let (file, place) = (arguments.file.display(), path.display());
+    let again = format!("go on with: peristalsis study run {file} --store {place}");
     match ending {
         Ending::Complete => {
             let failed = survey.counts().get("failed").copied().unwrap_or(0);
             if failed > 0 {
                 tell(format!(
-                    "{failed} runs failed; see: peristalsis study why {} RUN",
-                    path.display()
+                    "{failed} runs failed; see: peristalsis study why {place} RUN"
                 ));
                 return Ok(ExitCode::FAILURE);
             }
             tell(format!(
-                "all runs are done; tables: peristalsis study export {}",
-                path.display()
+                "all runs are done; tables: peristalsis study export {place}"
             ));
             Ok(ExitCode::SUCCESS)
         }
         Ending::TimeUp => {
-            tell(format!("time is up, every run is saved; {}", again()));
+            tell(format!("time is up, every run is saved; {again}"));
             Ok(ExitCode::SUCCESS)
         }
         Ending::Stopped => {
-            tell(format!("stopped, every run is saved; {}", again()));
+            tell(format!("stopped, every run is saved; {again}"));
             Ok(stop.exit_code())
         }
     }

@@ -79,16 +79,12 @@ fn report(store: &Store, survey: &Survey) -> Value {
 /// The status for a person.
 fn in_words(store: &Store, survey: &Survey) -> String {
     let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
-    let counts: Vec<String> = survey
-        .counts()
-        .iter()
+    let counts = survey.counts().into_iter();
+    let counts: Vec<_> = counts
         .map(|(state, number)| format!("{number} {state}"))
         .collect();
-    text.push_str(&format!(
-        "{} runs: {}\n",
-        survey.plan.runs().len(),
-        counts.join(", ")
-    ));
+    let (runs, counts) = (survey.plan.runs().len(), counts.join(", "));
+    text.push_str(&format!("{runs} runs: {counts}\n"));
     let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
     let others = survey
         .entries
@@ -96,13 +92,10 @@ fn in_words(store: &Store, survey: &Survey) -> String {
         .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity))
         .count();
     if others > 0 {
-        text.push_str(&format!(
-            "{others} finished runs are not part of the study as it stands\n"
-        ));
+        text += &format!("{others} finished runs are not part of the study as it stands\n");
     }
     for bracket in estimates(survey) {
-        text.push_str(&estimate(&bracket));
-        text.push('\n');
+        text += &format!("{}\n", estimate(&bracket));
     }
     let ended_badly: Vec<String> = survey
         .plan
@@ -131,14 +124,9 @@ fn in_words(store: &Store, survey: &Survey) -> String {
 
 /// A critical value with its bracket.
 pub(super) fn estimate(bracket: &Bracket) -> String {
-    let half = 0.5 * (bracket.upper - bracket.lower);
-    format!(
-        "{}: transition at {} = {:.6} ± {:.6}",
-        bracket.of,
-        bracket.key,
-        bracket.middle(),
-        half
-    )
+    let (of, key) = (&bracket.of, &bracket.key);
+    let (middle, half) = (bracket.middle(), 0.5 * (bracket.upper - bracket.lower));
+    format!("{of}: transition at {key} = {middle:.6} ± {half:.6}")
 }
 
 /// Says all that is known of a run.
@@ -188,12 +176,8 @@ pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
     }
     for folder in store.quarantines(identity) {
         let reason = std::fs::read_to_string(folder.join("reason.txt")).unwrap_or_default();
-        lines.push(format!(
-            "moved aside {}: {}",
-            folder.display(),
-            reason.trim()
-        ));
+        let (folder, reason) = (folder.display(), reason.trim());
+        lines.push(format!("moved aside {folder}: {reason}"));
     }
-    print(&(lines.join("\n") + "\n"))?;
-    Ok(ExitCode::SUCCESS)
+    print(&(lines.join("\n") + "\n"))
 }

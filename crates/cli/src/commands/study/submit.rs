@@ -18,12 +18,10 @@ const SHORTEST: Duration = Duration::from_secs(240);
 /// Makes the store of a study and writes a script for Slurm, an array of tasks that share it.
 pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     if arguments.time < SHORTEST {
+        let [time, shortest] = [arguments.time, SHORTEST].map(|time| time.as_secs());
         return Err(Failure::usage(
-            format!(
-                "--time is {} s, too short to save and end within it",
-                arguments.time.as_secs()
-            ),
-            format!("give {} s or more", SHORTEST.as_secs()),
+            format!("--time is {time} s, too short to save and end within it"),
+            format!("give {shortest} s or more"),
         ));
     }
     if let Some(option) = arguments.further_lines() {
@@ -47,8 +45,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     let script = job.script();
     let path = match &arguments.out {
         Some(path) if path.as_os_str() == "-" => {
-            print(&script)?;
-            return Ok(ExitCode::SUCCESS);
+            return print(&script);
         }
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.sbatch", study.name)),
@@ -67,8 +64,7 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
         slurm_time(arguments.time),
         quoted(&path),
         quoted(&store),
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    ))
 }
 
 struct Job<'a> {
@@ -97,16 +93,10 @@ impl Job<'_> {
             ("partition", &arguments.partition),
             ("account", &arguments.account),
         ];
-        options.extend(
-            named
-                .iter()
-                .filter_map(|(name, value)| Some(format!("--{name}={}", value.as_ref()?))),
-        );
-        options.extend(arguments.options.iter().cloned());
-        let options: String = options
-            .iter()
-            .map(|option| format!("#SBATCH {option}\n"))
-            .collect();
+        let named = named.iter();
+        options.extend(named.filter_map(|(name, it)| Some(format!("--{name}={}", it.as_ref()?))));
+        let lines = options.iter().chain(&arguments.options);
+        let options: String = lines.map(|option| format!("#SBATCH {option}\n")).collect();
         // Twice the warning is kept for the last checkpoints.
         let limit = (arguments.time - 2 * WARNING).as_secs();
         format!(
@@ -124,13 +114,10 @@ impl Job<'_> {
 
 /// Days, hours, minutes and seconds, whole ones, as Slurm reads them.
 fn slurm_time(time: Duration) -> String {
-    let seconds = time.as_secs();
-    let (days, hours) = (seconds / 86_400, seconds / 3_600 % 24);
-    format!(
-        "{days}-{hours:02}:{:02}:{:02}",
-        seconds / 60 % 60,
-        seconds % 60
-    )
+    let time = time.as_secs();
+    let (days, hours) = (time / 86_400, time / 3_600 % 24);
+    let (minutes, seconds) = (time / 60 % 60, time % 60);
+    format!("{days}-{hours:02}:{minutes:02}:{seconds:02}")
 }
 
 /// A path as one word of a POSIX shell.

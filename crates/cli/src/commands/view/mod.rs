@@ -84,20 +84,18 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     let place = path.canonicalize().map_err(Failure::read(path))?;
     let above = place.ancestors().skip(1).take(2);
     let Some(folder) = above.clone().find(|it| it.join(CONFIGURATION).is_file()) else {
+        let path = path.display();
         return Err(Failure::usage(
-            format!(
-                "beside {} there is no {CONFIGURATION}, which says what tube it is of",
-                path.display()
-            ),
+            format!("beside {path} there is no {CONFIGURATION}, which says what tube it is of"),
             "leave trajectories in the folders of their runs",
         ));
     };
     // What a kill left has no state, and a trajectory tells J/Jmax itself.
     let (configuration, samples) = match RunFolder::open(folder) {
-        Ok((_, run)) => (
-            run.configuration().clone(),
-            run.recorder().samples().to_vec(),
-        ),
+        Ok((_, run)) => {
+            let samples = run.recorder().samples().to_vec();
+            (run.configuration().clone(), samples)
+        }
         Err(_) => {
             let path = folder.join(CONFIGURATION);
             let text = std::fs::read_to_string(&path).map_err(Failure::read(&path))?;
@@ -108,9 +106,9 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
     let recording = Recording::open(&place, configuration, samples)?;
     let lost = recording.lost_frames();
     if lost > 0 {
+        let whole = recording.frames();
         say(&format!(
-            "the trajectory was cut short: {} whole frames, {lost} lost",
-            recording.frames()
+            "the trajectory was cut short: {whole} whole frames, {lost} lost"
         ));
     }
     Ok(Viewer::play(recording, name(folder), port)?)
@@ -136,13 +134,9 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
     }
     let named = arguments.source.to_str().filter(|it| preset(it).is_some());
     if named.is_none() && !arguments.source.exists() {
-        return Err(Failure::usage(
-            format!(
-                "{} is no folder, no file and no preset",
-                arguments.source.display()
-            ),
-            known_presets(),
-        ));
+        let source = arguments.source.display();
+        let unknown = format!("{source} is no folder, no file and no preset");
+        return Err(Failure::usage(unknown, known_presets()));
     }
     let configuration = ConfigurationArguments {
         file: named.is_none().then(|| arguments.source.clone()),
@@ -158,8 +152,6 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
 /// What a folder is called.
 fn name(folder: &Path) -> String {
     let known = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
-    let name = known
-        .file_name()
-        .map(|it| it.to_string_lossy().into_owned());
-    name.unwrap_or_else(|| "run".to_owned())
+    let name = known.file_name().unwrap_or("run".as_ref());
+    name.to_string_lossy().into_owned()
 }

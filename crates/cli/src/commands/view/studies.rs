@@ -19,7 +19,7 @@ const STORES: &str = "stores";
 const TABLES: [&str; 2] = ["parquet", "csv"];
 
 /// What a path leads to.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Studies {
     pub(super) studies: Vec<Study>,
     pub(super) figures: Vec<Figure>,
@@ -29,10 +29,7 @@ impl Studies {
     /// The studies at a path: the store of one, what `peristalsis reproduce` wrote, a table of rows of runs, or a folder of
     /// such tables; `None` where there is something else.
     pub(super) fn at(source: &Path) -> Result<Option<Self>, Failure> {
-        let mut found = Self {
-            studies: Vec::new(),
-            figures: Vec::new(),
-        };
+        let mut found = Self::default();
         if is_table(source) && source.is_file() {
             found.studies.push(of_table(source)?);
             return Ok(Some(found));
@@ -41,9 +38,8 @@ impl Studies {
             return Ok(None);
         }
         if source.join(STUDY).is_file() {
-            found
-                .studies
-                .push(Study::of_store(source).map_err(failure)?);
+            let study = Study::of_store(source).map_err(failure)?;
+            found.studies.push(study);
             return Ok(Some(found));
         }
         found.figures = Figure::of_report(source)?;
