@@ -59,10 +59,8 @@ pub struct CheckpointIdentity {
 impl CheckpointIdentity {
     fn require(&self, expected: &Self) -> Result<(), FormatError> {
         if self.kind != expected.kind {
-            return Err(FormatError::CheckpointKind {
-                found: self.kind,
-                expected: expected.kind,
-            });
+            let (found, expected) = (self.kind, expected.kind);
+            return Err(FormatError::CheckpointKind { found, expected });
         }
         if self.layout_version != expected.layout_version {
             let (found, readable) = (self.layout_version, expected.layout_version);
@@ -193,10 +191,8 @@ impl Header {
         if let Some(version) = bytes.get(8..12) {
             let found = u32::from_le_bytes(field(version, 0));
             if found != FORMAT_VERSION {
-                return Err(FormatError::CheckpointVersion {
-                    found,
-                    readable: FORMAT_VERSION,
-                });
+                let readable = FORMAT_VERSION;
+                return Err(FormatError::CheckpointVersion { found, readable });
             }
         }
         let bytes = bytes.get(..HEADER_BYTES).ok_or(truncated)?;

@@ -177,9 +177,8 @@ impl<'text> Scanner<'text> {
         let mut text = Cow::Borrowed("");
         let mut rest = &self.rest[1..];
         loop {
-            let length = rest
-                .find('"')
-                .ok_or_else(|| self.error("a quoted field is not closed"))?;
+            let end = rest.find('"');
+            let length = end.ok_or_else(|| self.error("a quoted field is not closed"))?;
             text += &rest[..length];
             rest = &rest[length + 1..];
             match rest.strip_prefix('"') {

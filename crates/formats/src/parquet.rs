@@ -106,12 +106,11 @@ fn decode_unchecked(bytes: Vec<u8>) -> Result<Table, FormatError> {
     let file = reader.metadata().file_metadata();
     let entries = file.key_value_metadata().cloned().unwrap_or_default();
     let mut meanings = meanings_in(&entries)?;
-    let mut columns = file
-        .schema()
-        .get_fields()
-        .iter()
-        .map(|field| column_of(field, meanings.remove(field.name()).unwrap_or_default()))
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut columns = Vec::new();
+    for field in file.schema().get_fields() {
+        let meaning = meanings.remove(field.name()).unwrap_or_default();
+        columns.push(column_of(field, meaning)?);
+    }
     for group in 0..reader.num_row_groups() {
         let group = reader.get_row_group(group)?;
         // No field is nested, so the columns of the file are the fields of its schema.
@@ -145,11 +144,9 @@ pub fn read(path: &Path) -> Result<Table, FormatError> {
 }
 
 fn schema_of(table: &Table) -> Result<Type, ParquetError> {
-    let fields = table
-        .columns()
-        .iter()
-        .map(|column| field_of(column).map(Arc::new))
-        .collect::<Result<_, _>>()?;
+    let columns = table.columns().iter();
+    let fields = columns.map(|column| field_of(column).map(Arc::new));
+    let fields = fields.collect::<Result<_, _>>()?;
     Type::group_type_builder("schema")
         .with_fields(fields)
         .build()
@@ -159,11 +156,10 @@ fn field_of(column: &Column) -> Result<Type, ParquetError> {
     let (physical, logical, repetition) = match column.values.kind() {
         ValueKind::Real => (PhysicalType::DOUBLE, None, Repetition::OPTIONAL),
         ValueKind::Integer => (PhysicalType::INT64, None, Repetition::REQUIRED),
-        ValueKind::Text => (
-            PhysicalType::BYTE_ARRAY,
-            Some(LogicalType::String),
-            Repetition::REQUIRED,
-        ),
+        ValueKind::Text => {
+            let text = Some(LogicalType::String);
+            (PhysicalType::BYTE_ARRAY, text, Repetition::REQUIRED)
+        }
         ValueKind::Boolean => (PhysicalType::BOOLEAN, None, Repetition::REQUIRED),
     };
     Type::primitive_type_builder(&column.name, physical)
@@ -202,11 +198,9 @@ fn write_rows(
 }
 
 fn properties_of(table: &Table) -> WriterProperties {
-    let entries = table
-        .metadata()
-        .iter()
-        .map(|(key, value)| KeyValue::new(key.clone(), value.clone()))
-        .chain([KeyValue::new(COLUMNS_KEY.to_owned(), meanings_of(table))]);
+    let entries = table.metadata().iter();
+    let entries = entries.map(|(key, value)| KeyValue::new(key.clone(), value.clone()));
+    let entries = entries.chain([KeyValue::new(COLUMNS_KEY.to_owned(), meanings_of(table))]);
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::SNAPPY)
         .set_key_value_metadata(Some(entries.collect()));
@@ -229,14 +223,11 @@ fn checksum_of(bytes: &[u8]) -> u32 {
 }
 
 fn meanings_of(table: &Table) -> String {
-    let meanings: BTreeMap<&str, Meaning> = table
-        .columns()
-        .iter()
-        .map(|column| {
-            let (unit, description) = (column.unit.clone(), column.description.clone());
-            (column.name.as_str(), Meaning { unit, description })
-        })
-        .collect();
+    let mut meanings = BTreeMap::new();
+    for column in table.columns() {
+        let (unit, description) = (column.unit.clone(), column.description.clone());
+        meanings.insert(&column.name, Meaning { unit, description });
+    }
     serde_json::to_string(&meanings).expect("text by text is always JSON")
 }
 
@@ -323,10 +314,10 @@ fn read_rows(chunk: ColumnReader, column: &mut Column) -> Result<(), FormatError
         (Values::Boolean(values), ColumnReader::BoolColumnReader(chunk)) => {
             read_values(chunk, values, |value| value.ok_or_else(missing))
         }
-        _ => Err(unsupported(
-            name,
-            "its values are not of the type in the schema".into(),
-        )),
+        _ => {
+            let reason = "its values are not of the type in the schema";
+            Err(unsupported(name, reason.to_owned()))
+        }
     }
 }
 
@@ -338,8 +329,8 @@ fn read_values<T: DataType, V>(
 ) -> Result<(), FormatError> {
     let (mut present, mut levels) = (Vec::new(), Vec::new());
     loop {
-        let (rows, ..) =
-            chunk.read_records(ROWS_READ_AT_ONCE, Some(&mut levels), None, &mut present)?;
+        let places = Some(&mut levels);
+        let (rows, ..) = chunk.read_records(ROWS_READ_AT_ONCE, places, None, &mut present)?;
         if rows == 0 {
             return Ok(());
         }

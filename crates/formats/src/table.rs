@@ -162,10 +162,8 @@ impl Table {
     /// # Errors
     /// [`FormatError::MissingColumn`].
     pub fn column(&self, name: &str) -> Result<&Column, FormatError> {
-        self.columns
-            .iter()
-            .find(|column| column.name == name)
-            .ok_or_else(|| FormatError::MissingColumn(name.to_owned()))
+        let column = self.columns.iter().find(|column| column.name == name);
+        column.ok_or_else(|| FormatError::MissingColumn(name.to_owned()))
     }
 
     /// The values of a column of reals; NaN is a missing value.

@@ -53,10 +53,8 @@ impl FromPyObject<'_, '_> for Runs {
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let (Column(time), observed): (Column, Vec<bool>) = object.extract()?;
         let runs = time.into_iter().zip(observed);
-        Ok(Self(
-            runs.map(|(time, observed)| Transition::new(time, observed))
-                .collect(),
-        ))
+        let runs = runs.map(|(time, observed)| Transition::new(time, observed));
+        Ok(Self(runs.collect()))
     }
 }
 
@@ -273,9 +271,8 @@ impl FromPyObject<'_, '_> for Measured {
     fn extract(object: Borrowed<'_, '_, PyAny>) -> PyResult<Self> {
         let (parameter, Column(x), Column(y), Column(error)) = object.extract()?;
         let points = x.into_iter().zip(y).zip(error);
-        let points = points
-            .map(|((x, y), error)| CurvePoint { x, y, error })
-            .collect();
+        let points = points.map(|((x, y), error)| CurvePoint { x, y, error });
+        let points = points.collect();
         Ok(Self(Curve { parameter, points }))
     }
 }
@@ -313,22 +310,14 @@ impl Scheme<'_> {
         parameter: f64,
         point: CurvePoint,
     ) -> CurvePoint {
-        let nowhere = CurvePoint {
-            x: f64::NAN,
-            y: f64::NAN,
-            error: f64::NAN,
-        };
+        let [x, y, error] = [f64::NAN; 3];
+        let nowhere = CurvePoint { x, y, error };
         match self {
             Self::Named(scaling) => scaling.apply(parameters, curve, parameter, point),
             Self::Called { raised, .. } if raised.borrow().is_some() => nowhere,
             Self::Called { function, raised } => {
-                let arguments = (
-                    parameters.to_vec(),
-                    parameter,
-                    point.x,
-                    point.y,
-                    point.error,
-                );
+                let CurvePoint { x, y, error } = point;
+                let arguments = (parameters.to_vec(), parameter, x, y, error);
                 // A search asks often and long: Ctrl-C is heard on the way.
                 let scaled = function
                     .py()
@@ -414,16 +403,12 @@ pub(crate) fn apply_collapse<'py>(
     parameters: Vec<f64>,
 ) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
-    let scaled: Vec<Vec<CurvePoint>> = curves
-        .iter()
-        .enumerate()
-        .map(|(place, curve)| {
-            let points = curve.points.iter();
-            points
-                .map(|point| scheme.apply(&parameters, place, curve.parameter, *point))
-                .collect()
-        })
-        .collect();
+    let scaled = |(place, curve): (usize, &Curve)| -> Vec<CurvePoint> {
+        let points = curve.points.iter();
+        let scaled = points.map(|it| scheme.apply(&parameters, place, curve.parameter, *it));
+        scaled.collect()
+    };
+    let scaled: Vec<_> = curves.iter().enumerate().map(scaled).collect();
     let quality = scheme.outcome(analysis::collapse_quality(&scaled))?;
     Ok(pythonize(py, &(quality, scaled))?.unbind())
 }

@@ -31,9 +31,9 @@ impl Configuration {
             preset,
             overrides: &overrides,
         };
-        peristalsis_configuration::Configuration::from_sources(&sources)
-            .map(|inner| Self { inner })
-            .map_err(of_configuration)
+        let inner = peristalsis_configuration::Configuration::from_sources(&sources);
+        let inner = inner.map_err(of_configuration)?;
+        Ok(Self { inner })
     }
 
     /// Every resolved value as TOML, which gives the same configuration again.
@@ -85,25 +85,21 @@ impl Configuration {
 
     /// What looks doubtful, as (key, message).
     fn warnings(&self) -> Vec<(&'static str, String)> {
-        peristalsis_run::warnings(&self.inner)
-            .into_iter()
-            .map(|warning| (warning.key, warning.message))
-            .collect()
+        let warnings = peristalsis_run::warnings(&self.inner).into_iter();
+        warnings.map(|it| (it.key, it.message)).collect()
     }
 }
 
 /// `key=value` texts of a dictionary of dotted keys.
 fn settings(overrides: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
-    overrides
-        .iter()
-        .map(|(key, value)| {
-            let key: String = key.extract()?;
-            let value = value_of(&value).map_err(|error| {
-                PyTypeError::new_err(format!("{key}: {}", error.value(overrides.py())))
-            })?;
-            Ok(format!("{key}={value}"))
-        })
-        .collect()
+    let setting = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+        let key: String = key.extract()?;
+        let value = value_of(&value).map_err(|error| {
+            PyTypeError::new_err(format!("{key}: {}", error.value(overrides.py())))
+        })?;
+        Ok(format!("{key}={value}"))
+    };
+    overrides.iter().map(setting).collect()
 }
 
 /// A Python value as one of TOML.
@@ -128,17 +124,15 @@ fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
     }
     // NumPy's scalars: whole numbers say so by `__index__`.
     if value.hasattr("__index__")? && !value.hasattr("__len__")? {
-        return Ok(toml::Value::Integer(
-            value.call_method0("__index__")?.extract()?,
-        ));
+        let number = value.call_method0("__index__")?.extract()?;
+        return Ok(toml::Value::Integer(number));
     }
     if let Ok(number) = value.extract::<f64>() {
         return Ok(toml::Value::Float(number));
     }
     let values = value.try_iter().map_err(|_| {
-        PyTypeError::new_err(format!(
-            "{value} is no number, text, truth value, list or dictionary"
-        ))
+        let reason = format!("{value} is no number, text, truth value, list or dictionary");
+        PyTypeError::new_err(reason)
     })?;
     let values: PyResult<Vec<_>> = values.map(|item| value_of(&item?)).collect();
     Ok(toml::Value::Array(values?))

@@ -37,10 +37,8 @@ impl Newtonian {
     #[staticmethod]
     fn from_flow_rate(amplitude_ratio: f64, flow_rate: f64) -> PyResult<Self> {
         let flow = NewtonianPeristalsis::from_flow_rate(amplitude_ratio, flow_rate);
-        made(
-            flow,
-            "the amplitude ratio is from 0 to below 1, and the flow rate finite",
-        )
+        let range = "the amplitude ratio is from 0 to below 1, and the flow rate finite";
+        made(flow, range)
     }
 
     #[getter]
@@ -95,9 +93,8 @@ impl Newtonian {
     /// Volume fraction of the fluid near the wall that moves back on average: 0 without any.
     #[getter]
     fn reflux_volume_fraction(&self) -> f64 {
-        self.flow
-            .reflux()
-            .map_or(0.0, |layer| layer.volume_fraction)
+        let layer = self.flow.reflux();
+        layer.map_or(0.0, |layer| layer.volume_fraction)
     }
 
     fn wall_radius<'py>(

@@ -24,9 +24,8 @@ pub(crate) struct Run {
 
 impl Run {
     fn of(run: peristalsis_run::Run) -> Self {
-        Self {
-            run: Mutex::new(run),
-        }
+        let run = Mutex::new(run);
+        Self { run }
     }
 
     /// Looks at the run, without the interpreter.
@@ -69,17 +68,15 @@ impl Run {
     #[new]
     fn new(py: Python<'_>, configuration: &Configuration) -> PyResult<Self> {
         let configuration = configuration.inner.clone();
-        py.detach(|| peristalsis_run::Run::new(configuration))
-            .map(Self::of)
-            .map_err(of_run)
+        let run = py.detach(|| peristalsis_run::Run::new(configuration));
+        run.map(Self::of).map_err(of_run)
     }
 
     /// Goes on from the bytes of a snapshot.
     #[staticmethod]
     fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
-        py.detach(|| peristalsis_run::Run::from_snapshot(bytes))
-            .map(Self::of)
-            .map_err(of_run)
+        let run = py.detach(|| peristalsis_run::Run::from_snapshot(bytes));
+        run.map(Self::of).map_err(of_run)
     }
 
     /// Configuration and state.
@@ -134,9 +131,8 @@ impl Run {
     /// The configuration, changes of the drive included.
     #[getter]
     fn configuration(&self, py: Python<'_>) -> Configuration {
-        Configuration {
-            inner: self.look(py, |run| run.configuration().clone()),
-        }
+        let inner = self.look(py, |run| run.configuration().clone());
+        Configuration { inner }
     }
 
     /// Centres of the grains.
@@ -163,10 +159,9 @@ impl Run {
         let positions: Vec<DVec3> = self.look(py, |run| {
             let bodies = run.simulation().bodies();
             let prescribed = run.simulation().wall().prescribed_spheres();
+            let prescribed = prescribed.map(|sphere| sphere.position);
             let mobile = bodies.position[bodies.grains..].iter().copied();
-            mobile
-                .chain(prescribed.map(|sphere| sphere.position))
-                .collect()
+            mobile.chain(prescribed).collect()
         });
         vectors(py, positions)
     }
@@ -231,13 +226,11 @@ impl Run {
         let (ledger, now) = self.look(py, |run| {
             let simulation = run.simulation();
             let (bodies, tally) = (simulation.bodies(), simulation.tally());
+            let wall = bodies.grains..bodies.number();
             let now = [
                 ("kinetic_energy", bodies.kinetic_energy(0..bodies.grains)),
                 ("rotational_energy", bodies.rotational_energy()),
-                (
-                    "wall_kinetic_energy",
-                    bodies.kinetic_energy(bodies.grains..bodies.number()),
-                ),
+                ("wall_kinetic_energy", bodies.kinetic_energy(wall)),
                 ("potential_energy", tally.potential_energy()),
                 ("energy", simulation.energy()),
                 ("energy_residual", simulation.energy_residual()),
@@ -270,10 +263,9 @@ impl Run {
     /// The outcome so far.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let summary = self.look(py, |run| {
-            let status = if run.is_complete() {
-                Status::Complete
-            } else {
-                Status::Interrupted
+            let status = match run.is_complete() {
+                true => Status::Complete,
+                false => Status::Interrupted,
             };
             Summary::of(run, status, None)
         });

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use peristalsis_study::{Effort, Ending, SettingValue, Specification, Store, work_on};
+use peristalsis_study::{Effort, Ending, Specification, Store, work_on};
 use pyo3::exceptions::PyFileNotFoundError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList};
+use pyo3::types::{IntoPyDict, PyDict, PyList};
 
 use crate::configuration::Configuration;
 use crate::error::of_study;
@@ -71,18 +71,12 @@ impl Study {
                 for setting in &plan.point(run).settings {
                     match (&setting.value, setting.value.number()) {
                         (_, Some(number)) => settings.set_item(&setting.key, number)?,
-                        (value, None) => settings.set_item(&setting.key, in_words(value))?,
+                        (value, None) => settings.set_item(&setting.key, value.to_string())?,
                     }
                 }
-                let configuration = Configuration {
-                    inner: plan.configuration(run),
-                };
-                Ok((
-                    run.identity.to_string(),
-                    run.replicate,
-                    settings,
-                    configuration,
-                ))
+                let inner = plan.configuration(run);
+                let identity = run.identity.to_string();
+                Ok((identity, run.replicate, settings, Configuration { inner }))
             })
             .collect()
     }
@@ -137,10 +131,6 @@ impl Study {
     }
 }
 
-fn in_words(value: &SettingValue) -> String {
-    value.to_string()
-}
-
 /// The finished runs of a store, one a row.
 #[pyfunction]
 pub(crate) fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
@@ -151,14 +141,8 @@ pub(crate) fn store_rows(py: Python<'_>, path: PathBuf) -> PyResult<Table> {
 /// How many runs of a store are in which state.
 #[pyfunction]
 pub(crate) fn store_counts<'py>(py: Python<'py>, path: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let survey = py
-        .detach(|| Store::open(&path)?.survey())
-        .map_err(of_study)?;
-    let counts = PyDict::new(py);
-    for (state, number) in survey.counts() {
-        counts.set_item(state, number)?;
-    }
-    Ok(counts)
+    let survey = py.detach(|| Store::open(&path)?.survey());
+    survey.map_err(of_study)?.counts().into_py_dict(py)
 }
 
 /// Writes the tables of a store as Parquet and CSV; answers the files.
@@ -173,8 +157,6 @@ pub(crate) fn store_export<'py>(
         let text = format!("there is no store {}", path.display());
         return Err(PyFileNotFoundError::new_err(text));
     }
-    let exported = py
-        .detach(|| Store::open(&path)?.export(&folder, series))
-        .map_err(of_study)?;
-    PyList::new(py, exported.files)
+    let exported = py.detach(|| Store::open(&path)?.export(&folder, series));
+    PyList::new(py, exported.map_err(of_study)?.files)
 }

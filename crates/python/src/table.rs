@@ -6,14 +6,15 @@ use std::sync::Arc;
 use arrow_array::ffi::FFI_ArrowSchema;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
 use arrow_array::{
-    ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator, StringArray,
+    Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, RecordBatchIterator,
+    StringArray,
 };
-use arrow_schema::{DataType, Field, Schema};
+use arrow_schema::{Field, Schema};
 use numpy::{Element, PyArray1, PyArrayMethods};
 use peristalsis_formats::{FormatError, Values};
 use pyo3::exceptions::{PyKeyError, PyRuntimeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict};
+use pyo3::types::{IntoPyDict, PyCapsule, PyDict};
 
 /// Columns of equal length; pandas, polars, pyarrow and DuckDB take it as it is.
 #[pyclass(frozen, module = "peristalsis._core")]
@@ -28,22 +29,19 @@ impl Table {
             .columns()
             .iter()
             .map(|column| {
-                let (kind, values) = array(&column.values);
+                let values = array(&column.values);
                 let about = HashMap::from([
                     ("unit".to_owned(), column.unit.clone()),
                     ("description".to_owned(), column.description.clone()),
                 ]);
-                (
-                    Field::new(&column.name, kind, true).with_metadata(about),
-                    values,
-                )
+                let field = Field::new(&column.name, values.data_type().clone(), true);
+                (field.with_metadata(about), values)
             })
             .unzip();
         let about: HashMap<String, String> = table.metadata().clone().into_iter().collect();
         let schema = Schema::new(fields).with_metadata(about);
-        RecordBatch::try_new(Arc::new(schema), columns)
-            .map(|batch| Self { batch })
-            .map_err(failed)
+        let batch = RecordBatch::try_new(Arc::new(schema), columns).map_err(failed)?;
+        Ok(Self { batch })
     }
 
     /// The same of a table that was just made.
@@ -52,23 +50,17 @@ impl Table {
     }
 }
 
-fn array(values: &Values) -> (DataType, ArrayRef) {
+fn array(values: &Values) -> ArrayRef {
     match values {
-        Values::Real(values) if values.iter().any(|value| value.is_nan()) => {
-            let present = values.iter().map(|value| !value.is_nan()).collect();
-            let array = Float64Array::new(values.clone().into(), Some(present));
-            (DataType::Float64, Arc::new(array))
+        Values::Real(values) => {
+            let is_missing = values.iter().any(|value| value.is_nan());
+            let present = || values.iter().map(|value| !value.is_nan()).collect();
+            let present = is_missing.then(present);
+            Arc::new(Float64Array::new(values.clone().into(), present))
         }
-        Values::Real(values) => (
-            DataType::Float64,
-            Arc::new(Float64Array::from(values.clone())),
-        ),
-        Values::Integer(values) => (DataType::Int64, Arc::new(Int64Array::from(values.clone()))),
-        Values::Text(values) => (DataType::Utf8, Arc::new(StringArray::from(values.clone()))),
-        Values::Boolean(values) => (
-            DataType::Boolean,
-            Arc::new(BooleanArray::from(values.clone())),
-        ),
+        Values::Integer(values) => Arc::new(Int64Array::from(values.clone())),
+        Values::Text(values) => Arc::new(StringArray::from(values.clone())),
+        Values::Boolean(values) => Arc::new(BooleanArray::from(values.clone())),
     }
 }
 
@@ -109,10 +101,8 @@ impl Table {
     /// A column as a new NumPy array (numbers; NaN where one is missing) or list.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column_by_name(name).ok_or_else(|| {
-            PyKeyError::new_err(format!(
-                "there is no column {name:?}; there are {}",
-                self.column_names().join(", ")
-            ))
+            let known = self.column_names().join(", ");
+            PyKeyError::new_err(format!("there is no column {name:?}; there are {known}"))
         })?;
         let column = column.as_any();
         if let Some(reals) = column.downcast_ref::<Float64Array>() {
@@ -136,11 +126,8 @@ impl Table {
     #[getter]
     fn column_names(&self) -> Vec<String> {
         let schema = self.batch.schema();
-        schema
-            .fields()
-            .iter()
-            .map(|field| field.name().clone())
-            .collect()
+        let fields = schema.fields().iter();
+        fields.map(|field| field.name().clone()).collect()
     }
 
     /// Unit of each column; "1" for a pure number.
@@ -162,21 +149,17 @@ impl Table {
     }
 
     fn __repr__(&self) -> String {
-        format!(
-            "<peristalsis.Table: {} rows of {}>",
-            self.batch.num_rows(),
-            self.column_names().join(", ")
-        )
+        let (rows, names) = (self.batch.num_rows(), self.column_names().join(", "));
+        format!("<peristalsis.Table: {rows} rows of {names}>")
     }
 }
 
 impl Table {
     fn about<'py>(&self, py: Python<'py>, what: &str) -> PyResult<Bound<'py, PyDict>> {
-        let about = PyDict::new(py);
-        for field in self.batch.schema().fields() {
-            about.set_item(field.name(), field.metadata().get(what))?;
-        }
-        Ok(about)
+        let schema = self.batch.schema();
+        let fields = schema.fields().iter();
+        let about = fields.map(|field| (field.name(), field.metadata().get(what)));
+        about.into_py_dict(py)
     }
 }
 

@@ -73,16 +73,14 @@ impl Growing {
 
     /// Makes the file so long, of zeros where it grows.
     pub(super) fn set_end(&mut self, end: u64) -> Result<(), FormatError> {
-        self.file
-            .set_len(end)
-            .map_err(FormatError::io("write", &self.path))?;
+        let set = self.file.set_len(end);
+        set.map_err(FormatError::io("write", &self.path))?;
         self.end = end;
         Ok(())
     }
 
     pub(super) fn synchronize(&mut self) -> Result<(), FormatError> {
-        self.file
-            .sync_all()
-            .map_err(FormatError::io("synchronize", &self.path))
+        let synchronized = self.file.sync_all();
+        synchronized.map_err(FormatError::io("synchronize", &self.path))
     }
 }

@@ -215,10 +215,8 @@ impl Container {
                 let is_ours = entry.location >= first_array && kind_bytes(entry.kind) > 0;
                 entry.end().filter(|&end| is_ours && end <= length)
             };
-            frame
-                .iter()
-                .map(end)
-                .try_fold(0, |last, end| Some(end?.max(last)))
+            let mut ends = frame.iter().map(end);
+            ends.try_fold(0, |last, end| Some(end?.max(last)))
         };
         for (number, frame) in begun.iter().enumerate() {
             let marker = frame
@@ -227,10 +225,8 @@ impl Container {
                 .filter(|entry| entry.rows > 0 && kind_bytes(entry.kind) == 8);
             let (Some(marker), Some(frame_end)) = (marker, end_of(frame)) else {
                 // What was cut short is the end; before whole frames it is damage, and they are not to be thrown away.
-                if begun[number + 1..]
-                    .iter()
-                    .any(|later| end_of(later).is_some())
-                {
+                let mut later = begun[number + 1..].iter();
+                if later.any(|frame| end_of(frame).is_some()) {
                     return Err(damaged(&format!("frame {number} of it is damaged")));
                 }
                 break;
@@ -281,9 +277,8 @@ impl Container {
         entries.sort_unstable_by_key(|entry| entry.name);
         let before = self.file.end();
         self.file.append(&data)?;
-        let found = self
-            .write_names(&names)
-            .and_then(|()| self.write_entries(&entries));
+        let named = self.write_names(&names);
+        let found = named.and_then(|()| self.write_entries(&entries));
         if let Err(error) = found {
             // Back to the frames before; where that fails too, the failure that came first is what counts.
             let blank = vec![0; entries.len() * ENTRY_BYTES as usize];
@@ -331,10 +326,9 @@ pub(super) fn read_names(
 ) -> Result<Vec<String>, FormatError> {
     let names = read(file, path, offset, bytes)?;
     let names = names.split(|&byte| byte == 0);
-    Ok(names
-        .take_while(|name| !name.is_empty())
-        .map(|name| String::from_utf8_lossy(name).into_owned())
-        .collect())
+    let names = names.take_while(|name| !name.is_empty());
+    let names = names.map(|name| String::from_utf8_lossy(name).into_owned());
+    Ok(names.collect())
 }
 
 /// The entries that have been written; the rest of the index, which may be long, is not looked at.
@@ -347,17 +341,11 @@ pub(super) fn read_entries(
     let mut entries = Vec::new();
     while (entries.len() as u64) < capacity {
         let done = entries.len() as u64;
-        let block = read(
-            file,
-            path,
-            index_at + done * ENTRY_BYTES,
-            ENTRIES_A_READ.min(capacity - done) * ENTRY_BYTES,
-        )?;
-        let written = block
-            .chunks_exact(ENTRY_BYTES as usize)
-            .map(Entry::decode)
-            .take_while(|entry| entry.location != 0);
-        entries.extend(written);
+        let at = index_at + done * ENTRY_BYTES;
+        let bytes = ENTRIES_A_READ.min(capacity - done) * ENTRY_BYTES;
+        let block = read(file, path, at, bytes)?;
+        let written = block.chunks_exact(ENTRY_BYTES as usize).map(Entry::decode);
+        entries.extend(written.take_while(|entry| entry.location != 0));
         if (entries.len() as u64) < done + ENTRIES_A_READ {
             break;
         }

@@ -78,11 +78,9 @@ impl TrajectoryFile for Container {
 
 /// Bytes of a frame after the first.
 pub(super) fn frame_bytes(frame: &Frame) -> u64 {
-    let arrays = every_frame(frame)
-        .iter()
-        .map(|chunk| chunk.bytes.len() as u64)
-        .sum::<u64>();
-    arrays + MOST_CHUNKS * ENTRY_BYTES
+    let chunks = every_frame(frame);
+    let arrays = chunks.iter().map(|chunk| chunk.bytes.len() as u64);
+    arrays.sum::<u64>() + MOST_CHUNKS * ENTRY_BYTES
 }
 
 /// What changes from frame to frame.

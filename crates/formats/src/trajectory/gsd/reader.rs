@@ -1,5 +1,6 @@
 //! GSD files read frame by frame, in any order.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -55,8 +56,9 @@ impl GsdReader {
         }
         let version = u16::from_le_bytes([header[46], header[47]]);
         if version != MAJOR_VERSION {
+            let ours = format!("this program reads version {MAJOR_VERSION}");
             return Err(refused(format!(
-                "it is of version {version} of GSD; this program reads version {MAJOR_VERSION}"
+                "it is of version {version} of GSD; {ours}"
             )));
         }
         let schema = &header[112..176];
@@ -116,11 +118,10 @@ impl GsdReader {
     /// [`FormatError::Io`]; [`FormatError::UnreadableTrajectory`] where there is no such frame, its arrays do not fit
     /// together, or its particles are not grains and wall.
     pub fn frame(&mut self, frame: usize) -> Result<Frame, FormatError> {
-        if frame >= self.frames.len() {
-            return Err(self.refused(format!(
-                "there is no frame {frame}, counted from 0: it holds {}",
-                self.frames.len()
-            )));
+        let held = self.frames();
+        if frame >= held {
+            let reason = format!("there is no frame {frame}, counted from 0: it holds {held}");
+            return Err(self.refused(reason));
         }
         let step = self.number(frame, STEP)?.unwrap_or(0);
         let number = self.number::<u32>(frame, NUMBER)?.unwrap_or(0) as usize;
@@ -171,18 +172,16 @@ impl GsdReader {
     fn grains(&mut self, frame: usize, number: usize) -> Result<usize, FormatError> {
         let types = self.types(frame)?;
         if types != [GRAIN, WALL] {
-            return Err(self.refused(format!(
-                "its types of particles are {}, not {GRAIN} and {WALL}",
-                types.join(", ")
-            )));
+            let types = types.join(", ");
+            let reason = format!("its types of particles are {types}, not {GRAIN} and {WALL}");
+            return Err(self.refused(reason));
         }
         let numbers: Option<Vec<[u32; 1]>> = self.array(frame, TYPE_NUMBERS)?;
         let numbers = numbers.unwrap_or_default();
         let is_wall = |number: &[u32; 1]| *number != [0];
         if numbers.len() != number || !numbers.is_sorted_by_key(is_wall) {
-            return Err(self.refused(format!(
-                "frame {frame} does not have its grains first and then the wall"
-            )));
+            let reason = format!("frame {frame} does not have its grains first and then the wall");
+            return Err(self.refused(reason));
         }
         Ok(numbers.partition_point(|number| !is_wall(number)))
     }
@@ -197,17 +196,10 @@ impl GsdReader {
     }
 
     /// What was logged but time and what belongs to the particles.
-    fn values(
-        &mut self,
-        frame: usize,
-    ) -> Result<Vec<(std::borrow::Cow<'static, str>, f64)>, FormatError> {
-        let logged: Vec<String> = self
-            .names
-            .iter()
-            .filter_map(|name| name.strip_prefix(LOG))
-            .filter(|name| *name != TIME && !name.contains('/'))
-            .map(str::to_owned)
-            .collect();
+    fn values(&mut self, frame: usize) -> Result<Vec<(Cow<'static, str>, f64)>, FormatError> {
+        let names = self.names.iter().filter_map(|name| name.strip_prefix(LOG));
+        let logged = names.filter(|name| *name != TIME && !name.contains('/'));
+        let logged: Vec<String> = logged.map(str::to_owned).collect();
         let mut values = Vec::with_capacity(logged.len());
         for name in logged {
             if let Some(value) = self.value(frame, &name)? {
@@ -248,11 +240,8 @@ impl GsdReader {
 
     /// The first number of an array, if there is one.
     fn number<T: Number>(&mut self, frame: usize, name: &str) -> Result<Option<T>, FormatError> {
-        let numbers = self.array(frame, name)?;
-        Ok(numbers.map(|numbers| {
-            let [number] = numbers[0];
-            number
-        }))
+        let numbers: Option<Vec<[T; 1]>> = self.array(frame, name)?;
+        Ok(numbers.map(|numbers| numbers[0][0]))
     }
 
     /// An array row by row, if there is one; it must be of the type and so many columns, and not empty.
@@ -271,9 +260,9 @@ impl GsdReader {
         }
         let bytes = self.of_entry(&entry)?;
         let rows = bytes.chunks_exact(N * size_of::<T>());
-        let row =
-            |row: &[u8]| std::array::from_fn(|column| T::at_start(&row[column * size_of::<T>()..]));
-        Ok(Some(rows.map(row).collect()))
+        let number = |row: &[u8], column| T::at_start(&row[column * size_of::<T>()..]);
+        let rows = rows.map(|row| std::array::from_fn(|column| number(row, column)));
+        Ok(Some(rows.collect()))
     }
 
     /// Where an array of a frame is; what a frame lacks is as in the first.
@@ -313,12 +302,9 @@ fn whole_frames(entries: &[Entry], length: u64) -> (Vec<HashMap<u16, Entry>>, u6
         };
         frame.iter().all(within) && frame.len() >= entries_before
     };
-    let whole: Vec<HashMap<u16, Entry>> = groups
-        .iter()
-        .enumerate()
-        .take_while(is_whole)
-        .map(|(_, frame)| frame.iter().map(|entry| (entry.name, *entry)).collect())
-        .collect();
+    let by_name = |frame: &&[Entry]| frame.iter().map(|entry| (entry.name, *entry)).collect();
+    let whole = groups.iter().enumerate().take_while(is_whole);
+    let whole: Vec<HashMap<u16, Entry>> = whole.map(|(_, frame)| by_name(frame)).collect();
     let lost = (groups.len() - whole.len()) as u64;
     (whole, lost)
 }
