@@ -2,7 +2,7 @@
 
 use crate::axis::{Axis, Scale, Side, Tick, widest};
 use crate::colour::{BLACK, Colour, GREY, cyclic, diverging, sequential};
-use crate::drawing::{Anchor, Drawing, Image, Layer, Reading, Stroke};
+use crate::drawing::{Anchor, Drawing, Image, Layer, Stroke};
 use crate::error::FigureError;
 use crate::geometry::{Path, Point, Rectangle};
 use crate::style::{FRAME_WEIGHT, LABEL_SIZE, MAJOR_TICK, TICK_GAP, TICK_SIZE, TICK_SPACE};
@@ -30,9 +30,9 @@ pub struct ColourScale {
     scale: Scale,
     palette: Palette,
     /// Part of the sequential palette that is used: its lightest end is lost as a line on white.
-    reach: f64,
+    pub(crate) reach: f64,
     /// Least and largest of the values that are shown, where some may lie beyond the ends.
-    found: (f64, f64),
+    pub(crate) found: (f64, f64),
 }
 
 /// Width of a bar beside panels.
@@ -49,7 +49,8 @@ const ROOM_PER_LABEL: f64 = 13.5;
 const MOST_LABELS: usize = 6;
 /// Gap between the numbers of a bar across.
 const ROOM_BETWEEN_LABELS: f64 = 8.0;
-const REACH_ON_WHITE: f64 = 0.9;
+/// Part of the sequential palette without the colours that would be lost as lines on white.
+pub(crate) const REACH_ON_WHITE: f64 = 0.9;
 
 impl ColourScale {
     /// A linear scale in sequential colours, with its label in markup.
@@ -74,18 +75,6 @@ impl ColourScale {
     /// The same in the colours of another palette.
     pub fn palette(mut self, palette: Palette) -> Self {
         self.palette = palette;
-        self
-    }
-
-    /// The same with ends that say so, where some of the values between a least and a largest lie beyond them.
-    pub(crate) fn showing(mut self, found: (f64, f64)) -> Self {
-        self.found = found;
-        self
-    }
-
-    /// The same without the colours that would be lost as lines on white.
-    pub(crate) fn on_white(mut self) -> Self {
-        self.reach = REACH_ON_WHITE;
         self
     }
 
@@ -194,12 +183,8 @@ impl ColourScale {
         let (height, width) = (LOW_BAR.0, LOW_BAR.1.min(LOW_BAR_PART * span.width));
         let label = Text::new(&self.label, LABEL_SIZE).width + BAR_GAP;
         let middle = span.left + (span.width + label - width) / 2.0;
-        let area = Rectangle {
-            left: middle.min(span.right() - width),
-            top: top + SPACE_ABOVE,
-            width,
-            height,
-        };
+        let left = middle.min(span.right() - width);
+        let area = Rectangle::new((left, top + SPACE_ABOVE), (width, height));
         self.draw_bar_across(drawing, area, BAR_GAP, BLACK);
         SPACE_ABOVE + height + TICK_SPACE
     }
@@ -226,13 +211,7 @@ impl ColourScale {
         let baseline = area.right() + TICK_GAP + widest(&ticks) + LABEL_SIZE + 1.0;
         let middle = (area.top + area.bottom()) / 2.0;
         let text = Text::fitted(&self.label, LABEL_SIZE, area.height);
-        layer.read_text(
-            Reading::Upward,
-            (baseline, middle),
-            Anchor::Middle,
-            text,
-            BLACK,
-        );
+        layer.text_upward((baseline, middle), Anchor::Middle, text, BLACK);
     }
 
     /// The colours of a bar from its least to its largest value.

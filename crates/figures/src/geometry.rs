@@ -30,14 +30,19 @@ pub(crate) struct Rectangle {
 }
 
 impl Rectangle {
-    /// From its left to its right end, and from its top to its bottom.
-    pub(crate) fn between((left, right): (f64, f64), (top, bottom): (f64, f64)) -> Self {
+    /// From its upper left corner, with its width and height.
+    pub(crate) const fn new((left, top): (f64, f64), (width, height): (f64, f64)) -> Self {
         Self {
             left,
             top,
-            width: right - left,
-            height: bottom - top,
+            width,
+            height,
         }
+    }
+
+    /// From its left to its right end, and from its top to its bottom.
+    pub(crate) fn between((left, right): (f64, f64), (top, bottom): (f64, f64)) -> Self {
+        Self::new((left, top), (right - left, bottom - top))
     }
 
     pub(crate) fn right(&self) -> f64 {

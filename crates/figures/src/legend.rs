@@ -149,12 +149,7 @@ impl Legend {
             let start = (left + right - self.width) / 2.0 + cell.start;
             let middle = top + TOP_SPACE + ROW_HEIGHT * (cell.row as f64 + 0.5);
             if let Some(colour) = cell.entry.band {
-                let area = Rectangle {
-                    left: start,
-                    top: middle - 2.6,
-                    width: self.sample,
-                    height: 5.2,
-                };
+                let area = Rectangle::new((start, middle - 2.6), (self.sample, 5.2));
                 layer.fill(Path::polygon(area.corners()), colour);
             }
             if let Some(stroke) = cell.entry.line {

@@ -115,15 +115,11 @@ impl PictureFigure<'_> {
         // The picture begins with a whole pixel of the page.
         let whole = |points: f64| (points * scale).ceil() / scale;
         let above = whole(self.space_above());
-        let area = Rectangle {
-            left: 0.0,
-            top: above,
-            width: columns as f64 / scale,
-            height: rows as f64 / scale,
-        };
+        let size = (columns as f64 / scale, rows as f64 / scale);
+        let area = Rectangle::new((0.0, above), size);
         let height = area.bottom() + whole(self.space_below());
-        let drawing = Drawing::new(area.width, height, self.title);
-        let mut drawing = drawing.on_paper(page, scale);
+        let mut drawing = Drawing::new(area.width, height, self.title);
+        (drawing.paper, drawing.pixels_per_point) = (page, scale);
         drawing.layer("picture", None).image(Image {
             area,
             columns,
@@ -135,12 +131,8 @@ impl PictureFigure<'_> {
         let free_from = self.draw_scale_bar(drawing.layer("scale", None), area, ink);
         if let Some(colours) = self.colours {
             let width = BAR_WIDTH.min(BAR_PART * area.width);
-            let bar = Rectangle {
-                left: area.width - EDGE - 0.5 * TICK_SIZE - width,
-                top: area.bottom() + GAP_BELOW,
-                width,
-                height: BAR_HEIGHT,
-            };
+            let left = area.width - EDGE - 0.5 * TICK_SIZE - width;
+            let bar = Rectangle::new((left, area.bottom() + GAP_BELOW), (width, BAR_HEIGHT));
             colours.draw_bar_across(&mut drawing, bar, free_from, ink);
         }
         Ok(drawing)

@@ -98,10 +98,8 @@ impl SnapshotFigure<'_> {
             series: "snapshots".to_owned(),
             length: 0,
         };
-        let mut parts = Vec::with_capacity(self.snapshots.len());
-        for snapshot in self.snapshots {
-            parts.push(Part::of(snapshot)?);
-        }
+        let parts = self.snapshots.iter().map(Part::of);
+        let parts: Vec<Part<'_>> = parts.collect::<Result<_, _>>()?;
         let (_, reach) = extent(parts.iter().map(Part::reach));
         if parts.is_empty() || reach <= 0.0 {
             return Err(empty);
@@ -113,7 +111,7 @@ impl SnapshotFigure<'_> {
         let is_one_extent = extents.windows(2).all(|pair| pair[0] == pair[1]);
         let mut panels = Vec::new();
         for (index, part) in parts.iter().enumerate() {
-            let own_extent = if is_one_extent { "" } else { &*extents[index] };
+            let own_extent = if is_one_extent { "" } else { &extents[index] };
             let header = with_extent(part.snapshot.label, own_extent);
             let rows = (part.snapshot.length / row - 1e-9).ceil().max(1.0) as usize;
             for number in 0..rows {
@@ -131,9 +129,9 @@ impl SnapshotFigure<'_> {
         }
         let grains = self.snapshots.iter().flat_map(|snapshot| snapshot.grains);
         let name = "axial velocity along the wave, *v_z*/*c*";
-        let scale = ColourScale::new(name, -DEEPEST, DEEPEST)
-            .palette(Palette::Diverging)
-            .showing(extent(grains.map(|grain| grain.axial_velocity)));
+        let mut scale = ColourScale::new(name, -DEEPEST, DEEPEST).palette(Palette::Diverging);
+        // Its ends say so where some of the grains are beyond them.
+        scale.found = extent(grains.map(|grain| grain.axial_velocity));
         ChartFigure::grid(1, panels)
             .title(self.title)
             .description("The tube from the side, its grains coloured by their axial velocity.")
@@ -246,14 +244,10 @@ impl<'a> Part<'a> {
         for sphere in &self.spheres {
             places(sphere).for_each(|along| wall.push(along, sphere.across, sphere.diameter));
         }
-        for SnapshotGrain {
-            sphere,
-            axial_velocity,
-        } in &self.grains
-        {
-            for along in places(sphere) {
-                grains.push(along, sphere.across, sphere.diameter);
-                grains.values.push(*axial_velocity);
+        for grain in &self.grains {
+            for along in places(&grain.sphere) {
+                grains.push(along, grain.sphere.across, grain.sphere.diameter);
+                grains.values.push(grain.axial_velocity);
             }
         }
         let mut panel = panel.with(wall).with(grains);

@@ -2,7 +2,7 @@
 
 use crate::axis::{Axis, Side, Tick};
 use crate::colour::BLACK;
-use crate::drawing::{Anchor, Drawing, Reading, Stroke};
+use crate::drawing::{Anchor, Drawing, Stroke};
 use crate::geometry::{Path, Point, Rectangle};
 use crate::style::{FRAME_WEIGHT, LABEL_SIZE, TICK_SPACE};
 use crate::text::Text;
@@ -83,13 +83,7 @@ impl Frame {
         if let Some(baseline) = around.y_baseline {
             let middle = area.top + area.height / 2.0;
             let text = Text::fitted(y_name, LABEL_SIZE, area.height);
-            layer.read_text(
-                Reading::Upward,
-                (baseline, middle),
-                Anchor::Middle,
-                text,
-                BLACK,
-            );
+            layer.text_upward((baseline, middle), Anchor::Middle, text, BLACK);
         }
     }
 }
@@ -102,12 +96,7 @@ mod tests {
     #[test]
     fn larger_values_lie_further_right_and_higher() {
         let frame = |scale| Frame {
-            area: Rectangle {
-                left: 30.0,
-                top: 10.0,
-                width: 200.0,
-                height: 100.0,
-            },
+            area: Rectangle::new((30.0, 10.0), (200.0, 100.0)),
             x: Axis::new(Scale::Linear, (0.0, 4.0)),
             y: Axis::new(scale, (0.1, 10.0)),
         };

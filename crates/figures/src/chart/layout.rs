@@ -90,12 +90,7 @@ impl Layout {
                 let baseline = left - TICK_GAP - numbers(index % columns) - NAME_GAP;
                 seats.push(Seat {
                     frame: Frame {
-                        area: Rectangle {
-                            left,
-                            top,
-                            width: spaces.width,
-                            height,
-                        },
+                        area: Rectangle::new((left, top), (spaces.width, height)),
                         x: axes.x,
                         y: axes.y,
                     },

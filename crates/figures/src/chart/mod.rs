@@ -48,13 +48,13 @@ pub use panel::ChartPanel;
 pub use crate::drawing::Pattern;
 
 use crate::colour::BLACK;
-use crate::colour_scale::ColourScale;
+use crate::colour_scale::{ColourScale, REACH_ON_WHITE};
 use crate::drawing::{Anchor, Drawing};
 use crate::error::{FigureError, positive};
 use crate::geometry::Rectangle;
 use crate::legend::{Entry, Legend, TOP_SPACE};
 use crate::style::{LABEL_SIZE, RIGHT_MARGIN, TITLE_SIZE, TITLE_SPACE, Width};
-use crate::text::Text;
+use crate::text::{Text, plain};
 use layout::{Layout, Seat};
 use paint::Painter;
 use placement::Obstacles;
@@ -199,8 +199,9 @@ impl ChartFigure {
         }
         let legend = Legend::new(below, width - 2.0 * SIDE);
         legend.draw(&mut drawing, SIDE, width - SIDE, bottom);
-        drawing.extend_to(bottom + legend.height() + 3.0);
-        Ok(drawing.with_description(&self.description))
+        drawing.height = bottom + legend.height() + 3.0;
+        drawing.description = plain(&self.description);
+        Ok(drawing)
     }
 
     /// Draws the panels; returns the entries of the legend below the figure.
@@ -245,9 +246,11 @@ impl ChartFigure {
     /// The scale of colours, without those that would be lost on white where it colours lines and points.
     fn shown_scale(&self) -> Option<ColourScale> {
         let mut layers = self.panels.iter().flat_map(|panel| &panel.layers);
-        let has_areas = layers.any(ChartLayer::is_coloured_area);
-        let scale = self.colour_scale.clone()?;
-        Some(if has_areas { scale } else { scale.on_white() })
+        let mut scale = self.colour_scale.clone()?;
+        if !layers.any(ChartLayer::is_coloured_area) {
+            scale.reach = REACH_ON_WHITE;
+        }
+        Some(scale)
     }
 
     /// Title, or what stands against what, for the document.

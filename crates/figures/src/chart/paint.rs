@@ -146,12 +146,7 @@ impl<'a> Painter<'a> {
                 foot
             };
             let [left, right] = [edges[0], edges[1]].map(|edge| frame.across(edge));
-            let area = Rectangle {
-                left,
-                top: top.min(foot),
-                width: right - left,
-                height: (foot - top).abs(),
-            };
+            let area = Rectangle::between((left, right), (top.min(foot), top.max(foot)));
             if area.height > 0.0 {
                 self.obstacles.area(area);
             }

@@ -34,12 +34,9 @@ impl Obstacles {
 
     /// Number of obstacles that a box would cover or come too close to.
     fn covered(&self, area: Rectangle) -> usize {
-        let kept = Rectangle {
-            left: area.left - CLEARANCE,
-            top: area.top - CLEARANCE,
-            width: area.width + 2.0 * CLEARANCE,
-            height: area.height + 2.0 * CLEARANCE,
-        };
+        let corner = (area.left - CLEARANCE, area.top - CLEARANCE);
+        let [width, height] = [area.width, area.height].map(|length| length + 2.0 * CLEARANCE);
+        let kept = Rectangle::new(corner, (width, height));
         self.segments
             .iter()
             .filter(|segment| crosses(**segment, kept))
@@ -90,11 +87,10 @@ impl Obstacles {
             x.min(y) * 3.0 + x + y + turn
         };
         shares.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
-        let places = shares.into_iter().map(|(across, down)| Rectangle {
-            left: frame.left + INSET + across * room.0,
-            top: frame.top + INSET + down * room.1,
-            width,
-            height,
+        let places = shares.into_iter().map(|(across, down)| {
+            let left = frame.left + INSET + across * room.0;
+            let top = frame.top + INSET + down * room.1;
+            Rectangle::new((left, top), (width, height))
         });
         self.freest(places)
             .and_then(|(place, covered)| (covered == 0).then_some(place))
@@ -126,12 +122,7 @@ fn crosses([from, to]: [Point; 2], area: Rectangle) -> bool {
 mod tests {
     use super::*;
 
-    const FRAME: Rectangle = Rectangle {
-        left: 0.0,
-        top: 0.0,
-        width: 100.0,
-        height: 80.0,
-    };
+    const FRAME: Rectangle = Rectangle::new((0.0, 0.0), (100.0, 80.0));
 
     fn point(x: f64, y: f64) -> Point {
         Point { x, y }
@@ -139,12 +130,7 @@ mod tests {
 
     #[test]
     fn a_line_through_a_box_meets_it_without_an_end_inside() {
-        let area = Rectangle {
-            left: 10.0,
-            top: 10.0,
-            width: 10.0,
-            height: 10.0,
-        };
+        let area = Rectangle::new((10.0, 10.0), (10.0, 10.0));
         assert!(crosses([point(0.0, 15.0), point(30.0, 16.0)], area));
         assert!(crosses([point(15.0, 0.0), point(15.0, 30.0)], area));
         assert!(!crosses([point(0.0, 15.0), point(9.0, 15.0)], area));

@@ -3,7 +3,7 @@
 use super::layer::{ChartLayer, Corner, Kind, Note, Reference};
 use super::paint::Painter;
 use super::placement::INSET;
-use crate::drawing::{Anchor, Reading};
+use crate::drawing::Anchor;
 use crate::geometry::Rectangle;
 use crate::style::LEGEND_SIZE;
 use crate::text::{DIGIT_HEIGHT, Text};
@@ -47,17 +47,11 @@ impl Painter<'_> {
             let share = 1.0 - trial as f64 / LABEL_TRIALS as f64;
             let along = INSET + share * (length - 2.0 * INSET - long);
             [-LABEL_GAP - thick, LABEL_GAP].map(|beside| {
-                let (left, top, width, height) = if reference.vertical {
+                if reference.vertical {
                     let top = frame.bottom() - along - long;
-                    (start.x + beside, top, thick, long)
+                    Rectangle::new((start.x + beside, top), (thick, long))
                 } else {
-                    (frame.left + along, start.y + beside, long, thick)
-                };
-                Rectangle {
-                    left,
-                    top,
-                    width,
-                    height,
+                    Rectangle::new((frame.left + along, start.y + beside), (long, thick))
                 }
             })
         });
@@ -71,13 +65,8 @@ impl Painter<'_> {
         let layer = self.drawing.layer("reference labels", None);
         if reference.vertical {
             let baseline = place.left + ABOVE_BASELINE * LEGEND_SIZE;
-            layer.read_text(
-                Reading::Upward,
-                (baseline, place.bottom()),
-                Anchor::Start,
-                text,
-                colour,
-            );
+            let foot = (baseline, place.bottom());
+            layer.text_upward(foot, Anchor::Start, text, colour);
         } else {
             let baseline = place.top + ABOVE_BASELINE * LEGEND_SIZE;
             layer.text((place.left, baseline), Anchor::Start, text, colour);
@@ -95,12 +84,8 @@ impl Painter<'_> {
             Corner::TopLeft | Corner::TopRight => frame.top + INSET,
             Corner::BottomLeft | Corner::BottomRight => frame.bottom() - INSET - LEGEND_SIZE,
         };
-        self.obstacles.area(Rectangle {
-            left,
-            top,
-            width: text.width,
-            height: LEGEND_SIZE,
-        });
+        let area = Rectangle::new((left, top), (text.width, LEGEND_SIZE));
+        self.obstacles.area(area);
         let baseline = top + (LEGEND_SIZE + DIGIT_HEIGHT * LEGEND_SIZE) / 2.0;
         let colour = self.colour(0, note.look);
         let layer = self.drawing.layer("notes", None);

@@ -17,13 +17,14 @@ pub struct Drawing {
     /// Points across.
     width: f64,
     /// Points down.
-    height: f64,
+    pub(crate) height: f64,
     title: String,
-    description: String,
+    /// What can be seen, in words without markup.
+    pub(crate) description: String,
     /// Colour of the page.
-    paper: Colour,
+    pub(crate) paper: Colour,
     /// How finely the page is painted.
-    pixels_per_point: f64,
+    pub(crate) pixels_per_point: f64,
     layers: Vec<Layer>,
 }
 
@@ -89,6 +90,17 @@ pub(crate) enum Anchor {
     Start,
     Middle,
     End,
+}
+
+impl Anchor {
+    /// Length of a text before its anchor.
+    fn before(self, text: &Text) -> f64 {
+        match self {
+            Self::Start => 0.0,
+            Self::Middle => text.width / 2.0,
+            Self::End => text.width,
+        }
+    }
 }
 
 /// Direction in which a text runs.
@@ -190,15 +202,6 @@ impl Drawing {
         }
     }
 
-    /// The same with a `<desc>` in its SVG, in markup: what can be seen, in words.
-    pub(crate) fn with_description(self, description: &str) -> Self {
-        let description = plain(description);
-        Self {
-            description,
-            ..self
-        }
-    }
-
     /// Width of the page in millimetres.
     pub fn width_millimetres(&self) -> f64 {
         self.width / POINTS_PER_MILLIMETRE
@@ -242,20 +245,6 @@ impl Drawing {
     /// If the page is too large for memory.
     pub fn raster(&self) -> Result<Raster, FigureError> {
         png::raster(self)
-    }
-
-    /// The same on paper of another colour, painted with so many pixels a point.
-    pub(crate) fn on_paper(self, paper: Colour, pixels_per_point: f64) -> Self {
-        Self {
-            paper,
-            pixels_per_point,
-            ..self
-        }
-    }
-
-    /// Makes the page higher or lower.
-    pub(crate) fn extend_to(&mut self, height: f64) {
-        self.height = height;
     }
 
     /// Opens a layer above all others.
@@ -326,27 +315,23 @@ impl Layer {
 
     /// A line of type with its start, middle or end at a place.
     pub(crate) fn text(&mut self, place: (f64, f64), anchor: Anchor, text: Text, colour: Colour) {
-        self.read_text(Reading::Rightward, place, anchor, text, colour);
+        let start = Point::new(place.0 - anchor.before(&text), place.1);
+        self.push_text(start, Reading::Rightward, text, colour);
     }
 
-    /// A line of type that reads upwards or to the right.
-    pub(crate) fn read_text(
+    /// The same, read upwards.
+    pub(crate) fn text_upward(
         &mut self,
-        reading: Reading,
-        (x, y): (f64, f64),
+        place: (f64, f64),
         anchor: Anchor,
         text: Text,
         colour: Colour,
     ) {
-        let before = match anchor {
-            Anchor::Start => 0.0,
-            Anchor::Middle => text.width / 2.0,
-            Anchor::End => text.width,
-        };
-        let start = match reading {
-            Reading::Rightward => Point::new(x - before, y),
-            Reading::Upward => Point::new(x, y + before),
-        };
+        let start = Point::new(place.0, place.1 + anchor.before(&text));
+        self.push_text(start, Reading::Upward, text, colour);
+    }
+
+    fn push_text(&mut self, start: Point, reading: Reading, text: Text, colour: Colour) {
         self.shapes.push(Shape::Text {
             start,
             reading,
