@@ -238,17 +238,10 @@ pub(crate) fn name(choice: impl Serialize) -> String {
 /// The keys of a schedule in a table of its own.
 fn keys_of(schedule: &Schedule) -> Vec<(&'static str, Value)> {
     let (form, keys) = match &schedule.form {
-        ScheduleForm::Ramp {
-            from,
-            to,
-            start,
-            end,
-        } => {
+        ScheduleForm::Ramp([(start, from), (end, to)]) => {
             let keys = [("from", from), ("to", to), ("start", start), ("end", end)];
-            (
-                "ramp",
-                keys.map(|(key, value)| (key, Value::from(*value))).to_vec(),
-            )
+            let keys = keys.map(|(key, value)| (key, Value::from(*value)));
+            ("ramp", keys.to_vec())
         }
         ScheduleForm::Steps(steps) => ("steps", keys_of_points(steps)),
         ScheduleForm::Course(knots) => ("course", keys_of_points(knots)),

@@ -67,10 +67,8 @@ impl Node {
 
 /// Parses a file, to be checked and resolved by someone else; invalid TOML becomes a problem and an empty table.
 pub fn parse_file(file: SourceFile<'_>, problems: &mut Problems) -> Table {
-    parse(
-        &Source::new(SourceKind::File, file.name, file.text),
-        problems,
-    )
+    let source = Source::new(SourceKind::File, file.name, file.text);
+    parse(&source, problems)
 }
 
 /// Parses a whole source; invalid TOML becomes a problem and an empty table.
@@ -78,10 +76,7 @@ pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
     match DeTable::parse(&source.text) {
         Ok(table) => convert_table(source, table.get_ref()),
         Err(error) => {
-            let origin = Origin {
-                source: Arc::clone(source),
-                span: error.span().unwrap_or_default(),
-            };
+            let origin = Origin::new(source, error.span().unwrap_or_default());
             let message = format!("this is not TOML: {}", error.message().replace('\n', ", "));
             let problem = Problem::new(ProblemKind::Syntax, message)
                 .at(&origin, "here")
@@ -96,10 +91,7 @@ pub(crate) fn parse(source: &Arc<Source>, problems: &mut Problems) -> Table {
 pub(crate) fn parse_override(text: &str, problems: &mut Problems) -> Table {
     let source = Source::new(SourceKind::Override, Source::override_name(text), text);
     read_override(&source).unwrap_or_else(|message| {
-        let whole = Origin {
-            source,
-            span: 0..text.len(),
-        };
+        let whole = Origin::new(&source, 0..text.len());
         let problem = Problem::new(ProblemKind::Syntax, message)
             .at(&whole, "this override")
             .help("write key=value, for example drive.width=2.7 or initial.state=jammed");
@@ -157,10 +149,7 @@ fn replace_leaf(table: &mut Table, word: &str, span: Range<usize>) {
 fn convert_table(source: &Arc<Source>, table: &DeTable<'_>) -> Table {
     let entries = table.iter().map(|(key, value)| {
         let entry = Entry {
-            key: Origin {
-                source: Arc::clone(source),
-                span: key.span(),
-            },
+            key: Origin::new(source, key.span()),
             item: convert(source, value),
         };
         (key.get_ref().to_string(), entry)
@@ -171,10 +160,10 @@ fn convert_table(source: &Arc<Source>, table: &DeTable<'_>) -> Table {
 fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
     let node = match value.get_ref() {
         DeValue::String(text) => Node::Text(text.to_string()),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).map_or(
-            Node::Other("a whole number of more than 63 bits"),
-            Node::Integer,
-        ),
+        DeValue::Integer(integer) => {
+            let other = Node::Other("a whole number of more than 63 bits");
+            i64::from_str_radix(integer.as_str(), integer.radix()).map_or(other, Node::Integer)
+        }
         DeValue::Float(float) => match float.as_str().parse::<f64>() {
             // A literal too large for f64 reads as infinite; no key takes either.
             Ok(number) => Node::Float(number),
@@ -188,10 +177,7 @@ fn convert(source: &Arc<Source>, value: &Spanned<DeValue<'_>>) -> Item {
         DeValue::Table(table) => Node::Table(convert_table(source, table)),
     };
     Item {
-        origin: Origin {
-            source: Arc::clone(source),
-            span: value.span(),
-        },
+        origin: Origin::new(source, value.span()),
         node,
     }
 }

@@ -107,7 +107,7 @@ pub(crate) enum ScheduleKeys {
 }
 
 /// The course of one parameter of the drive. Times are in periods of drive.strain_rate.
-#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct ScheduleTableKeys {
     /// Course in time: ramp takes from, to, start and end; steps and course take at and values.
@@ -147,10 +147,11 @@ pub(crate) enum ScheduleName {
 }
 
 /// Course of a scheduled parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum ScheduleFormName {
     /// Linear in time between start and end, constant before and after.
+    #[default]
     Ramp,
     /// Constant between the times given.
     Steps,

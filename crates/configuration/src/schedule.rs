@@ -28,13 +28,8 @@ pub struct Schedule {
 /// Form of a [`Schedule`].
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum ScheduleForm {
-    /// `from` until `start`, then linear in time to `to` at `end`, `to` from there on; times in periods, 0 or more.
-    Ramp {
-        from: f64,
-        to: f64,
-        start: f64,
-        end: f64,
-    },
+    /// Two places (time in periods, value) between which the value is linear in time, constant before and after.
+    Ramp([(f64, f64); 2]),
     /// (time in periods, value), times ascending, at least one: each value from its time on.
     Steps(Vec<(f64, f64)>),
     /// Such places between which the value is linear in time, constant before the first and after the last; of two at one
@@ -84,12 +79,7 @@ impl Schedule {
     /// of two knots at one time the later holds from then on.
     pub fn knots(&self) -> Vec<(f64, f64)> {
         match &self.form {
-            ScheduleForm::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => vec![(*start, *from), (*end, *to)],
+            ScheduleForm::Ramp(ends) => ends.to_vec(),
             ScheduleForm::Steps(steps) => {
                 let mut knots = Vec::with_capacity(2 * steps.len());
                 let mut last = self.before;
@@ -106,25 +96,17 @@ impl Schedule {
     /// Least and largest value from the start to a time in periods.
     pub fn range(&self, periods: f64) -> (f64, f64) {
         let knots = self.knots();
-        let within = knots
-            .iter()
-            .filter(|(time, _)| *time > 0.0 && *time < periods);
+        let within = knots.iter().filter(|knot| knot.0 > 0.0 && knot.0 < periods);
         let ends = [self.value(0.0), self.value(periods)];
-        within.map(|knot| knot.1).chain(ends).fold(
-            (f64::INFINITY, f64::NEG_INFINITY),
-            |(least, most), value| (least.min(value), most.max(value)),
-        )
+        let values: Vec<f64> = within.map(|knot| knot.1).chain(ends).collect();
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        (least, values.into_iter().fold(f64::NEG_INFINITY, f64::max))
     }
 
     /// Value at a time in periods.
     pub fn value(&self, periods: f64) -> f64 {
         match &self.form {
-            ScheduleForm::Ramp {
-                from,
-                to,
-                start,
-                end,
-            } => {
+            ScheduleForm::Ramp([(start, from), (end, to)]) => {
                 let progress = ((periods - start) / (end - start)).clamp(0.0, 1.0);
                 from + (to - from) * progress
             }
@@ -173,12 +155,7 @@ mod tests {
 
     #[test]
     fn a_ramp_is_linear_between_its_ends() {
-        let ramp = width(ScheduleForm::Ramp {
-            from: 3.0,
-            to: 2.0,
-            start: 1.0,
-            end: 5.0,
-        });
+        let ramp = width(ScheduleForm::Ramp([(1.0, 3.0), (5.0, 2.0)]));
         let values = [(0.0, 3.0), (1.0, 3.0), (3.0, 2.5), (5.0, 2.0), (9.0, 2.0)];
         assert_values(&ramp, &values);
         assert_eq!(ramp.knots(), [(1.0, 3.0), (5.0, 2.0)]);

@@ -62,6 +62,11 @@ pub struct Origin {
 }
 
 impl Origin {
+    pub(crate) fn new(source: &Arc<Source>, span: Range<usize>) -> Self {
+        let source = Arc::clone(source);
+        Self { source, span }
+    }
+
     /// The bytes of the source's text that it covers.
     pub fn span(&self) -> Range<usize> {
         self.span.clone()

@@ -50,19 +50,16 @@ fn width(
         }
         return Some(width + 0.0);
     };
-    if amplitude > tube.radius {
+    let radius = tube.radius;
+    if amplitude > radius {
         return context.refuse(
             ProblemKind::Inconsistent,
             &["drive.amplitude", "tube.radius"],
             format!(
-                "drive.amplitude = {amplitude} is larger than the radius of the tube, a = {}",
-                tube.radius
+                "drive.amplitude = {amplitude} is larger than the radius of the tube, a = {radius}"
             ),
-            format!(
-                "0 <= drive.amplitude <= tube.radius = {}; 0 is a straight tube",
-                tube.radius
-            ),
+            format!("0 <= drive.amplitude <= tube.radius = {radius}; 0 is a straight tube"),
         );
     }
-    Some(2.0 * (tube.radius - amplitude))
+    Some(2.0 * (radius - amplitude))
 }

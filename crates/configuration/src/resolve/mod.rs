@@ -40,9 +40,9 @@ impl Configuration {
     /// As [`Configuration::from_sources`].
     pub fn from_preset(name: &str, settings: &[impl ToString]) -> Result<Self, ConfigurationError> {
         Self::from_sources(&Sources {
-            file: None,
             preset: Some(name),
             overrides: &settings.iter().map(ToString::to_string).collect::<Vec<_>>(),
+            ..Sources::default()
         })
     }
 
@@ -81,8 +81,7 @@ impl Configuration {
         let file = Some(SourceFile { name, text });
         Self::from_sources(&Sources {
             file,
-            preset: None,
-            overrides: &[],
+            ..Sources::default()
         })
     }
 }
@@ -356,10 +355,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
 }
 
 fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel> {
-    let ContactKeys {
-        normal,
-        mut friction,
-    } = keys;
+    let (normal, mut friction) = (keys.normal, keys.friction);
     // Of the two coefficients one stands for both.
     if !context.given("contact.static_friction") {
         friction.static_friction = friction.kinetic_friction;
@@ -368,16 +364,15 @@ fn contact(keys: ContactKeys, context: &mut Context<'_>) -> Option<ContactModel>
     }
     let (kinetic_friction, static_friction) = (friction.kinetic_friction, friction.static_friction);
     if kinetic_friction > static_friction {
-        return context.refuse(
-            ProblemKind::Inconsistent,
-            &["contact.kinetic_friction", "contact.static_friction"],
-            format!(
-                "contact.kinetic_friction = {kinetic_friction} is above contact.static_friction = {static_friction}"
-            ),
-            format!(
-                "kinetic friction is at most the static one: set contact.kinetic_friction to at most {static_friction} (both to 0 for frictionless grains)"
-            ),
+        let keys = ["contact.kinetic_friction", "contact.static_friction"];
+        let message = format!(
+            "{} = {kinetic_friction} is above {} = {static_friction}",
+            keys[0], keys[1]
         );
+        let help = format!(
+            "kinetic friction is at most the static one: set contact.kinetic_friction to at most {static_friction} (both to 0 for frictionless grains)"
+        );
+        return context.refuse(ProblemKind::Inconsistent, &keys, message, help);
     }
     let friction = (static_friction > 0.0).then_some(friction);
     Some(ContactModel { normal, friction })

@@ -32,60 +32,35 @@ pub(super) fn run(
     observe: &Observe,
     context: &mut Context<'_>,
 ) -> Option<Run> {
-    let Timing {
-        samples,
-        interval,
-        duration,
-        periods,
-    } = timing(&keys, drive, observe, context)?;
+    let (mut run, interval) = timing(keys, drive, observe, context)?;
     let steps_per_sample = rounded_up(interval / keys.time_step).max(1.0);
+    let (steps, most) = (
+        run.samples as f64 * steps_per_sample,
+        limits::MOST_STEPS as f64,
+    );
     // Also false where a quotient of extreme values is not a number.
-    let within = samples * steps_per_sample <= limits::MOST_STEPS as f64;
+    let within = steps <= most;
     if !within {
-        let length = context.written(LENGTHS);
-        return context.refuse(
-            ProblemKind::OutOfRange,
-            &[length, "run.time_step"],
-            format!(
-                "a run of {:e} steps is beyond reach",
-                samples * steps_per_sample
-            ),
-            format!(
-                "at most {:e} steps: a shorter run, or a longer run.time_step",
-                limits::MOST_STEPS as f64
-            ),
-        );
+        let keys = [context.written(LENGTHS), "run.time_step"];
+        let message = format!("a run of {steps:e} steps is beyond reach");
+        let help = format!("at most {most:e} steps: a shorter run, or a longer run.time_step");
+        return context.refuse(ProblemKind::OutOfRange, &keys, message, help);
     }
-    let neighbour_skin = if context.given("run.neighbour_skin") {
-        keys.neighbour_skin
-    } else {
-        NEIGHBOUR_SKIN_RATIO * grains.diameter_max
-    };
-    Some(Run {
-        periods,
-        duration,
-        time_step: interval / steps_per_sample,
-        steps_per_sample: steps_per_sample as u64,
-        samples: samples as u64,
-        neighbour_skin,
-        ..keys
-    })
+    if !context.given("run.neighbour_skin") {
+        run.neighbour_skin = NEIGHBOUR_SKIN_RATIO * grains.diameter_max;
+    }
+    run.time_step = interval / steps_per_sample;
+    run.steps_per_sample = steps_per_sample as u64;
+    Some(run)
 }
 
-/// Samples (a whole number), the time between them, and the length in time and in periods.
-struct Timing {
-    samples: f64,
-    interval: f64,
-    duration: f64,
-    periods: Option<f64>,
-}
-
+/// The run with its samples and its length in time and in periods, and the time between two samples.
 fn timing(
-    keys: &Run,
+    keys: Run,
     drive: &Drive,
     observe: &Observe,
     context: &mut Context<'_>,
-) -> Option<Timing> {
+) -> Option<(Run, f64)> {
     let Some(period) = drive.period() else {
         if !context.given("run.duration") {
             let rate = context.written(RATES);
@@ -97,36 +72,35 @@ fn timing(
                     .into(),
             );
         }
-        let (duration, samples) = (keys.duration, SAMPLES_OF_A_STATIC_RUN as f64);
-        return Some(Timing {
-            samples,
-            interval: duration / samples,
-            duration,
-            periods: None,
-        });
+        let (samples, periods) = (SAMPLES_OF_A_STATIC_RUN, None);
+        let interval = keys.duration / samples as f64;
+        return Some((
+            Run {
+                samples,
+                periods,
+                ..keys
+            },
+            interval,
+        ));
     };
     let given = keys.periods.unwrap_or(keys.duration / period);
     let per_period = f64::from(observe.samples_per_period);
     let samples = rounded_up(given * per_period).max(1.0);
-    if !(samples <= limits::MOST_SAMPLES as f64 && period.is_finite()) {
-        let length = context.written(LENGTHS);
-        return context.refuse(
-            ProblemKind::OutOfRange,
-            &[length, "observe.samples_per_period"],
-            format!("a run of {samples:e} samples is beyond reach"),
-            format!(
-                "at most {:e} samples: a shorter run, or fewer samples a period",
-                limits::MOST_SAMPLES as f64
-            ),
-        );
+    let most = limits::MOST_SAMPLES as f64;
+    if !(samples <= most && period.is_finite()) {
+        let keys = [context.written(LENGTHS), "observe.samples_per_period"];
+        let message = format!("a run of {samples:e} samples is beyond reach");
+        let help = format!("at most {most:e} samples: a shorter run, or fewer samples a period");
+        return context.refuse(ProblemKind::OutOfRange, &keys, message, help);
     }
     let periods = samples / per_period;
-    Some(Timing {
-        samples,
-        interval: period / per_period,
-        duration: periods * period,
+    let run = Run {
         periods: Some(periods),
-    })
+        duration: periods * period,
+        samples: samples as u64,
+        ..keys
+    };
+    Some((run, period / per_period))
 }
 
 #[cfg(test)]

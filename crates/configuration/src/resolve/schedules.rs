@@ -78,14 +78,8 @@ fn plain_ramp(keys: &DriveKeys, context: &mut Context<'_>) -> Option<ScheduleTab
         );
     };
     Some(ScheduleTableKeys {
-        form: ScheduleFormName::Ramp,
-        parameter: None,
-        from: None,
-        to: None,
-        start: None,
         end: Some(end),
-        at: None,
-        values: None,
+        ..ScheduleTableKeys::default()
     })
 }
 
@@ -221,12 +215,9 @@ impl Scope<'_> {
             Some(value) => self.resolved(value, part, target),
             None => Ok(otherwise),
         };
-        Ok(ScheduleForm::Ramp {
-            from: value(".from", keys.from, target.nothing)?,
-            to: value(".to", keys.to, target.own)?,
-            start,
-            end,
-        })
+        let from = value(".from", keys.from, target.nothing)?;
+        let to = value(".to", keys.to, target.own)?;
+        Ok(ScheduleForm::Ramp([(start, from), (end, to)]))
     }
 
     /// Times and values of steps or of a course.
@@ -266,31 +257,21 @@ impl Scope<'_> {
 
 /// Refuses keys that belong to another form.
 fn check_keys(keys: &ScheduleTableKeys) -> Result<(), Refusal> {
-    let of_points = [
-        (".at", keys.at.is_some()),
-        (".values", keys.values.is_some()),
-    ];
-    let of_a_ramp = [
-        (".from", keys.from.is_some()),
-        (".to", keys.to.is_some()),
-        (".start", keys.start.is_some()),
-        (".end", keys.end.is_some()),
-    ];
-    let (foreign, takes) = match keys.form {
-        ScheduleFormName::Ramp => (
-            &of_points[..],
-            "a ramp takes from, to, start and end, not at and values",
-        ),
-        ScheduleFormName::Steps => (
-            &of_a_ramp[..],
-            "steps take at and values, not from, to, start or end",
-        ),
-        ScheduleFormName::Course => (
-            &of_a_ramp[..],
-            "a course takes at and values, not from, to, start or end",
-        ),
+    let takes = match keys.form {
+        ScheduleFormName::Ramp => "a ramp takes from, to, start and end, not at and values",
+        ScheduleFormName::Steps => "steps take at and values, not from, to, start or end",
+        ScheduleFormName::Course => "a course takes at and values, not from, to, start or end",
     };
-    match foreign.iter().find(|(_, is_given)| *is_given) {
+    let is_ramp = keys.form == ScheduleFormName::Ramp;
+    let parts = [
+        (".at", is_ramp && keys.at.is_some()),
+        (".values", is_ramp && keys.values.is_some()),
+        (".from", !is_ramp && keys.from.is_some()),
+        (".to", !is_ramp && keys.to.is_some()),
+        (".start", !is_ramp && keys.start.is_some()),
+        (".end", !is_ramp && keys.end.is_some()),
+    ];
+    match parts.iter().find(|(_, is_foreign)| *is_foreign) {
         Some((part, _)) => refusal(*part, takes),
         None => Ok(()),
     }
