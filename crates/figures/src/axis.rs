@@ -113,16 +113,14 @@ impl Axis {
         extent: impl Fn(&str) -> f64,
     ) -> Vec<Tick> {
         let stand_apart = |ticks: &[Tick]| {
-            let labelled: Vec<(f64, f64)> = ticks
-                .iter()
-                .filter_map(|tick| {
-                    let label = tick.label.as_ref()?;
-                    Some((length * self.fraction(tick.value), extent(label)))
-                })
-                .collect();
-            labelled
-                .windows(2)
-                .all(|pair| pair[1].0 - pair[0].0 >= (pair[0].1 + pair[1].1) / 2.0)
+            let labelled = ticks.iter().filter_map(|tick| {
+                let label = tick.label.as_ref()?;
+                Some((length * self.fraction(tick.value), extent(label)))
+            });
+            let labelled: Vec<(f64, f64)> = labelled.collect();
+            let are_apart =
+                |one: (f64, f64), next: (f64, f64)| next.0 - one.0 >= (one.1 + next.1) / 2.0;
+            labelled.windows(2).all(|pair| are_apart(pair[0], pair[1]))
         };
         (2..=most.max(2))
             .rev()
@@ -190,10 +188,8 @@ impl Axis {
         let decades = libm::log10(self.largest / self.least);
         let stride = (decades / most as f64).ceil().max(1.0);
         let plain = decades < FEW_DECADES && self.least >= PLAIN.0 && self.largest <= PLAIN.1;
-        let (first, last) = (
-            libm::floor(libm::log10(self.least)),
-            libm::ceil(libm::log10(self.largest)),
-        );
+        let first = libm::floor(libm::log10(self.least));
+        let last = libm::ceil(libm::log10(self.largest));
         let mut ticks = Vec::new();
         for index in 0..=(last - first).max(0.0) as usize {
             let exponent = first + index as f64;
@@ -236,17 +232,17 @@ fn labels_of(ticks: &[Tick]) -> usize {
 /// Length of the longest label.
 pub(crate) fn widest(ticks: &[Tick]) -> f64 {
     let labels = ticks.iter().filter_map(|tick| tick.label.as_ref());
-    labels.fold(0.0, |widest, label| {
-        widest.max(Text::new(label, TICK_SIZE).width)
-    })
+    let widths = labels.map(|label| Text::new(label, TICK_SIZE).width);
+    widths.fold(0.0, f64::max)
 }
 
 /// Least and largest of some values; (inf, -inf) for none.
 pub(crate) fn extent(values: impl IntoIterator<Item = f64>) -> (f64, f64) {
-    values.into_iter().fold(
-        (f64::INFINITY, f64::NEG_INFINITY),
-        |(least, largest), value| (least.min(value), largest.max(value)),
-    )
+    let (mut least, mut largest) = (f64::INFINITY, f64::NEG_INFINITY);
+    for value in values {
+        (least, largest) = (least.min(value), largest.max(value));
+    }
+    (least, largest)
 }
 
 /// How the labels of one linear axis are written: all with the same decimals and the same power of ten.
@@ -259,11 +255,8 @@ impl Notation {
     /// For values up to a magnitude, in steps of 10^exponent.
     fn new(magnitude: f64, exponent: f64) -> Self {
         let leading = libm::floor(libm::log10(magnitude) + 1e-9);
-        let power = if (-3.0..5.0).contains(&leading) {
-            0.0
-        } else {
-            leading
-        };
+        let is_plain = (-3.0..5.0).contains(&leading);
+        let power = if is_plain { 0.0 } else { leading };
         Self {
             power,
             decimals: (power - exponent).max(0.0) as usize,
@@ -305,10 +298,8 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, most: usize) -> Vec<String> {
-        axis.ticks(most)
-            .into_iter()
-            .filter_map(|tick| tick.label)
-            .collect()
+        let ticks = axis.ticks(most).into_iter();
+        ticks.filter_map(|tick| tick.label).collect()
     }
 
     #[test]
@@ -339,13 +330,14 @@ mod tests {
 
     #[test]
     fn an_axis_with_room_for_two_labels_has_two() {
-        for range in [
+        let ranges = [
             (-0.12, 0.31),
             (-0.4, 0.9),
             (0.13, 0.19),
             (-3.0, 7.0),
             (2.51, 2.93),
-        ] {
+        ];
+        for range in ranges {
             for most in 0..4 {
                 let found = labels(&Axis::new(Scale::Linear, range), most);
                 assert!((2..=5).contains(&found.len()), "{range:?}: {found:?}");
@@ -360,15 +352,11 @@ mod tests {
         let axis = Axis::new(Scale::Linear, (0.0, 1.0));
         for length in [32.0, 50.0, 120.0, 400.0] {
             let ticks = axis.fitting_ticks(length, 8, |_| 15.0);
-            let places: Vec<f64> = ticks
-                .iter()
-                .filter(|tick| tick.label.is_some())
-                .map(|tick| length * axis.fraction(tick.value))
-                .collect();
-            assert!(
-                places.windows(2).all(|pair| pair[1] - pair[0] >= 15.0),
-                "{length}: {places:?}"
-            );
+            let labelled = ticks.iter().filter(|tick| tick.label.is_some());
+            let places = labelled.map(|tick| length * axis.fraction(tick.value));
+            let places: Vec<f64> = places.collect();
+            let are_apart = places.windows(2).all(|pair| pair[1] - pair[0] >= 15.0);
+            assert!(are_apart, "{length}: {places:?}");
         }
     }
 
@@ -383,12 +371,10 @@ mod tests {
         for scale in [Scale::Linear, Scale::Logarithmic] {
             let axis = Axis::new(scale, (0.018, 33.0));
             let (least, largest) = axis.range();
-            assert!(
-                axis.fraction(least).abs() < 1e-12 && (axis.fraction(largest) - 1.0).abs() < 1e-12
-            );
-            let places: Vec<f64> = (1..1000)
-                .map(|step| axis.fraction(f64::from(step) * 0.033))
-                .collect();
+            assert!(axis.fraction(least).abs() < 1e-12);
+            assert!((axis.fraction(largest) - 1.0).abs() < 1e-12);
+            let places = (1..1000).map(|step| axis.fraction(f64::from(step) * 0.033));
+            let places: Vec<f64> = places.collect();
             assert!(places.windows(2).all(|pair| pair[0] < pair[1]));
         }
     }

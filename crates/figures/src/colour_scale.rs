@@ -80,12 +80,9 @@ impl ColourScale {
 
     /// Red, green and blue of a value as bytes of sRGB; grey where it is not a number.
     pub fn srgb(&self, value: f64) -> [u8; 3] {
-        let colour = if value.is_nan() {
-            GREY
-        } else {
-            self.colour(value)
-        };
-        colour.srgb()
+        let is_known = !value.is_nan();
+        let colour = is_known.then(|| self.colour(value));
+        colour.unwrap_or(GREY).srgb()
     }
 
     pub(crate) fn check(&self) -> Result<(), FigureError> {
@@ -142,11 +139,8 @@ impl ColourScale {
 
     /// Space that a bar of a height takes at the right of a frame, up to the edge of the page.
     pub(crate) fn space(&self, height: f64) -> f64 {
-        let label = if self.label.is_empty() {
-            0.0
-        } else {
-            LABEL_SIZE + 3.0
-        };
+        let has_label = !self.label.is_empty();
+        let label = if has_label { LABEL_SIZE + 3.0 } else { 0.0 };
         BAR_GAP + BAR_WIDTH + TICK_GAP + widest(&self.ticks_up(height)) + label + 3.0
     }
 

@@ -32,7 +32,8 @@ pub(crate) struct Mark {
 pub(crate) struct Legend {
     cells: Vec<Cell>,
     rows: usize,
-    width: f64,
+    /// Width on the page.
+    pub(crate) width: f64,
     /// Width of the samples.
     sample: f64,
 }
@@ -81,9 +82,8 @@ impl Legend {
 
     /// Sets the entries below each other in some columns, each as wide as its entries.
     pub(crate) fn list(entries: Vec<Entry>, columns: usize) -> Self {
-        let are_marks = entries
-            .iter()
-            .all(|entry| entry.line.is_none() && entry.band.is_none());
+        let is_mark = |entry: &Entry| entry.line.is_none() && entry.band.is_none();
+        let are_marks = entries.iter().all(is_mark);
         let sample = if are_marks { MARK_WIDTH } else { SAMPLE_WIDTH };
         let columns = columns.min(MOST_COLUMNS);
         let place = |index: usize| Place {
@@ -103,8 +103,10 @@ impl Legend {
         grid: impl Fn(&[f64]) -> Vec<Place>,
     ) -> Self {
         let texts: Vec<Text> = entries.iter().map(|entry| text(&entry.meaning)).collect();
-        let widths = texts.iter().map(|text| sample + SAMPLE_GAP + text.width);
-        let widths: Vec<f64> = widths.collect();
+        let widths: Vec<f64> = texts
+            .iter()
+            .map(|text| sample + SAMPLE_GAP + text.width)
+            .collect();
         let places = grid(&widths);
         let rows = rows_of(&places);
         let starts = column_starts(&places, &widths);
@@ -116,21 +118,14 @@ impl Legend {
             start: starts[place.column],
         });
         let cells: Vec<Cell> = cells.collect();
-        let width = cells
-            .iter()
-            .map(|cell| cell.end(sample))
-            .fold(0.0, f64::max);
+        let ends = cells.iter().map(|cell| cell.end(sample));
+        let width = ends.fold(0.0, f64::max);
         Self {
             cells,
             rows,
             width,
             sample,
         }
-    }
-
-    /// Width on the page.
-    pub(crate) fn width(&self) -> f64 {
-        self.width
     }
 
     /// Height on the page, 0 without entries.
@@ -163,11 +158,11 @@ impl Legend {
                 let (fill, stroke) = (Some(Fill::Flat(mark.fill)), Some(mark.stroke));
                 layer.path(mark.outline.at(place), fill, stroke);
             }
-            let place = (
+            let (after, baseline) = (
                 start + self.sample + SAMPLE_GAP,
                 middle + 0.35 * LEGEND_SIZE,
             );
-            layer.text(place, Anchor::Start, cell.text.clone(), BLACK);
+            layer.text((after, baseline), Anchor::Start, cell.text.clone(), BLACK);
         }
     }
 }
@@ -203,10 +198,8 @@ fn rows_of(places: &[Place]) -> usize {
 fn column_starts(places: &[Place], widths: &[f64]) -> [f64; MOST_COLUMNS] {
     let mut starts = [0.0; MOST_COLUMNS];
     for column in 1..MOST_COLUMNS {
-        let before = places
-            .iter()
-            .zip(widths)
-            .filter(|(place, _)| place.column + place.span <= column);
+        let entries = places.iter().zip(widths);
+        let before = entries.filter(|(place, _)| place.column + place.span <= column);
         starts[column] = before.fold(0.0, |start: f64, (place, width)| {
             start.max(starts[place.column] + width + COLUMN_GAP)
         });
@@ -235,26 +228,17 @@ mod tests {
         assert_eq!(Legend::new(entries(&["a", "b", "c"]), 200.0).rows, 1);
         let long = "a meaning that takes much more than a half of the room";
         assert_eq!(Legend::new(entries(&[long, long]), 220.0).rows, 2);
-        assert_eq!(
-            Legend::new(entries(&["short", "brief", long]), 220.0).rows,
-            2
-        );
+        let mixed = entries(&["short", "brief", long]);
+        assert_eq!(Legend::new(mixed, 220.0).rows, 2);
         assert_eq!(Legend::new(Vec::new(), 200.0).height(), 0.0);
     }
 
     #[test]
     fn no_entry_runs_into_the_next() {
         let room = 300.0;
-        let legend = Legend::new(
-            entries(&[
-                "samples",
-                "mean over a period",
-                "threshold",
-                "a long late mean 0.9 ± 0.1",
-                "x",
-            ]),
-            room,
-        );
+        let long = "a long late mean 0.9 ± 0.1";
+        let meanings = ["samples", "mean over a period", "threshold", long, "x"];
+        let legend = Legend::new(entries(&meanings), room);
         for pair in legend.cells.windows(2) {
             assert!(pair[0].end(SAMPLE_WIDTH) <= room && pair[1].end(SAMPLE_WIDTH) <= room);
             if pair[0].row == pair[1].row {

@@ -139,17 +139,14 @@ impl PictureFigure<'_> {
     }
 
     fn space_above(&self) -> f64 {
-        let notes = if self.notes.is_empty() {
-            0.0
-        } else {
-            EDGE + LABEL_SIZE + 2.0
-        };
-        let marks = if self.marks.is_empty() {
-            0.0
-        } else {
-            LEGEND_SIZE + MARK.1 + 2.0
-        };
-        notes + marks
+        let mut space = 0.0;
+        if !self.notes.is_empty() {
+            space += EDGE + LABEL_SIZE + 2.0;
+        }
+        if !self.marks.is_empty() {
+            space += LEGEND_SIZE + MARK.1 + 2.0;
+        }
+        space
     }
 
     fn space_below(&self) -> f64 {
@@ -223,24 +220,14 @@ mod tests {
 
     fn draw(pixels: &[u8]) -> Result<Drawing, FigureError> {
         let notes = ["*t*/*T* = 1.5", "*J*/*J*_{max} = 0.9"].map(str::to_owned);
-        let scale_bar = ScaleBar {
-            length: 0.25,
-            label: "10 *d*".to_owned(),
-        };
+        let (length, label) = (0.25, "10 *d*".to_owned());
+        let scale_bar = ScaleBar { length, label };
         PictureFigure {
             pixels,
             columns: 400,
             notes: &notes,
-            marks: &[
-                PlaceMark {
-                    place: 0.3,
-                    label: "throat",
-                },
-                PlaceMark {
-                    place: 0.31,
-                    label: "belly",
-                },
-            ],
+            marks: &[(0.3, "throat"), (0.31, "belly")]
+                .map(|(place, label)| PlaceMark { place, label }),
             scale_bar: Some(&scale_bar),
             ..PictureFigure::default()
         }
@@ -260,10 +247,8 @@ mod tests {
         let first = first.expect("the first row is there");
         assert!((0..90).all(|it| *row(first + it) == pixels[1200 * it..1200 * (it + 1)]));
         // Notes above and a scale below leave ink.
-        let inked = |rows: std::ops::Range<usize>| {
-            rows.into_iter()
-                .any(|it| row(it).iter().any(|&byte| byte < 60))
-        };
+        let is_inked = |it: usize| row(it).iter().any(|&byte| byte < 60);
+        let inked = |mut rows: std::ops::Range<usize>| rows.any(is_inked);
         assert!(inked(0..first) && inked(first + 90..raster.height as usize));
         let png = drawing.png().expect("encodable");
         assert!(png.starts_with(b"\x89PNG"));

@@ -94,10 +94,8 @@ impl SnapshotFigure<'_> {
     /// If there is no snapshot, if a length or a diameter is not positive, if a coordinate or velocity is not finite, or if
     /// a snapshot has neither a grain nor a wall.
     pub fn draw(&self) -> Result<Drawing, FigureError> {
-        let empty = FigureError::EmptySeries {
-            series: "snapshots".to_owned(),
-            length: 0,
-        };
+        let (series, length) = ("snapshots".to_owned(), 0);
+        let empty = FigureError::EmptySeries { series, length };
         let parts = self.snapshots.iter().map(Part::of);
         let parts: Vec<Part<'_>> = parts.collect::<Result<_, _>>()?;
         let (_, reach) = extent(parts.iter().map(Part::reach));
@@ -152,11 +150,8 @@ impl Snapshot<'_> {
             let number = decimal(length / self.wavelength, 1);
             number.strip_suffix(".0").unwrap_or(&number).to_owned()
         };
-        format!(
-            "{} of {} waves shown",
-            number(self.length),
-            number(self.period)
-        )
+        let [shown, all] = [self.length, self.period].map(number);
+        format!("{shown} of {all} waves shown")
     }
 }
 
@@ -336,11 +331,8 @@ mod tests {
             },
             _ => None,
         };
-        drawing
-            .shapes("spheres")
-            .into_iter()
-            .filter_map(sphere)
-            .collect()
+        let shapes = drawing.shapes("spheres").into_iter();
+        shapes.filter_map(sphere).collect()
     }
 
     #[test]
@@ -391,10 +383,8 @@ mod tests {
             diameter: 1.0,
         };
         let wall = [sphere(0.0), sphere(0.7), sphere(-0.8)];
-        assert_eq!(
-            spheres(&[snapshot(&[], SnapshotWall::Spheres(&wall))]).len(),
-            2
-        );
+        let wall = SnapshotWall::Spheres(&wall);
+        assert_eq!(spheres(&[snapshot(&[], wall)]).len(), 2);
     }
 
     #[test]
@@ -411,13 +401,10 @@ mod tests {
             label: "fast",
             ..snapshot(&grains, NO_WALL)
         };
-        let names =
-            |snapshots: &[Snapshot<'_>]| -> String { draw(snapshots).expect("drawable").svg() };
+        let names = |snapshots: &[Snapshot<'_>]| draw(snapshots).expect("drawable").svg();
         assert!(names(&[part]).contains("z/d  (1 of 5 waves shown)"));
-        let whole = Snapshot {
-            period: 8.0,
-            ..part
-        };
+        let mut whole = part;
+        whole.period = 8.0;
         let both = names(&[part, whole]);
         assert!(both.contains("fast  (1 of 5 waves shown)") && both.contains("\"z/d\""));
         assert!(both.contains("≥ 1") && !both.contains("≤"), "v/c is 2");
@@ -427,20 +414,17 @@ mod tests {
     fn what_has_no_place_or_shows_nothing_is_refused() {
         let grains = [grain(0.0, 0.0, 0.0), grain(f64::NAN, 0.0, 0.0)];
         let refused = |snapshots: &[Snapshot<'_>]| draw(snapshots).expect_err("nothing to draw");
+        let error = refused(&[snapshot(&grains, NO_WALL)]);
         assert!(matches!(
-            refused(&[snapshot(&grains, NO_WALL)]),
+            error,
             FigureError::NonFiniteSphere { index: 1, .. }
         ));
         for nothing in [&[][..], &[snapshot(&[], NO_WALL)]] {
             assert!(matches!(refused(nothing), FigureError::EmptySeries { .. }));
         }
-        let no_length = Snapshot {
-            length: 0.0,
-            ..snapshot(&grains[..1], NO_WALL)
-        };
-        assert!(matches!(
-            refused(&[no_length]),
-            FigureError::NotPositive { .. }
-        ));
+        let mut no_length = snapshot(&grains[..1], NO_WALL);
+        no_length.length = 0.0;
+        let error = refused(&[no_length]);
+        assert!(matches!(error, FigureError::NotPositive { .. }));
     }
 }

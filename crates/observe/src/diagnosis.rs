@@ -82,11 +82,9 @@ pub fn note_wall_faults(simulation: &Simulation, faults: &mut Vec<WallFault>) {
     for (sphere, away) in wall.displacements(bodies).enumerate() {
         let position = bodies.position[bodies.grains + sphere];
         let radius = (position.x * position.x + position.y * position.y).sqrt();
+        let aside = away.y.abs().max(away.z.abs());
         let found = [
-            (
-                FaultKind::Buckled,
-                away.y.abs().max(away.z.abs()) > LATERAL * diameter,
-            ),
+            (FaultKind::Buckled, aside > LATERAL * diameter),
             (FaultKind::Collapsed, radius < NEAR_AXIS * diameter),
             (FaultKind::BlownUp, radius > BLOWN_UP * wall.mean_radius()),
         ];

@@ -103,15 +103,13 @@ impl AxialDispersion {
             .filter(|origin| origin.variances.len() > 2)
             .or_else(|| self.origins.iter().rfind(|origin| !is_late(origin)))
             .or(self.origins.first());
-        let Some(Origin {
-            period, variances, ..
-        }) = origin
-        else {
+        let Some(origin) = origin else {
             return Vec::new();
         };
+        let times = self.times[origin.period + 1..].windows(2);
+        let variances = origin.variances.windows(2);
         variances
-            .windows(2)
-            .zip(self.times[period + 1..].windows(2))
+            .zip(times)
             .filter(|(_, times)| times[0] >= earliest)
             .map(|(variances, times)| 0.5 * (variances[1] - variances[0]) / (times[1] - times[0]))
             .collect()

@@ -74,11 +74,8 @@ impl Sums {
         self.mass += other.mass;
         self.momentum += other.momentum;
         self.twice_energy += other.twice_energy;
-        self.see(
-            other.radius,
-            (other.least_radius, other.largest_radius),
-            other.looks,
-        );
+        let range = (other.least_radius, other.largest_radius);
+        self.see(other.radius, range, other.looks);
         self.wall.add(&other.wall);
     }
 
@@ -102,12 +99,10 @@ impl Sums {
     fn see(&mut self, sum: f64, (least, largest): (f64, f64), places: f64) {
         self.radius += sum;
         if places > 0.0 {
-            let first = self.looks == 0.0;
-            self.least_radius = if first {
-                least
-            } else {
-                self.least_radius.min(least)
-            };
+            if self.looks == 0.0 {
+                self.least_radius = f64::INFINITY;
+            }
+            self.least_radius = self.least_radius.min(least);
             self.largest_radius = self.largest_radius.max(largest);
         }
         self.looks += places;
@@ -162,7 +157,7 @@ impl Outline {
 }
 
 /// One bin of a profile; values are NaN where no grain was seen.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ProfileBin {
     /// Middle of the bin: (z - c t)/lambda folded to \[0, 1), z along the wave.
     pub position: f64,
@@ -248,12 +243,9 @@ impl WaveFrameProfile {
             }
         }
         let bodies = view.simulation.bodies();
-        let grains = bodies
-            .position
-            .iter()
-            .zip(&bodies.velocity)
-            .zip(&bodies.mass);
-        for (((place, &velocity), &mass), &inside) in grains.zip(&view.inside) {
+        let grains = bodies.position.iter().zip(&bodies.velocity);
+        let grains = grains.zip(&bodies.mass).zip(&view.inside);
+        for (((place, &velocity), &mass), &inside) in grains {
             if inside {
                 let velocity = DVec3::new(velocity.x, velocity.y, heading * velocity.z);
                 let position = heading * place.z / wavelength - cycles;
@@ -315,20 +307,16 @@ impl WaveFrameProfile {
 
     fn begin_block(&mut self) {
         if self.blocks.len() == MOST_BLOCKS {
-            let merged = self
-                .blocks
-                .chunks(2)
-                .map(|pair| {
-                    let mut sum = pair[0].clone();
-                    for other in &pair[1..] {
-                        for (into, from) in sum.iter_mut().zip(other) {
-                            into.add(from);
-                        }
+            let merged = self.blocks.chunks(2).map(|pair| {
+                let mut sum = pair[0].clone();
+                for other in &pair[1..] {
+                    for (into, from) in sum.iter_mut().zip(other) {
+                        into.add(from);
                     }
-                    sum
-                })
-                .collect();
-            self.blocks = merged;
+                }
+                sum
+            });
+            self.blocks = merged.collect();
             self.block *= 2;
         }
         self.blocks.push(vec![Sums::default(); self.bins]);
@@ -368,11 +356,9 @@ impl WaveFrameProfile {
                     radius: total.radius / total.looks,
                     least_radius: total.least_radius,
                     largest_radius: total.largest_radius,
-                    wall_normal_force: with_error(&|sums| {
-                        sums.wall.normal * per_length(&sums.wall)
-                    }),
-                    wall_tangential_force: with_error(&|sums| {
-                        sums.wall.tangential * per_length(&sums.wall)
+                    wall_normal_force: with_error(&|it| it.wall.normal * per_length(&it.wall)),
+                    wall_tangential_force: with_error(&|it| {
+                        it.wall.tangential * per_length(&it.wall)
                     }),
                     wall_pressure: with_error(&|sums| sums.wall.outward * per_area(&sums.wall)),
                     wall_shear: with_error(&|sums| shear(&sums.wall)),
@@ -387,13 +373,12 @@ impl WaveFrameProfile {
         let blocks = self.blocks.len();
         let taken = ((blocks as f64 * fraction).round() as usize).clamp(1.min(blocks), blocks);
         let late = &self.blocks[blocks - taken..];
-        late.chunks(late.len().div_ceil(10).max(1))
-            .map(|group| {
-                (0..self.bins)
-                    .map(|bin| total(group.iter().map(|block| &block[bin])))
-                    .collect()
-            })
-            .collect()
+        let of_group = |group: &[Vec<Sums>]| {
+            let bin = |bin: usize| total(group.iter().map(|block| &block[bin]));
+            (0..self.bins).map(bin).collect()
+        };
+        let groups = late.chunks(late.len().div_ceil(10).max(1));
+        groups.map(of_group).collect()
     }
 }
 
@@ -421,10 +406,7 @@ fn standard_error(values: impl Iterator<Item = f64>) -> f64 {
         return f64::NAN;
     }
     let mean = values.iter().sum::<f64>() / number;
-    let variance = values
-        .iter()
-        .map(|value| (value - mean) * (value - mean))
-        .sum::<f64>()
-        / (number - 1.0);
+    let squares = values.iter().map(|value| (value - mean) * (value - mean));
+    let variance = squares.sum::<f64>() / (number - 1.0);
     (variance / number).sqrt()
 }

@@ -84,11 +84,8 @@ impl<Of> Quantity<Of> {
                 vec![Value::Real(value), Value::Real(error)]
             }
             Reading::OptionalMeasured(read) => {
-                let measured = read(of);
-                vec![
-                    optional(measured.map(|(value, _)| value)),
-                    optional(measured.map(|(_, error)| error)),
-                ]
+                let (value, error) = read(of).unzip();
+                vec![optional(value), optional(error)]
             }
             Reading::Whole(read) => vec![Value::Whole(read(of))],
             Reading::Truth(read) => vec![Value::Truth(read(of))],

@@ -42,10 +42,8 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
         seed: configuration.run.seed,
     };
     let (bodies, report) = pack(&packing, &wall, configuration.contact.normal)?;
-    Ok((
-        Simulation::new(bodies, wall, parameters(configuration)),
-        report,
-    ))
+    let simulation = Simulation::new(bodies, wall, parameters(configuration));
+    Ok((simulation, report))
 }
 
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
@@ -99,14 +97,11 @@ pub fn walls(configuration: &Configuration) -> Wall {
         sphere_diameter: wall.sphere_diameter,
     };
     let heading = heading(configuration);
-    let frequency = schedule(
-        configuration,
-        ScheduledParameter::StrainRate,
-        drive.strain_rate,
-    );
+    let schedule = |parameter, constant| schedule(configuration, parameter, constant);
+    let frequency = schedule(ScheduledParameter::StrainRate, drive.strain_rate);
     match drive.control {
         Control::Strain { width } => {
-            let widths = schedule(configuration, ScheduledParameter::Width, width);
+            let widths = schedule(ScheduledParameter::Width, width);
             let amplitude = widths.map(|width| tube.radius - 0.5 * width);
             Wall::Prescribed(PrescribedWall::new(
                 lattice,
@@ -124,11 +119,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
             lattice,
             mean_radius: tube.radius,
             network: wall.elastic.unwrap_or_default(),
-            force_amplitude: schedule(
-                configuration,
-                ScheduledParameter::ForceAmplitude,
-                force_amplitude,
-            ),
+            force_amplitude: schedule(ScheduledParameter::ForceAmplitude, force_amplitude),
             frequency,
             heading,
             waveform: drive.waveform,
@@ -148,12 +139,10 @@ fn schedule(
     };
     // Schedules are in periods of the drive's own strain rate.
     let period = configuration.drive.period().unwrap_or(1.0);
-    let knots = scheduled
-        .knots()
-        .into_iter()
-        .map(|(periods, value)| (periods * period, value))
-        .collect();
-    Schedule::through(knots).expect("a validated schedule has finite knots in order of time")
+    let knots = scheduled.knots().into_iter();
+    let knots = knots.map(|(periods, value)| (periods * period, value));
+    Schedule::through(knots.collect())
+        .expect("a validated schedule has finite knots in order of time")
 }
 
 /// The Newtonian fluid in a strain-controlled tube of the same amplitude: (phi = b/a, phi = b/(a - d/2)), J/Jmax without
@@ -161,12 +150,9 @@ fn schedule(
 /// second is missing where the clear bore closes. `None` under stress control, where the width follows a schedule, for a
 /// static wave and for waveforms other than the sine.
 pub(crate) fn newtonian_reference(configuration: &Configuration) -> Option<(f64, Option<f64>)> {
-    let changes = configuration
-        .drive
-        .schedule(ScheduledParameter::Width)
-        .is_some();
-    let sine = configuration.drive.waveform == Waveform::Sine;
-    if changes || !sine || configuration.drive.period().is_none() {
+    let drive = &configuration.drive;
+    let changes = drive.schedule(ScheduledParameter::Width).is_some();
+    if changes || drive.waveform != Waveform::Sine || drive.period().is_none() {
         return None;
     }
     let amplitude = configuration.amplitude()?;

@@ -85,6 +85,7 @@ pub fn estimate(
     };
     warnings.extend(divergence);
     warnings.extend(overlap.map(|warning| warning.under("in a short trial")));
+    let si = configuration.units.as_ref();
     Ok(Estimate {
         grains: configuration.grains.number,
         wall_spheres: configuration.tube.wall_spheres(),
@@ -98,10 +99,7 @@ pub fn estimate(
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
         newtonian_flow_rate_ratio: newtonian_reference(configuration).map(|reference| reference.0),
-        si: configuration
-            .units
-            .as_ref()
-            .map(|units| SiEstimate::of(configuration, units)),
+        si: si.map(|units| SiEstimate::of(configuration, units)),
         expected_seconds: trial.expected_seconds,
         trajectory,
         warnings,
@@ -132,9 +130,8 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         let waves = trial.tube.waves;
         let per_wave = trial.grains.number as f64 / f64::from(waves);
         // An even number of waves suits every lattice.
-        let kept = (2 * ((TRIAL_GRAINS as f64 / per_wave / 2.0) as u32))
-            .max(2)
-            .min(waves);
+        let even = 2 * (TRIAL_GRAINS as f64 / per_wave / 2.0) as u32;
+        let kept = even.max(2).min(waves);
         trial.tube.waves = kept;
         trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
         scale = f64::from(waves) / f64::from(kept);
@@ -151,10 +148,8 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
             let Some(advice) = error.against_divergence() else {
                 return Err(error);
             };
-            divergence = Some(Warning {
-                key: "run.time_step",
-                message: format!("a short trial {error}; {advice}"),
-            });
+            let (key, message) = ("run.time_step", format!("a short trial {error}; {advice}"));
+            divergence = Some(Warning { key, message });
             break;
         }
         let took = start.elapsed() - before;

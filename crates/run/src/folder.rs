@@ -45,13 +45,10 @@ impl RunFolder {
         Self::check(path)?;
         let missing: Vec<&Path> = path
             .ancestors()
-            .take_while(|ancestor| {
-                !ancestor.as_os_str().is_empty() && ancestor.symlink_metadata().is_err()
-            })
+            .take_while(|it| !it.as_os_str().is_empty() && it.symlink_metadata().is_err())
             .collect();
-        let folder = Self {
-            path: path.to_owned(),
-        };
+        let path = path.to_owned();
+        let folder = Self { path };
         folder.begin(configuration).inspect_err(|_| {
             // Deepest first; what another program has filled meanwhile stays, for only empty folders go.
             for made in missing {
@@ -99,10 +96,8 @@ impl RunFolder {
     pub fn resume(path: &Path) -> Result<(Self, Run), RunError> {
         let (folder, run) = Self::open(path)?;
         if run.is_complete() {
-            return Err(RunError::NothingToResume {
-                folder: path.to_owned(),
-                reason: "it is complete".to_owned(),
-            });
+            let (folder, reason) = (path.to_owned(), "it is complete".to_owned());
+            return Err(RunError::NothingToResume { folder, reason });
         }
         Ok((folder, run))
     }
@@ -112,19 +107,18 @@ impl RunFolder {
     /// # Errors
     /// As [`RunFolder::resume`], but for a run that is complete.
     pub fn open(path: &Path) -> Result<(Self, Run), RunError> {
-        let folder = Self {
-            path: path.to_owned(),
-        };
-        let missing = |reason: String| RunError::NothingToResume {
-            folder: path.to_owned(),
-            reason,
+        let path = path.to_owned();
+        let folder = Self { path };
+        let missing = |name: &str, error: std::io::Error| RunError::NothingToResume {
+            folder: folder.path.clone(),
+            reason: format!("{name}: {error}"),
         };
         let name = folder.file(CONFIGURATION);
-        let text = std::fs::read_to_string(&name)
-            .map_err(|error| missing(format!("{CONFIGURATION}: {error}")))?;
+        let text = std::fs::read_to_string(&name);
+        let text = text.map_err(|error| missing(CONFIGURATION, error))?;
         let configuration = Configuration::from_toml(&name.display().to_string(), &text)?;
         let path = folder.file(STATE);
-        let state = std::fs::read(&path).map_err(|error| missing(format!("{STATE}: {error}")))?;
+        let state = std::fs::read(&path).map_err(|error| missing(STATE, error))?;
         let run = Run::from_checkpoint(configuration, &state).map_err(|source| {
             let source = Box::new(source);
             RunError::State { path, source }

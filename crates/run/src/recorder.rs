@@ -39,16 +39,14 @@ impl Recorder {
             InitialState::Jammed => Direction::Downward,
         };
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
-        let period = configuration
-            .drive
-            .period()
-            .filter(|_| configuration.grains.number > 0);
+        let has_grains = configuration.grains.number > 0;
+        let period = configuration.drive.period().filter(|_| has_grains);
         let detector_at = |threshold: f64| {
             let period = period?;
-            let detector = TransitionDetector::new(direction, threshold, period)
-                .expect("a validated configuration has a threshold and a period in range");
-            Some(detector)
+            let detector = TransitionDetector::new(direction, threshold, period);
+            Some(detector.expect("a validated configuration has a threshold and a period in range"))
         };
+        let bins = configuration.observe.profile_bins as usize;
         let observer = Observer::new(simulation);
         Self {
             dispersion: AxialDispersion::new(&observer),
@@ -58,10 +56,7 @@ impl Recorder {
             averages: Vec::new(),
             detector: detector_at(configuration.observe.transition_threshold),
             ladder: THRESHOLDS.into_iter().filter_map(detector_at).collect(),
-            profile: WaveFrameProfile::new(
-                configuration.observe.profile_bins as usize,
-                samples_per_period,
-            ),
+            profile: WaveFrameProfile::new(bins, samples_per_period),
             wall_interval: wall_interval(configuration.run.steps_per_sample, samples_per_period),
             waves: WaveByWave::new(simulation, samples_per_period),
             wall_faults: Vec::new(),
@@ -102,12 +97,8 @@ impl Recorder {
         note_wall_faults(simulation, &mut self.wall_faults);
         if (self.samples.len() as u64).is_multiple_of(self.samples_per_period) {
             let first = self.samples.len() - self.samples_per_period as usize;
-            let period = &self.samples[first..];
-            let average = period
-                .iter()
-                .map(|sample| sample.flow_rate_ratio)
-                .sum::<f64>()
-                / period.len() as f64;
+            let ratios = self.samples[first..].iter().map(|it| it.flow_rate_ratio);
+            let average = ratios.sum::<f64>() / self.samples_per_period as f64;
             self.averages.push(average);
             self.dispersion.end_period(&self.observer, &view);
             // Without grains inside there is no ratio, and the search ends.

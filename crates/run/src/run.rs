@@ -96,11 +96,8 @@ impl Run {
 
     /// Goes on from a state of the same configuration.
     fn resume(configuration: Configuration, state: RunState) -> Result<Self, RunError> {
-        let simulation = Simulation::restore(
-            state.snapshot,
-            walls(&configuration),
-            parameters(&configuration),
-        )?;
+        let (wall, parameters) = (walls(&configuration), parameters(&configuration));
+        let simulation = Simulation::restore(state.snapshot, wall, parameters)?;
         let grains = simulation.bodies().grains;
         let turning = state.orientations.as_ref();
         if !state.recorder.fits(&configuration, &simulation)
@@ -271,20 +268,14 @@ impl Run {
     /// How far it is.
     pub fn progress(&self) -> Progress {
         let samples = self.recorder.samples();
-        let last_sample = samples
-            .last()
-            .map_or(f64::NAN, |sample| sample.flow_rate_ratio);
+        let last_sample = samples.last().map_or(f64::NAN, |it| it.flow_rate_ratio);
+        let last_average = self.recorder.averages().last().copied();
         Progress {
             samples: samples.len() as u64,
             samples_total: self.configuration.run.samples,
             time: self.simulation.time(),
             period: self.simulation.wall().cycles(),
-            flow_rate_ratio: self
-                .recorder
-                .averages()
-                .last()
-                .copied()
-                .unwrap_or(last_sample),
+            flow_rate_ratio: last_average.unwrap_or(last_sample),
             transition_time: self.recorder.transition_time(),
             elapsed: self.elapsed,
         }

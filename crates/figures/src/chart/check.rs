@@ -59,13 +59,10 @@ impl Checked {
         let fills = has(|kind| matches!(kind, Kind::Field(_)));
         let free = if fills { 0.0 } else { MARGIN };
         // Arrows of lower limits need room.
-        let has_arrows =
-            has(|kind| matches!(kind, Kind::Points(points) if points.lower_limits.contains(&true)));
-        let above = if has_arrows {
-            free.max((ARROW + 3.0) / height).min(0.4)
-        } else {
-            free
-        };
+        let mut above = free;
+        if has(|kind| matches!(kind, Kind::Points(points) if points.lower_limits.contains(&true))) {
+            above = free.max((ARROW + 3.0) / height).min(0.4);
+        }
         Ok(Self {
             x: extent(check.x.found),
             y,

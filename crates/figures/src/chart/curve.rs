@@ -14,10 +14,8 @@ pub(super) fn pieces(frame: &Frame, x: &[f64], y: &[f64]) -> Vec<Vec<Point>> {
     let rows: Vec<(f64, f64)> = x.iter().copied().zip(y.iter().copied()).collect();
     let on_page = |&(x, y): &(f64, f64)| {
         let place = frame.place(x, y);
-        Point::new(
-            place.x.clamp(-BEYOND, BEYOND),
-            place.y.clamp(-BEYOND, BEYOND),
-        )
+        let [x, y] = [place.x, place.y].map(|it| it.clamp(-BEYOND, BEYOND));
+        Point::new(x, y)
     };
     rows.split(|(x, y)| !(x.is_finite() && y.is_finite()))
         .filter(|piece| !piece.is_empty())

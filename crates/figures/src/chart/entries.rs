@@ -43,11 +43,10 @@ impl Painter<'_> {
                 let below = Point::new(0.0, LIMIT_DROP);
                 let mark = self.mark(number, points, true);
                 let shorter = |end: Point| Point::new(end.x, ARROW_PART * end.y).from(below);
+                let arrow = arrow(Point::new(0.0, 0.0)).map(|bar| bar.map(shorter));
                 let limit = Mark {
                     outline: mark.outline.at([below]),
-                    bars: arrow(Point::new(0.0, 0.0))
-                        .map(|bar| bar.map(shorter))
-                        .to_vec(),
+                    bars: arrow.to_vec(),
                     ..mark
                 };
                 vec![

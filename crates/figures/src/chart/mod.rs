@@ -310,11 +310,10 @@ fn draw_inside(
     // One column is read most easily; two or more are flat.
     for columns in 1..=entries.len().min(3) {
         let legend = Legend::list(entries.to_vec(), columns);
-        let height = legend.height() - TOP_SPACE;
-        if let Some(Rectangle { left, top, .. }) =
-            obstacles.free_place(seat.frame.area, legend.width(), height)
-        {
-            legend.draw(drawing, left, left + legend.width(), top - TOP_SPACE);
+        let (width, height) = (legend.width, legend.height() - TOP_SPACE);
+        let place = obstacles.free_place(seat.frame.area, width, height);
+        if let Some(Rectangle { left, top, .. }) = place {
+            legend.draw(drawing, left, left + width, top - TOP_SPACE);
             return true;
         }
     }

@@ -112,16 +112,14 @@ impl<'a> Painter<'a> {
             width: (to - from).abs(),
             ..self.frame.area
         };
-        let path = Path::polygon(area.corners());
-        self.layer("windows")
-            .fill(path, colour.faint(WINDOW_OPACITY));
+        let (path, fill) = (Path::polygon(area.corners()), colour.faint(WINDOW_OPACITY));
+        self.layer("windows").fill(path, fill);
     }
 
     fn draw_band(&mut self, band: &Band, colour: Colour) {
         let layer = self.drawing.layer("bands", Some(self.frame.area));
-        let [uppers, lowers] = band
-            .pairs()
-            .map(|bound| pieces(&self.frame, &band.x, &bound));
+        let bounds = band.pairs();
+        let [uppers, lowers] = bounds.map(|bound| pieces(&self.frame, &band.x, &bound));
         for (upper, lower) in uppers.into_iter().zip(lowers) {
             for (above, below) in upper.iter().zip(&lower) {
                 self.obstacles.line(&[*above, *below]);
@@ -153,11 +151,9 @@ impl<'a> Painter<'a> {
             outline.extend([left, right].map(|x| Point::new(x, top)));
         }
         outline.extend(bars.edges.last().copied().map(end));
-        self.layer("bars").path(
-            Path::line(outline),
-            Some(Fill::Flat(colour.faint(BAR_OPACITY))),
-            Some(Stroke::solid(colour, BAR_WEIGHT)),
-        );
+        let fill = Some(Fill::Flat(colour.faint(BAR_OPACITY)));
+        let stroke = Some(Stroke::solid(colour, BAR_WEIGHT));
+        self.layer("bars").path(Path::line(outline), fill, stroke);
     }
 
     fn draw_spheres(&mut self, spheres: &Spheres) {
@@ -194,13 +190,10 @@ impl<'a> Painter<'a> {
         let line = self.reference_line(reference);
         self.obstacles.line(&line);
         let is_guide = reference.look.tint == Some(Tint::Grey);
+        let (guide, usual) = (GUIDE_WEIGHT, REFERENCE_WEIGHT);
         let stroke = Stroke {
             colour,
-            weight: if is_guide {
-                GUIDE_WEIGHT
-            } else {
-                REFERENCE_WEIGHT
-            },
+            weight: if is_guide { guide } else { usual },
             pattern: reference.pattern,
         };
         self.layer("references").stroke(Path::line(line), stroke);
@@ -254,9 +247,9 @@ impl<'a> Painter<'a> {
         let layer = self.drawing.layer("points", None);
         for (rows, mark) in [(measured, filled), (limits, open)] {
             let places: Vec<Point> = rows.into_iter().map(place).collect();
-            places
-                .iter()
-                .for_each(|place| self.obstacles.line(&[*place]));
+            for place in &places {
+                self.obstacles.line(&[*place]);
+            }
             let (fill, stroke) = (Some(Fill::Flat(mark.fill)), Some(mark.stroke));
             layer.path(mark.outline.at(places), fill, stroke);
         }
@@ -268,16 +261,16 @@ impl<'a> Painter<'a> {
             .iter()
             .find(|(most, _)| points.x.len() <= *most)
             .map_or(RADII[0].1, |(_, radius)| *radius);
+        // An open mark lets see what lies below it; a white edge keeps marks apart that lie over each other.
+        let (fill, stroke) = if open {
+            (WHITE.faint(0.2), Stroke::solid(colour, 0.75))
+        } else {
+            (colour, Stroke::solid(WHITE, 0.3))
+        };
         Mark {
             outline: points.look.marker(number, radius),
-            // An open mark lets see what lies below it.
-            fill: if open { WHITE.faint(0.2) } else { colour },
-            // A white edge keeps marks apart that lie over each other.
-            stroke: if open {
-                Stroke::solid(colour, 0.75)
-            } else {
-                Stroke::solid(WHITE, 0.3)
-            },
+            fill,
+            stroke,
             bars: Vec::new(),
             bar_stroke: Stroke::solid(colour, BAR_WEIGHT),
         }

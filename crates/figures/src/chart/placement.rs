@@ -37,10 +37,8 @@ impl Obstacles {
         let corner = (area.left - CLEARANCE, area.top - CLEARANCE);
         let [width, height] = [area.width, area.height].map(|length| length + 2.0 * CLEARANCE);
         let kept = Rectangle::new(corner, (width, height));
-        self.segments
-            .iter()
-            .filter(|segment| crosses(**segment, kept))
-            .count()
+        let segments = self.segments.iter();
+        segments.filter(|segment| crosses(**segment, kept)).count()
     }
 
     /// The first of some boxes that covers least.
@@ -69,16 +67,14 @@ impl Obstacles {
         width: f64,
         height: f64,
     ) -> Option<Rectangle> {
-        let room = (
-            frame.width - 2.0 * INSET - width,
-            frame.height - 2.0 * INSET - height,
-        );
-        if room.0 < 0.0 || room.1 < 0.0 {
+        let across = frame.width - 2.0 * INSET - width;
+        let down = frame.height - 2.0 * INSET - height;
+        if across < 0.0 || down < 0.0 {
             return None;
         }
         let step = |index: usize| index as f64 / TRIALS as f64;
         let mut shares: Vec<(f64, f64)> = (0..=TRIALS)
-            .flat_map(|across| (0..=TRIALS).map(move |down| (step(across), step(down))))
+            .flat_map(|x| (0..=TRIALS).map(move |y| (step(x), step(y))))
             .collect();
         // From the corners inwards, the upper right first.
         let distance = |share: &(f64, f64)| {
@@ -87,13 +83,13 @@ impl Obstacles {
             x.min(y) * 3.0 + x + y + turn
         };
         shares.sort_by(|one, other| distance(one).total_cmp(&distance(other)));
-        let places = shares.into_iter().map(|(across, down)| {
-            let left = frame.left + INSET + across * room.0;
-            let top = frame.top + INSET + down * room.1;
+        let places = shares.into_iter().map(|(x, y)| {
+            let left = frame.left + INSET + x * across;
+            let top = frame.top + INSET + y * down;
             Rectangle::new((left, top), (width, height))
         });
-        self.freest(places)
-            .and_then(|(place, covered)| (covered == 0).then_some(place))
+        let (place, covered) = self.freest(places)?;
+        (covered == 0).then_some(place)
     }
 }
 
@@ -134,22 +130,15 @@ mod tests {
         assert!(crosses([point(0.0, 15.0), point(30.0, 16.0)], area));
         assert!(crosses([point(15.0, 0.0), point(15.0, 30.0)], area));
         assert!(!crosses([point(0.0, 15.0), point(9.0, 15.0)], area));
-        assert!(!crosses(
-            [point(0.0, 21.0), point(21.0, 0.0)].map(|p| point(p.x - 2.0, p.y - 2.0)),
-            area
-        ));
+        assert!(!crosses([point(-2.0, 19.0), point(19.0, -2.0)], area));
         assert!(crosses([point(12.0, 12.0), point(12.0, 12.0)], area));
     }
 
     #[test]
     fn a_legend_goes_to_the_corner_that_is_free() {
         let mut obstacles = Obstacles::default();
-        obstacles.line(&[
-            point(50.0, 5.0),
-            point(95.0, 5.0),
-            point(95.0, 75.0),
-            point(5.0, 75.0),
-        ]);
+        let line = [(50.0, 5.0), (95.0, 5.0), (95.0, 75.0), (5.0, 75.0)];
+        obstacles.line(&line.map(|(x, y)| point(x, y)));
         let place = obstacles.free_place(FRAME, 30.0, 20.0).expect("room");
         assert_eq!((place.left, place.top), (INSET, INSET));
     }

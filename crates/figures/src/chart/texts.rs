@@ -36,7 +36,8 @@ impl Painter<'_> {
     fn draw_reference_label(&mut self, reference: &Reference) {
         let frame = self.frame.area;
         let [start, _] = self.reference_line(reference);
-        let length = if reference.vertical {
+        let is_vertical = reference.vertical;
+        let length = if is_vertical {
             frame.height
         } else {
             frame.width
@@ -47,7 +48,7 @@ impl Painter<'_> {
             let share = 1.0 - trial as f64 / LABEL_TRIALS as f64;
             let along = INSET + share * (length - 2.0 * INSET - long);
             [-LABEL_GAP - thick, LABEL_GAP].map(|beside| {
-                if reference.vertical {
+                if is_vertical {
                     let top = frame.bottom() - along - long;
                     Rectangle::new((start.x + beside, top), (thick, long))
                 } else {
@@ -63,7 +64,7 @@ impl Painter<'_> {
         self.obstacles.area(place);
         let colour = self.colour(0, reference.look);
         let layer = self.drawing.layer("reference labels", None);
-        if reference.vertical {
+        if is_vertical {
             let baseline = place.left + ABOVE_BASELINE * LEGEND_SIZE;
             let foot = (baseline, place.bottom());
             layer.text_upward(foot, Anchor::Start, text, colour);

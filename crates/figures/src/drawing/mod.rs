@@ -271,13 +271,11 @@ impl Drawing {
     /// The paths of all layers of a name.
     #[cfg(test)]
     pub(crate) fn paths(&self, name: &str) -> Vec<&Path> {
-        let mut paths = Vec::new();
-        for shape in self.shapes(name) {
-            if let Shape::Path { path, .. } = shape {
-                paths.push(path);
-            }
-        }
-        paths
+        let path = |shape| match shape {
+            &Shape::Path { ref path, .. } => Some(path),
+            _ => None,
+        };
+        self.shapes(name).into_iter().filter_map(path).collect()
     }
 
     /// The lines of type of all layers of a name, with their starts.

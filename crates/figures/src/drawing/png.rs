@@ -70,12 +70,11 @@ pub(super) fn raster(drawing: &Drawing) -> Result<Raster, FigureError> {
     }
     // The page is opaque, so the premultiplied colours are the colours.
     let colours = painter.pixels.data().chunks_exact(4);
+    let pixels = colours.flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]);
     Ok(Raster {
         width,
         height,
-        pixels: colours
-            .flat_map(|pixel| [pixel[0], pixel[1], pixel[2]])
-            .collect(),
+        pixels: pixels.collect(),
     })
 }
 

@@ -118,11 +118,8 @@ fn push_image(out: &mut String, image: &Image) {
     let size = [image.columns as u32, image.rows() as u32];
     let picture = encode(size, &image.pixels, None)
         .expect("writing a picture of whole rows to memory cannot fail");
-    let style = if image.is_smooth {
-        ""
-    } else {
-        " style=\"image-rendering:pixelated\""
-    };
+    let pixelated = " style=\"image-rendering:pixelated\"";
+    let style = if image.is_smooth { "" } else { pixelated };
     *out += &format!(
         "<image x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" preserveAspectRatio=\"none\"{style} href=\"data:image/png;base64,{}\"/>\n",
         STANDARD.encode(picture)
@@ -211,12 +208,8 @@ fn stroke_attributes(stroke: &Stroke) -> String {
     let mut out = paint("stroke", stroke.colour);
     let weight = number(stroke.weight);
     out += &format!(" stroke-width=\"{weight}\" stroke-linejoin=\"round\"");
-    let lengths: Vec<String> = stroke
-        .pattern
-        .lengths()
-        .iter()
-        .map(f32::to_string)
-        .collect();
+    let lengths = stroke.pattern.lengths().iter();
+    let lengths: Vec<String> = lengths.map(f32::to_string).collect();
     if !lengths.is_empty() {
         out += &format!(" stroke-dasharray=\"{}\"", lengths.join(" "));
     }

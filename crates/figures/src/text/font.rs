@@ -30,6 +30,14 @@ fn parse(bytes: &'static [u8]) -> ttf_parser::Face<'static> {
 }
 
 impl Face {
+    pub(crate) fn of(is_italic: bool) -> Self {
+        if is_italic {
+            Self::Italic
+        } else {
+            Self::Upright
+        }
+    }
+
     fn font(self) -> &'static ttf_parser::Face<'static> {
         match self {
             Self::Upright => &UPRIGHT,
@@ -54,12 +62,8 @@ impl Glyph {
 
     /// Distance from this glyph's origin to the next one's, in font units.
     pub(crate) fn advance(self) -> f64 {
-        f64::from(
-            self.face
-                .font()
-                .glyph_hor_advance(GlyphId(self.index))
-                .unwrap_or(0),
-        )
+        let advance = self.face.font().glyph_hor_advance(GlyphId(self.index));
+        f64::from(advance.unwrap_or(0))
     }
 
     /// Box around the ink, in font units with y upwards; none for a space.
@@ -70,11 +74,9 @@ impl Glyph {
     /// The outline in font units with y downwards; empty for a space.
     pub(crate) fn outline(self) -> Path {
         let mut path = Path::default();
+        let font = self.face.font();
         // A space has no outline, and nothing is drawn for it.
-        let _ = self
-            .face
-            .font()
-            .outline_glyph(GlyphId(self.index), &mut path);
+        let _ = font.outline_glyph(GlyphId(self.index), &mut path);
         path
     }
 }

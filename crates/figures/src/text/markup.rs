@@ -33,7 +33,8 @@ pub fn letters(markup: &str) -> Vec<Letter> {
         match character {
             '*' => italic = !italic,
             '_' | '^' if level == Level::Base && characters.peek().is_some() => {
-                level = if character == '_' {
+                let is_below = character == '_';
+                level = if is_below {
                     Level::Subscript
                 } else {
                     Level::Superscript
@@ -45,11 +46,8 @@ pub fn letters(markup: &str) -> Vec<Letter> {
                 braced = false;
             }
             _ => {
-                let character = if character == '\\' {
-                    characters.next().unwrap_or('\\')
-                } else {
-                    character
-                };
+                let escaped = (character == '\\').then(|| characters.next()).flatten();
+                let character = escaped.unwrap_or(character);
                 letters.push(Letter {
                     character,
                     italic,
@@ -69,10 +67,8 @@ mod tests {
     use super::*;
 
     fn plain(markup: &str) -> String {
-        letters(markup)
-            .iter()
-            .map(|letter| letter.character)
-            .collect()
+        let letters = letters(markup);
+        letters.iter().map(|letter| letter.character).collect()
     }
 
     #[test]

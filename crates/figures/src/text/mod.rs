@@ -52,23 +52,15 @@ impl Text {
         let mut glyphs: Vec<PlacedGlyph> = Vec::with_capacity(letters.len());
         let mut pen = 0.0;
         for letter in &letters {
-            let face = if letter.italic {
-                Face::Italic
-            } else {
-                Face::Upright
-            };
             if letter.character == COMBINING_DOT {
                 // The upright dot: a slanted one is drawn off centre.
-                if let Some(dot) = glyphs
-                    .last()
-                    .and_then(|base| dot_above(base, Face::Upright.glyph(COMBINING_DOT)))
-                {
-                    glyphs.push(dot);
-                }
+                let dot = Face::Upright.glyph(COMBINING_DOT);
+                let placed = glyphs.last().and_then(|base| dot_above(base, dot));
+                glyphs.extend(placed);
                 continue;
             }
             let (relative_size, y) = setting(letter);
-            let glyph = face.glyph(letter.character);
+            let glyph = Face::of(letter.italic).glyph(letter.character);
             let scale = size * relative_size / glyph.units_per_em();
             glyphs.push(PlacedGlyph {
                 glyph,
@@ -150,8 +142,8 @@ mod tests {
         let dot = dotted.glyphs[1];
         assert!(dot.y < 0.0);
         let bottom = dot.y - dot.scale * f64::from(dot.glyph.ink().expect("ink").y_min);
-        let top =
-            -dotted.glyphs[0].scale * f64::from(dotted.glyphs[0].glyph.ink().expect("ink").y_max);
+        let letter = dotted.glyphs[0];
+        let top = -letter.scale * f64::from(letter.glyph.ink().expect("ink").y_max);
         assert!(
             bottom < top,
             "the dot at {bottom} must be above the letter's top at {top}"

@@ -68,21 +68,18 @@ fn bins_of(part: WavePart, radii: &[f64]) -> Vec<usize> {
             (0..number).filter(|&bin| radii[bin] < mean).collect()
         }
         WavePart::Front => {
-            let place = |better: fn(f64, f64) -> bool| {
-                (1..number).fold(0, |best, bin| {
-                    if better(radii[bin], radii[best]) {
-                        bin
-                    } else {
-                        best
-                    }
-                })
-            };
-            let narrowest = place(|one, best| one < best);
-            let widest = place(|one, best| one > best);
+            let (mut narrowest, mut widest) = (0, 0);
+            for bin in 1..number {
+                if radii[bin] < radii[narrowest] {
+                    narrowest = bin;
+                }
+                if radii[bin] > radii[widest] {
+                    widest = bin;
+                }
+            }
             let length = (widest + number - narrowest) % number;
-            (0..length)
-                .map(|step| (narrowest + step) % number)
-                .collect()
+            let ahead = (0..length).map(|step| (narrowest + step) % number);
+            ahead.collect()
         }
     }
 }

@@ -6,7 +6,8 @@ mod snapshot;
 use peristalsis_analysis::number::{plain, with_error};
 use peristalsis_configuration::{Configuration, Control, ScheduledParameter, Waveform};
 use peristalsis_figures::chart::{
-    Band, ChartFigure, ChartPanel, Field, LegendPlace, Line, Pattern, Points, Reference, Tint,
+    Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
+    Reference, Tint,
 };
 use peristalsis_figures::{ColourScale, Drawing, FigureError, Palette, Quantity, Units, Width};
 
@@ -40,28 +41,20 @@ pub(crate) fn draw_all(
         drawings.push((name, drawing.map_err(RunError::of_figure(name))?));
         Ok::<_, RunError>(())
     };
-    let has_ratios = run
-        .recorder()
-        .samples()
-        .iter()
-        .any(|sample| sample.flow_rate_ratio.is_finite());
-    if has_ratios {
+    let samples = run.recorder().samples();
+    if samples.iter().any(|it| it.flow_rate_ratio.is_finite()) {
         add("flow", flow(run, summary))?;
-    }
-    // The late part may have no grain left inside.
-    if has_ratios
-        && late_profile(run)
-            .iter()
-            .any(|bin| bin.axial_velocity.0.is_finite())
-    {
-        add("profile", profile(run))?;
+        let bins = late_profile(run);
+        // The late part may have no grain left inside.
+        if bins.iter().any(|it| it.axial_velocity.0.is_finite()) {
+            add("profile", profile(run))?;
+        }
     }
     if configuration.grains.number > 0 {
         add("snapshot", snapshot(run))?;
     }
-    if matches!(configuration.drive.control, Control::Stress { .. })
-        && !run.recorder().samples().is_empty()
-    {
+    let is_elastic = matches!(configuration.drive.control, Control::Stress { .. });
+    if is_elastic && !samples.is_empty() {
         add("wall", wall(run))?;
     }
     Ok(drawings)
@@ -71,29 +64,26 @@ pub(crate) fn draw_all(
 fn title(configuration: &Configuration) -> String {
     let value = |parameter, constant| scheduled_value(configuration, parameter, constant);
     let (control, density) = match configuration.drive.control {
-        Control::Strain { width } => (
-            format!("*w* = {} *d*", value(ScheduledParameter::Width, width)),
-            format!("*ρ* = {:.3}", configuration.volume_fraction()),
-        ),
+        Control::Strain { width } => {
+            let width = value(ScheduledParameter::Width, width);
+            let density = format!("*ρ* = {:.3}", configuration.volume_fraction());
+            (format!("*w* = {width} *d*"), density)
+        }
         Control::Stress {
             force_amplitude, ..
-        } => (
-            format!(
-                "*f*^{{P}} = {} *Yd*^{{2}}",
-                value(ScheduledParameter::ForceAmplitude, force_amplitude)
-            ),
-            format!("*n* = {:.3}", configuration.number_density()),
-        ),
+        } => {
+            let force = value(ScheduledParameter::ForceAmplitude, force_amplitude);
+            let density = format!("*n* = {:.3}", configuration.number_density());
+            (format!("*f*^{{P}} = {force} *Yd*^{{2}}"), density)
+        }
     };
-    format!(
-        "{control},  *ε\u{307}* = {},  {density},  {}",
-        value(
-            ScheduledParameter::StrainRate,
-            configuration.drive.strain_rate
-        ),
-        particular(configuration)
-            .unwrap_or_else(|| format!("*N* = {}", configuration.grains.number))
-    )
+    let rate = value(
+        ScheduledParameter::StrainRate,
+        configuration.drive.strain_rate,
+    );
+    let number = || format!("*N* = {}", configuration.grains.number);
+    let rest = particular(configuration).unwrap_or_else(number);
+    format!("{control},  *ε\u{307}* = {rate},  {density},  {rest}")
 }
 
 /// What sets a run apart from most: its waveform, its body force.
@@ -138,64 +128,34 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let time = middles(samples.len(), 1);
     let ratio: Vec<f64> = samples.iter().map(|it| it.flow_rate_ratio).collect();
     let averages = recorder.averages();
-    let periods = middles(
-        averages.len(),
-        configuration.observe.samples_per_period as usize,
-    );
-    let last = time.iter().copied().fold(0.0, f64::max);
-    let last = if last < MANY_PERIODS {
-        last
-    } else {
-        last.ceil()
-    };
-    let guide = |ratio| {
-        Reference::horizontal(ratio)
-            .tint(Tint::Grey)
-            .pattern(Pattern::Solid)
-    };
+    let intervals = configuration.observe.samples_per_period as usize;
+    let periods = middles(averages.len(), intervals);
+    let mut last = time.iter().copied().fold(0.0, f64::max);
+    if last >= MANY_PERIODS {
+        last = last.ceil();
+    }
+    let samples_line = Line::new("samples", &time, &ratio).tint(Tint::Sky);
     let mut panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::FlowRateRatio))
         .x_range(0.0..=last)
         .with_all([guide(0.0), guide(1.0)])
-        .with(
-            Line::new("samples", &time, &ratio)
-                .tint(Tint::Sky)
-                .weight(0.6),
-        );
+        .with(samples_line.weight(0.6));
     if averages.iter().any(|average| average.is_finite()) {
         let name = "mean over a period";
-        panel = panel.with(
-            Line::new(name, &periods, averages)
-                .tint(Tint::Blue)
-                .weight(1.1),
-        );
+        let line = Line::new(name, &periods, averages).tint(Tint::Blue);
+        panel = panel.with(line.weight(1.1));
         if averages.len() <= MARKED_PERIODS {
-            panel = panel.with(
-                Points::new(name, &periods, averages)
-                    .tint(Tint::Blue)
-                    .series(0),
-            );
+            let marks = Points::new(name, &periods, averages).tint(Tint::Blue);
+            panel = panel.with(marks.series(0));
         }
     }
     let threshold = configuration.observe.transition_threshold;
     panel = panel.with(Reference::horizontal(threshold).label("threshold"));
-    let (mean, error) = summary.flow_rate_ratio;
-    if mean.is_finite() && error.is_finite() {
-        let name = format!("late mean {}", with_error(mean, error));
-        let late = [(1.0 - run.late_fraction()) * last, last];
-        panel = panel
-            .with(Line::new(&name, &late, &[mean; 2]).tint(Tint::Orange))
-            .with(
-                Band::new(&name, &late, &[mean - error; 2], &[mean + error; 2]).tint(Tint::Orange),
-            );
-    }
+    let late_mean = late_mean(summary.flow_rate_ratio, run.late_fraction(), last);
+    panel = panel.with_all(late_mean.into_iter().flatten());
     panel = panel.with_all(newtonian_fluid(summary, last));
     if let Some(time) = summary.transition_time {
         let passed = samples.partition_point(|sample| sample.time <= time);
-        let start = if passed == 0 {
-            0.0
-        } else {
-            samples[passed - 1].time
-        };
+        let start = passed.checked_sub(1).map_or(0.0, |it| samples[it].time);
         let (before, after) = (end(passed), end((passed + 1).min(samples.len())));
         let period = before + (after - before) * (time - start) / samples[0].time;
         let words = format!("*τ* = {} {}", plain(time), units(configuration).time());
@@ -210,22 +170,35 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         .draw()
 }
 
+/// A thin line from side to side at a value.
+fn guide(value: f64) -> Reference {
+    let line = Reference::horizontal(value);
+    line.tint(Tint::Grey).pattern(Pattern::Solid)
+}
+
+/// The mean over the last part of a run up to a last period, and the band of its error; nothing where either is unknown.
+fn late_mean((mean, error): (f64, f64), part: f64, last: f64) -> Option<[ChartLayer; 2]> {
+    if !(mean.is_finite() && error.is_finite()) {
+        return None;
+    }
+    let name = format!("late mean {}", with_error(mean, error));
+    let late = [(1.0 - part) * last, last];
+    let line = Line::new(&name, &late, &[mean; 2]).tint(Tint::Orange);
+    let band = Band::new(&name, &late, &[mean - error; 2], &[mean + error; 2]);
+    Some([line.into(), band.tint(Tint::Orange).into()])
+}
+
 /// What a Newtonian fluid would do in this tube, up to a last period.
 fn newtonian_fluid(summary: &Summary, last: f64) -> Vec<Line> {
     let level = |ratio: Option<f64>, name: &str, pattern: Pattern| {
         let line = Line::new(name, &[0.0, last], &[ratio?; 2]);
         Some(line.tint(Tint::Green).pattern(pattern))
     };
-    let in_bore = level(
-        summary.newtonian.map(|fluid| fluid.0),
-        "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*",
-        Pattern::Dashed,
-    );
-    let in_clear_bore = level(
-        summary.newtonian.and_then(|fluid| fluid.1),
-        "the same, clear bore, *φ* = *b*/(*a* − *d*/2)",
-        Pattern::DashDotted,
-    );
+    let (bore, clear_bore) = summary.newtonian.unzip();
+    let name = "Newtonian fluid (Shapiro et al. 1969), *φ* = *b*/*a*";
+    let in_bore = level(bore, name, Pattern::Dashed);
+    let name = "the same, clear bore, *φ* = *b*/(*a* − *d*/2)";
+    let in_clear_bore = level(clear_bore.flatten(), name, Pattern::DashDotted);
     in_bore.into_iter().chain(in_clear_bore).collect()
 }
 
@@ -256,16 +229,30 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
     let step = first
         .period
         .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
-    let title = title(run.configuration());
     let x = ((first.period - step).max(0.0), last.period);
     let field = Field::new(&values, waves, x, (0.0, waves as f64));
     let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave)).with(field);
     ChartFigure::new(panel)
-        .title(&title)
+        .title(&title(run.configuration()))
         .description("Flow rate of each wave against time.")
         .colour_scale(ColourScale::new("*J*/*J*_{max}", -1.0, 1.0).palette(Palette::Diverging))
         .panel_height(SPACE_TIME_HEIGHT)
         .width(Width::DoubleColumn)
         .draw()
         .map_err(RunError::of_figure("space-time"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_mean_with_a_known_error_covers_the_last_part() {
+        let (late, name) = ([75.0, 100.0], "late mean 0.90 ± 0.05");
+        let line = Line::new(name, &late, &[0.9; 2]).tint(Tint::Orange);
+        let band = Band::new(name, &late, &[0.9 - 0.05; 2], &[0.9 + 0.05; 2]);
+        let expected = [line.into(), band.tint(Tint::Orange).into()];
+        assert_eq!(late_mean((0.9, 0.05), 0.25, 100.0), Some(expected));
+        assert_eq!(late_mean((0.9, f64::NAN), 0.25, 100.0), None);
+    }
 }

@@ -1,12 +1,10 @@
 //! Flow and wall along the wave at rest.
 
-use peristalsis_figures::chart::{
-    Band, ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Reference, Tint,
-};
+use peristalsis_figures::chart::{Band, ChartFigure, ChartPanel, LegendPlace, Line, Pattern, Tint};
 use peristalsis_figures::{Drawing, FigureError, Quantity};
 use peristalsis_observe::ProfileBin;
 
-use super::{HEIGHT, label, title};
+use super::{HEIGHT, guide, label, title};
 use crate::run::Run;
 use crate::scene::units;
 use crate::tables::late_profile;
@@ -41,12 +39,6 @@ fn panel(label_of_value: &str) -> ChartPanel {
     ChartPanel::new(&label(Quantity::Phase), label_of_value).x_range(0.0..=1.0)
 }
 
-/// A thin line at nought.
-fn nought() -> Reference {
-    let line = Reference::horizontal(0.0);
-    line.tint(Tint::Grey).pattern(Pattern::Solid)
-}
-
 /// Profiles along the wave at rest: the tube, density, axial velocity and granular temperature, and stress on the wall where
 /// it is known.
 pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
@@ -66,7 +58,7 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
     if bins.iter().any(|bin| bin.wall_pressure.0.is_finite()) {
         let (pressure, shear) = (format!("*p*{unit}"), format!("*τ*{unit}"));
         panels.push(curve(&pressure, Tint::Orange, |bin| bin.wall_pressure).y_range(0.0..));
-        panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(nought()));
+        panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(guide(0.0)));
     }
     ChartFigure::grid(1, panels)
         .title(&title(configuration))
@@ -100,11 +92,8 @@ fn with_curve(
 /// The tube in section: its bore white between two lines of wall, all outside of it grey.
 fn tube(bins: &[ProfileBin]) -> ChartPanel {
     let x = column(bins, |bin| bin.position);
-    let largest = bins
-        .iter()
-        .fold(0.0_f64, |largest, bin| largest.max(bin.radius));
-    let end = REACH * largest;
-    let mut panel = panel("*r*/*d*").y_range(-end..=end).with(nought());
+    let end = REACH * bins.iter().map(|bin| bin.radius).fold(0.0, f64::max);
+    let mut panel = panel("*r*/*d*").y_range(-end..=end).with(guide(0.0));
     for side in [1.0, -1.0] {
         let wall = column(bins, |bin| side * bin.radius);
         let outside = vec![side * end; x.len()];
@@ -124,19 +113,17 @@ fn velocity(bins: &[ProfileBin], speed: f64) -> ChartPanel {
         // The curve changes its colour where it crosses nought, between two bins.
         if from.0 * to.0 < 0.0 {
             let between = |one: f64, other: f64| one + from.0 / (from.0 - to.0) * (other - one);
-            bins.insert(
-                index,
-                ProfileBin {
-                    position: between(before.position, after.position),
-                    axial_velocity: (0.0, between(from.1, to.1)),
-                    ..after
-                },
-            );
+            let crossing = ProfileBin {
+                position: between(before.position, after.position),
+                axial_velocity: (0.0, between(from.1, to.1)),
+                ..after
+            };
+            bins.insert(index, crossing);
         }
     }
     let x = column(&bins, |bin| bin.position);
     let rest = vec![0.0; x.len()];
-    let mut panel = panel("*v_z*/*c*").with(nought());
+    let mut panel = panel("*v_z*/*c*").with(guide(0.0));
     for (side, tint) in [(1.0, Tint::Along), (-1.0, Tint::Against)] {
         let on_side = |bin: &ProfileBin| {
             let (value, error) = bin.axial_velocity;
@@ -157,24 +144,58 @@ pub(super) fn wall(run: &Run) -> Result<Drawing, FigureError> {
     let configuration = run.configuration();
     let bins = closed_profile(run);
     let x = column(&bins, |bin| bin.position);
-    let [mean, least, largest] = [
-        column(&bins, |bin| bin.radius),
-        column(&bins, |bin| bin.least_radius),
-        column(&bins, |bin| bin.largest_radius),
-    ];
+    let mean = column(&bins, |bin| bin.radius);
+    let least = column(&bins, |bin| bin.least_radius);
+    let largest = column(&bins, |bin| bin.largest_radius);
     let rest = [configuration.tube.radius; 2];
+    let rest = Line::new("tube at rest", &[0.0, 1.0], &rest).tint(Tint::Grey);
     let panel = panel("wall radius, *R*/*d*")
         .with(Line::new("mean", &x, &mean).tint(Tint::Blue).weight(1.1))
         .with(Band::new("least to largest", &x, &least, &largest).tint(Tint::Blue))
-        .with(
-            Line::new("tube at rest", &[0.0, 1.0], &rest)
-                .tint(Tint::Grey)
-                .pattern(Pattern::Dashed),
-        );
+        .with(rest.pattern(Pattern::Dashed));
     ChartFigure::new(panel)
         .title(&title(configuration))
         .description("Radius of the wall against the phase of the wave.")
         .panel_height(HEIGHT)
         .legend(LegendPlace::Below)
         .draw()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_velocity_changes_its_colour_at_nought_and_an_unknown_error_has_no_band() {
+        let none = f64::NAN;
+        let bins = [
+            (0.0, 2.0, 0.2),
+            (1.0, 6.0, none),
+            (2.0, -2.0, 0.5),
+            (3.0, -4.0, 0.0),
+        ];
+        let bins = bins.map(|(position, value, error)| ProfileBin {
+            position,
+            axial_velocity: (value, error),
+            ..ProfileBin::default()
+        });
+        let x = [0.0, 1.0, 1.75, 2.0, 3.0];
+        let along = [1.0, 3.0, 0.0, none, none].map(|value| [value; 3]);
+        let against = [none, none, 0.0, -1.0, -2.0].map(|value| [value; 3]);
+        let mut sides = [(Tint::Along, along), (Tint::Against, against)];
+        (sides[0].1[0], sides[1].1[3]) = ([0.9, 1.0, 1.1], [-1.25, -1.0, -0.75]);
+        let mut expected = panel("*v_z*/*c*").with(guide(0.0));
+        for (tint, values) in sides {
+            let [lower, value, upper] = [0, 1, 2].map(|bound| values.map(|row| row[bound]));
+            expected = expected
+                .with(Band::new("", &x, &[0.0; 5], &value).tint(tint))
+                .with(Band::new("", &x, &lower, &upper).tint(tint))
+                .with(Line::new("", &x, &value).tint(tint));
+        }
+        // In words, for a gap is not equal to itself.
+        assert_eq!(
+            format!("{:?}", velocity(&bins, 2.0)),
+            format!("{expected:?}")
+        );
+    }
 }

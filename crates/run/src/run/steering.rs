@@ -91,14 +91,12 @@ impl Run {
     pub fn set_friction(&mut self, kinetic: f64) -> Result<(), RunError> {
         let mut configuration = self.configuration.clone();
         let Some(friction) = &mut configuration.contact.friction else {
-            return Err(RunError::Steering {
-                reason: "its grains began without friction".to_owned(),
-            });
+            let reason = "its grains began without friction".to_owned();
+            return Err(RunError::Steering { reason });
         };
         if !(kinetic > 0.0 && kinetic <= LARGEST) {
-            return Err(RunError::Steering {
-                reason: format!("a coefficient of friction of {kinetic} is not positive"),
-            });
+            let reason = format!("a coefficient of friction of {kinetic} is not positive");
+            return Err(RunError::Steering { reason });
         }
         let proportion = if friction.kinetic_friction > 0.0 {
             friction.static_friction / friction.kinetic_friction

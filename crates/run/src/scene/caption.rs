@@ -54,10 +54,12 @@ impl Caption {
             let time = format!("*t* = {:.1} {}", frame.time, scene.units.time());
             vec![time, place]
         };
-        let length = SCALES
-            .into_iter()
-            .filter(|length| *length <= SCALE_PART * across)
-            .fold(SCALES[0], f64::max);
+        let mut marks = Vec::new();
+        if is_moving && scene.look.aspect == Aspect::Side {
+            marks = self::marks(scene, frame);
+        }
+        let lengths = SCALES.into_iter().filter(|it| *it <= SCALE_PART * across);
+        let length = lengths.fold(SCALES[0], f64::max);
         Self {
             title: format!(
                 "The tube after {:.2} periods, {:.0} d long, {} grains",
@@ -66,11 +68,7 @@ impl Caption {
                 frame.grains
             ),
             notes,
-            marks: if is_moving && scene.look.aspect == Aspect::Side {
-                marks(scene, frame)
-            } else {
-                Vec::new()
-            },
+            marks,
             scale_bar: ScaleBar {
                 length: length / across,
                 label: format!("{length} *d*"),

@@ -163,14 +163,9 @@ impl Coloured {
     /// The field's value of each grain.
     pub(super) fn values(&self, frame: &Frame, wall: &Wall) -> Result<Vec<f64>, RunError> {
         if frame.grains != self.origin.len() {
-            let expected = self.origin.len();
-            return Err(refused(
-                &format!(
-                    "the frame has {} grains, and the first had {expected}",
-                    frame.grains
-                ),
-                "name the trajectory of this run",
-            ));
+            let (found, expected) = (frame.grains, self.origin.len());
+            let reason = format!("the frame has {found} grains, and the first had {expected}");
+            return Err(refused(&reason, "name the trajectory of this run"));
         }
         let heading = wall.heading();
         let wavelength = wall.wavelength();
@@ -188,12 +183,11 @@ impl Coloured {
             Field::AxialDisplacement => {
                 of_grains(&|it| (along(frame, it, heading) - self.origin[it]) / wavelength)
             }
-            Field::AngularVelocity => match &frame.rotation {
-                Some(rotation) => of_grains(&|it| {
-                    0.5 * size(rotation.angular_velocity[it]) * frame.diameter[it] / speed
-                }),
-                None => vec![f64::NAN; frame.grains],
-            },
+            Field::AngularVelocity => of_grains(&|it| {
+                let turning = frame.rotation.as_ref().map(|it| &it.angular_velocity);
+                let turning = turning.map_or(f64::NAN, |turning| size(turning[it]));
+                0.5 * turning * frame.diameter[it] / speed
+            }),
             Field::Phase => of_grains(&|it| {
                 (heading * frame.position[it][2] / wavelength - cycles(frame)).rem_euclid(1.0)
             }),
@@ -252,10 +246,9 @@ fn pressure(frame: &Frame) -> Vec<f64> {
         }
     }
     let volume = |diameter: f64| std::f64::consts::PI * diameter.powi(3) / 6.0;
-    sums.iter()
-        .zip(&frame.diameter)
-        .map(|(sum, &diameter)| sum / (3.0 * volume(diameter)))
-        .collect()
+    let sums = sums.into_iter().zip(&frame.diameter);
+    let pressures = sums.map(|(sum, &diameter)| sum / (3.0 * volume(diameter)));
+    pressures.collect()
 }
 
 #[cfg(test)]

@@ -111,32 +111,24 @@ impl Look {
     /// Refuses what shows nothing of a tube of a length \[d\].
     fn check(&self, length: f64) -> Result<(), RunError> {
         if !WIDTHS.contains(&self.width) {
-            return Err(refused(
-                &format!("a width of {} pixels is beyond reach", self.width),
-                "take 16 to 16384 pixels",
-            ));
+            let reason = format!("a width of {} pixels is beyond reach", self.width);
+            return Err(refused(&reason, "take 16 to 16384 pixels"));
         }
         if !(self.waves > 0.0 && self.waves.is_finite()) {
-            return Err(refused(
-                &format!("a view of {} waves shows nothing", self.waves),
-                "take a positive number of waves",
-            ));
+            let reason = format!("a view of {} waves shows nothing", self.waves);
+            return Err(refused(&reason, "take a positive number of waves"));
         }
         if let Some((least, largest)) = self.range
             && !(least.is_finite() && largest.is_finite() && least < largest)
         {
-            return Err(refused(
-                &format!("the colours cannot go from {least} to {largest}"),
-                "take FROM:TO with FROM less than TO",
-            ));
+            let reason = format!("the colours cannot go from {least} to {largest}");
+            return Err(refused(&reason, "take FROM:TO with FROM less than TO"));
         }
         if let Aspect::Section(Place::At(z)) = self.aspect
             && !(0.0..length).contains(&z)
         {
-            return Err(refused(
-                &format!("there is no place z = {z} in this tube"),
-                &format!("take 0 to {length} d"),
-            ));
+            let reason = format!("there is no place z = {z} in this tube");
+            return Err(refused(&reason, &format!("take 0 to {length} d")));
         }
         Ok(())
     }
@@ -209,10 +201,9 @@ impl PictureScene {
         };
         let (_, down) = scene.size();
         if down > MOST_DOWN {
-            return Err(refused(
-                &format!("the picture would be {down:.0} pixels high"),
-                "take fewer pixels across, or show more waves",
-            ));
+            let reason = format!("the picture would be {down:.0} pixels high");
+            let help = "take fewer pixels across, or show more waves";
+            return Err(refused(&reason, help));
         }
         Ok(scene)
     }
@@ -265,12 +256,9 @@ impl PictureScene {
         let length = self.wall.length();
         if (frame.length - length).abs() > 1e-3 * length {
             let found = frame.length;
-            return Err(refused(
-                &format!(
-                    "the frame is of a tube {found} d long, and that of the run is {length} d"
-                ),
-                "name the trajectory of this run",
-            ));
+            let reason =
+                format!("the frame is of a tube {found} d long, and that of the run is {length} d");
+            return Err(refused(&reason, "name the trajectory of this run"));
         }
         let values = self.coloured.values(frame, &self.wall)?;
         let [red, green, blue] = self.look.paper.srgb();

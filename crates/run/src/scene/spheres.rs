@@ -34,10 +34,8 @@ impl PictureScene {
                 0.5 * length - half..0.5 * length + half
             }
         };
-        let towards_eye = {
-            let view = self.view();
-            view.right.cross(view.up)
-        };
+        let view = self.view();
+        let towards_eye = view.right.cross(view.up);
         let [red, green, blue] = STONE;
         let stone = Colour::srgb(red, green, blue);
         let spheres = frame.position.iter().zip(&frame.diameter).enumerate();

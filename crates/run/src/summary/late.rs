@@ -39,12 +39,10 @@ impl Pumping {
             f64::NAN
         };
         let beyond = |sample: &Sample| -sample.body_power - efficiency * sample.wall_power;
+        let power_error = error_of(late.iter().map(|sample| sample.body_power));
         Some(Self {
             pressure_rise: configuration.pressure_rise(),
-            useful_power: (
-                useful_power,
-                error_of(late.iter().map(|sample| sample.body_power)),
-            ),
+            useful_power: (useful_power, power_error),
             efficiency: (efficiency, error_of(late.iter().map(beyond)) / wall_power),
         })
     }

@@ -87,7 +87,6 @@ mod tests {
 
     /// Ten bins, narrowest in the last, so that the throat reaches over the end of the wavelength.
     fn profile() -> Vec<ProfileBin> {
-        let none = (f64::NAN, f64::NAN);
         (0..10)
             .map(|bin| {
                 let place = f64::from((bin + 1) % 10);
@@ -97,13 +96,7 @@ mod tests {
                     axial_velocity: (if place > 0.0 { place } else { f64::NAN }, 0.0),
                     temperature: (if place > 0.0 { 10.0 * place } else { f64::NAN }, 0.0),
                     radius: 1.0 - 0.1 * (place - 5.0).abs(),
-                    least_radius: 1.0,
-                    largest_radius: 1.0,
-                    wall_normal_force: none,
-                    wall_tangential_force: none,
-                    wall_pressure: none,
-                    wall_shear: none,
-                    wall_axial_velocity: none,
+                    ..ProfileBin::default()
                 }
             })
             .collect()

@@ -125,6 +125,8 @@ impl Summary {
         let part = |part| recorder.profile().late_part(fraction, part);
         let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
         let escaped = |sample: &Sample| sample.escaped as u64;
+        let faults = recorder.wall_faults().iter();
+        let warnings = warnings(configuration).into_iter();
         Self {
             status,
             message,
@@ -143,15 +145,8 @@ impl Summary {
             time: simulation.time(),
             periods: simulation.wall().cycles(),
             seconds: run.elapsed().as_secs_f64(),
-            wall_diagnosis: recorder
-                .wall_faults()
-                .iter()
-                .map(WallFault::in_words)
-                .collect(),
-            warnings: warnings(configuration)
-                .into_iter()
-                .chain(overlap_warning(run))
-                .collect(),
+            wall_diagnosis: faults.map(WallFault::in_words).collect(),
+            warnings: warnings.chain(overlap_warning(run)).collect(),
             trajectory: None,
             configuration: configuration.clone(),
             late_averages: averages[averages.len().saturating_sub(late_periods)..].to_vec(),

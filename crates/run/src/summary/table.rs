@@ -38,10 +38,8 @@ const fn setting(
     text: &'static str,
     reading: Reading<Configuration>,
 ) -> RunQuantity {
-    RunQuantity::new(
-        name,
-        Source::Setting(Quantity::new(name, unit, text, reading)),
-    )
+    let quantity = Quantity::new(name, unit, text, reading);
+    RunQuantity::new(name, Source::Setting(quantity))
 }
 
 const fn result(
@@ -50,10 +48,8 @@ const fn result(
     text: &'static str,
     reading: Reading<Summary>,
 ) -> RunQuantity {
-    RunQuantity::new(
-        name,
-        Source::Result(Quantity::new(name, unit, text, reading)),
-    )
+    let quantity = Quantity::new(name, unit, text, reading);
+    RunQuantity::new(name, Source::Result(quantity))
 }
 
 impl RunQuantity {

@@ -116,10 +116,8 @@ impl Summary {
     }
 
     fn entries(&self, group: &str) -> Vec<(String, Value)> {
-        QUANTITIES
-            .iter()
-            .flat_map(|quantity| quantity.entries(group, self))
-            .collect()
+        let quantities = QUANTITIES.iter();
+        quantities.flat_map(|it| it.entries(group, self)).collect()
     }
 }
 
@@ -144,11 +142,9 @@ struct ThresholdTime {
 impl Serialize for Summary {
     /// As an object; numbers that are missing are `null` in JSON.
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let times: Vec<ThresholdTime> = THRESHOLDS
-            .into_iter()
-            .zip(self.transition_times)
-            .map(|(threshold, time)| ThresholdTime { threshold, time })
-            .collect();
+        let times = THRESHOLDS.into_iter().zip(self.transition_times);
+        let times = times.map(|(threshold, time)| ThresholdTime { threshold, time });
+        let times: Vec<ThresholdTime> = times.collect();
         let mut object = serializer.serialize_map(None)?;
         for (key, value) in self.entries("") {
             object.serialize_entry(&key, &value)?;

@@ -61,20 +61,18 @@ fn width(frame: &Frame, wall: &Wall) -> f64 {
 fn values(run: &Run) -> Vec<(Cow<'static, str>, f64)> {
     let simulation = run.simulation();
     let sample = run.recorder().samples().last();
-    let of_sample = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    vec![
-        ("period".into(), simulation.wall().cycles()),
-        ("heading".into(), simulation.wall().heading()),
-        ("flow_rate".into(), of_sample(sample.map(|it| it.flow_rate))),
+    let instantaneous = View::of(simulation).instantaneous_flow_rate();
+    let values = [
+        ("period", simulation.wall().cycles()),
+        ("heading", simulation.wall().heading()),
+        ("flow_rate", sample.map_or(f64::NAN, |it| it.flow_rate)),
         (
-            "flow_rate_ratio".into(),
-            of_sample(sample.map(|it| it.flow_rate_ratio)),
+            "flow_rate_ratio",
+            sample.map_or(f64::NAN, |it| it.flow_rate_ratio),
         ),
-        (
-            "flow_rate_instantaneous".into(),
-            View::of(simulation).instantaneous_flow_rate(),
-        ),
-    ]
+        ("flow_rate_instantaneous", instantaneous),
+    ];
+    values.map(|(name, value)| (name.into(), value)).to_vec()
 }
 
 fn contacts(simulation: &Simulation) -> Vec<FrameContact> {

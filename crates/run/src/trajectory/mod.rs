@@ -67,11 +67,9 @@ impl Trajectory {
     /// [`RunError::HoldsAnotherRun`] where there is one; [`RunError::Format`] where a file cannot be written.
     pub fn begin(folder: &Path, plan: TrajectoryPlan, run: &mut Run) -> Result<Self, RunError> {
         Self::check(folder)?;
-        let files = plan
-            .formats
-            .iter()
-            .map(|format| format.create(folder, plan.frames()))
-            .collect::<Result<_, _>>()?;
+        let files = plan.formats.iter();
+        let files = files.map(|format| format.create(folder, plan.frames()));
+        let files = files.collect::<Result<_, _>>()?;
         let text = toml::to_string(&plan)
             .expect("a plan is whole numbers and names, which always serialise");
         atomic::write(&folder.join(PLAN), text.as_bytes())?;
@@ -106,26 +104,24 @@ impl Trajectory {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(source) => {
+                let operation = "read";
                 return Err(FormatError::Io {
-                    operation: "read",
+                    operation,
                     path,
                     source,
                 }
                 .into());
             }
         };
-        let plan: TrajectoryPlan =
-            toml::from_str(&text).map_err(|error| FormatError::NotATrajectory {
-                path,
-                reason: error.message().to_owned(),
-            })?;
+        let plan: TrajectoryPlan = toml::from_str(&text).map_err(|error| {
+            let reason = error.message().to_owned();
+            FormatError::NotATrajectory { path, reason }
+        })?;
         run.follow_orientations();
         let step = run.simulation().step();
-        let files = plan
-            .formats
-            .iter()
-            .map(|format| format.resume(folder, step))
-            .collect::<Result<_, _>>()?;
+        let files = plan.formats.iter();
+        let files = files.map(|format| format.resume(folder, step));
+        let files = files.collect::<Result<_, _>>()?;
         let mut trajectory = Self {
             folder: folder.to_owned(),
             plan,
@@ -145,13 +141,11 @@ impl Trajectory {
             if found + 1 == expected && is_due {
                 file.append(&frame(run, format.has_contacts()))?;
             } else if found != expected {
-                return Err(FormatError::NotATrajectory {
-                    path: self.folder.join(format.file_name()),
-                    reason: format!(
-                        "it holds {found} frames up to step {step}, and {expected} were written"
-                    ),
-                }
-                .into());
+                let path = self.folder.join(format.file_name());
+                let reason = format!(
+                    "it holds {found} frames up to step {step}, and {expected} were written"
+                );
+                return Err(FormatError::NotATrajectory { path, reason }.into());
             }
         }
         Ok(())
@@ -192,14 +186,10 @@ impl Trajectory {
     /// What has been written.
     pub fn report(&self) -> TrajectoryReport {
         let names = self.plan.formats.iter().map(|format| format.file_name());
+        let frames = self.files.iter().map(|file| file.frames());
         TrajectoryReport {
             files: names.map(|name| self.folder.join(name)).collect(),
-            frames: self
-                .files
-                .iter()
-                .map(|file| file.frames())
-                .max()
-                .unwrap_or(0),
+            frames: frames.max().unwrap_or(0),
             interval_steps: self.plan.interval,
             bytes: self.files.iter().map(|file| file.bytes()).sum(),
         }

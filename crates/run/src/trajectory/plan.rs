@@ -14,6 +14,9 @@ const FRAMES_PER_PERIOD: f64 = 10.0;
 const FRAMES_OF_A_STATIC_RUN: u64 = 100;
 /// Most frames of a trajectory.
 const MOST_FRAMES: u64 = 10_000_000;
+/// What a window is, where one holds no frame.
+pub(super) const WINDOW_HELP: &str =
+    "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t";
 
 /// A length of time in a run, or a time in it, as a person gives it: `0.1` in periods, `2.5t` in units of time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,10 +61,11 @@ impl Span {
             Self::Time(time) => Ok(time / configuration.run.time_step),
             Self::Periods(periods) => match configuration.drive.period() {
                 Some(period) => Ok(periods * period / configuration.run.time_step),
-                None => Err(RunError::Trajectory {
-                    reason: format!("the wave stands still, and {self} last for ever"),
-                    help: "give times instead, such as 2.5t",
-                }),
+                None => {
+                    let reason = format!("the wave stands still, and {self} last for ever");
+                    let help = "give times instead, such as 2.5t";
+                    Err(RunError::Trajectory { reason, help })
+                }
             },
         }
     }
@@ -132,20 +136,17 @@ impl TrajectoryPlan {
                 Ok::<_, RunError>(span.steps(configuration)?.round() as u64)
             })
         };
-        let (from, to) = (
-            place(request.window.from, 0)?,
-            place(request.window.to, end)?.min(end),
-        );
+        let from = place(request.window.from, 0)?;
+        let to = place(request.window.to, end)?.min(end);
         // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
         let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
         if first > to {
-            return Err(RunError::Trajectory {
-                reason: format!(
-                    "its window holds none of its frames: the run goes from step {now} to step {end}, the window from \
-                     {from} to {to}"
-                ),
-                help: "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t",
-            });
+            let reason = format!(
+                "its window holds none of its frames: the run goes from step {now} to step {end}, the window from \
+                 {from} to {to}"
+            );
+            let help = WINDOW_HELP;
+            return Err(RunError::Trajectory { reason, help });
         }
         let mut formats = request.formats.clone();
         formats.sort_unstable();
@@ -156,14 +157,11 @@ impl TrajectoryPlan {
             first,
             last: to,
         };
-        if plan.frames() > MOST_FRAMES {
-            return Err(RunError::Trajectory {
-                reason: format!(
-                    "{} frames are beyond reach: at most {MOST_FRAMES}",
-                    plan.frames()
-                ),
-                help: "take a longer interval or a shorter window",
-            });
+        let frames = plan.frames();
+        if frames > MOST_FRAMES {
+            let reason = format!("{frames} frames are beyond reach: at most {MOST_FRAMES}");
+            let help = "take a longer interval or a shorter window";
+            return Err(RunError::Trajectory { reason, help });
         }
         Ok(plan)
     }
@@ -199,19 +197,14 @@ impl TrajectoryPlan {
 
     /// Frames at or before a step.
     pub(super) fn frames_through(&self, step: u64) -> u64 {
-        let last = step.min(self.last);
-        match last.checked_sub(self.first) {
-            Some(steps) => steps / self.interval.max(1) + 1,
-            None => 0,
-        }
+        let steps = step.min(self.last).checked_sub(self.first);
+        steps.map_or(0, |steps| steps / self.interval.max(1) + 1)
     }
 
     /// Whether there is a frame at a step.
     pub(super) fn is_due(&self, step: u64) -> bool {
-        step <= self.last
-            && step
-                .checked_sub(self.first)
-                .is_some_and(|steps| steps.is_multiple_of(self.interval.max(1)))
+        let is_on_grid = |steps: u64| steps.is_multiple_of(self.interval.max(1));
+        step <= self.last && step.checked_sub(self.first).is_some_and(is_on_grid)
     }
 
     /// Steps from a step to the next frame after it.
@@ -228,15 +221,14 @@ fn interval(every: Option<Span>, configuration: &Configuration) -> Result<u64, R
         (None, Some(period)) => period / FRAMES_PER_PERIOD / configuration.run.time_step,
         (None, None) => (configuration.run.steps() / FRAMES_OF_A_STATIC_RUN) as f64,
     };
-    let rounded = steps.round();
-    match every {
-        Some(span) if rounded < 1.0 => Err(RunError::Trajectory {
-            reason: format!(
-                "frames every {span}, which is {steps:.3} times a step of {:.4} t",
-                configuration.run.time_step
-            ),
-            help: "take a longer interval, or a shorter run.time_step",
-        }),
-        _ => Ok((rounded as u64).max(1)),
+    let (rounded, step) = (steps.round(), configuration.run.time_step);
+    if let Some(span) = every
+        && rounded < 1.0
+    {
+        let reason =
+            format!("frames every {span}, which is {steps:.3} times a step of {step:.4} t");
+        let help = "take a longer interval, or a shorter run.time_step";
+        return Err(RunError::Trajectory { reason, help });
     }
+    Ok((rounded as u64).max(1))
 }

@@ -6,7 +6,7 @@ use peristalsis_formats::trajectory::gsd::GsdReader;
 use peristalsis_formats::{Frame, TrajectoryFormat};
 
 use super::frame::frame;
-use super::plan::{Span, TrajectoryPlan, Window};
+use super::plan::{Span, TrajectoryPlan, WINDOW_HELP, Window};
 use crate::error::RunError;
 use crate::run::Run;
 
@@ -50,19 +50,16 @@ impl FrameSource {
                 first = [period, time];
             }
             last = [period, time];
-            let (place, interval) = match every {
-                Some(Span::Periods(every)) => (period, every),
-                Some(Span::Time(every)) => (time, every),
-                None => (0.0, 0.0),
+            // The place on the axis of a span, and the span's own length there.
+            let along = |span: Span| match span {
+                Span::Periods(periods) => (period, periods),
+                Span::Time(length) => (time, length),
             };
-            let is_on_side = |end: Option<Span>, side: fn(f64, f64) -> bool| match end {
-                None => true,
-                Some(Span::Periods(end)) => side(period, end),
-                Some(Span::Time(end)) => side(time, end),
-            };
+            let (place, interval) = every.map_or((0.0, 0.0), along);
             let slack = TOLERANCE * interval.max(1.0);
-            if is_on_side(window.from, |place, end| place >= end - TOLERANCE)
-                && is_on_side(window.to, |place, end| place <= end + TOLERANCE)
+            let [from, to] = [window.from, window.to].map(|end| end.map(along));
+            if from.is_none_or(|(place, end)| place >= end - TOLERANCE)
+                && to.is_none_or(|(place, end)| place <= end + TOLERANCE)
                 && place >= due - slack
             {
                 chosen.push(number);
@@ -72,18 +69,13 @@ impl FrameSource {
             }
         }
         if chosen.is_empty() {
-            return Err(RunError::Trajectory {
-                reason: format!(
-                    "the window holds none of the {} frames of {}, which go from t/T = {:.2} (t = {:.1}) to {:.2} ({:.1})",
-                    reader.frames(),
-                    path.display(),
-                    first[0],
-                    first[1],
-                    last[0],
-                    last[1],
-                ),
-                help: "the window is FROM:TO in periods of the run, or in time with a t: 20:25, 5t:10t",
-            });
+            let (frames, path, help) = (reader.frames(), path.display(), WINDOW_HELP);
+            let ([first_period, first_time], [last_period, last_time]) = (first, last);
+            let reason = format!(
+                "the window holds none of the {frames} frames of {path}, which go from t/T = {first_period:.2} (t = \
+                 {first_time:.1}) to {last_period:.2} ({last_time:.1})"
+            );
+            return Err(RunError::Trajectory { reason, help });
         }
         Ok(Self {
             frames: chosen.len(),
@@ -97,16 +89,13 @@ impl FrameSource {
     /// # Errors
     /// [`RunError::Trajectory`] where there is none.
     pub fn in_folder(folder: &Path) -> Result<PathBuf, RunError> {
-        let path = folder.join(TrajectoryFormat::Gsd.file_name());
+        let name = TrajectoryFormat::Gsd.file_name();
+        let path = folder.join(name);
         if path.is_file() {
             return Ok(path);
         }
         Err(RunError::Trajectory {
-            reason: format!(
-                "{} holds no {}",
-                folder.display(),
-                TrajectoryFormat::Gsd.file_name()
-            ),
+            reason: format!("{} holds no {name}", folder.display()),
             help: "write one with run --trajectory gsd, name one with --trajectory FILE, or let the frames be computed: \
                    --from state, --from start",
         })
@@ -174,16 +163,11 @@ impl FrameSource {
     pub fn samples(&mut self) -> Result<Vec<Frame>, RunError> {
         match &mut self.from {
             From::File(reader, chosen) => {
-                let mut numbers = vec![
-                    chosen[0],
-                    chosen[chosen.len() / 2],
-                    chosen[chosen.len() - 1],
-                ];
+                let places = [0, chosen.len() / 2, chosen.len() - 1];
+                let mut numbers = places.map(|place| chosen[place]).to_vec();
                 numbers.dedup();
-                numbers
-                    .into_iter()
-                    .map(|number| Ok(reader.frame(number)?))
-                    .collect()
+                let frames = numbers.into_iter().map(|number| Ok(reader.frame(number)?));
+                frames.collect()
             }
             From::Computed {
                 run, with_contacts, ..
@@ -208,15 +192,12 @@ impl FrameSource {
             } => {
                 let step = run.simulation().step();
                 let is_new = plan.is_due(step) && plan.frames_through(step) as usize > self.next;
-                if is_new {
-                    Some(frame(run, *with_contacts))
-                } else {
+                if !is_new {
                     let steps = plan.steps_to_next(step);
-                    run.advance_at_most(
-                        steps.expect("not all frames have been made, so one is ahead"),
-                    )?;
-                    None
+                    let steps = steps.expect("not all frames have been made, so one is ahead");
+                    run.advance_at_most(steps)?;
                 }
+                is_new.then(|| frame(run, *with_contacts))
             }
         };
         self.next += usize::from(found.is_some());

@@ -5,7 +5,7 @@ mod leaking;
 mod softness;
 mod warning;
 
-use peristalsis_configuration::{Configuration, Control, ScheduledParameter};
+use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParameter};
 use peristalsis_physics::contact::NormalLaw;
 
 pub(crate) use softness::overlap_at_wave_speed;
@@ -24,15 +24,13 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     let contact_time = contact_time(configuration);
     let step = configuration.run.time_step;
     if step * STEPS_PER_CONTACT > contact_time {
-        warnings.push(Warning {
-            key: "run.time_step",
-            message: format!(
-                "a step of {} is too long for a contact that lasts {}: take {} or less",
-                span(step),
-                span(contact_time),
-                span(contact_time / STEPS_PER_CONTACT)
-            ),
-        });
+        let lengths = [step, contact_time, contact_time / STEPS_PER_CONTACT];
+        let [step, lasts, most] = lengths.map(span);
+        let message = format!(
+            "a step of {step} is too long for a contact that lasts {lasts}: take {most} or less"
+        );
+        let key = "run.time_step";
+        warnings.push(Warning { key, message });
     }
     if let Some(units) = &configuration.units {
         warnings.extend(softness::warning(configuration, units));
@@ -57,13 +55,12 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
         let opening = 2.0 * (wave.mean_radius - wave.amplitude.abs()) - wall.sphere_diameter();
         if opening <= 0.0 {
             let led = configuration.drive.schedule(ScheduledParameter::Width);
-            warnings.push(Warning {
-                key: led.map_or("drive.width", |_| "drive.schedule"),
-                message: format!(
-                    "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
-                     are squeezed through the wall"
-                ),
-            });
+            let key = led.map_or("drive.width", |_| "drive.schedule");
+            let message = format!(
+                "the tube closes on itself: the clear opening of the bottleneck, w - d, is {opening:.2}; grains there \
+                 are squeezed through the wall"
+            );
+            warnings.push(Warning { key, message });
         }
     }
     warnings
@@ -73,9 +70,7 @@ fn prescribed_wall_warnings(configuration: &Configuration) -> Vec<Warning> {
 fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
     let periods = configuration.run.periods?;
     let schedules = configuration.drive.schedules.iter();
-    let rest = schedules
-        .map(|schedule| schedule.rest())
-        .fold(0.0, f64::max);
+    let rest = schedules.map(Schedule::rest).fold(0.0, f64::max);
     (rest > periods).then(|| Warning {
         key: "drive.schedule",
         message: format!(
