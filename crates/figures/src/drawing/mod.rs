@@ -271,11 +271,13 @@ impl Drawing {
     /// The paths of all layers of a name.
     #[cfg(test)]
     pub(crate) fn paths(&self, name: &str) -> Vec<&Path> {
-        let path = |shape| match shape {
-            &Shape::Path { ref path, .. } => Some(path),
-            _ => None,
-        };
-        self.shapes(name).into_iter().filter_map(path).collect()
+        let mut paths = Vec::new();
+        for shape in self.shapes(name) {
+            if let Shape::Path { path, .. } = shape {
+                paths.push(path);
+            }
+        }
+        paths
     }
 
     /// The lines of type of all layers of a name, with their starts.
