@@ -176,9 +176,8 @@ impl Drive {
 
     /// The schedule of a parameter, if it has one.
     pub fn schedule(&self, parameter: ScheduledParameter) -> Option<&Schedule> {
-        self.schedules
-            .iter()
-            .find(|schedule| schedule.parameter == parameter)
+        let mut schedules = self.schedules.iter();
+        schedules.find(|schedule| schedule.parameter == parameter)
     }
 }
 

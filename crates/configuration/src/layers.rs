@@ -66,10 +66,8 @@ fn switch_of(choice: &Choice) -> Switch {
     for value in &choice.values {
         for name in value.keys.keys() {
             let key = format!("{}.{name}", choice.table);
-            let group = ALTERNATIVES
-                .iter()
-                .find(|group| group.contains(&key.as_str()));
-            match group {
+            let mut groups = ALTERNATIVES.iter();
+            match groups.find(|group| group.contains(&key.as_str())) {
                 Some(group) => group.iter().for_each(|key| switch.owns(&value.name, *key)),
                 None => switch.owns(&value.name, key),
             }
@@ -91,9 +89,8 @@ fn switch_of(choice: &Choice) -> Switch {
 /// The key that gives the elasticity of a contact law in SI.
 fn unit_of_elasticity(law: &str) -> String {
     let law = toml::Table::from_iter([("law".to_owned(), law.into())]);
-    let law: Normal = law
-        .try_into()
-        .expect("every parameter of a law has a default");
+    let law: Result<Normal, _> = law.try_into();
+    let law = law.expect("every parameter of a law has a default");
     units::key(law.elasticity()).to_owned()
 }
 

@@ -23,13 +23,10 @@ pub(crate) static SCHEMA: LazyLock<Value> = LazyLock::new(build);
 
 /// The schema of a type as schemars has it.
 pub(crate) fn of<T: JsonSchema>() -> Value {
-    let settings = SchemaSettings::draft2020_12().with(|settings| {
-        settings.inline_subschemas = true;
-    });
-    settings
-        .into_generator()
-        .into_root_schema_for::<T>()
-        .to_value()
+    let mut settings = SchemaSettings::draft2020_12();
+    settings.inline_subschemas = true;
+    let generator = settings.into_generator();
+    generator.into_root_schema_for::<T>().to_value()
 }
 
 /// The JSON schema of the keys of a document of another kind, tidied for TOML.
@@ -48,6 +45,7 @@ pub(crate) struct Choice {
 }
 
 /// One value of a choice.
+#[derive(Default)]
 pub(crate) struct ChosenValue {
     pub(crate) name: String,
     /// The keys that go with it, each with its schema.
@@ -71,10 +69,8 @@ fn choice(table: &'static str, schema: &Value) -> Choice {
     let branches = schema["oneOf"].as_array().into_iter().flatten();
     let values = branches.map(|branch| {
         let mut value = ChosenValue {
-            name: String::new(),
-            keys: Map::new(),
-            required: Vec::new(),
             description: branch["description"].clone(),
+            ..ChosenValue::default()
         };
         for (name, property) in branch["properties"].as_object().into_iter().flatten() {
             match property["const"].as_str() {
@@ -82,10 +78,8 @@ fn choice(table: &'static str, schema: &Value) -> Choice {
                 None => drop(value.keys.insert(name.clone(), property.clone())),
             }
         }
-        value.required = texts(&branch["required"])
-            .filter(|name| *name != key)
-            .map(str::to_owned)
-            .collect();
+        let required = texts(&branch["required"]).filter(|name| *name != key);
+        value.required = required.map(str::to_owned).collect();
         value
     });
     let values = values.collect();
@@ -99,10 +93,8 @@ fn choice(table: &'static str, schema: &Value) -> Choice {
 
 /// The texts in a list.
 pub(crate) fn texts(list: &Value) -> impl Iterator<Item = &str> {
-    list.as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
+    let list = list.as_array().into_iter().flatten();
+    list.filter_map(Value::as_str)
 }
 
 /// Full names of the keys that stand in every configuration, whatever is chosen.
@@ -148,11 +140,10 @@ fn lay_out(table: &mut Value, choice: &Choice) {
     if let Some(table) = table.as_object_mut() {
         table.remove("oneOf");
     }
-    let one_of: Vec<Value> = choice
-        .values
-        .iter()
-        .map(|value| json!({"const": value.name, "description": value.description, "type": "string"}))
-        .collect();
+    let values = choice.values.iter();
+    let values =
+        values.map(|it| json!({"const": it.name, "description": it.description, "type": "string"}));
+    let one_of: Vec<Value> = values.collect();
     let keys = &mut table["properties"];
     keys[&choice.key] = json!({"description": choice.description, "oneOf": one_of});
     for (name, key) in choice.values.iter().flat_map(|value| &value.keys) {
@@ -331,10 +322,8 @@ mod tests {
         for table in [
             "grains", "contact", "tube", "drive", "wall", "initial", "run", "observe", "units",
         ] {
-            assert_eq!(
-                schema["properties"][table]["additionalProperties"],
-                json!(false)
-            );
+            let is_open = &schema["properties"][table]["additionalProperties"];
+            assert_eq!(*is_open, json!(false), "{table}");
         }
     }
 
@@ -342,28 +331,21 @@ mod tests {
     fn names_defaults_and_known_keys() {
         let schema = &*SCHEMA;
         let sliding = &schema["properties"]["contact"]["properties"]["sliding"];
-        let names: Vec<&Value> = sliding["oneOf"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|one| &one["const"])
-            .collect();
+        let names = sliding["oneOf"].as_array().unwrap().iter();
+        let names: Vec<&Value> = names.map(|one| &one["const"]).collect();
         assert_eq!(names, ["spring", "balance", "literal"]);
         assert_eq!(sliding["default"], "spring");
         let step = &schema["properties"]["run"]["properties"]["time_step"];
         assert_eq!(step["default"], json!(0.05));
-        assert!(
-            step["description"]
-                .as_str()
-                .unwrap()
-                .ends_with("(Unit: t.)")
-        );
-        for key in [
+        let description = step["description"].as_str().unwrap();
+        assert!(description.ends_with("(Unit: t.)"));
+        let keys = [
             "drive.width",
             "wall.keep.net_force",
             "drive.schedule.form",
             "preset",
-        ] {
+        ];
+        for key in keys {
             assert!(KNOWN_KEYS.iter().any(|known| known == key), "{key}");
         }
     }

@@ -11,9 +11,7 @@ pub(crate) fn edit_distance(one: &str, other: &str) -> usize {
         for j in 1..=other.len() {
             let substitution = last[j - 1] + usize::from(one[i - 1] != other[j - 1]);
             row[j] = substitution.min(last[j] + 1).min(row[j - 1] + 1);
-            let swapped =
-                i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1];
-            if swapped {
+            if i > 1 && j > 1 && one[i - 1] == other[j - 2] && one[i - 2] == other[j - 1] {
                 row[j] = row[j].min(above[j - 2] + 1);
             }
         }

@@ -31,10 +31,11 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
     let (width, height) = (view.width, view.height);
     let pixels = u64::from(width) * u64::from(height);
     if pixels == 0 || pixels > MOST_PIXELS {
+        let most = MOST_PIXELS;
         return Err(RenderError::Size {
             width,
             height,
-            most: MOST_PIXELS,
+            most,
         });
     }
     let opaque = seen(scene, view, Finish::Opaque);
@@ -53,28 +54,25 @@ pub fn render(scene: &Scene, view: &View) -> Result<Picture, RenderError> {
 /// The spheres of a finish that are in the picture or hide light from what is.
 fn seen(scene: &Scene, view: &View, finish: Finish) -> Vec<Disc> {
     let half = 0.5 / view.scale as f32 * Vec3::new(view.width as f32, view.height as f32, 0.0);
-    scene
-        .spheres
-        .iter()
-        .filter(|sphere| {
-            sphere.finish == finish && sphere.radius > 0.0 && sphere.centre.is_finite()
-        })
-        .map(|sphere: &Sphere| Disc {
-            centre: view.seen(sphere.centre),
-            radius: sphere.radius as f32,
-            colour: sphere.colour,
-        })
-        .filter(|sphere| {
-            let margin = 4.0 * sphere.radius;
-            sphere.centre.x.abs() < half.x + margin && sphere.centre.y.abs() < half.y + margin
-        })
-        .collect()
+    let is_sound = |it: &&Sphere| it.finish == finish && it.radius > 0.0 && it.centre.is_finite();
+    let spheres = scene.spheres.iter().filter(is_sound);
+    let discs = spheres.map(|sphere| Disc {
+        centre: view.seen(sphere.centre),
+        radius: sphere.radius as f32,
+        colour: sphere.colour,
+    });
+    let is_near = |disc: &Disc| {
+        let margin = 4.0 * disc.radius;
+        disc.centre.x.abs() < half.x + margin && disc.centre.y.abs() < half.y + margin
+    };
+    discs.filter(is_near).collect()
 }
 
 fn fineness(spheres: &[Disc], view: &View) -> f32 {
     let smallest = spheres
         .iter()
-        .fold(f32::INFINITY, |least, sphere| least.min(sphere.radius));
+        .map(|it| it.radius)
+        .fold(f32::INFINITY, f32::min);
     let by_pixels = FINENESS.1 / view.scale as f32;
     by_pixels.max(FINENESS.0 * if smallest.is_finite() { smallest } else { 1.0 })
 }
@@ -105,9 +103,8 @@ impl Row {
                 && sphere.centre.y + sphere.radius >= heights[RAYS - 1]
         };
         let of = |spheres: &[Disc]| {
-            (0..spheres.len())
-                .filter(|&it| meets(&spheres[it]))
-                .collect()
+            let all = 0..spheres.len();
+            all.filter(|&it| meets(&spheres[it])).collect()
         };
         Self {
             across,
@@ -198,12 +195,9 @@ fn behind(
     let mut colours = [background.0; RAYS_A_PIXEL];
     let mut done = [false; RAYS_A_PIXEL];
     for first in 0..RAYS_A_PIXEL {
-        let Some((index, ..)) = met[first] else {
+        let Some((index, ..)) = met[first].filter(|_| !done[first]) else {
             continue;
         };
-        if done[first] {
-            continue;
-        }
         let is_same = |it: usize| met[it].is_some_and(|(other, ..)| other == index);
         let rays = (first..RAYS_A_PIXEL).filter(|&it| is_same(it));
         let places = rays.filter_map(|it| met[it].map(|(_, _, beside)| beside));

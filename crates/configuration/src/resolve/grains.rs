@@ -13,14 +13,12 @@ use crate::limits;
 /// N = round(6 rho a^2 L/d^3), d^3 averaged over the diameters, or N = round(n pi a^2 L/d*^3), d* the largest one
 pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) -> Option<Grains> {
     let mut grains = keys.grains;
-    let (diameter_min, diameter_max) = (grains.diameter_min, grains.diameter_max);
-    if diameter_min > diameter_max {
+    let (least, most) = (grains.diameter_min, grains.diameter_max);
+    if least > most {
         return context.refuse(
             ProblemKind::Inconsistent,
             &["grains.diameter_min", "grains.diameter_max"],
-            format!(
-                "grains.diameter_min = {diameter_min} is above grains.diameter_max = {diameter_max}"
-            ),
+            format!("grains.diameter_min = {least} is above grains.diameter_max = {most}"),
             "diameters are uniform between diameter_min and diameter_max; give both (each is 1 if missing)"
                 .into(),
         );
@@ -32,10 +30,7 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
         (Some(fraction), _) => {
             (6.0 * fraction * square * length / grains.mean_cubed_diameter()).round()
         }
-        (None, Some(density)) => {
-            let cube = diameter_max * diameter_max * diameter_max;
-            (density * PI * square * length / cube).round()
-        }
+        (None, Some(density)) => (density * PI * square * length / (most * most * most)).round(),
     };
     // Also refuses values that are infinite or NaN because a diameter cubed is 0.
     let within = number <= limits::MOST_GRAINS as f64;

@@ -75,10 +75,8 @@ impl GifEncoder {
         let places = pixels.chunks_exact(3).zip(self.screen.chunks_exact_mut(3));
         for (place, (pixel, screen)) in places.enumerate() {
             let apart = pixel.iter().zip(&*screen);
-            let apart: i32 = apart
-                .map(|(one, other)| (i32::from(*one) - i32::from(*other)).abs())
-                .sum();
-            if apart <= TOLERANCE && !is_first {
+            let apart = apart.map(|(one, other)| i32::from(one.abs_diff(*other)));
+            if apart.sum::<i32>() <= TOLERANCE && !is_first {
                 continue;
             }
             let index = palette.nearest(pixel, &mut lookup);
@@ -121,9 +119,8 @@ impl Encoder for GifEncoder {
     fn finish(self: Box<Self>) -> Result<(), RenderError> {
         // The trailer is written as the encoder gives its file back.
         let out = self.encoder.into_inner()?;
-        out.into_inner()
-            .map_err(|error| RenderError::Film(error.into_error()))?;
-        Ok(())
+        let file = out.into_inner().map_err(|error| error.into_error());
+        file.map(drop).map_err(RenderError::Film)
     }
 }
 
@@ -135,10 +132,9 @@ struct Palette {
 
 impl Palette {
     fn of(pixels: &[u8]) -> Self {
-        let opaque: Vec<u8> = pixels
-            .chunks_exact(3)
-            .flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255])
-            .collect();
+        let opaque = pixels.chunks_exact(3);
+        let opaque = opaque.flat_map(|pixel| [pixel[0], pixel[1], pixel[2], 255]);
+        let opaque: Vec<u8> = opaque.collect();
         // Fewer pixels than it learns from would leave the search without any.
         let sampled = SAMPLED.min((opaque.len() / (4 * COLOURS)).max(1) as i32);
         let mut colours = NeuQuant::new(sampled, COLOURS - OUTLIERS, &opaque).color_map_rgb();
@@ -174,11 +170,9 @@ impl Palette {
 /// Adds the colours that the palette is furthest from: few pixels have them, such as those of a bar of colours, and the
 /// search by frequency does not find them.
 fn add_outliers(colours: &mut Vec<u8>, pixels: &[u8]) {
-    let mut left: Vec<(&[u8], i32)> = pixels
-        .chunks_exact(3)
-        .step_by(OUTLIERS_SAMPLED)
-        .map(|pixel| (pixel, apart(pixel, &colours[3 * nearest(colours, pixel)..])))
-        .collect();
+    let sampled = pixels.chunks_exact(3).step_by(OUTLIERS_SAMPLED);
+    let away = |pixel| apart(pixel, &colours[3 * nearest(colours, pixel)..]);
+    let mut left: Vec<(&[u8], i32)> = sampled.map(|pixel| (pixel, away(pixel))).collect();
     for _ in 0..OUTLIERS {
         let furthest = left.iter().max_by_key(|(_, away)| *away);
         let Some(found) = furthest.map(|(pixel, _)| pixel.to_vec()) else {
@@ -194,16 +188,12 @@ fn add_outliers(colours: &mut Vec<u8>, pixels: &[u8]) {
 /// Square of the distance of two colours, by their first three channels.
 fn apart(one: &[u8], other: &[u8]) -> i32 {
     let channels = one.iter().zip(other).take(3);
-    channels
-        .map(|(one, other)| (i32::from(*one) - i32::from(*other)).pow(2))
-        .sum()
+    let apart = channels.map(|(one, other)| i32::from(one.abs_diff(*other)));
+    apart.map(|apart| apart.pow(2)).sum()
 }
 
 fn nearest(colours: &[u8], pixel: &[u8]) -> usize {
-    let apart = |colour: &[u8]| apart(colour, pixel);
-    let found = colours
-        .chunks_exact(3)
-        .enumerate()
-        .min_by_key(|(_, colour)| apart(colour));
+    let colours = colours.chunks_exact(3).enumerate();
+    let found = colours.min_by_key(|(_, colour)| apart(colour, pixel));
     found.map_or(0, |(index, _)| index)
 }

@@ -129,10 +129,8 @@ impl Film {
             }
         };
         if *expected != size {
-            return Err(RenderError::OtherSize {
-                expected: *expected,
-                found: size,
-            });
+            let (expected, found) = (*expected, size);
+            return Err(RenderError::OtherSize { expected, found });
         }
         encoder.add(picture)
     }

@@ -35,18 +35,6 @@ pub enum Status {
     Diverged,
 }
 
-impl Status {
-    /// Its name in files.
-    fn name(self) -> &'static str {
-        match self {
-            Self::Complete => "complete",
-            Self::Settled => "settled",
-            Self::Interrupted => "interrupted",
-            Self::Diverged => "diverged",
-        }
-    }
-}
-
 /// The outcome of a run. Written down it has the names, units and words of the table of quantities.
 ///
 /// "Late" is the last part of the run, a quarter unless configured otherwise ([`Run::late_fraction`]). A pair is a number

@@ -1,7 +1,7 @@
 //! The table of a run's quantities: a quantity is one row here, and `summary.json`, the rows of studies, SI, the
 //! labels of the viewer and the documentation follow.
 
-use peristalsis_configuration::{Configuration, Control, InitialState, Units};
+use peristalsis_configuration::{Configuration, ScheduledParameter as Parameter, Units};
 use peristalsis_observe::Reading::{
     Measured, Optional, OptionalMeasured, Real, Text, Truth, Whole,
 };
@@ -91,10 +91,10 @@ impl RunQuantity {
 #[rustfmt::skip]
 pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("seed", "1", "seed of the random numbers", Whole(|c| c.run.seed)),
-    setting("initial_state", "", "how the grains stood at t = 0", Text(|c| initial_state(c).to_owned())).only_in_rows(),
-    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| s.status.name().to_owned())),
-    setting("width", "d", "w = 2 (a - b); missing under stress control", Optional(width)).only_in_rows().labelled("width w / d"),
-    setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(force_amplitude)).only_in_rows().labelled("force amplitude f"),
+    setting("initial_state", "", "how the grains stood at t = 0", Text(|c| name(c.initial.state))).only_in_rows(),
+    result("status", "", "complete, or settled: ended early, after its transition", Text(|s| name(s.status))),
+    setting("width", "d", "w = 2 (a - b); missing under stress control", Optional(|c| c.drive.own(Parameter::Width))).only_in_rows().labelled("width w / d"),
+    setting("force_amplitude", "m d/t^2", "f^P; missing under strain control", Optional(|c| c.drive.own(Parameter::ForceAmplitude))).only_in_rows().labelled("force amplitude f"),
     setting("strain_rate", "1/t", "c/lambda", Real(|c| c.drive.strain_rate)).only_in_rows().labelled("strain rate ε̇ t"),
     setting("volume_fraction", "1", "rho = N/(6 a^2 L), grain volumes averaged", Real(Configuration::volume_fraction)).only_in_rows().labelled("volume fraction ρ"),
     result("number_density", "1/d^3", "n = N d*^3/(pi a^2 L)", Real(|s| s.configuration.number_density())).only_in_rows().labelled("number density n d³"),
@@ -177,28 +177,9 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     result("revision", "", "revision of its source", Text(|_| REVISION.to_owned())),
 ];
 
-/// How the grains stand at t = 0.
-pub(super) fn initial_state(configuration: &Configuration) -> &'static str {
-    match configuration.initial.state {
-        InitialState::Rest => "rest",
-        InitialState::Jammed => "jammed",
-    }
-}
-
-fn width(configuration: &Configuration) -> Option<f64> {
-    match configuration.drive.control {
-        Control::Strain { width } => Some(width),
-        Control::Stress { .. } => None,
-    }
-}
-
-fn force_amplitude(configuration: &Configuration) -> Option<f64> {
-    match configuration.drive.control {
-        Control::Strain { .. } => None,
-        Control::Stress {
-            force_amplitude, ..
-        } => Some(force_amplitude),
-    }
+/// The name of a variant in lower case.
+fn name(variant: impl std::fmt::Debug) -> String {
+    format!("{variant:?}").to_lowercase()
 }
 
 /// Mean of the second half of a series less the mean of the first half; NaN below two values.

@@ -26,35 +26,25 @@ pub(super) fn warning(
     let key = "tube.rings_per_wave";
     let passing = lattice.largest_passing_radius(widest);
     if passing > LEAKING_RADIUS {
-        return Some(Warning {
-            key,
-            message: format!(
-                "the lattice leaks where the tube is widest (R = {widest:.2}): a sphere of radius {passing:.3} passes between \
-                 its spheres, and soft grains squeeze through; take more spheres a ring or more rings a wave"
-            ),
-        });
+        let message = format!(
+            "the lattice leaks where the tube is widest (R = {widest:.2}): a sphere of radius {passing:.3} passes between \
+             its spheres, and soft grains squeeze through; take more spheres a ring or more rings a wave"
+        );
+        return Some(Warning { key, message });
     }
     let speed = configuration.wave_speed();
-    let normal = configuration.contact.normal;
-    let grains = [
-        configuration.grains.diameter_min,
-        configuration.grains.diameter_max,
-    ];
-    let part = grains
-        .map(|diameter| {
-            let kinetic = 0.5 * diameter * diameter * diameter * speed * speed;
-            kinetic / energy_to_pass(normal, lattice, widest, diameter)
-        })
-        .into_iter()
-        .fold(0.0, f64::max);
-    (part > LEAKING_ENERGY).then(|| Warning {
-        key,
-        message: format!(
-            "a grain as fast as the wave carries {part:.2} of the energy at which the lattice gives way where the tube is \
-             widest: from about {LEAKING_ENERGY} on grains leave the tube, which `escaped` counts; take more spheres a ring \
-             and more rings a wave, or a lower drive.strain_rate"
-        ),
-    })
+    let (normal, grains) = (configuration.contact.normal, configuration.grains);
+    let parts = [grains.diameter_min, grains.diameter_max].map(|diameter| {
+        let kinetic = 0.5 * diameter * diameter * diameter * speed * speed;
+        kinetic / energy_to_pass(normal, lattice, widest, diameter)
+    });
+    let part = parts.into_iter().fold(0.0, f64::max);
+    let message = format!(
+        "a grain as fast as the wave carries {part:.2} of the energy at which the lattice gives way where the tube is \
+         widest: from about {LEAKING_ENERGY} on grains leave the tube, which `escaped` counts; take more spheres a ring \
+         and more rings a wave, or a lower drive.strain_rate"
+    );
+    (part > LEAKING_ENERGY).then_some(Warning { key, message })
 }
 
 /// The elastic energy of a grain whose centre is in the widest gap of the lattice: what it must have to pass.

@@ -71,13 +71,12 @@ fn unfinished_schedule(configuration: &Configuration) -> Option<Warning> {
     let periods = configuration.run.periods?;
     let schedules = configuration.drive.schedules.iter();
     let rest = schedules.map(Schedule::rest).fold(0.0, f64::max);
-    (rest > periods).then(|| Warning {
-        key: "drive.schedule",
-        message: format!(
-            "it goes on until {rest} periods, and the run ends after {periods}: take a longer run (run.periods) or a shorter \
-             schedule"
-        ),
-    })
+    let key = "drive.schedule";
+    let message = format!(
+        "it goes on until {rest} periods, and the run ends after {periods}: take a longer run (run.periods) or a shorter \
+         schedule"
+    );
+    (rest > periods).then_some(Warning { key, message })
 }
 
 /// Half a period of the fastest oscillation of a sphere on its contacts \[t\]: how long a contact lasts.

@@ -32,19 +32,15 @@ pub(crate) fn overlap_at_wave_speed(configuration: &Configuration) -> f64 {
 pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Warning> {
     let hardest = configuration.at_its_hardest();
     let overlap = overlap_at_wave_speed(&hardest);
+    let material = Material::of(units);
     let Material {
-        key,
-        value,
-        name,
-        unit,
-        per_speed,
-    } = Material::of(units);
+        key, value, name, ..
+    } = material;
+    let (unit, per_speed) = (material.unit, material.per_speed);
     let strain_rate = hardest.drive.strain_rate;
     // A schedule's strain rates follow the elasticity in any case.
-    let is_led = configuration
-        .drive
-        .schedule(ScheduledParameter::StrainRate)
-        .is_some();
+    let led = configuration.drive.schedule(ScheduledParameter::StrainRate);
+    let is_led = led.is_some();
     // The advice must hold as printed, with three digits: so the frequency is rounded up.
     let frequency = three_digits(strain_rate / units.time(), f64::ceil);
     let faster = frequency * units.time() / strain_rate;
@@ -66,32 +62,28 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
                 scaled_with(configuration, name, value / harder)
             )
         };
-        return Some(Warning {
-            key,
-            message: format!(
-                "two grains that meet at the wave's speed, {speed:.3e} m/s, overlap by {:.0} % of a diameter, which no solid \
+        let message = format!(
+            "two grains that meet at the wave's speed, {speed:.3e} m/s, overlap by {:.0} % of a diameter, which no solid \
                  grain does: for at most {:.0} % take {what}",
-                100.0 * overlap,
-                100.0 * LARGEST_OVERLAP,
-            ),
-        });
+            100.0 * overlap,
+            100.0 * LARGEST_OVERLAP,
+        );
+        return Some(Warning { key, message });
     }
     let steps = configuration.drive.period()? / configuration.run.time_step;
     if steps > MOST_STEPS_PER_PERIOD && overlap < SMALL_OVERLAP && !is_led {
         let softer = three_digits(value_for(SMALL_OVERLAP), f64::ceil);
         // The unit of time grows as elasticity^(-1/2).
         let fewer = steps * (softer / value).sqrt();
-        return Some(Warning {
-            key,
-            message: format!(
-                "at this {name} a period of the wave takes {steps:.1e} steps. The flow of hard grains hardly depends on \
+        let message = format!(
+            "at this {name} a period of the wave takes {steps:.1e} steps. The flow of hard grains hardly depends on \
                  their {name} while overlaps stay small: {softer:.2e} {unit}, with units.wave_frequency = {frequency:.2e}, \
                  still keeps that of two grains that meet at the wave's speed at {:.0} % of a diameter, and takes {fewer:.1e} \
                  steps a period (check with a harder run){}",
-                100.0 * SMALL_OVERLAP,
-                scaled_with(configuration, name, value / softer)
-            ),
-        });
+            100.0 * SMALL_OVERLAP,
+            scaled_with(configuration, name, value / softer)
+        );
+        return Some(Warning { key, message });
     }
     None
 }
@@ -107,21 +99,18 @@ pub fn overlap_warning(run: &Run) -> Option<Warning> {
         return None;
     }
     let Material { key, name, .. } = Material::of(units);
-    let from_the_start = if packed > LARGEST_OVERLAP {
-        format!(", and by {:.0} % as they were packed", 100.0 * packed)
-    } else {
-        String::new()
-    };
-    Some(Warning {
-        key,
-        message: format!(
-            "grains overlapped by up to {:.0} % of a diameter, one another or the wall{from_the_start}, where soft spheres \
+    let mut from_the_start = String::new();
+    if packed > LARGEST_OVERLAP {
+        from_the_start = format!(", and by {:.0} % as they were packed", 100.0 * packed);
+    }
+    let message = format!(
+        "grains overlapped by up to {:.0} % of a diameter, one another or the wall{from_the_start}, where soft spheres \
              pass for solid grains up to {:.0} %: take a larger {name} (with units.wave_frequency, or the wave becomes \
              faster with it), fewer grains, a wider tube or a weaker drive",
-            100.0 * overlap,
-            100.0 * LARGEST_OVERLAP
-        ),
-    })
+        100.0 * overlap,
+        100.0 * LARGEST_OVERLAP
+    );
+    Some(Warning { key, message })
 }
 
 /// What the units say of the grains' elasticity.
@@ -169,13 +158,13 @@ fn scaled_with(configuration: &Configuration, name: &str, factor: f64) -> String
             "the tethers of wall.keep",
         ]);
     }
-    match keys.as_slice() {
-        [] => String::new(),
-        keys => format!(
-            "; what is in units of the {name} ({}) is then multiplied by {factor:.3e} to stay what it is in SI",
-            keys.join(", ")
-        ),
+    if keys.is_empty() {
+        return String::new();
     }
+    let keys = keys.join(", ");
+    format!(
+        "; what is in units of the {name} ({keys}) is then multiplied by {factor:.3e} to stay what it is in SI"
+    )
 }
 
 /// A positive number with three significant digits, as `towards` rounds whole numbers.
