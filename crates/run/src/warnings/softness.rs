@@ -33,9 +33,7 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     let hardest = configuration.at_its_hardest();
     let overlap = overlap_at_wave_speed(&hardest);
     let material = Material::of(units);
-    let Material {
-        key, value, name, ..
-    } = material;
+    let (key, value, name) = (material.key, material.value, material.name);
     let (unit, per_speed) = (material.unit, material.per_speed);
     let strain_rate = hardest.drive.strain_rate;
     // A schedule's strain rates follow the elasticity in any case.
