@@ -67,11 +67,9 @@ fn inner_tables(key: &Value) -> Vec<&Value> {
 }
 
 fn alternatives(key: &Value) -> Vec<&Value> {
-    ["anyOf", "oneOf"]
-        .iter()
-        .filter_map(|name| key.get(name)?.as_array())
-        .flatten()
-        .collect()
+    let lists = ["anyOf", "oneOf"].into_iter();
+    let lists = lists.filter_map(|name| key.get(name)?.as_array());
+    lists.flatten().collect()
 }
 
 /// The words that a key takes, each with its meaning.

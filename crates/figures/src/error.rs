@@ -112,18 +112,12 @@ pub enum FigureError {
 
 /// Passes a finite value on, and names it otherwise.
 pub(crate) fn finite(quantity: &'static str, value: f64) -> Result<f64, FigureError> {
-    if value.is_finite() {
-        Ok(value)
-    } else {
-        Err(FigureError::NonFinite { quantity, value })
-    }
+    let found = value.is_finite().then_some(value);
+    found.ok_or(FigureError::NonFinite { quantity, value })
 }
 
 /// Passes a finite positive value on, and names it otherwise.
 pub(crate) fn positive(quantity: &'static str, value: f64) -> Result<f64, FigureError> {
-    if finite(quantity, value)? > 0.0 {
-        Ok(value)
-    } else {
-        Err(FigureError::NotPositive { quantity, value })
-    }
+    let found = (finite(quantity, value)? > 0.0).then_some(value);
+    found.ok_or(FigureError::NotPositive { quantity, value })
 }
