@@ -44,12 +44,8 @@ pub fn autocorrelation_time(series: &[f64]) -> Result<AutocorrelationTime, Error
     let mut converged = variance == 0.0;
     while !converged && window < series.len() / LARGEST_WINDOW {
         window += 1;
-        let covariance: f64 = deviations
-            .iter()
-            .zip(&deviations[window..])
-            .map(|(now, later)| now * later)
-            .sum();
-        time += covariance / variance;
+        let pairs = deviations.iter().zip(&deviations[window..]);
+        time += pairs.map(|(now, later)| now * later).sum::<f64>() / variance;
         converged = window as f64 >= WINDOW * time;
     }
     Ok(AutocorrelationTime {

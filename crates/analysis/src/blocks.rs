@@ -64,10 +64,8 @@ fn block_levels(series: &[f64]) -> Result<Vec<BlockLevel>, Error> {
             error,
             error_uncertainty: error / (2.0 * free).sqrt(),
         });
-        averages = averages
-            .chunks_exact(2)
-            .map(|pair| 0.5 * (pair[0] + pair[1]))
-            .collect();
+        let pairs = averages.chunks_exact(2);
+        averages = pairs.map(|pair| 0.5 * (pair[0] + pair[1])).collect();
         block_length *= 2;
     }
     Ok(levels)
@@ -99,11 +97,12 @@ pub fn mean_with_error(series: &[f64]) -> Result<Estimate, Error> {
     let levels = block_levels(series)?;
     let single = levels[0];
     let inefficiency = |level: &BlockLevel| {
+        let ratio = level.error / single.error;
         // A constant series has no scatter at any level, and nothing to correlate.
         if single.error == 0.0 {
             1.0
         } else {
-            (level.error / single.error) * (level.error / single.error)
+            ratio * ratio
         }
     };
     let trusted = || levels.iter().filter(|level| level.blocks >= LEAST_BLOCKS);
@@ -112,15 +111,9 @@ pub fn mean_with_error(series: &[f64]) -> Result<Estimate, Error> {
         let inefficiency = inefficiency(level);
         length * length * length > 2.0 * series.len() as f64 * inefficiency * inefficiency
     });
-    let chosen = plateau.copied().unwrap_or_else(|| {
-        trusted().fold(single, |largest, level| {
-            if level.error > largest.error {
-                *level
-            } else {
-                largest
-            }
-        })
-    });
+    let larger = |a: BlockLevel, b: &BlockLevel| if b.error > a.error { *b } else { a };
+    let chosen = plateau.copied();
+    let chosen = chosen.unwrap_or_else(|| trusted().fold(single, larger));
     Ok(Estimate {
         mean: mean_of(series),
         error: chosen.error,

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Fewest resamples from which an interval is read.
-pub(crate) const LEAST_RESAMPLES: usize = 20;
+const LEAST_RESAMPLES: usize = 20;
 
 /// How often to resample, and with which random numbers.
 ///
@@ -31,12 +31,7 @@ impl Bootstrap {
 
     /// Random numbers of every resample, in order.
     pub(crate) fn streams(self) -> Result<impl Iterator<Item = Randomness>, Error> {
-        if self.resamples < LEAST_RESAMPLES {
-            return Err(Error::TooFewResamples {
-                needed: LEAST_RESAMPLES,
-                found: self.resamples,
-            });
-        }
+        enough_resamples(self.resamples)?;
         Ok((0..self.resamples as u64).map(move |stream| Randomness::new(self.seed, stream)))
     }
 }
@@ -62,10 +57,7 @@ pub(crate) fn bootstrap_errors<T: Clone, const N: usize>(
     bootstrap: Bootstrap,
     mut statistic: impl FnMut(&[T]) -> Option<[f64; N]>,
 ) -> Result<Resampled, Error> {
-    let values = statistic(sample).ok_or(Error::Undetermined {
-        points: sample.len(),
-        parameters: N,
-    })?;
+    let values = statistic(sample).ok_or(Error::undetermined(sample.len(), N))?;
     let estimates = bootstrap.streams()?.map(|mut randomness| {
         let drawn = randomness.resample(sample);
         statistic(&drawn).map(|numbers| numbers.to_vec())
@@ -81,33 +73,38 @@ pub(crate) fn summarise(
     let mut columns: Vec<Vec<f64>> = vec![Vec::new(); values.len()];
     let (mut succeeded, mut failed) = (0, 0);
     for estimate in estimates {
-        match estimate {
-            Some(numbers) => {
-                succeeded += 1;
-                for (column, number) in columns.iter_mut().zip(numbers) {
-                    column.push(number);
-                }
-            }
-            None => failed += 1,
+        let Some(numbers) = estimate else {
+            failed += 1;
+            continue;
+        };
+        succeeded += 1;
+        for (column, number) in columns.iter_mut().zip(numbers) {
+            column.push(number);
         }
     }
-    let too_few = Error::TooFewResamples {
-        needed: LEAST_RESAMPLES,
-        found: succeeded,
+    enough_resamples(succeeded)?;
+    let errors_of = |(&value, column): (&f64, &Vec<f64>)| {
+        Uncertain::from_bootstrap(value, column).ok_or(too_few_resamples(succeeded))
     };
-    if succeeded < LEAST_RESAMPLES {
-        return Err(too_few);
-    }
-    let estimates = values
-        .iter()
-        .zip(&columns)
-        .map(|(&value, column)| Uncertain::from_bootstrap(value, column).ok_or(too_few))
-        .collect::<Result<_, _>>()?;
+    let estimates = values.iter().zip(&columns).map(errors_of);
+    let estimates = estimates.collect::<Result<_, _>>()?;
     Ok(Resampled {
         estimates,
         succeeded,
         failed,
     })
+}
+
+fn enough_resamples(found: usize) -> Result<(), Error> {
+    if found < LEAST_RESAMPLES {
+        return Err(too_few_resamples(found));
+    }
+    Ok(())
+}
+
+const fn too_few_resamples(found: usize) -> Error {
+    let needed = LEAST_RESAMPLES;
+    Error::TooFewResamples { needed, found }
 }
 
 /// Random numbers of one stream.

@@ -65,24 +65,19 @@ pub struct CollapseQuality {
 pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, Error> {
     enough(curves.len(), 2)?;
     let total: usize = curves.iter().map(Vec::len).sum();
-    let sorted: Vec<Vec<CurvePoint>> = curves
-        .iter()
-        .map(|curve| {
-            let mut points: Vec<CurvePoint> = curve.iter().copied().filter(is_usable).collect();
-            points.sort_by(|a, b| a.x.total_cmp(&b.x));
-            points
-        })
-        .collect();
+    let sorted = |curve: &Vec<CurvePoint>| {
+        let mut points: Vec<CurvePoint> = curve.iter().copied().filter(is_usable).collect();
+        points.sort_by(|a, b| a.x.total_cmp(&b.x));
+        points
+    };
+    let sorted: Vec<Vec<CurvePoint>> = curves.iter().map(sorted).collect();
     let mut groups: Vec<usize> = (0..curves.len()).collect();
     let mut sum = 0.0;
     let mut compared = 0_usize;
     for (own, curve) in sorted.iter().enumerate() {
         for point in curve {
             let mut line = Line::default();
-            for (other, curve) in sorted.iter().enumerate() {
-                if other == own {
-                    continue;
-                }
+            for (other, curve) in sorted.iter().enumerate().filter(|(other, _)| *other != own) {
                 if let Some([left, right]) = enclosing(curve, point.x) {
                     line.add(left, point.x);
                     line.add(right, point.x);
@@ -97,10 +92,8 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
         }
     }
     if compared == 0 {
-        return Err(Error::NoOverlap {
-            needed: 0.0,
-            found: 0.0,
-        });
+        let (needed, found) = (0.0, 0.0);
+        return Err(Error::NoOverlap { needed, found });
     }
     Ok(CollapseQuality {
         quality: sum / compared as f64,
@@ -121,21 +114,16 @@ fn enclosing(curve: &[CurvePoint], x: f64) -> Option<[CurvePoint; 2]> {
     if curve.len() < 2 || x < first.x || x > last.x {
         return None;
     }
-    let right = curve
-        .partition_point(|point| point.x < x)
-        .clamp(1, curve.len() - 1);
+    let right = curve.partition_point(|point| point.x < x);
+    let right = right.clamp(1, curve.len() - 1);
     Some([curve[right - 1], curve[right]])
 }
 
 /// Makes two curves members of one group.
 fn join(groups: &mut [usize], a: usize, b: usize) {
     let (kept, gone) = (groups[a].min(groups[b]), groups[a].max(groups[b]));
-    if kept != gone {
-        for group in groups.iter_mut() {
-            if *group == gone {
-                *group = kept;
-            }
-        }
+    for group in groups.iter_mut().filter(|group| **group == gone) {
+        *group = kept;
     }
 }
 

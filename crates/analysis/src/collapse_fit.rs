@@ -4,7 +4,7 @@ use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
 use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
 use crate::error::{Error, checked, checked_positive, enough, same_length};
 use crate::numerics::minimum::crossing;
-use crate::numerics::simplex::nelder_mead;
+use crate::numerics::simplex::{Lowest, nelder_mead};
 use crate::uncertain::Interval;
 use serde::{Deserialize, Serialize};
 
@@ -81,15 +81,11 @@ impl Collapse<'_> {
     /// # Errors
     /// Those of [`collapse_quality`].
     pub fn quality(&self, parameters: &[f64]) -> Result<CollapseQuality, Error> {
-        let scaled: Vec<Vec<CurvePoint>> = self
-            .curves
-            .iter()
-            .enumerate()
-            .map(|(index, curve)| {
-                let scale = |&point| (self.transform)(parameters, index, curve.parameter, point);
-                curve.points.iter().map(scale).collect()
-            })
-            .collect();
+        let scaled = |(index, curve): (usize, &Curve)| {
+            let scale = |&point| (self.transform)(parameters, index, curve.parameter, point);
+            curve.points.iter().map(scale).collect()
+        };
+        let scaled: Vec<Vec<CurvePoint>> = self.curves.iter().enumerate().map(scaled).collect();
         collapse_quality(&scaled)
     }
 
@@ -105,7 +101,7 @@ impl Collapse<'_> {
         }
     }
 
-    fn search(&self, start: &[f64], steps: &[f64]) -> (Vec<f64>, f64, bool) {
+    fn search(&self, start: &[f64], steps: &[f64]) -> Lowest {
         let objective = |parameters: &[f64]| self.objective(parameters);
         let evaluations = EVALUATIONS * start.len();
         let mut best = nelder_mead(objective, start, steps, TOLERANCE, evaluations);
@@ -113,24 +109,15 @@ impl Collapse<'_> {
         // afresh, to either side and in other proportions, until that no longer helps.
         let mut idle = 0;
         for round in 0..MOST_ROUNDS {
-            let fresh: Vec<f64> = steps
-                .iter()
-                .enumerate()
-                .map(|(axis, step)| {
-                    let sign = if (round >> (axis % 2)) & 1 == 0 {
-                        -1.0
-                    } else {
-                        1.0
-                    };
-                    sign * step / f64::from(1 + round / 4)
-                })
-                .collect();
-            let again = nelder_mead(objective, &best.place, &fresh, TOLERANCE, evaluations);
-            idle = if again.value < best.value * (1.0 - GAIN) {
-                0
-            } else {
-                idle + 1
+            let fresh = |(axis, step): (usize, &f64)| {
+                let is_back = (round >> (axis % 2)) & 1 == 0;
+                let sign = if is_back { -1.0 } else { 1.0 };
+                sign * step / f64::from(1 + round / 4)
             };
+            let fresh: Vec<f64> = steps.iter().enumerate().map(fresh).collect();
+            let again = nelder_mead(objective, &best.place, &fresh, TOLERANCE, evaluations);
+            let gains = again.value < best.value * (1.0 - GAIN);
+            idle = if gains { 0 } else { idle + 1 };
             if again.value < best.value {
                 best = again;
             }
@@ -138,7 +125,7 @@ impl Collapse<'_> {
                 break;
             }
         }
-        (best.place, best.value, best.converged)
+        best
     }
 
     /// Parameters of the smallest S with enough overlap, by downhill simplex from several starts.
@@ -161,47 +148,42 @@ impl Collapse<'_> {
         same_length(start.len(), steps.len())?;
         checked(start, 1)?;
         checked_positive(steps)?;
-        if !(0.0..=1.0).contains(&self.least_overlap) {
-            return Err(Error::Fraction {
-                value: self.least_overlap,
-            });
+        let needed = self.least_overlap;
+        if !(0.0..=1.0).contains(&needed) {
+            return Err(Error::Fraction { value: needed });
         }
-        let found: Vec<(Vec<f64>, f64, bool)> = (0..starts as u64)
-            .map(|number| {
-                let mut randomness = Randomness::new(seed, number);
-                let place: Vec<f64> = start
-                    .iter()
-                    .zip(steps)
-                    .map(|(&start, &step)| match number {
-                        0 => start,
-                        _ => start + step * (4.0 * randomness.uniform() - 2.0),
-                    })
-                    .collect();
-                self.search(&place, steps)
-            })
-            .collect();
-        let (parameters, value, converged) = found
-            .iter()
-            .min_by(|a, b| a.1.total_cmp(&b.1))
-            .cloned()
-            .ok_or(Error::TooFew {
-                needed: 1,
-                found: 0,
-            })?;
+        enough(starts, 1)?;
+        let search = |number: u64| {
+            let mut randomness = Randomness::new(seed, number);
+            let place = |(&start, &step): (&f64, &f64)| match number {
+                0 => start,
+                _ => start + step * (4.0 * randomness.uniform() - 2.0),
+            };
+            let place: Vec<f64> = start.iter().zip(steps).map(place).collect();
+            self.search(&place, steps)
+        };
+        let mut found: Vec<Lowest> = (0..starts as u64).map(search).collect();
+        // Stable: of equal ones the first search comes first.
+        found.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let Lowest {
+            place: parameters,
+            value,
+            converged,
+        } = found[0].clone();
         let quality = self.quality(&parameters);
         if value >= SHORT {
             return Err(match quality {
                 Err(too_few @ Error::TooFew { .. }) => too_few,
-                other => Error::NoOverlap {
-                    needed: self.least_overlap,
-                    found: other.map_or(0.0, |quality| quality.overlap),
-                },
+                other => {
+                    let found = other.map_or(0.0, |quality| quality.overlap);
+                    Error::NoOverlap { needed, found }
+                }
             });
         }
         Ok(CollapseFit {
             parameters,
             quality: quality?,
-            agreeing: found.iter().filter(|other| other.1 <= value * 1.01).count(),
+            agreeing: found.partition_point(|other| other.value <= value * 1.01),
             starts,
             converged,
         })
@@ -223,21 +205,16 @@ impl Collapse<'_> {
         bootstrap: Bootstrap,
     ) -> Result<Resampled, Error> {
         same_length(fit.parameters.len(), steps.len())?;
-        let steps: Vec<f64> = checked_positive(steps)?
-            .iter()
-            .map(|step| 0.5 * step)
-            .collect();
+        let steps = checked_positive(steps)?.iter();
+        let steps: Vec<f64> = steps.map(|step| 0.5 * step).collect();
         let estimates = bootstrap.streams()?.map(|mut randomness| {
             let mut curves = self.curves.to_vec();
             for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
                 point.y += point.error * randomness.normal();
             }
-            let resampled = Collapse {
-                curves: &curves,
-                ..*self
-            };
-            let (parameters, value, _) = resampled.search(&fit.parameters, &steps);
-            (value < SHORT).then_some(parameters)
+            let curves = &curves;
+            let found = Collapse { curves, ..*self }.search(&fit.parameters, &steps);
+            (found.value < SHORT).then_some(found.place)
         });
         summarise(&fit.parameters, estimates)
     }
@@ -281,12 +258,11 @@ impl Collapse<'_> {
             let limit = centre + side * 50.0 * steps[axis];
             crossing(excess, centre, 0.25 * steps[axis], limit).unwrap_or(side * f64::INFINITY)
         };
-        Ok((0..steps.len())
-            .map(|axis| Interval {
-                lower: end(axis, -1.0),
-                upper: end(axis, 1.0),
-            })
-            .collect())
+        let ends = |axis| Interval {
+            lower: end(axis, -1.0),
+            upper: end(axis, 1.0),
+        };
+        Ok((0..steps.len()).map(ends).collect())
     }
 
     /// Fits with one curve left out in turn, in the order of the curves: exponents that hang on one curve move.

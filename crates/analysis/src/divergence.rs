@@ -52,26 +52,22 @@ pub fn compare_laws(
     transitions: &[Transition],
 ) -> Result<Vec<LawEvidence>, Error> {
     let table = RunTable::new(width, transitions)?;
-    let mut evidence = laws
-        .iter()
-        .map(|&law| {
-            let likelihood = LawLikelihood::new(law, family, &table.places, &table.runs)?;
-            let best = likelihood.largest()?;
-            let parameters = law.parameters_with(family);
-            Ok(LawEvidence {
-                law,
-                log_likelihood: best.log_likelihood,
-                akaike: 2.0 * parameters as f64 - 2.0 * best.log_likelihood,
-                excess: 0.0,
-                weight: 0.0,
-                critical_width: law.is_critical().then(|| likelihood.critical_width(&best)),
-            })
+    let evidence_of = |&law: &Law| {
+        let likelihood = LawLikelihood::new(law, family, &table.places, &table.runs)?;
+        let best = likelihood.largest()?;
+        let parameters = law.parameters_with(family);
+        Ok(LawEvidence {
+            law,
+            log_likelihood: best.log_likelihood,
+            akaike: 2.0 * parameters as f64 - 2.0 * best.log_likelihood,
+            excess: 0.0,
+            weight: 0.0,
+            critical_width: law.is_critical().then(|| likelihood.critical_width(&best)),
         })
-        .collect::<Result<Vec<_>, Error>>()?;
-    let least = evidence
-        .iter()
-        .map(|evidence| evidence.akaike)
-        .fold(f64::INFINITY, f64::min);
+    };
+    let mut evidence: Vec<_> = laws.iter().map(evidence_of).collect::<Result<_, Error>>()?;
+    let criteria = evidence.iter().map(|evidence| evidence.akaike);
+    let least = criteria.fold(f64::INFINITY, f64::min);
     for evidence in &mut evidence {
         evidence.excess = evidence.akaike - least;
         evidence.weight = libm::exp(-0.5 * evidence.excess);

@@ -80,15 +80,11 @@ pub fn ensemble_moments<S: AsRef<[f64]>>(replicas: &[S]) -> Result<Vec<Moments>,
         check_replica(replica, series)?;
     }
     enough(times, 1)?;
-    (0..times)
-        .map(|time| {
-            let column: Vec<f64> = replicas
-                .iter()
-                .map(|series| series.as_ref()[time])
-                .collect();
-            moments(&column)
-        })
-        .collect()
+    let at = |time: usize| {
+        let column = replicas.iter().map(|series| series.as_ref()[time]);
+        moments(&column.collect::<Vec<f64>>())
+    };
+    (0..times).map(at).collect()
 }
 
 #[cfg(test)]

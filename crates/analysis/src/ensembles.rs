@@ -67,12 +67,8 @@ pub fn ensembles_by_width(
             fit: fit_lifetime(family, &runs).ok(),
         }
     };
-    Ok(table
-        .places
-        .into_iter()
-        .zip(transitions)
-        .map(ensemble)
-        .collect())
+    let groups = table.places.into_iter().zip(transitions);
+    Ok(groups.map(ensemble).collect())
 }
 
 #[cfg(test)]

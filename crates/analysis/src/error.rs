@@ -167,6 +167,13 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// Points or runs that do not determine so many parameters.
+    pub(crate) const fn undetermined(points: usize, parameters: usize) -> Self {
+        Self::Undetermined { points, parameters }
+    }
+}
+
 /// The series, unless it is shorter than `needed` or has a value that is not finite.
 pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
     enough(series.len(), needed)?;
@@ -200,6 +207,18 @@ pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error>
         }),
         None => Ok(()),
     }
+}
+
+/// Refuses fewer observed transitions than `needed` among the runs.
+pub(crate) fn enough_observed(observed: usize, runs: usize, needed: usize) -> Result<(), Error> {
+    if observed < needed {
+        return Err(Error::TooFewObserved {
+            needed,
+            observed,
+            runs,
+        });
+    }
+    Ok(())
 }
 
 /// Refuses columns of different length.

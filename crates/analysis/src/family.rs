@@ -104,103 +104,90 @@ impl Group {
     /// The likelihood at one shape, as a function of the mean.
     pub(crate) fn at_shape(&self, family: Family, shape: f64) -> GroupLikelihood<'_> {
         let observed = self.observed.len() as f64;
+        let likelihood = |shape, constant, ln_gamma, form| GroupLikelihood {
+            observed,
+            shape,
+            constant,
+            ln_gamma,
+            form,
+        };
         match family {
             Family::Exponential => {
-                let sum = self.crude_mean() * observed.max(0.5);
-                GroupLikelihood::Power {
-                    observed,
-                    shape: 1.0,
-                    constant: 0.0,
-                    ln_gamma: 0.0,
-                    ln_longest: libm::log(self.longest),
-                    sum: sum / self.longest,
-                }
+                let sum = self.crude_mean() * observed.max(0.5) / self.longest;
+                likelihood(1.0, 0.0, 0.0, Form::power(sum, self.longest))
             }
             Family::Weibull => {
                 let power = |time: f64| libm::pow(time / self.longest, shape);
+                let weighted = |&(time, runs): &(f64, f64)| runs * power(time);
                 let observed_powers: f64 = self.observed.iter().map(|&time| power(time)).sum();
-                let censored_powers: f64 = self
-                    .censored
-                    .iter()
-                    .map(|&(time, runs)| runs * power(time))
-                    .sum();
-                GroupLikelihood::Power {
-                    observed,
-                    shape,
-                    constant: observed * libm::log(shape) + (shape - 1.0) * self.observed_log_sum,
-                    ln_gamma: ln_gamma(1.0 + 1.0 / shape),
-                    ln_longest: libm::log(self.longest),
-                    sum: observed_powers + censored_powers,
-                }
+                let sum = observed_powers + self.censored.iter().map(weighted).sum::<f64>();
+                let constant = observed * libm::log(shape) + (shape - 1.0) * self.observed_log_sum;
+                let ln_gamma = ln_gamma(1.0 + 1.0 / shape);
+                likelihood(shape, constant, ln_gamma, Form::power(sum, self.longest))
             }
-            Family::Gamma => GroupLikelihood::Gamma {
-                group: self,
-                shape,
-                ln_shape: libm::log(shape),
-                constant: (shape - 1.0) * self.observed_log_sum - observed * ln_gamma(shape),
-                ln_gamma: ln_gamma(shape),
-            },
+            Family::Gamma => {
+                let ln_gamma = ln_gamma(shape);
+                let constant = (shape - 1.0) * self.observed_log_sum - observed * ln_gamma;
+                let ln_shape = libm::log(shape);
+                likelihood(
+                    shape,
+                    constant,
+                    ln_gamma,
+                    Form::Gamma {
+                        group: self,
+                        ln_shape,
+                    },
+                )
+            }
         }
     }
 }
 
 /// Likelihood of a group at one shape.
-pub(crate) enum GroupLikelihood<'a> {
-    /// Exponential and Weibull.
-    Power {
-        observed: f64,
-        shape: f64,
-        constant: f64,
-        ln_gamma: f64,
-        ln_longest: f64,
-        /// Sum of (t/longest)^k over all runs.
-        sum: f64,
-    },
+pub(crate) struct GroupLikelihood<'a> {
+    observed: f64,
+    shape: f64,
+    constant: f64,
+    ln_gamma: f64,
+    form: Form<'a>,
+}
+
+/// How the likelihood depends on the mean.
+#[derive(Clone, Copy)]
+enum Form<'a> {
+    /// Exponential and Weibull, by the sum of (t/longest)^k over all runs.
+    Power { sum: f64, ln_longest: f64 },
     /// Gamma.
-    Gamma {
-        group: &'a Group,
-        shape: f64,
-        ln_shape: f64,
-        constant: f64,
-        ln_gamma: f64,
-    },
+    Gamma { group: &'a Group, ln_shape: f64 },
+}
+
+impl Form<'_> {
+    fn power(sum: f64, longest: f64) -> Self {
+        let ln_longest = libm::log(longest);
+        Self::Power { sum, ln_longest }
+    }
 }
 
 impl GroupLikelihood<'_> {
     /// Log-likelihood of the group at a logarithm of the mean; concave in it for every family.
     pub(crate) fn at(&self, ln_mean: f64) -> Derivatives {
-        match *self {
-            Self::Power {
-                observed,
-                shape,
-                constant,
-                ln_gamma,
-                ln_longest,
-                sum,
-            } => {
-                if sum == 0.0 || sum.is_nan() {
-                    return Derivatives::default();
-                }
-                let ln_scale = ln_mean - ln_gamma;
+        let (observed, shape) = (self.observed, self.shape);
+        match self.form {
+            Form::Power { sum, .. } if sum == 0.0 || sum.is_nan() => Derivatives::default(),
+            Form::Power { sum, ln_longest } => {
+                let ln_scale = ln_mean - self.ln_gamma;
                 let hazard = sum * libm::exp(shape * (ln_longest - ln_scale));
                 Derivatives {
-                    value: constant - observed * shape * ln_scale - hazard,
+                    value: self.constant - observed * shape * ln_scale - hazard,
                     slope: shape * (hazard - observed),
                     curvature: -shape * shape * hazard,
                 }
             }
-            Self::Gamma {
-                group,
-                shape,
-                ln_shape,
-                constant,
-                ln_gamma,
-            } => {
-                let observed = group.observed.len() as f64;
+            Form::Gamma { group, ln_shape } => {
                 let ln_scale = ln_mean - ln_shape;
                 let sum = group.observed_sum * libm::exp(-ln_scale);
                 let mut total = Derivatives {
-                    value: constant - observed * shape * ln_scale - sum,
+                    value: self.constant - observed * shape * ln_scale - sum,
                     slope: sum - observed * shape,
                     curvature: -sum,
                 };
@@ -208,7 +195,7 @@ impl GroupLikelihood<'_> {
                     let x = time * libm::exp(-ln_scale);
                     let ln_survival = ln_upper_gamma(shape, x);
                     let growth = if x > 0.0 && x.is_finite() {
-                        libm::exp(shape * libm::log(x) - x - ln_gamma - ln_survival)
+                        libm::exp(shape * libm::log(x) - x - self.ln_gamma - ln_survival)
                     } else {
                         0.0
                     };

@@ -1,7 +1,7 @@
 //! The hysteresis loop: critical widths from rest and from jammed flow.
 
 use crate::error::Error;
-use crate::logistic::{FractionCrossing, Fractions, fraction_crossing};
+use crate::logistic::{FractionCrossing, Fractions};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::minimum::minimise_from_grid;
 use crate::uncertain::{Interval, Uncertain};
@@ -45,8 +45,10 @@ pub struct Hysteresis {
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<Hysteresis, Error> {
-    let from_rest = fraction_crossing(rest.0, rest.1)?;
-    let from_jammed = fraction_crossing(jammed.0, jammed.1)?;
+    let rest = Fractions::new(rest.0, rest.1)?;
+    let from_rest = rest.crossing()?;
+    let jammed = Fractions::new(jammed.0, jammed.1)?;
+    let from_jammed = jammed.crossing()?;
     let (low, high) = (from_rest.width, from_jammed.width);
     let value = high.value - low.value;
     let together = |a: f64, b: f64| (a * a + b * b).sqrt();
@@ -54,19 +56,15 @@ pub fn hysteresis(rest: (&[f64], &[bool]), jammed: (&[f64], &[bool])) -> Result<
         lower: value - together(high.value - high_ends.lower, low_ends.upper - low.value),
         upper: value + together(high_ends.upper - high.value, low.value - low_ends.lower),
     };
-    let fractions = [
-        Fractions::new(rest.0, rest.1)?,
-        Fractions::new(jammed.0, jammed.1)?,
-    ];
-    let least = fractions[0].least().min(fractions[1].least());
-    let largest = fractions[0].largest().max(fractions[1].largest());
-    let common = |half: f64| fractions[0].at_half(half).value + fractions[1].at_half(half).value;
+    let least = rest.least().min(jammed.least());
+    let largest = rest.largest().max(jammed.largest());
+    let common = |half: f64| rest.at_half(half).value + jammed.at_half(half).value;
     // A sharp fall makes the likelihood a box between two widths: the middles of the intervals must be in the grid.
     let mut grid = Fractions::grid(least, largest);
     grid.extend([low.value, high.value, 0.5 * (low.value + high.value)]);
     grid.sort_by(f64::total_cmp);
-    let together_best = minimise_from_grid(common, &grid, 1e-7 * (largest - least))
-        .map_or(f64::INFINITY, |best| best.value);
+    let together_best = minimise_from_grid(common, &grid, 1e-7 * (largest - least));
+    let together_best = together_best.map_or(f64::INFINITY, |best| best.value);
     let apart = -from_rest.log_likelihood - from_jammed.log_likelihood;
     let likelihood_ratio = 2.0 * (together_best - apart).max(0.0);
     Ok(Hysteresis {

@@ -71,10 +71,8 @@ fn branch([width, ratio, error]: [&[f64]; 3], at: f64) -> Result<(Uncertain, f64
         weights += 1.0 / (error * error);
         sum += ratio / (error * error);
     }
-    Ok((
-        Uncertain::normal(sum / weights, (1.0 / weights).sqrt()),
-        0.0,
-    ))
+    let mean = Uncertain::normal(sum / weights, (1.0 / weights).sqrt());
+    Ok((mean, 0.0))
 }
 
 #[cfg(test)]

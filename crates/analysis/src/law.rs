@@ -26,10 +26,7 @@ pub enum Law {
 impl Law {
     /// Parameters ln A and B, and w_c where there is one.
     pub fn parameters(self) -> usize {
-        match self {
-            Self::Power | Self::Barrier { .. } => 3,
-            Self::Exponential => 2,
-        }
+        2 + usize::from(self.is_critical())
     }
 
     /// Whether the law ends at a critical width.

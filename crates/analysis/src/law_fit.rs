@@ -1,6 +1,6 @@
 //! Critical width and exponent from values with errors at several widths.
 
-use crate::columns::distinct;
+use crate::columns::{distinct, mean_of};
 use crate::error::{Error, check_points, checked, checked_positive, enough_places};
 use crate::law::{CriticalRange, Law};
 use crate::numerics::gamma::chi_squared_tail;
@@ -51,25 +51,24 @@ struct AtCritical {
 }
 
 impl Points<'_> {
+    /// The known w_c where it counts as a point.
+    fn known_with_error(&self) -> Option<Uncertain> {
+        self.known.filter(|known| known.error > 0.0)
+    }
+
     /// Squared deviation of a w_c from its known value in units of its error.
     fn deviation(&self, critical: f64) -> f64 {
-        match self.known {
-            Some(known) if known.error > 0.0 => {
-                let score = known.deviations_from(critical);
-                score * score
-            }
-            _ => 0.0,
-        }
+        let score = self
+            .known_with_error()
+            .map(|known| known.deviations_from(critical));
+        score.map_or(0.0, |score| score * score)
     }
 
     /// The best line at a w_c; `None` where it has none.
     fn line(&self, critical: f64) -> Option<AtCritical> {
-        let x: Vec<f64> = self
-            .width
-            .iter()
-            .map(|&width| self.law.covariate(width, critical))
-            .collect();
-        let centre = x.iter().sum::<f64>() / x.len() as f64;
+        let covariate = |&width: &f64| self.law.covariate(width, critical);
+        let x: Vec<f64> = self.width.iter().map(covariate).collect();
+        let centre = mean_of(&x);
         let fit = least_squares(|i| [1.0, x[i] - centre], &self.ln_value, &self.weight)?;
         let [middle, exponent] = fit.coefficients;
         Some(AtCritical {
@@ -81,22 +80,17 @@ impl Points<'_> {
 
     /// chi^2 at a w_c and an exponent, over all amplitudes.
     fn at_exponent(&self, critical: f64, exponent: f64) -> f64 {
-        let rest =
-            |i: usize| self.ln_value[i] - exponent * self.law.covariate(self.width[i], critical);
-        let total: f64 = self.weight.iter().sum();
-        let mean = (0..self.width.len())
-            .map(|i| self.weight[i] * rest(i))
-            .sum::<f64>()
-            / total;
-        let scatter: f64 = (0..self.width.len())
-            .map(|i| self.weight[i] * (rest(i) - mean) * (rest(i) - mean))
-            .sum();
-        scatter + self.deviation(critical)
+        let (ln_value, weight, points) = (&self.ln_value, &self.weight, 0..self.width.len());
+        let rest = |i: usize| ln_value[i] - exponent * self.law.covariate(self.width[i], critical);
+        let total: f64 = weight.iter().sum();
+        let mean = points.clone().map(|i| weight[i] * rest(i)).sum::<f64>() / total;
+        let squared = |i: usize| weight[i] * (rest(i) - mean) * (rest(i) - mean);
+        points.map(squared).sum::<f64>() + self.deviation(critical)
     }
 
     fn chi_squared(&self, critical: f64) -> f64 {
-        self.line(critical)
-            .map_or(f64::INFINITY, |line| line.chi_squared)
+        let line = self.line(critical);
+        line.map_or(f64::INFINITY, |line| line.chi_squared)
     }
 
     /// Grid of ln(w_c - top), the known value among it.
@@ -120,11 +114,8 @@ impl Points<'_> {
             ];
             add_information(&mut information, weight, &slopes);
         }
-        match self.known {
-            Some(known) if known.error > 0.0 => {
-                information[2][2] += 1.0 / (known.error * known.error);
-            }
-            _ => {}
+        if let Some(known) = self.known_with_error() {
+            information[2][2] += 1.0 / (known.error * known.error);
         }
         Cholesky::new(&information).map(|factor| factor.inverse())
     }
@@ -171,31 +162,22 @@ pub fn fit_law(
         checked(&[known.value, known.error], 2)?;
     }
     let fixed = known.filter(|known| known.error <= 0.0);
-    let free = match fixed {
-        Some(_) => 2,
-        None => law.parameters(),
-    };
+    let free = fixed.map_or(law.parameters(), |_| 2);
     // A known w_c with an error is a point beside the others.
     let needed = if known.is_some() { 2 } else { law.parameters() };
     enough_places(distinct(width).len(), needed)?;
     let top = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let relative = value.iter().zip(error).map(|(value, error)| value / error);
     let points = Points {
         law,
         width,
         ln_value: value.iter().map(|&value| libm::log(value)).collect(),
-        weight: value
-            .iter()
-            .zip(error)
-            .map(|(value, error)| (value / error) * (value / error))
-            .collect(),
+        weight: relative.map(|ratio| ratio * ratio).collect(),
         known: known.filter(|_| law.is_critical()),
         range: CriticalRange::new(width, top),
     };
     let counted = width.len() + usize::from(known.is_some() && fixed.is_none());
-    let undetermined = Error::Undetermined {
-        points: width.len(),
-        parameters: free,
-    };
+    let undetermined = Error::undetermined(width.len(), free);
     match (law.is_critical(), fixed) {
         (false, _) => at_fixed(&points, 0.0).ok_or(undetermined),
         (true, Some(known)) if known.value <= top => Err(Error::BeyondCritical {
@@ -239,9 +221,8 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
     let covariance = points.covariance(critical, line.exponent)?;
     let [amplitude_error, exponent_error, critical_error] =
         [0, 1, 2].map(|k| covariance[k][k].max(0.0).sqrt());
-    let excess = |chi_squared: f64, deviations: f64| {
-        chi_squared - line.chi_squared - deviations * deviations
-    };
+    let least = line.chi_squared;
+    let excess = |chi_squared: f64, deviations: f64| chi_squared - least - deviations * deviations;
     let ends_of_critical = |deviations: f64| {
         let outside = |place: f64| excess(at_distance(place), deviations);
         let step = (deviations * critical_error / (critical - range.top)).clamp(1e-6, 1.0);
@@ -249,24 +230,18 @@ fn at_best(points: &Points<'_>, degrees_of_freedom: usize) -> Option<LawFit> {
     };
     let ends_of_exponent = |deviations: f64| {
         let outside = |exponent: f64| {
-            let least = minimise_from_grid(
-                |place| points.at_exponent(range.critical(place), exponent),
-                &grid,
-                1e-4,
-            );
+            let at_distance = |place| points.at_exponent(range.critical(place), exponent);
+            let least = minimise_from_grid(at_distance, &grid, 1e-4);
             excess(least.map_or(f64::INFINITY, |least| least.value), deviations)
         };
         let step = deviations * exponent_error;
         let limits = [line.exponent - 200.0 * step, line.exponent + 200.0 * step];
         Interval::around(line.exponent, outside, step, limits, Interval::OPEN)
     };
+    let critical_width = Uncertain::with_intervals(critical, critical_error, ends_of_critical);
     Some(LawFit {
         law: points.law,
-        critical_width: Some(Uncertain::with_intervals(
-            critical,
-            critical_error,
-            ends_of_critical,
-        )),
+        critical_width: Some(critical_width),
         exponent: Uncertain::with_intervals(line.exponent, exponent_error, ends_of_exponent),
         ln_amplitude: Uncertain::normal(line.ln_amplitude, amplitude_error),
         chi_squared: line.chi_squared,

@@ -33,9 +33,9 @@ impl RunTable {
 pub(crate) struct LawLikelihood {
     law: Law,
     family: Family,
-    places: Vec<f64>,
-    groups: Vec<Group>,
-    range: CriticalRange,
+    pub(crate) places: Vec<f64>,
+    pub(crate) groups: Vec<Group>,
+    pub(crate) range: CriticalRange,
     /// Runs, those that say nothing included.
     pub(crate) runs: usize,
 }
@@ -63,18 +63,19 @@ impl LawLikelihood {
         if let Law::Barrier { power } = law {
             checked_positive(&[power])?;
         }
-        let groups: Vec<Group> = runs
+        let group = |runs: &Vec<(f64, bool)>| Group::new(runs.iter().copied());
+        let groups: Vec<Group> = runs.iter().map(group).collect();
+        let with_transition =
+            |(&place, group): (&f64, &Group)| (group.observed() > 0).then_some(place);
+        let seen: Vec<f64> = places
             .iter()
-            .map(|runs| Group::new(runs.iter().copied()))
+            .zip(&groups)
+            .filter_map(with_transition)
             .collect();
-        let with_transition = |&(_, group): &(f64, &Group)| group.observed() > 0;
-        let seen = places.iter().copied().zip(&groups).filter(with_transition);
-        let seen: Vec<f64> = seen.map(|(place, _)| place).collect();
         enough_places(seen.len(), law.parameters())?;
         if family != Family::Exponential && !groups.iter().any(Group::scatters) {
-            return Err(Error::NoScatter {
-                observed: groups.iter().map(Group::observed).sum(),
-            });
+            let observed = groups.iter().map(Group::observed).sum();
+            return Err(Error::NoScatter { observed });
         }
         let top = seen[seen.len() - 1];
         Ok(Self {
@@ -87,18 +88,11 @@ impl LawLikelihood {
         })
     }
 
-    /// Widths, groups of runs and range of w_c.
-    pub(crate) fn parts(&self) -> (&[f64], &[Group], CriticalRange) {
-        (&self.places, &self.groups, self.range)
-    }
-
     /// Likelihoods of all widths at one shape.
     fn at_shape(&self, ln_shape: f64) -> Vec<GroupLikelihood<'_>> {
         let shape = libm::exp(ln_shape);
-        self.groups
-            .iter()
-            .map(|group| group.at_shape(self.family, shape))
-            .collect()
+        let at_shape = |group| Group::at_shape(group, self.family, shape);
+        self.groups.iter().map(at_shape).collect()
     }
 
     /// Regression of the mean on the law at a w_c.
@@ -114,10 +108,8 @@ impl LawLikelihood {
         } else {
             self.places.len()
         };
-        let x = self.places[..below]
-            .iter()
-            .map(|&place| self.law.covariate(place, critical))
-            .collect();
+        let covariate = |&place: &f64| self.law.covariate(place, critical);
+        let x = self.places[..below].iter().map(covariate).collect();
         Regression::new(x, &self.groups[..below], &likelihoods[..below])
     }
 
@@ -134,16 +126,12 @@ impl LawLikelihood {
     }
 
     /// Smallest value of a function of ln k over the shapes that the family has.
-    fn over_shapes(&self, bounds: (f64, f64), value: impl FnMut(f64) -> f64) -> Minimum {
-        let mut value = value;
+    fn over_shapes(&self, bounds: (f64, f64), mut value: impl FnMut(f64) -> f64) -> Minimum {
         if self.family == Family::Exponential {
-            Minimum {
-                place: 0.0,
-                value: value(0.0),
-            }
-        } else {
-            minimise(value, bounds, 1e-4)
+            let (place, value) = (0.0, value(0.0));
+            return Minimum { place, value };
         }
+        minimise(value, bounds, 1e-4)
     }
 
     /// Transitions seen.
@@ -153,10 +141,7 @@ impl LawLikelihood {
 
     /// What is said where the likelihood has no maximum that counts.
     pub(crate) fn undetermined(&self) -> Error {
-        Error::Undetermined {
-            points: self.runs,
-            parameters: self.law.parameters_with(self.family),
-        }
+        Error::undetermined(self.runs, self.law.parameters_with(self.family))
     }
 
     /// The largest likelihood.

@@ -1,6 +1,6 @@
 //! Mean, variance and shape of the transition times of one ensemble, by maximum likelihood under censoring.
 
-use crate::error::Error;
+use crate::error::{Error, enough_observed};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::numerics::linear::{Cholesky, curvature};
 use crate::numerics::minimum::minimise;
@@ -54,13 +54,7 @@ pub(crate) fn positive_times(transitions: &[Transition]) -> Result<Vec<(f64, boo
 /// Checked runs of one ensemble: at least `needed` transitions, all at positive times.
 pub(crate) fn group_of(transitions: &[Transition], needed: usize) -> Result<Group, Error> {
     let group = Group::new(positive_times(transitions)?);
-    if group.observed() < needed {
-        return Err(Error::TooFewObserved {
-            needed,
-            observed: group.observed(),
-            runs: transitions.len(),
-        });
-    }
+    enough_observed(group.observed(), transitions.len(), needed)?;
     Ok(group)
 }
 
@@ -115,14 +109,10 @@ pub(crate) fn best_mean(likelihood: &GroupLikelihood<'_>, start: f64) -> (f64, f
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn fit_lifetime(family: Family, transitions: &[Transition]) -> Result<LifetimeFit, Error> {
-    let needed = match family {
-        Family::Exponential => 1,
-        Family::Gamma | Family::Weibull => 3,
-    };
-    let group = group_of(transitions, needed)?;
+    let runs = transitions.len();
     match family {
-        Family::Exponential => Ok(exponential(&group, transitions.len())),
-        Family::Gamma | Family::Weibull => with_shape(family, &group, transitions.len()),
+        Family::Exponential => Ok(exponential(&group_of(transitions, 1)?, runs)),
+        Family::Gamma | Family::Weibull => with_shape(family, &group_of(transitions, 3)?, runs),
     }
 }
 
@@ -130,10 +120,8 @@ fn exponential(group: &Group, runs: usize) -> LifetimeFit {
     let likelihood = group.at_shape(Family::Exponential, 1.0);
     let (ln_mean, largest) = best_mean(&likelihood, libm::log(group.crude_mean()));
     let error = (-1.0 / likelihood.at(ln_mean).curvature).sqrt();
-    let ln_mean = by_profile(ln_mean, error, largest, |ln_mean| {
-        likelihood.at(ln_mean).value
-    });
-    let mean = ln_mean.exponential();
+    let profile = |ln_mean| likelihood.at(ln_mean).value;
+    let mean = by_profile(ln_mean, error, largest, profile).exponential();
     LifetimeFit {
         family: Family::Exponential,
         mean,
@@ -151,12 +139,10 @@ fn with_shape(family: Family, group: &Group, runs: usize) -> Result<LifetimeFit,
     if !group.scatters() {
         return Err(no_scatter);
     }
-    let undetermined = Error::Undetermined {
-        points: runs,
-        parameters: 2,
-    };
+    let undetermined = Error::undetermined(runs, 2);
     let start = libm::log(group.crude_mean());
-    let at_shape = |ln_shape: f64| best_mean(&group.at_shape(family, libm::exp(ln_shape)), start);
+    let likelihood = |ln_shape: f64| group.at_shape(family, libm::exp(ln_shape));
+    let at_shape = |ln_shape: f64| best_mean(&likelihood(ln_shape), start);
     let best = minimise(|ln_shape| -at_shape(ln_shape).1, LN_SHAPE_BOUNDS, TOLERANCE);
     if best.place > LN_SHAPE_BOUNDS.1 - 0.01 {
         return Err(no_scatter);
@@ -166,12 +152,7 @@ fn with_shape(family: Family, group: &Group, runs: usize) -> Result<LifetimeFit,
     }
     let ln_shape = best.place;
     let (ln_mean, largest) = at_shape(ln_shape);
-    let value = |ln_mean: f64, ln_shape: f64| {
-        group
-            .at_shape(family, libm::exp(ln_shape))
-            .at(ln_mean)
-            .value
-    };
+    let value = |ln_mean: f64, ln_shape: f64| likelihood(ln_shape).at(ln_mean).value;
     // Steps below the scatter of the estimates, so that only the quadratic part shows.
     let step = 0.05 / (observed as f64).sqrt();
     let information = curvature(

@@ -51,19 +51,16 @@ impl LineFit {
         let variance = self.intercept.error * self.intercept.error
             + 2.0 * x * self.covariance
             + x * x * self.slope.error * self.slope.error;
-        Uncertain::normal(
-            self.intercept.value + self.slope.value * x,
-            variance.max(0.0).sqrt(),
-        )
+        let value = self.intercept.value + self.slope.value * x;
+        Uncertain::normal(value, variance.max(0.0).sqrt())
     }
 
     /// Factor by which the errors of the points would have to grow for chi^2 to equal its expectation; 1 at least.
     ///
     /// Errors of the parameters grow alike: Birge, Phys. Rev. 40, 207 (1932).
     pub fn scale_factor(&self) -> f64 {
-        (self.chi_squared / self.degrees_of_freedom.max(1) as f64)
-            .sqrt()
-            .max(1.0)
+        let reduced = self.chi_squared / self.degrees_of_freedom.max(1) as f64;
+        reduced.sqrt().max(1.0)
     }
 }
 
@@ -182,10 +179,7 @@ fn solved<const N: usize>(
     points: usize,
 ) -> Result<LeastSquares<N>, Error> {
     fit.filter(|fit| fit.chi_squared.is_finite())
-        .ok_or(Error::Undetermined {
-            points,
-            parameters: N,
-        })
+        .ok_or(Error::undetermined(points, N))
 }
 
 #[cfg(test)]

@@ -34,6 +34,7 @@ pub struct FractionCrossing {
 pub(crate) struct Fractions {
     places: Vec<f64>,
     rows: Vec<(f64, f64)>,
+    runs: usize,
 }
 
 impl Fractions {
@@ -50,7 +51,8 @@ impl Fractions {
             (outcomes.len() as f64, jammed as f64)
         };
         let rows = outcomes.into_iter().map(count).collect();
-        Ok(Self { places, rows })
+        let runs = width.len();
+        Ok(Self { places, rows, runs })
     }
 
     pub(crate) fn least(&self) -> f64 {
@@ -63,10 +65,8 @@ impl Fractions {
 
     /// Smallest distance of two widths.
     fn spacing(&self) -> f64 {
-        self.places
-            .windows(2)
-            .map(|pair| pair[1] - pair[0])
-            .fold(f64::INFINITY, f64::min)
+        let distances = self.places.windows(2).map(|pair| pair[1] - pair[0]);
+        distances.fold(f64::INFINITY, f64::min)
     }
 
     /// Minus the log-likelihood at a half width and a spread.
@@ -78,28 +78,73 @@ impl Fractions {
                 let x = (place - half) / spread;
                 // ln(1 + exp(x)) without overflow; the fraction is 1/(1 + exp(x)).
                 let soft = x.max(0.0) + libm::log1p(libm::exp(-x.abs()));
-                let free = if runs > jammed {
-                    (runs - jammed) * (soft - x)
-                } else {
-                    0.0
-                };
-                let kept = if jammed > 0.0 { jammed * soft } else { 0.0 };
-                kept + free
+                // No runs of an outcome add nothing, though their logarithm may be infinite.
+                let part = |runs: f64, ln: f64| if runs > 0.0 { runs * ln } else { 0.0 };
+                part(jammed, soft) + part(runs - jammed, soft - x)
             })
             .sum()
     }
 
     /// Best spread at a half width, from far below the spacing to far above the range, and minus its log-likelihood.
     pub(crate) fn at_half(&self, half: f64) -> Minimum {
-        let bounds = (
-            libm::log(1e-3 * self.spacing()),
-            libm::log(1e2 * (self.largest() - self.least())),
-        );
-        minimise(
-            |ln_spread| self.deficit(half, libm::exp(ln_spread)),
-            bounds,
-            1e-4,
-        )
+        let narrowest = libm::log(1e-3 * self.spacing());
+        let widest = libm::log(1e2 * (self.largest() - self.least()));
+        let deficit = |ln_spread| self.deficit(half, libm::exp(ln_spread));
+        minimise(deficit, (narrowest, widest), 1e-4)
+    }
+
+    /// The width at which half of the runs jam; [`fraction_crossing`] states the method.
+    pub(crate) fn crossing(&self) -> Result<FractionCrossing, Error> {
+        let rows = &self.rows;
+        let all_up_to = rows.iter().take_while(|(runs, jams)| runs == jams).count();
+        let none_from = rows.len() - rows.iter().rev().take_while(|row| row.1 == 0.0).count();
+        let last_all = all_up_to.checked_sub(1).map(|k| self.places[k]);
+        let first_none = self.places.get(none_from).copied();
+        // Rows between the last all and the first none.
+        let mixed = none_from.saturating_sub(all_up_to);
+        let separated = (mixed <= 1).then_some(()).and(last_all.zip(first_none));
+        let crossing = |width, spread, log_likelihood| FractionCrossing {
+            width,
+            spread,
+            last_all,
+            first_none,
+            is_separated: separated.is_some(),
+            log_likelihood,
+            runs: self.runs,
+        };
+        if let Some((lower, upper)) = separated {
+            let bracket = Interval { lower, upper };
+            let mut log_likelihood = 0.0;
+            let mut value = 0.5 * (lower + upper);
+            if mixed == 1 {
+                let (runs, jams) = rows[all_up_to];
+                value = self.places[all_up_to];
+                log_likelihood =
+                    jams * libm::log(jams / runs) + (runs - jams) * libm::log1p(-jams / runs);
+            }
+            let error = bracket.length() / 12.0_f64.sqrt();
+            let width = Uncertain::with_intervals(value, error, |_| bracket);
+            return Ok(crossing(width, 0.0, log_likelihood));
+        }
+        let undetermined = Error::undetermined(self.runs, 2);
+        let grid = Fractions::grid(self.least(), self.largest());
+        let deficit = |half: f64| self.at_half(half).value;
+        let range = self.largest() - self.least();
+        let best = minimise_from_grid(deficit, &grid, 1e-7 * range).ok_or(undetermined)?;
+        let spread = libm::exp(self.at_half(best.place).place);
+        // A fraction that does not fall is fitted best by an endless spread or a half width far outside.
+        let outside = best.place <= grid[1] || best.place >= grid[PLACES - 2];
+        if outside || spread > 50.0 * range {
+            return Err(undetermined);
+        }
+        let far = 20.0 * range;
+        let limits = [best.place - far, best.place + far];
+        let intervals = [NARROW, WIDE].map(|deviations| {
+            let beyond = |half: f64| deficit(half) - best.value - 0.5 * deviations * deviations;
+            Interval::around(best.place, beyond, 0.05 * range, limits, Interval::OPEN)
+        });
+        let width = Uncertain::between(best.place, intervals);
+        Ok(crossing(width, spread, -best.value))
     }
 
     /// Grid from a range below the least to a range above the largest width.
@@ -134,69 +179,7 @@ impl Fractions {
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn fraction_crossing(width: &[f64], jammed: &[bool]) -> Result<FractionCrossing, Error> {
-    let fractions = Fractions::new(width, jammed)?;
-    let rows = &fractions.rows;
-    let all_up_to = rows.iter().take_while(|(runs, jams)| runs == jams).count();
-    let none_from = rows.len() - rows.iter().rev().take_while(|row| row.1 == 0.0).count();
-    let last_all = all_up_to.checked_sub(1).map(|k| fractions.places[k]);
-    let first_none = fractions.places.get(none_from).copied();
-    // Rows between the last all and the first none.
-    let mixed = none_from.saturating_sub(all_up_to);
-    let separated = (mixed <= 1).then_some(()).and(last_all.zip(first_none));
-    if let Some((lower, upper)) = separated {
-        let bracket = Interval { lower, upper };
-        let mut log_likelihood = 0.0;
-        let mut value = 0.5 * (lower + upper);
-        if mixed == 1 {
-            let (runs, jams) = rows[all_up_to];
-            value = fractions.places[all_up_to];
-            log_likelihood =
-                jams * libm::log(jams / runs) + (runs - jams) * libm::log1p(-jams / runs);
-        }
-        return Ok(FractionCrossing {
-            width: Uncertain {
-                value,
-                error: bracket.length() / 12.0_f64.sqrt(),
-                interval_68: bracket,
-                interval_95: bracket,
-            },
-            spread: 0.0,
-            last_all,
-            first_none,
-            is_separated: true,
-            log_likelihood,
-            runs: width.len(),
-        });
-    }
-    let undetermined = Error::Undetermined {
-        points: width.len(),
-        parameters: 2,
-    };
-    let grid = Fractions::grid(fractions.least(), fractions.largest());
-    let deficit = |half: f64| fractions.at_half(half).value;
-    let range = fractions.largest() - fractions.least();
-    let best = minimise_from_grid(deficit, &grid, 1e-7 * range).ok_or(undetermined)?;
-    let spread = libm::exp(fractions.at_half(best.place).place);
-    // A fraction that does not fall is fitted best by an endless spread or a half width far outside.
-    let outside = best.place <= grid[1] || best.place >= grid[PLACES - 2];
-    if outside || spread > 50.0 * range {
-        return Err(undetermined);
-    }
-    let far = 20.0 * range;
-    let limits = [best.place - far, best.place + far];
-    let intervals = [NARROW, WIDE].map(|deviations| {
-        let beyond = |half: f64| deficit(half) - best.value - 0.5 * deviations * deviations;
-        Interval::around(best.place, beyond, 0.05 * range, limits, Interval::OPEN)
-    });
-    Ok(FractionCrossing {
-        width: Uncertain::between(best.place, intervals),
-        spread,
-        last_all,
-        first_none,
-        is_separated: false,
-        log_likelihood: -best.value,
-        runs: width.len(),
-    })
+    Fractions::new(width, jammed)?.crossing()
 }
 
 #[cfg(test)]

@@ -62,10 +62,8 @@ impl TwoPeaks {
     /// Distance of the peaks with its standard error: the jump, where one peak is the jammed and one the unjammed flow.
     pub fn distance(&self) -> (f64, f64) {
         let (lower, upper) = (self.lower.mean_error, self.upper.mean_error);
-        (
-            self.upper.mean - self.lower.mean,
-            (lower * lower + upper * upper).sqrt(),
-        )
+        let error = (lower * lower + upper * upper).sqrt();
+        (self.upper.mean - self.lower.mean, error)
     }
 }
 
@@ -87,10 +85,8 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
     enough(bins, 1)?;
     let range = upper - lower;
     if !(range > 0.0 && range.is_finite()) {
-        return Err(Error::NotPositive {
-            index: 1,
-            value: range,
-        });
+        let (index, value) = (1, range);
+        return Err(Error::NotPositive { index, value });
     }
     let mut counts = vec![0; bins];
     let mut outside = 0;
@@ -102,10 +98,9 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
             outside += 1;
         }
     }
+    let edge = |k| lower + range * (k as f64 / bins as f64);
     Ok(Histogram {
-        edges: (0..=bins)
-            .map(|k| lower + range * (k as f64 / bins as f64))
-            .collect(),
+        edges: (0..=bins).map(edge).collect(),
         counts,
         outside,
     })
@@ -142,14 +137,14 @@ pub fn two_peaks(values: &[f64]) -> Result<TwoPeaks, Error> {
     if !(scatters && single.deviation.is_finite()) {
         return Err(no_scatter);
     }
+    let from_part = |part: usize| {
+        let split = sorted[(part * count / STARTS).clamp(1, count - 1)];
+        maximise(&sorted, split, narrowest)
+    };
     let best = (1..STARTS)
-        .map(|part| {
-            let split = sorted[(part * count / STARTS).clamp(1, count - 1)];
-            maximise(&sorted, split, narrowest)
-        })
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .ok_or(no_scatter)?;
-    let (log_likelihood, a, b) = best;
+        .map(from_part)
+        .max_by(|a, b| a.0.total_cmp(&b.0));
+    let (log_likelihood, a, b) = best.ok_or(no_scatter)?;
     let (lower, upper) = if a.mean <= b.mean { (a, b) } else { (b, a) };
     let plain: f64 = sorted.iter().map(|&x| ln_density(single, x)).sum();
     let spread = lower.deviation * lower.deviation + upper.deviation * upper.deviation;
@@ -173,11 +168,8 @@ fn peak_of(values: &[f64], share: impl Fn(usize) -> f64, narrowest: f64) -> Peak
     let total: f64 = (0..values.len()).map(&share).sum();
     let sum: f64 = values.iter().enumerate().map(|(k, x)| share(k) * x).sum();
     let mean = sum / total;
-    let scatter: f64 = values
-        .iter()
-        .enumerate()
-        .map(|(k, x)| share(k) * (x - mean) * (x - mean))
-        .sum();
+    let squared = |(k, x): (usize, &f64)| share(k) * (x - mean) * (x - mean);
+    let scatter: f64 = values.iter().enumerate().map(squared).sum();
     let deviation = (scatter / total).sqrt().max(narrowest);
     Peak {
         weight: total / values.len() as f64,
@@ -189,10 +181,8 @@ fn peak_of(values: &[f64], share: impl Fn(usize) -> f64, narrowest: f64) -> Peak
 
 /// Expectation-maximisation from a split; log-likelihood and the two peaks.
 fn maximise(values: &[f64], split: f64, narrowest: f64) -> (f64, Peak, Peak) {
-    let mut shares: Vec<f64> = values
-        .iter()
-        .map(|&x| f64::from(u8::from(x < split)))
-        .collect();
+    let is_below = |&x: &f64| f64::from(u8::from(x < split));
+    let mut shares: Vec<f64> = values.iter().map(is_below).collect();
     let mut last = f64::NEG_INFINITY;
     let peaks = |shares: &[f64]| {
         let first = peak_of(values, |k| shares[k], narrowest);

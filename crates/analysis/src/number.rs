@@ -30,10 +30,10 @@ impl fmt::Display for Uncertain {
         let text = match Sides::of(self) {
             _ if !self.value.is_finite() => plain(self.value),
             Sides::Equal(error) if error > 0.0 => {
-                let both = format!("{value} ± {}", digits(error));
+                let error = digits(error);
                 match layout.power {
-                    0 => both,
-                    _ => layout.times_power(format!("({both})")),
+                    0 => format!("{value} ± {error}"),
+                    _ => layout.times_power(format!("({value} ± {error})")),
                 }
             }
             Sides::Equal(_) | Sides::Unknown => plain(self.value),
@@ -60,11 +60,8 @@ pub fn interval(number: &Uncertain) -> String {
     let layout = Layout::of(number);
     let before = if lower.is_finite() { '[' } else { '(' };
     let behind = if upper.is_finite() { ']' } else { ')' };
-    layout.times_power(format!(
-        "{before}{}, {}{behind}",
-        layout.digits(lower),
-        layout.digits(upper)
-    ))
+    let (lower, upper) = (layout.digits(lower), layout.digits(upper));
+    layout.times_power(format!("{before}{lower}, {upper}{behind}"))
 }
 
 /// A number without error to four significant digits, without zeros at its end.
@@ -147,10 +144,10 @@ impl Sides {
             Self::Unequal { up, down } => [up, down],
             Self::Unknown => return None,
         };
-        sides
+        let known = sides
             .into_iter()
-            .filter(|side| side.is_finite() && *side > 0.0)
-            .min_by(f64::total_cmp)
+            .filter(|side| side.is_finite() && *side > 0.0);
+        known.min_by(f64::total_cmp)
     }
 }
 
@@ -214,9 +211,8 @@ fn scientific(value: f64) -> Option<(f64, i32)> {
 
 /// 10^power, rounded correctly.
 fn power_of_ten(power: i32) -> f64 {
-    format!("1e{power}")
-        .parse()
-        .expect("a power of ten is a number")
+    let text = format!("1e{power}");
+    text.parse().expect("a power of ten is a number")
 }
 
 fn not_finite(value: f64) -> String {

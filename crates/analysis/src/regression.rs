@@ -1,6 +1,7 @@
 //! Regression of a mean transition time on one covariate under censoring.
 
-use crate::family::{Derivatives, Group, GroupLikelihood};
+use crate::columns::mean_of;
+use crate::family::{Group, GroupLikelihood};
 use crate::numerics::linear::{Cholesky, least_squares};
 
 /// Most steps of Newton's method.
@@ -27,7 +28,7 @@ impl<'a> Regression<'a> {
         groups: &'a [Group],
         likelihoods: &'a [GroupLikelihood<'a>],
     ) -> Self {
-        let centre = x.iter().sum::<f64>() / x.len() as f64;
+        let centre = mean_of(&x);
         for x in &mut x {
             *x -= centre;
         }
@@ -77,9 +78,8 @@ impl<'a> Regression<'a> {
             return f64::NEG_INFINITY;
         };
         // Keep the heaviest observed group where it was, whatever the slope.
-        let heaviest = (0..self.x.len())
-            .max_by_key(|&k| self.groups[k].observed())
-            .unwrap_or(0);
+        let heaviest = (0..self.x.len()).max_by_key(|&k| self.groups[k].observed());
+        let heaviest = heaviest.unwrap_or(0);
         a += (slope - b) * self.x[heaviest];
         let mut here = self.at(a, b);
         for _ in 0..MOST_STEPS {
@@ -107,35 +107,26 @@ impl<'a> Regression<'a> {
     /// A line through the logarithms of the crude means, each weighted with its transitions.
     fn start(&self) -> Option<[f64; 2]> {
         let groups = &self.groups[..self.x.len()];
-        let crude: Vec<f64> = groups
-            .iter()
-            .map(|group| {
-                let mean = group.crude_mean();
-                if mean > 0.0 { libm::log(mean) } else { 0.0 }
-            })
-            .collect();
+        let ln_crude = |group: &Group| {
+            let mean = group.crude_mean();
+            if mean > 0.0 { libm::log(mean) } else { 0.0 }
+        };
+        let crude: Vec<f64> = groups.iter().map(ln_crude).collect();
         let weight: Vec<f64> = groups.iter().map(|group| group.observed() as f64).collect();
-        let fit = least_squares(|k| [1.0, self.x[k]], &crude, &weight)?;
-        fit.coefficients
-            .iter()
-            .all(|c| c.is_finite())
-            .then_some(fit.coefficients)
+        let line = least_squares(|k| [1.0, self.x[k]], &crude, &weight)?.coefficients;
+        line.iter().all(|c| c.is_finite()).then_some(line)
     }
 
     fn at(&self, a: f64, b: f64) -> Total {
         let mut total = Total::default();
         for (&x, likelihood) in self.x.iter().zip(self.likelihoods.iter()) {
-            let Derivatives {
-                value,
-                slope,
-                curvature,
-            } = likelihood.at(a + b * x);
-            total.value += value;
-            total.slope[0] += slope;
-            total.slope[1] += slope * x;
-            total.information[0][0] -= curvature;
-            total.information[0][1] -= curvature * x;
-            total.information[1][1] -= curvature * x * x;
+            let here = likelihood.at(a + b * x);
+            total.value += here.value;
+            total.slope[0] += here.slope;
+            total.slope[1] += here.slope * x;
+            total.information[0][0] -= here.curvature;
+            total.information[0][1] -= here.curvature * x;
+            total.information[1][1] -= here.curvature * x * x;
         }
         total.information[1][0] = total.information[0][1];
         total

@@ -1,8 +1,8 @@
 //! Mean and scatter of the transition times fitted together, both as powers of the distance from w_c.
 
 use crate::error::Error;
-use crate::family::{Family, Group, LN_SHAPE_BOUNDS};
-use crate::law::{CriticalRange, Law};
+use crate::family::{Family, LN_SHAPE_BOUNDS};
+use crate::law::Law;
 use crate::law_likelihood::{LawLikelihood, RunTable};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, curvature, error_of};
@@ -64,34 +64,35 @@ impl ScatterLawFit {
     }
 }
 
-/// Likelihood of gamma distributions whose shape is a power of the distance from w_c.
-struct ScatterLikelihood<'a> {
-    places: &'a [f64],
-    groups: &'a [Group],
-    range: CriticalRange,
-}
+/// Likelihood of gamma distributions whose shape is a power of the distance from w_c, on the runs of the likelihood with
+/// one shape.
+struct ScatterLikelihood<'a>(&'a LawLikelihood);
 
 impl ScatterLikelihood<'_> {
     /// Minus the log-likelihood, a and b at (ln(w_c - top), ln k at one span, q); at a given exponent where there is
     /// one.
     fn at(&self, [place, ln_shape, q]: [f64; 3], exponent: Option<f64>) -> (f64, f64, f64) {
-        let critical = self.range.critical(place);
-        let below = self.places.partition_point(|&place| place < critical);
+        let LawLikelihood {
+            places,
+            groups,
+            range,
+            ..
+        } = self.0;
+        let critical = range.critical(place);
+        let places = &places[..places.partition_point(|&place| place < critical)];
         let nowhere = (f64::INFINITY, f64::NAN, f64::NAN);
-        let mut likelihoods = Vec::with_capacity(below);
-        for (&place, group) in self.places[..below].iter().zip(self.groups) {
-            let ln_shape = ln_shape + q * libm::log((critical - place) / self.range.span);
+        let mut likelihoods = Vec::with_capacity(places.len());
+        for (&place, group) in places.iter().zip(groups) {
+            let ln_shape = ln_shape + q * libm::log((critical - place) / range.span);
             let possible = ln_shape > LN_SHAPE_BOUNDS.0 && ln_shape < LN_SHAPE_BOUNDS.1;
             if !possible {
                 return nowhere;
             }
             likelihoods.push(group.at_shape(Family::Gamma, libm::exp(ln_shape)));
         }
-        let x = self.places[..below]
-            .iter()
-            .map(|&place| Law::Power.covariate(place, critical))
-            .collect();
-        let regression = Regression::new(x, &self.groups[..below], &likelihoods);
+        let covariate = |&place: &f64| Law::Power.covariate(place, critical);
+        let x = places.iter().map(covariate).collect();
+        let regression = Regression::new(x, &groups[..places.len()], &likelihoods);
         match exponent {
             Some(exponent) => (-regression.at_slope(exponent), f64::NAN, exponent),
             None => {
@@ -144,16 +145,9 @@ pub fn fit_law_with_scatter(
     let table = RunTable::new(width, transitions)?;
     let common = LawLikelihood::new(Law::Power, Family::Gamma, &table.places, &table.runs)?;
     let chance = LawLikelihood::new(Law::Power, Family::Exponential, &table.places, &table.runs)?;
-    let undetermined = Error::Undetermined {
-        points: width.len(),
-        parameters: 5,
-    };
-    let (places, groups, range) = common.parts();
-    let likelihood = ScatterLikelihood {
-        places,
-        groups,
-        range,
-    };
+    let undetermined = Error::undetermined(width.len(), 5);
+    let likelihood = ScatterLikelihood(&common);
+    let range = common.range;
     let start = common.largest().map_err(|_| undetermined)?;
     let chance = chance.largest().map_err(|_| undetermined)?;
     // A constant scatter may put w_c far off, or even at infinity, where a growing one does not.
@@ -167,22 +161,18 @@ pub fn fit_law_with_scatter(
     let parameters = [best.place[0], best.place[1], best.place[2]];
     let (deficit, ln_amplitude, exponent) = likelihood.at(parameters, None);
     let covariance = covariance(&likelihood, parameters, exponent).ok_or(undetermined)?;
-    let at_q = |q: f64| {
-        likelihood
-            .lowest(&[parameters[0], parameters[1]], |p| [p[0], p[1], q])
-            .value
-    };
+    let start = [parameters[0], parameters[1]];
+    let at_q = |q: f64| likelihood.lowest(&start, |p| [p[0], p[1], q]).value;
     let probability =
         |worse: f64, free: usize| chi_squared_tail(2.0 * (worse - deficit).max(0.0), free);
     let error = |weights: [f64; 4]| error_of(&weights, &covariance);
     let [place, _, q] = parameters;
     let place_error = error([0.0, 1.0, 0.0, 0.0]);
-    let observed = groups.iter().map(Group::observed).sum();
+    let ln_distance = Uncertain::normal(place, place_error);
+    let critical = |place| range.critical(place);
+    let observed = common.observed();
     Ok(ScatterLawFit {
-        critical_width: Uncertain::normal(place, place_error)
-            .map(libm::exp(place) * place_error, |place| {
-                range.critical(place)
-            }),
+        critical_width: ln_distance.map(libm::exp(place) * place_error, critical),
         exponent: Uncertain::normal(exponent, error([1.0, 0.0, 0.0, 0.0])),
         scatter_exponent: Uncertain::normal(q, error([0.0, 0.0, 0.0, 1.0])),
         variance_exponent: Uncertain::normal(2.0 * exponent + q, error([2.0, 0.0, 0.0, 1.0])),
@@ -203,17 +193,15 @@ fn covariance(
     [place, ln_shape, q]: [f64; 3],
     exponent: f64,
 ) -> Option<[[f64; 4]; 4]> {
-    let observed: usize = likelihood.groups.iter().map(Group::observed).sum();
     // Steps well below the errors, well above the accuracy of the likelihood.
-    let step = 0.1 / (observed as f64).sqrt();
+    let step = 0.1 / (likelihood.0.observed() as f64).sqrt();
     let information = curvature(
         |p: &[f64; 4]| likelihood.at([p[1], p[2], p[3]], Some(p[0])).0,
         &[exponent, place, ln_shape, q],
         &[step; 4],
     );
     let finite = information.iter().flatten().all(|entry| entry.is_finite());
-    let inverse = finite.then(|| Cholesky::new(&information))??.inverse();
-    Some(inverse)
+    Some(finite.then(|| Cholesky::new(&information))??.inverse())
 }
 
 #[cfg(test)]

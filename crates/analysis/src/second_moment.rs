@@ -72,8 +72,8 @@ pub fn second_moment<S: AsRef<[f64]>>(
     runs: &[S],
     after_end: AfterEnd,
 ) -> Result<Vec<SecondMoment>, Error> {
-    let runs: Vec<Run<'_>> = checked_runs(runs, after_end)?;
-    let moments = moments_of(&runs.iter().collect::<Vec<_>>());
+    let runs = checked_runs(runs, after_end)?;
+    let moments = moments_of(&runs);
     if moments.is_empty() {
         let with_sample = runs.iter().filter(|run| !run.series.is_empty()).count();
         enough(with_sample, LEAST_RUNS)?;
@@ -96,25 +96,21 @@ pub fn second_moment_peak<S: AsRef<[f64]>>(
 ) -> Result<MomentPeak, Error> {
     // Refuses what has no moments before anything is resampled.
     second_moment(runs, after_end)?;
-    let group: Vec<Run<'_>> = checked_runs(runs, after_end)?;
-    let group: Vec<&Run<'_>> = group.iter().collect();
+    let group = checked_runs(runs, after_end)?;
     let mut heights = Vec::new();
     let found = bootstrap_errors(&group, bootstrap, |runs| {
         let (index, value) = highest(&moments_of(runs))?;
         heights.push(value);
         Some([index as f64, value])
     })?;
+    let (index, value) = (found.estimates[0], found.estimates[1]);
     // The first one is that of the runs themselves.
-    let resampled = &heights[1..];
-    let value = found.estimates[1];
-    Ok(MomentPeak {
-        index: found.estimates[0],
-        value,
-        bias: mean_of(resampled) - value.value,
-    })
+    let bias = mean_of(&heights[1..]) - value.value;
+    Ok(MomentPeak { index, value, bias })
 }
 
 /// A run and the value that stands for it after its end.
+#[derive(Clone, Copy)]
 struct Run<'a> {
     series: &'a [f64],
     held: Option<f64>,
@@ -139,16 +135,14 @@ fn checked_runs<S: AsRef<[f64]>>(runs: &[S], after_end: AfterEnd) -> Result<Vec<
         .collect()
 }
 
-fn moments_of(runs: &[&Run<'_>]) -> Vec<SecondMoment> {
+fn moments_of(runs: &[Run<'_>]) -> Vec<SecondMoment> {
     let longest = runs.iter().map(|run| run.series.len()).max().unwrap_or(0);
     let mut values = Vec::with_capacity(runs.len());
     (0..longest)
         .map_while(|time| {
+            let value = |run: &Run<'_>| run.series.get(time).copied().or(run.held);
             values.clear();
-            values.extend(
-                runs.iter()
-                    .filter_map(|run| run.series.get(time).copied().or(run.held)),
-            );
+            values.extend(runs.iter().filter_map(value));
             (values.len() >= LEAST_RUNS).then(|| {
                 let (mean, scatter) = mean_and_scatter(&values);
                 SecondMoment {

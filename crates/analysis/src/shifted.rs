@@ -68,27 +68,28 @@ pub fn fit_shifted_exponential(transitions: &[Transition]) -> Result<ShiftedExpo
         return Err(Error::NoScatter { observed });
     }
     let times = times(transitions)?;
-    let first = times
-        .iter()
-        .filter(|run| run.1)
-        .map(|run| run.0)
-        .fold(f64::INFINITY, f64::min);
+    let transition = |&(time, observed): &(f64, bool)| observed.then_some(time);
+    let observed_times = times.iter().filter_map(transition);
+    let first = observed_times.fold(f64::INFINITY, f64::min);
     let watched: f64 = times.iter().map(|run| (run.0 - first).max(0.0)).sum();
     let at_risk = times.iter().filter(|run| run.0 >= first).count() as f64;
     let free = observed as f64 - 1.0;
     let theta = watched / free;
     let waiting_time = waiting_time(theta, free);
     let dead = (first - theta / at_risk).max(0.0);
-    let latest = |level: f64| Interval {
-        lower: (first - theta / at_risk * free * (libm::pow(1.0 - level, -1.0 / free) - 1.0))
-            .max(0.0),
-        upper: first,
-    };
+    let error = theta / at_risk;
+    let [interval_68, interval_95] = LEVELS.map(|level| {
+        let lower = first - error * free * (libm::pow(1.0 - level, -1.0 / free) - 1.0);
+        Interval {
+            lower: lower.max(0.0),
+            upper: first,
+        }
+    });
     let dead_time = Uncertain {
         value: dead,
-        error: theta / at_risk,
-        interval_68: latest(LEVELS[0]),
-        interval_95: latest(LEVELS[1]),
+        error,
+        interval_68,
+        interval_95,
     };
     let theta_error = waiting_time.error * (1.0 - 1.0 / at_risk);
     let mean_error = (theta_error * theta_error + dead_time.error * dead_time.error).sqrt();

@@ -1,7 +1,7 @@
 //! Survival curve of censored transition times, without assuming a distribution.
 
 use crate::columns::jackknife_error;
-use crate::error::{Error, enough};
+use crate::error::{Error, enough, enough_observed};
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
@@ -206,13 +206,19 @@ impl Survival {
     /// no run is watched any more while S > 0.
     pub fn restricted_mean(&self, horizon: f64) -> Result<Uncertain, Error> {
         self.check_horizon(horizon, 2)?;
-        let table = self.table();
+        let row = |step: &SurvivalStep| (step.time, step.at_risk, step.transitions);
+        let table: Vec<_> = self.steps.iter().map(row).collect();
         let (mean, _) = restricted_integrals(&table, horizon);
+        let (mut survival, mut since) = (1.0, 0.0);
+        // Integral of S up to the step.
+        let mut before = 0.0;
         let mut variance = 0.0;
-        for &(time, at_risk, transitions) in table.iter().take_while(|row| row.0 < horizon) {
-            if at_risk > transitions {
-                let (exposed, gone) = (at_risk as f64, transitions as f64);
-                let after = mean - restricted_integrals(&table, time).0;
+        for step in self.steps.iter().take_while(|step| step.time < horizon) {
+            before += survival * (step.time - since);
+            (survival, since) = (step.survival.value, step.time);
+            if step.at_risk > step.transitions {
+                let (exposed, gone) = (step.at_risk as f64, step.transitions as f64);
+                let after = mean - before;
                 variance += after * after * gone / (exposed * (exposed - gone));
             }
         }
@@ -221,30 +227,14 @@ impl Survival {
         Ok(Uncertain::normal(mean, error))
     }
 
-    fn table(&self) -> Vec<(f64, usize, usize)> {
-        self.steps
-            .iter()
-            .map(|step| (step.time, step.at_risk, step.transitions))
-            .collect()
-    }
-
     fn check_horizon(&self, horizon: f64, needed: usize) -> Result<(), Error> {
-        if self.observed < needed {
-            return Err(Error::TooFewObserved {
-                needed,
-                observed: self.observed,
-                runs: self.runs,
-            });
+        enough_observed(self.observed, self.runs, needed)?;
+        let watched = self.watched;
+        let known = horizon <= watched || self.at(watched) == 0.0;
+        if !(horizon > 0.0 && horizon.is_finite() && known) {
+            return Err(Error::Horizon { horizon, watched });
         }
-        let known = horizon <= self.watched || self.at(self.watched) == 0.0;
-        if horizon > 0.0 && horizon.is_finite() && known {
-            Ok(())
-        } else {
-            Err(Error::Horizon {
-                horizon,
-                watched: self.watched,
-            })
-        }
+        Ok(())
     }
 }
 

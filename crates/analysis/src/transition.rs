@@ -159,20 +159,14 @@ impl TransitionDetector {
             });
         }
         if !self.is_complete() {
-            self.crossing =
-                self.direction
-                    .is_beyond(average, self.threshold)
-                    .then(|| match self.crossing {
-                        Some(crossing) => Crossing {
-                            confirmed_periods: crossing.confirmed_periods + 1,
-                            ..crossing
-                        },
-                        None => Crossing {
-                            time: self.crossing_time(average),
-                            period: self.periods,
-                            confirmed_periods: 1,
-                        },
-                    });
+            let mut crossing = self.crossing.unwrap_or_else(|| Crossing {
+                time: self.crossing_time(average),
+                period: self.periods,
+                confirmed_periods: 0,
+            });
+            crossing.confirmed_periods += 1;
+            let is_beyond = self.direction.is_beyond(average, self.threshold);
+            self.crossing = is_beyond.then_some(crossing);
         }
         self.last_average = average;
         self.periods += 1;
@@ -193,9 +187,8 @@ impl TransitionDetector {
 
     /// Time of a crossing that the periods to come may yet confirm.
     pub fn candidate(&self) -> Option<f64> {
-        self.crossing
-            .filter(|_| !self.is_complete())
-            .map(|crossing| crossing.time)
+        let pending = self.crossing.filter(|_| !self.is_complete());
+        pending.map(|crossing| crossing.time)
     }
 
     /// Whether the transition has been found, so that a run need not go on for its sake.

@@ -77,10 +77,8 @@ pub(crate) fn chi_squared_tail(chi_squared: f64, degrees_of_freedom: usize) -> f
     if degrees_of_freedom == 0 {
         return 1.0;
     }
-    libm::exp(ln_upper_gamma(
-        0.5 * degrees_of_freedom as f64,
-        0.5 * chi_squared,
-    ))
+    let order = 0.5 * degrees_of_freedom as f64;
+    libm::exp(ln_upper_gamma(order, 0.5 * chi_squared))
 }
 
 /// Probability that a normal number lies further from 0, to either side, than this many standard deviations.

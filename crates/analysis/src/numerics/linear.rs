@@ -82,20 +82,15 @@ pub(crate) fn least_squares<const N: usize>(
     }
     let factor = Cholesky::new(&information)?;
     let coefficients = factor.solve(&right);
-    let chi_squared = y
-        .iter()
-        .zip(weight)
-        .enumerate()
-        .map(|(index, (&y, &weight))| {
-            let functions = basis(index);
-            let model: f64 = (0..N).map(|k| coefficients[k] * functions[k]).sum();
-            weight * (y - model) * (y - model)
-        })
-        .sum();
+    let squared = |index: usize| {
+        let functions = basis(index);
+        let model: f64 = (0..N).map(|k| coefficients[k] * functions[k]).sum();
+        weight[index] * (y[index] - model) * (y[index] - model)
+    };
     Some(LeastSquares {
         coefficients,
         covariance: factor.inverse(),
-        chi_squared,
+        chi_squared: (0..y.len()).map(squared).sum(),
     })
 }
 

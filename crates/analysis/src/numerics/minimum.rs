@@ -23,14 +23,11 @@ pub(crate) fn minimise(
 ) -> Minimum {
     let mut evaluate = |place: f64| {
         let value = function(place);
-        if value.is_nan() { f64::INFINITY } else { value }
+        let value = if value.is_nan() { f64::INFINITY } else { value };
+        Minimum { place, value }
     };
     let (mut low, mut high) = bounds;
-    let first = low + GOLDEN * (high - low);
-    let mut best = Minimum {
-        place: first,
-        value: evaluate(first),
-    };
+    let mut best = evaluate(low + GOLDEN * (high - low));
     let (mut second, mut third) = (best, best);
     let (mut step, mut step_before_last) = (0.0_f64, 0.0_f64);
     for _ in 0..MOST_STEPS {
@@ -59,11 +56,7 @@ pub(crate) fn minimise(
             };
             step = GOLDEN * step_before_last;
         }
-        let place = best.place + tolerance.max(step.abs()).copysign(step);
-        let trial = Minimum {
-            place,
-            value: evaluate(place),
-        };
+        let trial = evaluate(best.place + tolerance.max(step.abs()).copysign(step));
         if trial.value <= best.value {
             if trial.place < best.place {
                 high = best.place;
@@ -107,28 +100,19 @@ pub(crate) fn minimise_from_grid(
     grid: &[f64],
     tolerance: f64,
 ) -> Option<Minimum> {
-    let mut best: Option<(usize, f64)> = None;
+    let mut best: Option<(usize, Minimum)> = None;
     for (index, &place) in grid.iter().enumerate() {
         let value = function(place);
-        if value.is_finite() && best.is_none_or(|(_, least)| value < least) {
-            best = Some((index, value));
+        if value.is_finite() && best.is_none_or(|(_, least)| value < least.value) {
+            best = Some((index, Minimum { place, value }));
         }
     }
-    let (index, value) = best?;
-    let bounds = (
-        grid[index.saturating_sub(1)],
-        grid[(index + 1).min(grid.len() - 1)],
-    );
-    let refined = minimise(function, bounds, tolerance);
-    let on_grid = Minimum {
-        place: grid[index],
-        value,
-    };
-    Some(if refined.value < value {
-        refined
-    } else {
-        on_grid
-    })
+    let (index, best) = best?;
+    let before = grid[index.saturating_sub(1)];
+    let behind = grid[(index + 1).min(grid.len() - 1)];
+    let refined = minimise(function, (before, behind), tolerance);
+    let is_better = refined.value < best.value;
+    Some(if is_better { refined } else { best })
 }
 
 /// Place where a function, at most 0 at `inside`, becomes positive on the way to `limit`.

@@ -41,27 +41,23 @@ pub(crate) fn nelder_mead(
     while go_on {
         corners.sort_by(by_value);
         let (best, worst) = (corners[0].1, corners[dimensions].1);
+        let distance = |place: &[f64], axis: usize| (place[axis] - corners[0].0[axis]).abs();
         let small = corners[1..].iter().all(|(place, _)| {
-            (0..dimensions).all(|axis| {
-                (place[axis] - corners[0].0[axis]).abs() <= tolerance * steps[axis].abs()
-            })
+            (0..dimensions).all(|axis| distance(place, axis) <= tolerance * steps[axis].abs())
         });
         if small && (worst - best <= tolerance * (1.0 + best.abs()) || worst.is_infinite()) {
             converged = worst.is_finite();
             break;
         }
-        let centre: Vec<f64> = (0..dimensions)
-            .map(|axis| {
-                corners[..dimensions]
-                    .iter()
-                    .map(|(place, _)| place[axis])
-                    .sum::<f64>()
-                    / dimensions as f64
-            })
-            .collect();
+        let mean = |axis: usize| {
+            let coordinates = corners[..dimensions].iter().map(|(place, _)| place[axis]);
+            coordinates.sum::<f64>() / dimensions as f64
+        };
+        let centre: Vec<f64> = (0..dimensions).map(mean).collect();
         let outward = |factor: f64, corner: &[f64]| -> Vec<f64> {
-            (0..dimensions)
-                .map(|axis| centre[axis] + factor * (centre[axis] - corner[axis]))
+            let pairs = centre.iter().zip(corner);
+            pairs
+                .map(|(centre, corner)| centre + factor * (centre - corner))
                 .collect()
         };
         let second_worst = corners[dimensions - 1].1;
@@ -70,16 +66,12 @@ pub(crate) fn nelder_mead(
         let replacement = if reflected.1 < best {
             let (expanded, more) = evaluate(outward(2.0, &corners[dimensions].0));
             go_on &= more;
-            Some(if expanded.1 < reflected.1 {
-                expanded
-            } else {
-                reflected
-            })
+            let is_better = expanded.1 < reflected.1;
+            Some(if is_better { expanded } else { reflected })
         } else if reflected.1 < second_worst {
             Some(reflected)
         } else {
-            let outside = reflected.1 < worst;
-            let factor = if outside { 0.5 } else { -0.5 };
+            let factor = if reflected.1 < worst { 0.5 } else { -0.5 };
             let (contracted, more) = evaluate(outward(factor, &corners[dimensions].0));
             go_on &= more;
             (contracted.1 < worst.min(reflected.1)).then_some(contracted)
@@ -89,10 +81,9 @@ pub(crate) fn nelder_mead(
         } else {
             let anchor = corners[0].0.clone();
             for corner in &mut corners[1..] {
-                let place = (0..dimensions)
-                    .map(|axis| 0.5 * (corner.0[axis] + anchor[axis]))
-                    .collect();
-                let (shrunk, more) = evaluate(place);
+                let pairs = corner.0.iter().zip(&anchor);
+                let place = pairs.map(|(corner, anchor)| 0.5 * (corner + anchor));
+                let (shrunk, more) = evaluate(place.collect());
                 *corner = shrunk;
                 go_on &= more;
             }
