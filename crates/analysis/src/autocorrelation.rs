@@ -110,7 +110,6 @@ mod tests {
         assert_refused!(autocorrelation_time(&[]) => TooFew { .. });
         let mut series = [0.0; 30];
         series[3] = f64::NEG_INFINITY;
-        let refused = autocorrelation_time(&series);
-        assert!(matches!(refused, Err(Error::NonFinite { index: 3, .. })));
+        assert_refused!(autocorrelation_time(&series) => NonFinite { index: 3, .. });
     }
 }

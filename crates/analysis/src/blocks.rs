@@ -223,7 +223,6 @@ mod tests {
         assert_eq!(mean_with_error(&[]), Err(few));
         let mut series = vec![1.0; 20];
         series[11] = f64::NAN;
-        let refused = mean_with_error(&series);
-        assert!(matches!(refused, Err(Error::NonFinite { index: 11, .. })));
+        assert_refused!(mean_with_error(&series) => NonFinite { index: 11, .. });
     }
 }

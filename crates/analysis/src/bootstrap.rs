@@ -1,6 +1,6 @@
 //! Resampling with replacement, the same at every run.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::uncertain::Uncertain;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
@@ -96,10 +96,7 @@ pub(crate) fn summarise(
 }
 
 fn enough_resamples(found: usize) -> Result<(), Error> {
-    if found < LEAST_RESAMPLES {
-        return Err(too_few_resamples(found));
-    }
-    Ok(())
+    ensure(found >= LEAST_RESAMPLES, too_few_resamples(found))
 }
 
 const fn too_few_resamples(found: usize) -> Error {

@@ -1,6 +1,6 @@
 //! Quality of a scaling collapse: how well several curves lie on one.
 
-use crate::error::{Error, enough};
+use crate::error::{Error, enough, ensure};
 use serde::{Deserialize, Serialize};
 
 /// A point of a curve with the standard error of its ordinate.
@@ -91,10 +91,8 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
             }
         }
     }
-    if compared == 0 {
-        let (needed, found) = (0.0, 0.0);
-        return Err(Error::NoOverlap { needed, found });
-    }
+    let (needed, found) = (0.0, 0.0);
+    ensure(compared > 0, Error::NoOverlap { needed, found })?;
     Ok(CollapseQuality {
         quality: sum / compared as f64,
         overlap: compared as f64 / total as f64,

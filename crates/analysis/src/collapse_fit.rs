@@ -2,7 +2,7 @@
 
 use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
 use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
-use crate::error::{Error, checked, checked_positive, enough, same_length};
+use crate::error::{Error, checked, checked_positive, enough, ensure, same_length};
 use crate::numerics::minimum::crossing;
 use crate::numerics::simplex::{Lowest, nelder_mead};
 use crate::uncertain::Interval;
@@ -149,9 +149,10 @@ impl Collapse<'_> {
         checked(start, 1)?;
         checked_positive(steps)?;
         let needed = self.least_overlap;
-        if !(0.0..=1.0).contains(&needed) {
-            return Err(Error::Fraction { value: needed });
-        }
+        ensure(
+            (0.0..=1.0).contains(&needed),
+            Error::Fraction { value: needed },
+        )?;
         enough(starts, 1)?;
         let search = |number: u64| {
             let mut randomness = Randomness::new(seed, number);

@@ -114,10 +114,10 @@ mod tests {
     fn what_cannot_be_compared_is_refused() {
         let censored = [Transition::Censored { time: 1.0 }; 5];
         let width = [2.0, 2.1, 2.2, 2.3, 2.4];
-        assert!(matches!(
-            compare_laws(&[Law::Power], Family::Exponential, &width, &censored),
-            Err(Error::TooFewPlaces { found: 0, .. })
-        ));
+        assert_refused!(
+            compare_laws(&[Law::Power], Family::Exponential, &width, &censored) =>
+            TooFewPlaces { found: 0, .. }
+        );
         assert!(
             compare_laws(&[], Family::Exponential, &[], &[])
                 .unwrap()

@@ -159,8 +159,7 @@ mod tests {
         };
         assert_eq!(ensemble_moments(&none), Err(few));
         assert_eq!(moments(&[]), Err(few));
-        let no_times = ensemble_moments(&[[0.0; 0]; 3]);
-        assert!(matches!(no_times, Err(Error::TooFew { needed: 1, .. })));
+        assert_refused!(ensemble_moments(&[[0.0; 0]; 3]) => TooFew { needed: 1, .. });
         let uneven = ensemble_moments(&[vec![0.0; 3], vec![0.0; 2], vec![0.0; 3]]);
         assert_refused!(uneven => LengthMismatch { expected: 3, found: 2 });
         let hole = ensemble_moments(&[[0.0, 1.0], [0.0, f64::NAN], [0.0, 1.0]]);

@@ -174,6 +174,11 @@ impl Error {
     }
 }
 
+/// An error unless a condition holds.
+pub(crate) fn ensure(holds: bool, otherwise: Error) -> Result<(), Error> {
+    if holds { Ok(()) } else { Err(otherwise) }
+}
+
 /// The series, unless it is shorter than `needed` or has a value that is not finite.
 pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
     enough(series.len(), needed)?;
@@ -185,10 +190,7 @@ pub(crate) fn checked(series: &[f64], needed: usize) -> Result<&[f64], Error> {
 
 /// Refuses fewer values than `needed`.
 pub(crate) fn enough(found: usize, needed: usize) -> Result<(), Error> {
-    if found < needed {
-        return Err(Error::TooFew { needed, found });
-    }
-    Ok(())
+    ensure(found >= needed, Error::TooFew { needed, found })
 }
 
 /// The first value with a property, and its place.
@@ -211,22 +213,17 @@ pub(crate) fn check_replica(replica: usize, series: &[f64]) -> Result<(), Error>
 
 /// Refuses fewer observed transitions than `needed` among the runs.
 pub(crate) fn enough_observed(observed: usize, runs: usize, needed: usize) -> Result<(), Error> {
-    if observed < needed {
-        return Err(Error::TooFewObserved {
-            needed,
-            observed,
-            runs,
-        });
-    }
-    Ok(())
+    let too_few = Error::TooFewObserved {
+        needed,
+        observed,
+        runs,
+    };
+    ensure(observed >= needed, too_few)
 }
 
 /// Refuses columns of different length.
 pub(crate) fn same_length(expected: usize, found: usize) -> Result<(), Error> {
-    if expected != found {
-        return Err(Error::LengthMismatch { expected, found });
-    }
-    Ok(())
+    ensure(expected == found, Error::LengthMismatch { expected, found })
 }
 
 /// Refuses values that are not finite and positive.
@@ -250,8 +247,5 @@ pub(crate) fn check_points(x: &[f64], y: &[f64], error: &[f64]) -> Result<(), Er
 
 /// Refuses fewer distinct places than a fit needs.
 pub(crate) fn enough_places(found: usize, needed: usize) -> Result<(), Error> {
-    if found < needed {
-        return Err(Error::TooFewPlaces { needed, found });
-    }
-    Ok(())
+    ensure(found >= needed, Error::TooFewPlaces { needed, found })
 }

@@ -92,10 +92,9 @@ impl CriticalRange {
 
     /// Bounds of ln(w_c - top).
     pub(crate) fn bounds(self) -> (f64, f64) {
-        (
-            libm::log(Self::NEAREST * self.span),
-            libm::log(Self::FARTHEST * self.span),
-        )
+        [Self::NEAREST, Self::FARTHEST]
+            .map(|spans| libm::log(spans * self.span))
+            .into()
     }
 
     /// Grid of ln(w_c - top), evenly spaced.

@@ -1,7 +1,7 @@
 //! Likelihood of the runs at all widths under a law of their mean transition time.
 
 use crate::columns::by_width;
-use crate::error::{Error, checked, checked_positive, enough_places, same_length};
+use crate::error::{Error, checked, checked_positive, enough_places, ensure, same_length};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::law::{CriticalRange, Law};
 use crate::lifetime::positive_times;
@@ -73,10 +73,9 @@ impl LawLikelihood {
             .filter_map(with_transition)
             .collect();
         enough_places(seen.len(), law.parameters())?;
-        if family != Family::Exponential && !groups.iter().any(Group::scatters) {
-            let observed = groups.iter().map(Group::observed).sum();
-            return Err(Error::NoScatter { observed });
-        }
+        let observed = groups.iter().map(Group::observed).sum();
+        let has_shape = family == Family::Exponential || groups.iter().any(Group::scatters);
+        ensure(has_shape, Error::NoScatter { observed })?;
         let top = seen[seen.len() - 1];
         Ok(Self {
             law,
@@ -161,9 +160,8 @@ impl LawLikelihood {
             .largest();
         let shape_is_inside =
             ln_shape > LN_SHAPE_BOUNDS.0 + 0.01 && ln_shape < LN_SHAPE_BOUNDS.1 - 0.01;
-        if !(log_likelihood.is_finite() && exponent.is_finite() && shape_is_inside) {
-            return Err(self.undetermined());
-        }
+        let is_found = log_likelihood.is_finite() && exponent.is_finite() && shape_is_inside;
+        ensure(is_found, self.undetermined())?;
         Ok(Largest {
             ln_distance,
             ln_shape,

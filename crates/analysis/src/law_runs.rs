@@ -1,6 +1,6 @@
 //! Critical width and exponent straight from the runs at all widths, censored ones included.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::family::Family;
 use crate::law::Law;
 use crate::law_likelihood::{LawLikelihood, RunTable};
@@ -115,9 +115,7 @@ fn fit_places(
 ) -> Result<LawRunsFit, Error> {
     let likelihood = LawLikelihood::new(law, family, places, runs)?;
     let best = likelihood.largest()?;
-    if best.is_beyond {
-        return Err(likelihood.undetermined());
-    }
+    ensure(!best.is_beyond, likelihood.undetermined())?;
     let (critical_width, exponent, shape) = likelihood.profiles(&best);
     let observed = likelihood.observed();
     Ok(LawRunsFit {

@@ -1,6 +1,6 @@
 //! Mean, variance and shape of the transition times of one ensemble, by maximum likelihood under censoring.
 
-use crate::error::{Error, enough_observed};
+use crate::error::{Error, enough_observed, ensure};
 use crate::family::{Family, Group, GroupLikelihood, LN_SHAPE_BOUNDS};
 use crate::numerics::linear::{Cholesky, curvature};
 use crate::numerics::minimum::minimise;
@@ -136,20 +136,15 @@ fn exponential(group: &Group, runs: usize) -> LifetimeFit {
 fn with_shape(family: Family, group: &Group, runs: usize) -> Result<LifetimeFit, Error> {
     let observed = group.observed();
     let no_scatter = Error::NoScatter { observed };
-    if !group.scatters() {
-        return Err(no_scatter);
-    }
+    ensure(group.scatters(), no_scatter)?;
     let undetermined = Error::undetermined(runs, 2);
     let start = libm::log(group.crude_mean());
     let likelihood = |ln_shape: f64| group.at_shape(family, libm::exp(ln_shape));
     let at_shape = |ln_shape: f64| best_mean(&likelihood(ln_shape), start);
     let best = minimise(|ln_shape| -at_shape(ln_shape).1, LN_SHAPE_BOUNDS, TOLERANCE);
-    if best.place > LN_SHAPE_BOUNDS.1 - 0.01 {
-        return Err(no_scatter);
-    }
-    if best.place < LN_SHAPE_BOUNDS.0 + 0.01 || !best.value.is_finite() {
-        return Err(undetermined);
-    }
+    ensure(best.place <= LN_SHAPE_BOUNDS.1 - 0.01, no_scatter)?;
+    let is_found = best.place >= LN_SHAPE_BOUNDS.0 + 0.01 && best.value.is_finite();
+    ensure(is_found, undetermined)?;
     let ln_shape = best.place;
     let (ln_mean, largest) = at_shape(ln_shape);
     let value = |ln_mean: f64, ln_shape: f64| likelihood(ln_shape).at(ln_mean).value;

@@ -249,10 +249,10 @@ mod tests {
         assert!((fit.intercept.value - 7.0_f64.ln()).abs() < 1e-12);
         // Equal relative errors at equal steps of ln 2: 0.1/(ln 2 sqrt(5)).
         assert!((fit.slope.error - 0.1 / (2.0_f64.ln() * 5.0_f64.sqrt())).abs() < 1e-12);
-        assert!(matches!(
-            power_exponent(&[1.0, -2.0], &[1.0, 1.0], &[0.1, 0.1]),
-            Err(Error::NotPositive { index: 1, .. })
-        ));
+        assert_refused!(
+            power_exponent(&[1.0, -2.0], &[1.0, 1.0], &[0.1, 0.1]) =>
+            NotPositive { index: 1, .. }
+        );
     }
 
     #[test]
@@ -261,15 +261,15 @@ mod tests {
             fit_line(&[2.0; 5], &[1.0; 5], &[0.1; 5]) =>
             TooFewPlaces { needed: 2, found: 1 }
         );
-        assert!(matches!(
-            fit_parabola(&[1.0, 1.0, 2.0], &[1.0; 3], &[0.1; 3]),
-            Err(Error::TooFewPlaces { needed: 3, .. })
-        ));
+        assert_refused!(
+            fit_parabola(&[1.0, 1.0, 2.0], &[1.0; 3], &[0.1; 3]) =>
+            TooFewPlaces { needed: 3, .. }
+        );
         assert_refused!(fit_line(&[], &[], &[]) => TooFewPlaces { found: 0, .. });
-        assert!(matches!(
-            fit_line(&[1.0, 2.0], &[1.0, 2.0], &[0.1, 0.0]),
-            Err(Error::NotPositive { index: 1, .. })
-        ));
+        assert_refused!(
+            fit_line(&[1.0, 2.0], &[1.0, 2.0], &[0.1, 0.0]) =>
+            NotPositive { index: 1, .. }
+        );
         assert_refused!(fit_line(&[1.0, 2.0], &[1.0], &[0.1, 0.1]) => LengthMismatch { .. });
     }
 }

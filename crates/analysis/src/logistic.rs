@@ -1,7 +1,7 @@
 //! The width at which half of the runs end jammed.
 
 use crate::columns::by_width;
-use crate::error::{Error, checked, enough_places, same_length};
+use crate::error::{Error, checked, enough_places, ensure, same_length};
 use crate::numerics::minimum::{Minimum, minimise, minimise_from_grid};
 use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
 use serde::{Deserialize, Serialize};
@@ -41,9 +41,9 @@ impl Fractions {
     pub(crate) fn new(width: &[f64], jammed: &[bool]) -> Result<Self, Error> {
         same_length(width.len(), jammed.len())?;
         checked(width, 2)?;
-        if jammed.iter().all(|&one| one == jammed[0]) {
-            return Err(Error::OneOutcome { runs: width.len() });
-        }
+        let runs = width.len();
+        let is_mixed = jammed.iter().any(|&one| one != jammed[0]);
+        ensure(is_mixed, Error::OneOutcome { runs })?;
         let (places, outcomes) = by_width(width, jammed);
         enough_places(places.len(), 2)?;
         let count = |outcomes: Vec<bool>| {
@@ -51,7 +51,6 @@ impl Fractions {
             (outcomes.len() as f64, jammed as f64)
         };
         let rows = outcomes.into_iter().map(count).collect();
-        let runs = width.len();
         Ok(Self { places, rows, runs })
     }
 
@@ -78,7 +77,7 @@ impl Fractions {
                 let x = (place - half) / spread;
                 // ln(1 + exp(x)) without overflow; the fraction is 1/(1 + exp(x)).
                 let soft = x.max(0.0) + libm::log1p(libm::exp(-x.abs()));
-                // No runs of an outcome add nothing, though their logarithm may be infinite.
+                // An outcome without runs adds nothing, even where its logarithm is infinite.
                 let part = |runs: f64, ln: f64| if runs > 0.0 { runs * ln } else { 0.0 };
                 part(jammed, soft) + part(runs - jammed, soft - x)
             })
@@ -103,7 +102,7 @@ impl Fractions {
         // Rows between the last all and the first none.
         let mixed = none_from.saturating_sub(all_up_to);
         let separated = (mixed <= 1).then_some(()).and(last_all.zip(first_none));
-        let crossing = |width, spread, log_likelihood| FractionCrossing {
+        let found = |width, spread, log_likelihood| FractionCrossing {
             width,
             spread,
             last_all,
@@ -124,7 +123,7 @@ impl Fractions {
             }
             let error = bracket.length() / 12.0_f64.sqrt();
             let width = Uncertain::with_intervals(value, error, |_| bracket);
-            return Ok(crossing(width, 0.0, log_likelihood));
+            return Ok(found(width, 0.0, log_likelihood));
         }
         let undetermined = Error::undetermined(self.runs, 2);
         let grid = Fractions::grid(self.least(), self.largest());
@@ -134,9 +133,7 @@ impl Fractions {
         let spread = libm::exp(self.at_half(best.place).place);
         // A fraction that does not fall is fitted best by an endless spread or a half width far outside.
         let outside = best.place <= grid[1] || best.place >= grid[PLACES - 2];
-        if outside || spread > 50.0 * range {
-            return Err(undetermined);
-        }
+        ensure(!outside && spread <= 50.0 * range, undetermined)?;
         let far = 20.0 * range;
         let limits = [best.place - far, best.place + far];
         let intervals = [NARROW, WIDE].map(|deviations| {
@@ -144,7 +141,7 @@ impl Fractions {
             Interval::around(best.place, beyond, 0.05 * range, limits, Interval::OPEN)
         });
         let width = Uncertain::between(best.place, intervals);
-        Ok(crossing(width, spread, -best.value))
+        Ok(found(width, spread, -best.value))
     }
 
     /// Grid from a range below the least to a range above the largest width.
@@ -232,10 +229,10 @@ mod tests {
         let width = [2.6, 2.7, 2.8];
         assert_refused!(fraction_crossing(&width, &[true; 3]) => OneOutcome { runs: 3 });
         assert_refused!(fraction_crossing(&width, &[false, false, true]) => Undetermined { .. });
-        assert!(matches!(
-            fraction_crossing(&[2.6; 3], &[false, false, true]),
-            Err(Error::TooFewPlaces { found: 1, .. })
-        ));
+        assert_refused!(
+            fraction_crossing(&[2.6; 3], &[false, false, true]) =>
+            TooFewPlaces { found: 1, .. }
+        );
         assert!(fraction_crossing(&[], &[]).is_err());
         assert!(fraction_crossing(&[f64::NAN, 1.0], &[true, false]).is_err());
     }

@@ -1,6 +1,6 @@
 //! One peak or two: histogram, and a mixture of two normal distributions against one.
 
-use crate::error::{Error, checked, enough};
+use crate::error::{Error, checked, enough, ensure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -84,10 +84,11 @@ pub fn histogram(values: &[f64], lower: f64, upper: f64, bins: usize) -> Result<
     checked(&[lower, upper], 2)?;
     enough(bins, 1)?;
     let range = upper - lower;
-    if !(range > 0.0 && range.is_finite()) {
-        let (index, value) = (1, range);
-        return Err(Error::NotPositive { index, value });
-    }
+    let (index, value) = (1, range);
+    ensure(
+        range > 0.0 && range.is_finite(),
+        Error::NotPositive { index, value },
+    )?;
     let mut counts = vec![0; bins];
     let mut outside = 0;
     for &value in values {
@@ -134,9 +135,7 @@ pub fn two_peaks(values: &[f64]) -> Result<TwoPeaks, Error> {
     let single = peak_of(&sorted, |_| 1.0, 0.0);
     let narrowest = NARROWEST * single.deviation;
     let scatters = single.deviation > 1e-12 * (1.0 + single.mean.abs());
-    if !(scatters && single.deviation.is_finite()) {
-        return Err(no_scatter);
-    }
+    ensure(scatters && single.deviation.is_finite(), no_scatter)?;
     let from_part = |part: usize| {
         let split = sorted[(part * count / STARTS).clamp(1, count - 1)];
         maximise(&sorted, split, narrowest)

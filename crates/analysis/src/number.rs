@@ -124,16 +124,12 @@ impl Sides {
         let is_inside = up >= 0.0 && down >= 0.0;
         if !is_inside || (up.is_infinite() && down.is_infinite()) {
             // A resampled interval may miss the estimate; then only the standard error can be written.
-            return if number.error.is_finite() && number.error >= 0.0 {
-                Self::Equal(number.error)
-            } else {
-                Self::Unknown
-            };
+            let known = Some(number.error).filter(|error| error.is_finite() && *error >= 0.0);
+            return known.map_or(Self::Unknown, Self::Equal);
         }
-        if up.max(down) <= EQUAL_SIDES * up.min(down) {
-            Self::Equal(0.5 * (up + down))
-        } else {
-            Self::Unequal { up, down }
+        match up.max(down) <= EQUAL_SIDES * up.min(down) {
+            true => Self::Equal(0.5 * (up + down)),
+            false => Self::Unequal { up, down },
         }
     }
 

@@ -292,10 +292,10 @@ mod tests {
     #[test]
     fn too_few_widths_are_refused() {
         let at = |time| Transition::At { time, period: 0 };
-        assert!(matches!(
-            fit_law_with_scatter(&[2.0, 2.1], &[at(1.0), at(2.0)]),
-            Err(Error::TooFewPlaces { needed: 3, .. })
-        ));
+        assert_refused!(
+            fit_law_with_scatter(&[2.0, 2.1], &[at(1.0), at(2.0)]) =>
+            TooFewPlaces { needed: 3, .. }
+        );
         let single = [at(1.0), at(2.0), at(4.0)];
         assert_eq!(
             fit_law_with_scatter(&[2.0, 2.1, 2.2], &single),

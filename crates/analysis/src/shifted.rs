@@ -1,6 +1,6 @@
 //! Transition times with a dead time before nucleation at a constant rate.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use crate::lifetime::group_of;
 use crate::survival::times;
 use crate::transition::Transition;
@@ -64,9 +64,7 @@ impl ShiftedExponentialFit {
 pub fn fit_shifted_exponential(transitions: &[Transition]) -> Result<ShiftedExponentialFit, Error> {
     let group = group_of(transitions, 3)?;
     let observed = group.observed();
-    if !group.scatters() {
-        return Err(Error::NoScatter { observed });
-    }
+    ensure(group.scatters(), Error::NoScatter { observed })?;
     let times = times(transitions)?;
     let transition = |&(time, observed): &(f64, bool)| observed.then_some(time);
     let observed_times = times.iter().filter_map(transition);
@@ -173,10 +171,10 @@ mod tests {
         }
         let at = |time| Transition::At { time, period: 0 };
         assert_refused!(fit_shifted_exponential(&[at(2.0); 4]) => NoScatter { observed: 4 });
-        assert!(matches!(
-            fit_shifted_exponential(&[at(2.0), at(3.0)]),
-            Err(Error::TooFewObserved { observed: 2, .. })
-        ));
+        assert_refused!(
+            fit_shifted_exponential(&[at(2.0), at(3.0)]) =>
+            TooFewObserved { observed: 2, .. }
+        );
         assert!(fit_shifted_exponential(&[at(f64::NAN); 4]).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! Survival curve of censored transition times, without assuming a distribution.
 
 use crate::columns::jackknife_error;
-use crate::error::{Error, enough, enough_observed};
+use crate::error::{Error, enough, enough_observed, ensure};
 use crate::transition::Transition;
 use crate::uncertain::{Interval, Uncertain};
 use serde::{Deserialize, Serialize};
@@ -231,10 +231,8 @@ impl Survival {
         enough_observed(self.observed, self.runs, needed)?;
         let watched = self.watched;
         let known = horizon <= watched || self.at(watched) == 0.0;
-        if !(horizon > 0.0 && horizon.is_finite() && known) {
-            return Err(Error::Horizon { horizon, watched });
-        }
-        Ok(())
+        let is_watched = horizon > 0.0 && horizon.is_finite() && known;
+        ensure(is_watched, Error::Horizon { horizon, watched })
     }
 }
 

@@ -1,6 +1,6 @@
 //! Transition time between unjammed and jammed flow, with censoring.
 
-use crate::error::Error;
+use crate::error::{Error, ensure};
 use serde::{Deserialize, Serialize};
 
 /// Period averages in a row that must lie beyond the threshold before a crossing counts.
@@ -127,14 +127,15 @@ impl TransitionDetector {
     /// # Errors
     /// [`Error::Threshold`], [`Error::PeriodDuration`].
     pub fn new(direction: Direction, threshold: f64, period_duration: f64) -> Result<Self, Error> {
-        if !(threshold > 0.0 && threshold < 1.0) {
-            return Err(Error::Threshold { threshold });
-        }
-        if !(period_duration > 0.0 && period_duration.is_finite()) {
-            return Err(Error::PeriodDuration {
-                duration: period_duration,
-            });
-        }
+        let duration = period_duration;
+        ensure(
+            threshold > 0.0 && threshold < 1.0,
+            Error::Threshold { threshold },
+        )?;
+        ensure(
+            duration > 0.0 && duration.is_finite(),
+            Error::PeriodDuration { duration },
+        )?;
         Ok(Self {
             direction,
             threshold,
@@ -152,12 +153,8 @@ impl TransitionDetector {
     /// # Errors
     /// [`Error::NonFinite`] with the number of the period; the detector is then as it was before.
     pub fn push(&mut self, average: f64) -> Result<Transition, Error> {
-        if !average.is_finite() {
-            return Err(Error::NonFinite {
-                index: self.periods as usize,
-                value: average,
-            });
-        }
+        let (index, value) = (self.periods as usize, average);
+        ensure(average.is_finite(), Error::NonFinite { index, value })?;
         if !self.is_complete() {
             let mut crossing = self.crossing.unwrap_or_else(|| Crossing {
                 time: self.crossing_time(average),
@@ -313,8 +310,7 @@ mod tests {
         let mut detector = TransitionDetector::new(Direction::Upward, 0.5, 2.0).unwrap();
         detector.push(0.3).unwrap();
         let before = detector.clone();
-        let refused = detector.push(f64::NAN);
-        assert!(matches!(refused, Err(Error::NonFinite { index: 1, .. })));
+        assert_refused!(detector.push(f64::NAN) => NonFinite { index: 1, .. });
         assert_eq!(detector, before);
         for threshold in [0.0, 1.0, f64::NAN] {
             let refused = TransitionDetector::new(Direction::Upward, threshold, 2.0);

@@ -1,7 +1,8 @@
 //! Where a transient ends, and a mean that refuses to be taken over one.
 
 use crate::blocks::{Estimate, mean_with_error};
-use crate::error::{Error, checked};
+use crate::columns::mean_of;
+use crate::error::{Error, checked, ensure};
 use crate::stationarity::{Stationarity, stationarity};
 use serde::{Deserialize, Serialize};
 
@@ -11,16 +12,6 @@ const BATCH: usize = 5;
 const LEAST_SAMPLES: usize = 32;
 /// Difference of the halves, in standard errors, beyond which a mean is refused.
 const LIMIT: f64 = 3.0;
-
-/// Where the transient of a series ends.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Truncation {
-    /// Samples to leave out at the beginning.
-    discard: usize,
-    /// Whether the best place lies within the first half of the series. If not, the series is still in its transient,
-    /// or too short to tell.
-    is_settled: bool,
-}
 
 /// Mean of the stationary part of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,14 +29,13 @@ pub struct StationaryMean {
 /// `d* = argmin_d sum_(i >= d) (y_i - <y>_d)^2/(m - d)^2`
 ///
 /// over averages y_i of 5 samples each, `<y>_d` being the mean of those from d on: leaving samples out is worth it as
-/// long as it makes the mean's (uncorrelated) standard error smaller. The last 5 batches are never tried as starts. A
-/// `discard` in the second half means that the rule found no stationary part. Sources: White, Simulation 69, 323
-/// (1997); White, Cobb & Spratt, Proc. 2000 Winter Simulation Conference, 755.
-fn truncation(series: &[f64]) -> Result<Truncation, Error> {
-    let batches: Vec<f64> = checked(series, LEAST_SAMPLES)?
-        .chunks_exact(BATCH)
-        .map(|batch| batch.iter().sum::<f64>() / BATCH as f64)
-        .collect();
+/// long as it makes the mean's (uncorrelated) standard error smaller. The last 5 batches are never tried as starts.
+/// Gives the samples to leave out at the beginning, and whether they end within the first half of the series: if not,
+/// the series is still in its transient, or too short to tell. Sources: White, Simulation 69, 323 (1997); White, Cobb &
+/// Spratt, Proc. 2000 Winter Simulation Conference, 755.
+fn truncation(series: &[f64]) -> Result<(usize, bool), Error> {
+    let batches = checked(series, LEAST_SAMPLES)?.chunks_exact(BATCH);
+    let batches: Vec<f64> = batches.map(mean_of).collect();
     let count = batches.len();
     let mut best = (f64::INFINITY, 0);
     // Welford's update from the end: mean and scatter of the batches from `start` on.
@@ -60,10 +50,7 @@ fn truncation(series: &[f64]) -> Result<Truncation, Error> {
             best = (criterion, start);
         }
     }
-    Ok(Truncation {
-        discard: best.1 * BATCH,
-        is_settled: 2 * best.1 <= count,
-    })
+    Ok((best.1 * BATCH, 2 * best.1 <= count))
 }
 
 /// Mean of a series without its transient, unless no part of it is stationary.
@@ -85,25 +72,18 @@ fn truncation(series: &[f64]) -> Result<Truncation, Error> {
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 pub fn stationary_mean(series: &[f64]) -> Result<StationaryMean, Error> {
-    let Truncation {
-        discard,
-        is_settled,
-    } = truncation(series)?;
+    let (discarded, is_settled) = truncation(series)?;
     let refused = |score: f64| Error::NotStationary {
         score,
-        discarded: discard,
+        discarded,
         samples: series.len(),
     };
-    if !is_settled {
-        return Err(refused(f64::INFINITY));
-    }
-    let rest = &series[discard..];
+    ensure(is_settled, refused(f64::INFINITY))?;
+    let rest = &series[discarded..];
     let halves = stationarity(rest)?;
-    if !halves.agrees_within(LIMIT) {
-        return Err(refused(halves.score));
-    }
+    ensure(halves.agrees_within(LIMIT), refused(halves.score))?;
     Ok(StationaryMean {
-        discarded: discard,
+        discarded,
         estimate: mean_with_error(rest)?,
         halves,
     })
@@ -176,9 +156,8 @@ mod tests {
         for value in &mut late[800..] {
             *value += 40.0;
         }
-        let refused = stationary_mean(&late);
-        assert_refused!(refused => NotStationary { .. });
-        assert!(!truncation(&late).unwrap().is_settled);
+        assert_refused!(stationary_mean(&late) => NotStationary { .. });
+        assert!(!truncation(&late).unwrap().1);
         assert_refused!(stationary_mean(&[0.0; 31]) => TooFew { needed: 32, .. });
     }
 
@@ -187,7 +166,7 @@ mod tests {
         let step: Vec<f64> = (0..200)
             .map(|k| if k < 40 { 3.0 } else { f64::from(k % 2) })
             .collect();
-        assert_eq!(truncation(&step).unwrap().discard, 40);
+        assert_eq!(truncation(&step).unwrap().0, 40);
         let found = stationary_mean(&[0.5; 64]).unwrap();
         assert_eq!((found.discarded, found.estimate.mean), (0, 0.5));
     }
@@ -195,8 +174,8 @@ mod tests {
     proptest! {
         #[test]
         fn any_series_is_judged(series in prop::collection::vec(any::<f64>(), 0..120)) {
-            if let Ok(found) = truncation(&series) {
-                prop_assert!(found.discard < series.len());
+            if let Ok((discard, _)) = truncation(&series) {
+                prop_assert!(discard < series.len());
             }
             let _ = stationary_mean(&series);
         }

@@ -82,8 +82,8 @@ fn what_does_not_determine_a_law_is_refused() {
     );
     let barrier = Law::Barrier { power: -1.0 };
     assert!(fit_law(barrier, &WIDTHS, &[1.0; 10], &[0.1; 10], None).is_err());
-    assert!(matches!(
-        fit_law(Law::Power, &WIDTHS, &[0.0; 10], &[0.1; 10], None),
-        Err(Error::NotPositive { index: 0, .. })
-    ));
+    assert_refused!(
+        fit_law(Law::Power, &WIDTHS, &[0.0; 10], &[0.1; 10], None) =>
+        NotPositive { index: 0, .. }
+    );
 }

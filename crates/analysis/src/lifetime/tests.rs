@@ -151,10 +151,10 @@ fn what_cannot_be_fitted_is_refused() {
         let refused = fit_lifetime(family, &[censored; 5]);
         assert_refused!(refused => TooFewObserved { observed: 0, runs: 5, .. });
         assert!(fit_lifetime(family, &[]).is_err());
-        assert!(matches!(
-            fit_lifetime(family, &[at(0.0), at(1.0), at(2.0)]),
-            Err(Error::NotPositive { index: 0, .. })
-        ));
+        assert_refused!(
+            fit_lifetime(family, &[at(0.0), at(1.0), at(2.0)]) =>
+            NotPositive { index: 0, .. }
+        );
     }
     for family in [Family::Gamma, Family::Weibull] {
         assert_refused!(fit_lifetime(family, &[at(2.0); 6]) => NoScatter { observed: 6 });

@@ -107,10 +107,10 @@ fn bad_runs_and_horizons_are_refused() {
     assert_refused!(Survival::new(&[]) => TooFew { needed: 1, .. });
     let censored = |time| Transition::Censored { time };
     assert_refused!(Survival::new(&[censored(-1.0)]) => Negative { index: 0, .. });
-    assert!(matches!(
-        Survival::new(&[censored(1.0), censored(f64::NAN)]),
-        Err(Error::NonFinite { index: 1, .. })
-    ));
+    assert_refused!(
+        Survival::new(&[censored(1.0), censored(f64::NAN)]) =>
+        NonFinite { index: 1, .. }
+    );
     let all_censored = Survival::new(&[censored(1.0); 4]).unwrap();
     assert_refused!(all_censored.median() => LevelNotReached { level: 0.5, survival: 1.0 });
     assert_refused!(all_censored.restricted_mean(1.0) => TooFewObserved { observed: 0, .. });
