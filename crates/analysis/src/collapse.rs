@@ -163,29 +163,19 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::white_noise;
+    use crate::tests::{point, white_noise};
 
     /// Curves on y = 2 - x with unequal grids and errors of 0.1.
     fn straight(seed: u64, offsets: &[f64]) -> Vec<Vec<CurvePoint>> {
-        offsets
-            .iter()
-            .enumerate()
-            .map(|(k, offset)| {
-                let noise = white_noise(seed * 100 + k as u64, 20);
-                noise
-                    .iter()
-                    .enumerate()
-                    .map(|(j, noise)| {
-                        let x = 0.1 * j as f64 + offset;
-                        CurvePoint {
-                            x,
-                            y: 2.0 - x + 0.1 * noise,
-                            error: 0.1,
-                        }
-                    })
-                    .collect()
-            })
-            .collect()
+        let curve = |(k, offset): (usize, &f64)| {
+            let noise = white_noise(seed * 100 + k as u64, 20);
+            let noisy = |(j, noise): (usize, &f64)| {
+                let x = 0.1 * j as f64 + offset;
+                point(x, 2.0 - x + 0.1 * noise, 0.1)
+            };
+            noise.iter().enumerate().map(noisy).collect()
+        };
+        offsets.iter().enumerate().map(curve).collect()
     }
 
     #[test]

@@ -259,10 +259,7 @@ impl Collapse<'_> {
             let limit = centre + side * 50.0 * steps[axis];
             crossing(excess, centre, 0.25 * steps[axis], limit).unwrap_or(side * f64::INFINITY)
         };
-        let ends = |axis| Interval {
-            lower: end(axis, -1.0),
-            upper: end(axis, 1.0),
-        };
+        let ends = |axis| Interval::new(end(axis, -1.0), end(axis, 1.0));
         Ok((0..steps.len()).map(ends).collect())
     }
 

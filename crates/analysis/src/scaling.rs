@@ -59,14 +59,11 @@ impl Scaling {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::tests::point;
 
     #[test]
     fn scaled_points_by_hand() {
-        let point = CurvePoint {
-            x: 2.5,
-            y: 8.0,
-            error: 0.4,
-        };
+        let point = point(2.5, 8.0, 0.4);
         // p = 4: w_c = 3 - 0.5/8 * 4 = 2.75, so X = ln(0.25/8), Y = ln(8 16).
         let line = Scaling::CriticalLine.apply(&[2.0, 1.5, -0.0625, 3.0], 0, 4.0, point);
         assert!((line.x - libm::log(0.25 / 8.0)).abs() < 1e-14);
@@ -84,11 +81,7 @@ mod tests {
 
     #[test]
     fn points_beyond_the_critical_width_and_missing_parameters_are_not_numbers() {
-        let point = CurvePoint {
-            x: 2.8,
-            y: 1.0,
-            error: 0.1,
-        };
+        let point = point(2.8, 1.0, 0.1);
         let beyond = Scaling::CriticalKnown(vec![2.7]);
         assert!(beyond.apply(&[1.0, 1.0], 0, 0.1, point).x.is_nan());
         assert!(beyond.apply(&[1.0, 1.0], 1, 0.1, point).x.is_nan());

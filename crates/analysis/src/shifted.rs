@@ -78,10 +78,7 @@ pub fn fit_shifted_exponential(transitions: &[Transition]) -> Result<ShiftedExpo
     let error = theta / at_risk;
     let [interval_68, interval_95] = LEVELS.map(|level| {
         let lower = first - error * free * (libm::pow(1.0 - level, -1.0 / free) - 1.0);
-        Interval {
-            lower: lower.max(0.0),
-            upper: first,
-        }
+        Interval::new(lower.max(0.0), first)
     });
     let dead_time = Uncertain {
         value: dead,
@@ -118,24 +115,23 @@ fn waiting_time(theta: f64, free: f64) -> Uncertain {
 mod tests {
     use super::*;
     use crate::bootstrap::Randomness;
-    use crate::tests::{Coverage, exponential, watched};
+    use crate::tests::{Coverage, exponential, watched_runs};
     use crate::{Family, fit_lifetime};
 
     fn sample(seed: u64, runs: usize, until: f64) -> Vec<Transition> {
         let mut randomness = Randomness::new(seed, 4);
-        (0..runs)
-            .map(|_| watched(4.0 + 6.0 * exponential(&mut randomness), until))
-            .collect()
+        watched_runs(runs, until, || 4.0 + 6.0 * exponential(&mut randomness))
     }
 
     #[test]
     fn intervals_cover_with_a_quarter_censored() {
-        let mut coverage = Coverage::of([
+        let parameters = [
             ("dead", 4.0),
             ("waiting", 6.0),
             ("mean", 10.0),
             ("variance", 36.0),
-        ]);
+        ];
+        let mut coverage = Coverage::of(parameters);
         for seed in 0..400 {
             let fit = fit_shifted_exponential(&sample(seed, 30, 12.5)).unwrap();
             coverage.count([fit.dead_time, fit.waiting_time, fit.mean, fit.variance]);
@@ -162,9 +158,7 @@ mod tests {
     fn a_dead_time_is_never_negative_and_bad_runs_are_refused() {
         let mut randomness = Randomness::new(6, 0);
         for _ in 0..50 {
-            let runs: Vec<Transition> = (0..6)
-                .map(|_| watched(exponential(&mut randomness), 3.0))
-                .collect();
+            let runs = watched_runs(6, 3.0, || exponential(&mut randomness));
             if let Ok(fit) = fit_shifted_exponential(&runs) {
                 assert!(fit.dead_time.value >= 0.0 && fit.dead_time.interval_95.lower >= 0.0);
             }

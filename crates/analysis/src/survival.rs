@@ -61,13 +61,9 @@ pub(crate) fn times(transitions: &[Transition]) -> Result<Vec<(f64, bool)>, Erro
         .enumerate()
         .map(|(index, &transition)| {
             let (value, observed) = transition.time();
-            if !value.is_finite() {
-                Err(Error::NonFinite { index, value })
-            } else if value < 0.0 {
-                Err(Error::Negative { index, value })
-            } else {
-                Ok((value, observed))
-            }
+            ensure(value.is_finite(), Error::NonFinite { index, value })?;
+            ensure(value >= 0.0, Error::Negative { index, value })?;
+            Ok((value, observed))
         })
         .collect()
 }
@@ -246,10 +242,8 @@ fn log_log(survival: f64, log_variance: f64, before: Uncertain) -> Uncertain {
     }
     let log = libm::log(survival);
     let spread = log_variance.sqrt() / log.abs();
-    let ends = |deviations: f64| Interval {
-        lower: libm::exp(log * libm::exp(deviations * spread)),
-        upper: libm::exp(log * libm::exp(-deviations * spread)),
-    };
+    let end = |score: f64| libm::exp(log * libm::exp(score));
+    let ends = |deviations: f64| Interval::new(end(deviations * spread), end(-deviations * spread));
     Uncertain::with_intervals(survival, survival * log_variance.sqrt(), ends)
 }
 

@@ -1,6 +1,7 @@
 //! What the tests of the estimators share: data with known statistics, the same at every test run, and coverage.
 
 use crate::bootstrap::Randomness;
+use crate::collapse::CurvePoint;
 use crate::family::Family;
 use crate::numerics::gamma::{ln_gamma, ln_upper_gamma};
 use crate::transition::Transition;
@@ -91,6 +92,20 @@ pub(crate) fn exponential(randomness: &mut Randomness) -> f64 {
 /// A transition at a time, unless the run is watched for less.
 pub(crate) fn watched(time: f64, until: f64) -> Transition {
     Transition::new(time.min(until), time < until)
+}
+
+/// So many runs that have their transition at the times drawn unless they are watched for less.
+pub(crate) fn watched_runs(
+    runs: usize,
+    until: f64,
+    mut time: impl FnMut() -> f64,
+) -> Vec<Transition> {
+    (0..runs).map(|_| watched(time(), until)).collect()
+}
+
+/// A point of a curve.
+pub(crate) const fn point(x: f64, y: f64, error: f64) -> CurvePoint {
+    CurvePoint { x, y, error }
 }
 
 /// Width and outcome of runs, so many at each of the places, that have their transition at a time unless they are

@@ -40,6 +40,10 @@ impl Interval {
         Self { lower, upper }
     }
 
+    pub(crate) const fn new(lower: f64, upper: f64) -> Self {
+        Self { lower, upper }
+    }
+
     /// Whether a value lies in the interval, ends included.
     pub fn contains(&self, value: f64) -> bool {
         self.lower <= value && value <= self.upper
@@ -47,10 +51,7 @@ impl Interval {
 
     /// The interval of an increasing function of the number.
     pub(crate) fn map(&self, function: impl Fn(f64) -> f64) -> Self {
-        Self {
-            lower: function(self.lower),
-            upper: function(self.upper),
-        }
+        Self::new(function(self.lower), function(self.upper))
     }
 
     /// Distance of the ends.
@@ -78,9 +79,8 @@ pub struct Uncertain {
 impl Uncertain {
     /// Normal approximation: value +- error and value +- 1.96 error.
     pub fn normal(value: f64, error: f64) -> Self {
-        Self::with_intervals(value, error, |deviations| Interval {
-            lower: value - deviations * error,
-            upper: value + deviations * error,
+        Self::with_intervals(value, error, |deviations| {
+            Interval::new(value - deviations * error, value + deviations * error)
         })
     }
 
@@ -120,10 +120,8 @@ impl Uncertain {
             return None;
         }
         let (_, scatter) = mean_and_scatter(&finite);
-        let between = |tail: f64| Interval {
-            lower: quantile(&sorted, tail),
-            upper: quantile(&sorted, 1.0 - tail),
-        };
+        let between =
+            |tail: f64| Interval::new(quantile(&sorted, tail), quantile(&sorted, 1.0 - tail));
         Some(Self {
             value,
             error: (scatter / (finite.len() as f64 - 1.0)).sqrt(),
@@ -185,10 +183,7 @@ mod tests {
     #[test]
     fn intervals_of_the_normal_approximation() {
         let found = Uncertain::normal(2.0, 0.5);
-        assert_eq!(
-            (found.interval_68.lower, found.interval_68.upper),
-            (1.5, 2.5)
-        );
+        assert_eq!(found.interval_68, Interval::new(1.5, 2.5));
         assert!((found.interval_95.length() - 1.959_964).abs() < 1e-6);
         assert!(found.interval_68.contains(1.5) && !found.interval_68.contains(1.49));
         assert!((found.deviations_from(3.0) + 2.0).abs() < 1e-15);

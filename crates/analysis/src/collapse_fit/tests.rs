@@ -1,6 +1,6 @@
 use super::*;
 use crate::Scaling;
-use crate::tests::{Coverage, white_noise};
+use crate::tests::{Coverage, point, white_noise};
 
 const RATES: [f64; 5] = [0.03, 0.05, 0.08, 0.12, 0.2];
 
@@ -10,30 +10,35 @@ fn critical(rate: f64) -> f64 {
 
 /// tau = rate^-7/2 f((w_c - w)/rate^3/2), f(x) = 1/(x (1 + x)), with errors of 6 per cent, on unequal grids.
 fn transition_times(seed: u64) -> Vec<Curve> {
-    RATES
-        .iter()
-        .enumerate()
-        .map(|(k, &rate)| {
-            let noise = white_noise(seed * 10 + k as u64, 12);
-            let points = (0..12)
-                .map(|j| {
-                    // x from 0.1 to 6, the grids shifted against each other.
-                    let x = 0.1 * libm::exp(0.37 * (j as f64 + 0.19 * k as f64));
-                    let tau = libm::pow(rate, -3.5) / (x * (1.0 + x));
-                    let y = tau * libm::exp(0.06 * noise[j]);
-                    CurvePoint {
-                        x: critical(rate) - x * libm::pow(rate, 1.5),
-                        y,
-                        error: 0.06 * y,
-                    }
-                })
-                .collect();
-            Curve {
-                parameter: rate,
-                points,
-            }
-        })
-        .collect()
+    let curve = |(k, &parameter): (usize, &f64)| {
+        let noise = white_noise(seed * 10 + k as u64, 12);
+        let noisy = |j: usize| {
+            // x from 0.1 to 6, the grids shifted against each other.
+            let x = 0.1 * libm::exp(0.37 * (j as f64 + 0.19 * k as f64));
+            let tau = libm::pow(parameter, -3.5) / (x * (1.0 + x));
+            let y = tau * libm::exp(0.06 * noise[j]);
+            point(
+                critical(parameter) - x * libm::pow(parameter, 1.5),
+                y,
+                0.06 * y,
+            )
+        };
+        let points = (0..12).map(noisy).collect();
+        Curve { parameter, points }
+    };
+    RATES.iter().enumerate().map(curve).collect()
+}
+
+fn collapse<'a>(
+    curves: &'a [Curve],
+    transform: &'a Transform<'a>,
+    least_overlap: f64,
+) -> Collapse<'a> {
+    Collapse {
+        curves,
+        transform,
+        least_overlap,
+    }
 }
 
 fn known() -> Scaling {
@@ -50,11 +55,7 @@ fn exponents_are_found_with_bootstrap_errors_that_cover() {
     let mut mean_quality = 0.0;
     for seed in 0..trials {
         let curves = transition_times(seed);
-        let collapse = Collapse {
-            curves: &curves,
-            transform: &transform,
-            least_overlap: 0.5,
-        };
+        let collapse = collapse(&curves, &transform, 0.5);
         let fit = collapse.fit(&[3.0, 1.2], &steps, 2, 1).unwrap();
         assert!(fit.quality.overlap > 0.8, "{fit:?}");
         mean_quality += fit.quality.quality / trials as f64;
@@ -74,15 +75,9 @@ fn exponents_and_the_line_of_critical_widths_are_found_together() {
     let curves = transition_times(7);
     let transform =
         |p: &[f64], k: usize, rate: f64, point| Scaling::CriticalLine.apply(p, k, rate, point);
-    let collapse = Collapse {
-        curves: &curves,
-        transform: &transform,
-        least_overlap: 0.7,
-    };
-    let steps = [0.3, 0.2, 0.1, 0.01];
-    let fit = collapse
-        .fit(&[3.2, 1.3, -3.7, 3.022], &steps, 4, 5)
-        .unwrap();
+    let collapse = collapse(&curves, &transform, 0.7);
+    let (start, steps) = ([3.2, 1.3, -3.7, 3.022], [0.3, 0.2, 0.1, 0.01]);
+    let fit = collapse.fit(&start, &steps, 4, 5).unwrap();
     assert!(
         fit.quality.quality < 1.6 && fit.quality.overlap >= 0.7,
         "{fit:?}"
@@ -104,14 +99,9 @@ fn leaving_a_curve_out_changes_little_unless_it_is_a_stray() {
     let transform = |p: &[f64], k: usize, rate: f64, point| scaling.apply(p, k, rate, point);
     let mut curves = transition_times(8);
     let exponents = |curves: &[Curve]| -> Vec<f64> {
-        let collapse = Collapse {
-            curves,
-            transform: &transform,
-            least_overlap: 0.5,
-        };
-        let fits = collapse
-            .leave_one_out(&[3.2, 1.3], &[0.3, 0.2], 1, 0)
-            .unwrap();
+        let collapse = collapse(curves, &transform, 0.5);
+        let fits = collapse.leave_one_out(&[3.2, 1.3], &[0.3, 0.2], 1, 0);
+        let fits = fits.unwrap();
         fits.iter().map(|fit| fit.parameters[0]).collect()
     };
     let found = exponents(&curves);
@@ -131,16 +121,8 @@ fn misfits() -> Vec<Curve> {
     (1..5)
         .map(|k| {
             let parameter = f64::from(k);
-            let points = (0..10)
-                .map(|j| {
-                    let x = f64::from(j);
-                    CurvePoint {
-                        x,
-                        y: parameter * x * (9.0 - x),
-                        error: 0.5,
-                    }
-                })
-                .collect();
+            let arch = |x: f64| point(x, parameter * x * (9.0 - x), 0.5);
+            let points = (0..10).map(|j| arch(f64::from(j))).collect();
             Curve { parameter, points }
         })
         .collect()
@@ -153,14 +135,7 @@ fn a_search_cannot_win_by_pulling_the_curves_apart() {
         x: point.x + p[0] * parameter,
         ..point
     };
-    let fit = |least_overlap| {
-        let collapse = Collapse {
-            curves: &curves,
-            transform: &shift,
-            least_overlap,
-        };
-        collapse.fit(&[0.0], &[3.0], 12, 3)
-    };
+    let fit = |least_overlap| collapse(&curves, &shift, least_overlap).fit(&[0.0], &[3.0], 12, 3);
     let free = fit(0.0).unwrap();
     let held = fit(0.6).unwrap();
     assert!(free.quality.overlap < 0.5, "{free:?}");
@@ -178,11 +153,7 @@ fn overlap_that_cannot_be_had_is_refused() {
         point.x += 1000.0;
     }
     let plain = |_: &[f64], _: usize, _: f64, point: CurvePoint| point;
-    let collapse = Collapse {
-        curves: &curves,
-        transform: &plain,
-        least_overlap: 0.9,
-    };
+    let collapse = collapse(&curves, &plain, 0.9);
     let refused = collapse.fit(&[0.0], &[1.0], 1, 0);
     assert!(
         matches!(refused, Err(Error::NoOverlap { needed: 0.9, found }) if found > 0.5),

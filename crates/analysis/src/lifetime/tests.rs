@@ -1,6 +1,6 @@
 use super::*;
 use crate::bootstrap::Randomness;
-use crate::tests::{Coverage, exponential as unit_exponential, remission, watched};
+use crate::tests::{Coverage, exponential as unit_exponential, remission, watched_runs};
 
 fn weibull(randomness: &mut Randomness, mean: f64, shape: f64) -> f64 {
     let scale = mean / libm::tgamma(1.0 + 1.0 / shape);
@@ -24,9 +24,7 @@ fn coverage<const N: usize>(
     let mut pull_squares = [0.0; N];
     for seed in 0..trials {
         let mut randomness = Randomness::new(seed, 9);
-        let sample: Vec<Transition> = (0..runs)
-            .map(|_| watched(draw(&mut randomness), until))
-            .collect();
+        let sample = watched_runs(runs, until, || draw(&mut randomness));
         let found = fit(&sample);
         coverage.count(found);
         for ((found, (_, truth)), squares) in found.iter().zip(truths).zip(&mut pull_squares) {
@@ -59,15 +57,11 @@ fn coverage_with_shape(
 #[test]
 fn exponential_intervals_cover_with_a_third_censored() {
     let draw = |randomness: &mut Randomness| 10.0 * unit_exponential(randomness);
-    coverage(
-        [("mean", 10.0), ("variance", 100.0)],
-        11.0,
-        draw,
-        |sample| {
-            let fit = fit_lifetime(Family::Exponential, sample).unwrap();
-            [fit.mean, fit.variance]
-        },
-    );
+    let truths = [("mean", 10.0), ("variance", 100.0)];
+    coverage(truths, 11.0, draw, |sample| {
+        let fit = fit_lifetime(Family::Exponential, sample).unwrap();
+        [fit.mean, fit.variance]
+    });
 }
 
 #[test]
@@ -111,11 +105,7 @@ fn the_textbook_example_as_other_programs_fit_it() {
 #[test]
 fn the_shape_tells_chance_from_determinism_and_the_criterion_finds_the_family() {
     let mut randomness = Randomness::new(2, 0);
-    let mut sample = |shape: f64| -> Vec<Transition> {
-        (0..300)
-            .map(|_| watched(weibull(&mut randomness, 5.0, shape), 8.0))
-            .collect()
-    };
+    let mut sample = |shape| watched_runs(300, 8.0, || weibull(&mut randomness, 5.0, shape));
     let (chance, sharp) = (sample(1.0), sample(6.0));
     let shape = |runs: &[Transition]| fit_lifetime(Family::Weibull, runs).unwrap().shape.unwrap();
     assert!(shape(&chance).interval_95.contains(1.0));
@@ -131,9 +121,7 @@ fn the_shape_tells_chance_from_determinism_and_the_criterion_finds_the_family() 
 #[test]
 fn the_fit_follows_the_kaplan_meier_curve() {
     let mut randomness = Randomness::new(8, 0);
-    let sample: Vec<Transition> = (0..500)
-        .map(|_| watched(three_steps(&mut randomness, 4.0), 7.0))
-        .collect();
+    let sample = watched_runs(500, 7.0, || three_steps(&mut randomness, 4.0));
     let fit = fit_lifetime(Family::Gamma, &sample).unwrap();
     let curve = crate::Survival::new(&sample).unwrap();
     for time in [1.0, 3.0, 5.0, 6.5] {

@@ -1,7 +1,7 @@
 use super::*;
 use crate::bootstrap::Randomness;
 use crate::columns::mean_of;
-use crate::tests::{Coverage, exponential, remission, watched};
+use crate::tests::{Coverage, exponential, remission, watched, watched_runs};
 use proptest::prelude::*;
 
 #[test]
@@ -25,10 +25,7 @@ fn the_textbook_example_of_remission_times() {
     }
     let median = found.median().unwrap();
     assert_eq!(median.value, 23.0);
-    assert_eq!(
-        (median.interval_95.lower, median.interval_95.upper),
-        (13.0, f64::INFINITY)
-    );
+    assert_eq!(median.interval_95, Interval::new(13.0, f64::INFINITY));
     assert_eq!(found.at(22.5), found.steps[5].survival.value);
     assert_eq!(found.at(0.0), 1.0);
 }
@@ -69,11 +66,8 @@ fn intervals_of_survival_median_and_restricted_mean_cover() {
             })
             .collect();
         let survival = Survival::new(&sample).unwrap();
-        let step = survival
-            .steps
-            .iter()
-            .rfind(|step| step.time <= 1.0)
-            .unwrap();
+        let mut before = survival.steps.iter();
+        let step = before.rfind(|step| step.time <= 1.0).unwrap();
         let median = survival.median().unwrap();
         let Ok(moments) = restricted_moments(&sample, horizon) else {
             panic!("seed {seed}: nobody watched at the horizon");
@@ -89,9 +83,7 @@ fn intervals_of_survival_median_and_restricted_mean_cover() {
 fn dropping_censored_runs_biases_the_mean_and_the_curve_does_not() {
     // As at a width near w_c: mean 1, watched for 1, so that 37 per cent of the runs are censored.
     let mut randomness = Randomness::new(5, 0);
-    let sample: Vec<Transition> = (0..1500)
-        .map(|_| watched(exponential(&mut randomness), 1.0))
-        .collect();
+    let sample = watched_runs(1500, 1.0, || exponential(&mut randomness));
     let times: Vec<f64> = sample.iter().filter_map(|run| run.observed()).collect();
     let naive = mean_of(&times);
     // E(t | t < 1) = 1 - 1/(e - 1).
