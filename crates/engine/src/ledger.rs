@@ -168,15 +168,12 @@ impl Ledger {
     pub fn relative_residual(&self, energy: f64) -> f64 {
         let residual = self.residual(energy).abs();
         let entered = self.gross_work + self.body_work.abs();
-        let scale = if entered > LEAST_WORK * self.initial_energy {
-            entered
-        } else {
-            self.initial_energy
-        };
         if residual == 0.0 {
             0.0
+        } else if entered > LEAST_WORK * self.initial_energy {
+            residual / entered
         } else {
-            residual / scale
+            residual / self.initial_energy
         }
     }
 }

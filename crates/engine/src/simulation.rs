@@ -180,8 +180,7 @@ impl Simulation {
     /// [`EngineError::OtherWall`] where `wall` differs in more, or would not be where the wall is; nothing is changed.
     pub fn drive_by(&mut self, mut wall: Wall) -> Result<(), EngineError> {
         wall.move_to(self.time());
-        let difference = self.wall().difference(&wall, self.time());
-        if let Some(reason) = difference {
+        if let Some(reason) = self.wall().difference(&wall, self.time()) {
             return Err(EngineError::OtherWall { reason });
         }
         self.course.wall = wall;
@@ -372,11 +371,10 @@ impl Simulation {
         if let Memory::Frictional(_, contacts) = memory {
             for (i, j, history) in snapshot.pair_histories {
                 if !contacts.pairs.set_history(i, j, history) {
-                    return Err(EngineError::SnapshotMismatch {
-                        reason: format!(
-                            "it remembers a contact of spheres {i} and {j}, which are far apart"
-                        ),
-                    });
+                    let reason = format!(
+                        "it remembers a contact of spheres {i} and {j}, which are far apart"
+                    );
+                    return Err(EngineError::SnapshotMismatch { reason });
                 }
             }
             contacts.wall = WallMemory::from_entries(bodies.grains, &snapshot.wall_histories);

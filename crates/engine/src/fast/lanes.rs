@@ -25,7 +25,7 @@ pub(crate) type Quad<M> = Numbers<<M as Machine>::Quads, 4>;
 pub(crate) struct Mask<M: Machine>(M::Truths);
 
 /// Eight vectors in space.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LaneVector<M: Machine> {
     pub(crate) x: Lanes<M>,
     pub(crate) y: Lanes<M>,
@@ -458,11 +458,5 @@ impl<M: Machine> Default for LaneVector<M> {
     #[inline(always)]
     fn default() -> Self {
         Self::new(Lanes::default(), Lanes::default(), Lanes::default())
-    }
-}
-
-impl<M: Machine> PartialEq for LaneVector<M> {
-    fn eq(&self, other: &Self) -> bool {
-        (self.x, self.y, self.z) == (other.x, other.y, other.z)
     }
 }

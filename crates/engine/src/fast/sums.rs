@@ -5,7 +5,7 @@ use super::machine::Machine;
 use crate::ledger::Tally;
 
 /// The fields of [`Tally`] that kernels add up in lanes.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Sums<M: Machine> {
     pub(super) contact_energy: Lanes<M>,
     pub(super) network_energy: Lanes<M>,
@@ -26,29 +26,6 @@ pub(super) struct Sums<M: Machine> {
 }
 
 impl<M: Machine> Sums<M> {
-    #[inline(always)]
-    pub(super) fn zero() -> Self {
-        let zero = Lanes::splat(0.0);
-        Self {
-            contact_energy: zero,
-            network_energy: zero,
-            keep_energy: zero,
-            wall_power: zero,
-            drive_power: zero,
-            normal_dissipation: zero,
-            drag_dissipation: zero,
-            network_dissipation: zero,
-            tangential_lost: zero,
-            sliding_lost: zero,
-            wall_axial_force: zero,
-            largest_overlap: zero,
-            total_overlap: zero,
-            grain_contacts: 0,
-            wall_contacts: 0,
-            sliding_contacts: 0,
-        }
-    }
-
     /// Adds the sums over the lanes.
     #[inline(always)]
     pub(super) fn add_to(&self, tally: &mut Tally) {

@@ -105,15 +105,13 @@ fn belly(wave: &RadiusWave, cycles: f64) -> f64 {
     f64::from(best) * wavelength / 1000.0
 }
 
-/// Places of all grains.
-pub(super) struct Inserted {
-    pub(super) position: Vec<DVec3>,
-    /// How many were placed without overlap.
-    pub(super) without_overlap: usize,
-}
-
-/// Inserts grain by grain: at a random place without overlap, or, where none is found, at a random place.
-pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8Rng) -> Inserted {
+/// Inserts grain by grain: at a random place without overlap, or, where none is found, at a random place. Answers the places
+/// of all grains, and how many were placed without overlap.
+pub(super) fn insert(
+    diameter: &[f64],
+    region: &Region<'_>,
+    random: &mut ChaCha8Rng,
+) -> (Vec<DVec3>, usize) {
     // Without grains any width of the cells will do.
     let largest = diameter.iter().copied().reduce(f64::max).unwrap_or(1.0);
     let mut bins = Bins::new(region, largest, diameter.len());
@@ -140,10 +138,7 @@ pub(super) fn insert(diameter: &[f64], region: &Region<'_>, random: &mut ChaCha8
         bins.add(place, grain);
         position.push(place);
     }
-    Inserted {
-        position,
-        without_overlap,
-    }
+    (position, without_overlap)
 }
 
 /// Grains by cells of a rectangular grid.

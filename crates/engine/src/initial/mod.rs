@@ -53,14 +53,8 @@ pub fn pack(
         .map(|_| packing.diameter_min + spread * uniform(&mut diameters))
         .collect();
     let region = insertion::Region::new(packing, wall);
-    let insertion::Inserted {
-        position,
-        without_overlap,
-    } = insertion::insert(
-        &diameter,
-        &region,
-        &mut random(packing.seed, Stream::Positions),
-    );
+    let mut positions = random(packing.seed, Stream::Positions);
+    let (position, inserted) = insertion::insert(&diameter, &region, &mut positions);
 
     // Numbered along the tube: grains that meet then lie close in memory as well.
     let mut grains: Vec<(DVec3, f64)> = position.into_iter().zip(diameter).collect();
@@ -68,17 +62,11 @@ pub fn pack(
     let (position, diameter) = grains.into_iter().unzip();
     let mut bodies = Bodies::grains_at_rest(position, diameter);
     wall.append_spheres(&mut bodies);
-    let mut report = PackingReport {
-        inserted: without_overlap,
-        ..PackingReport::default()
-    };
-    if without_overlap < packing.number {
-        let relaxed = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall)?);
-        report = PackingReport {
-            inserted: without_overlap,
-            ..relaxed
-        };
+    let mut report = PackingReport::default();
+    if inserted < packing.number {
+        report = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall)?);
     }
+    report.inserted = inserted;
     for velocity in &mut bodies.velocity[..packing.number] {
         *velocity = DVec3::new(0.0, 0.0, packing.axial_velocity);
     }

@@ -56,27 +56,19 @@ impl ElasticWall {
     /// The wall at time 0.
     pub fn new(parameters: ElasticParameters) -> Self {
         let lattice = parameters.lattice;
-        let spheres = 0..lattice.spheres();
-        let directions = spheres
-            .clone()
-            .map(|index| {
-                let angle = lattice.angle(lattice.sphere(index));
-                (libm::cos(angle), libm::sin(angle))
-            })
-            .collect();
-        let places = spheres
-            .clone()
-            .map(|index| {
-                let sphere = lattice.sphere(index);
-                (sphere.ring, lattice.half_steps(sphere))
-            })
-            .collect();
-        let bonds = spheres
-            .map(|index| {
-                let around = lattice.neighbours(lattice.sphere(index));
-                [around[1], around[4], around[5]].map(|sphere| lattice.index(sphere) as u32)
-            })
-            .collect();
+        let spheres = || (0..lattice.spheres()).map(|index| lattice.sphere(index));
+        let direction = |sphere| {
+            let angle = lattice.angle(sphere);
+            (libm::cos(angle), libm::sin(angle))
+        };
+        let directions = spheres().map(direction).collect();
+        let place = |sphere: WallSphere| (sphere.ring, lattice.half_steps(sphere));
+        let places = spheres().map(place).collect();
+        let bonds = |sphere| {
+            let around = lattice.neighbours(sphere);
+            [around[1], around[4], around[5]].map(|sphere| lattice.index(sphere) as u32)
+        };
+        let bonds = spheres().map(bonds).collect();
         let far = distances(&parameters)
             .map(|distance| distance > parameters.network.contact_range)
             .collect();

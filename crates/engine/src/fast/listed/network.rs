@@ -123,7 +123,7 @@ impl Work for WallForces<'_> {
             rows.resize(wall);
         }
         let net_force = wall.parameters().network.tethers.net_force;
-        let mut sums = Sums::<M>::zero();
+        let mut sums = Sums::<M>::default();
         let nothing = Quad::<M>::splat(0.0);
         let (mut total_force, mut total_velocity) = (nothing, nothing);
         let range = |ring: usize| first + ring * per_ring..first + (ring + 1) * per_ring;
@@ -135,7 +135,7 @@ impl Work for WallForces<'_> {
         rows.place_above.fill_ring::<M>(&spheres.position[range(0)]);
         rows.velocity_above
             .fill_ring::<M>(&spheres.velocity[range(0)]);
-        bonds(wall, rows, 1, &mut Sums::<M>::zero());
+        bonds(wall, rows, 1, &mut Sums::<M>::default());
         for ring in 0..rings {
             core::mem::swap(&mut rows.place, &mut rows.place_above);
             core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);

@@ -293,7 +293,7 @@ fn add_contacts<M: Machine, N: NormalLaw, T: PackedHistory>(
     let force = &mut spheres.force[..];
     let torque = &mut spheres.torque[..];
     let zero = Lanes::<M>::splat(0.0);
-    let mut sums = Sums::<M>::zero();
+    let mut sums = Sums::<M>::default();
     for block in touching.chunks(LANES) {
         let lanes = block.len();
         let (mut pair, mut i, mut j) = ([0; LANES], [0; LANES], [0; LANES]);

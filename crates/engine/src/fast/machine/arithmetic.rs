@@ -43,7 +43,7 @@ impl Truths for u8 {
 }
 
 /// The instructions for eight numbers that are not for four as well.
-pub(crate) trait Machine: Arithmetic<LANES> {
+pub(crate) trait Machine: Arithmetic<LANES> + Default + PartialEq {
     /// Four numbers: a vector in space and one number more.
     type Quads: Arithmetic<4>;
     type Truths: Truths;

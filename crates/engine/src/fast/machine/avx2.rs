@@ -6,7 +6,7 @@ use core::ops::{BitAnd, BitOr, Not};
 use super::arithmetic::{Arithmetic, LANES, Machine, Truths};
 
 /// AVX2.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Avx2;
 
 /// Four numbers in one register.
@@ -23,6 +23,28 @@ macro_rules! both {
         // SAFETY: see the module above; the instructions have been found before any of this runs.
         unsafe { [$operation($($argument[0]),+), $operation($($argument[1]),+)] }
     };
+}
+
+/// Operations on two vectors of numbers, each an instruction.
+macro_rules! operations {
+    ($numbers:ty: $($operation:ident $instruction:ident),+ $(,)?) => {$(
+        #[inline(always)]
+        fn $operation(a: $numbers, b: $numbers) -> $numbers {
+            // SAFETY: as above.
+            unsafe { $instruction(a, b) }
+        }
+    )+};
+}
+pub(super) use operations;
+
+/// The same, each an instruction for both registers.
+macro_rules! operations_of_both {
+    ($($operation:ident $instruction:ident),+ $(,)?) => {$(
+        #[inline(always)]
+        fn $operation(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
+            both!($instruction(a, b))
+        }
+    )+};
 }
 
 // SAFETY of every block below: as above.
@@ -44,29 +66,12 @@ impl Arithmetic<4> for Four {
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
     }
 
-    #[inline(always)]
-    fn add(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn sub(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_sub_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn mul(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_mul_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn min(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_min_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn max(a: __m256d, b: __m256d) -> __m256d {
-        unsafe { _mm256_max_pd(a, b) }
+    operations! { __m256d:
+        add _mm256_add_pd,
+        sub _mm256_sub_pd,
+        mul _mm256_mul_pd,
+        min _mm256_min_pd,
+        max _mm256_max_pd,
     }
 }
 
@@ -98,29 +103,12 @@ impl Arithmetic<LANES> for Avx2 {
         }
     }
 
-    #[inline(always)]
-    fn add(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_add_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn sub(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_sub_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn mul(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_mul_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn min(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_min_pd(a, b))
-    }
-
-    #[inline(always)]
-    fn max(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_max_pd(a, b))
+    operations_of_both! {
+        add _mm256_add_pd,
+        sub _mm256_sub_pd,
+        mul _mm256_mul_pd,
+        min _mm256_min_pd,
+        max _mm256_max_pd,
     }
 }
 
@@ -128,10 +116,7 @@ impl Machine for Avx2 {
     type Quads = Four;
     type Truths = Halves;
 
-    #[inline(always)]
-    fn div(a: [__m256d; 2], b: [__m256d; 2]) -> [__m256d; 2] {
-        both!(_mm256_div_pd(a, b))
-    }
+    operations_of_both! { div _mm256_div_pd }
 
     #[inline(always)]
     fn sqrt(a: [__m256d; 2]) -> [__m256d; 2] {

@@ -3,10 +3,10 @@
 use core::arch::x86_64::*;
 
 use super::arithmetic::{Arithmetic, LANES, Machine};
-use super::avx2::Four;
+use super::avx2::{Four, operations};
 
 /// AVX-512 (F, VL, DQ, BW).
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Avx512;
 
 // SAFETY of every block below: see the module above; the instructions have been found before any of this runs.
@@ -28,29 +28,12 @@ impl Arithmetic<LANES> for Avx512 {
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), values) }
     }
 
-    #[inline(always)]
-    fn add(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_add_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn sub(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_sub_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn mul(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_mul_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn min(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_min_pd(a, b) }
-    }
-
-    #[inline(always)]
-    fn max(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_max_pd(a, b) }
+    operations! { __m512d:
+        add _mm512_add_pd,
+        sub _mm512_sub_pd,
+        mul _mm512_mul_pd,
+        min _mm512_min_pd,
+        max _mm512_max_pd,
     }
 }
 
@@ -58,10 +41,7 @@ impl Machine for Avx512 {
     type Quads = Four;
     type Truths = __mmask8;
 
-    #[inline(always)]
-    fn div(a: __m512d, b: __m512d) -> __m512d {
-        unsafe { _mm512_div_pd(a, b) }
-    }
+    operations! { __m512d: div _mm512_div_pd }
 
     #[inline(always)]
     fn sqrt(a: __m512d) -> __m512d {

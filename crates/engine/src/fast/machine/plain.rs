@@ -3,7 +3,7 @@
 use super::arithmetic::{Arithmetic, LANES, Machine};
 
 /// Plain code.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Plain;
 
 #[inline(always)]

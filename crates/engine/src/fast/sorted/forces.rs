@@ -139,7 +139,7 @@ impl<N: NormalLaw, const FULL: bool> Work for ForcesOfTile<'_, N, FULL> {
         if touching.len() < tile.listed() {
             touching.resize(tile.listed(), Partners::default());
         }
-        let mut sums = Sums::<M>::zero();
+        let mut sums = Sums::<M>::default();
         for place in (tile.first..tile.end).step_by(LANES) {
             let block = Block::load(position, velocity, place, tile.end);
             block.add_pairs::<N, FULL>(
