@@ -89,14 +89,11 @@ pub(crate) const PAPERS: &[Choice<Paper>] = &[
 
 /// Formats of trajectories; the help of their options names them.
 pub(crate) const TRAJECTORIES: &[Choice<TrajectoryFormat>] = &[
-    (
-        "gsd",
-        Gsd,
-        "General Simulation Data: OVITO, freud, Python's gsd",
-    ),
+    ("gsd", Gsd, GENERAL),
     ("vtp", Vtp, "VTK polydata with contacts: ParaView, PyVista"),
     ("lammps", Lammps, "LAMMPS dump text: OVITO, VMD"),
 ];
+const GENERAL: &str = "General Simulation Data: OVITO, freud, Python's gsd";
 
 /// Instructions that the fast kernels can be held to; the results are the same bits.
 pub(crate) const INSTRUCTIONS: &[Choice<Instructions>] = &[
@@ -115,9 +112,8 @@ fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {
 pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
     choices: &'static [Choice<T>],
 ) -> impl TypedValueParser<Value = T> {
-    let names = choices
-        .iter()
-        .map(|(name, _, meaning)| PossibleValue::new(*name).help(*meaning));
+    let names = choices.iter();
+    let names = names.map(|(name, _, meaning)| PossibleValue::new(*name).help(*meaning));
     PossibleValuesParser::new(names)
         .map(|name| value_of(choices, &name).expect("only known names are parsed"))
 }

@@ -19,10 +19,9 @@ pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure>
         return print(preset.text);
     }
     if arguments.json {
-        let list: Vec<_> = PRESETS
-            .iter()
-            .map(|preset| serde_json::json!({ "name": preset.name, "summary": preset.summary }))
-            .collect();
+        let list = PRESETS.iter();
+        let list = list.map(|it| serde_json::json!({ "name": it.name, "summary": it.summary }));
+        let list: Vec<_> = list.collect();
         return print_json(&list);
     }
     let width = PRESETS.iter().map(|preset| preset.name.len()).max();

@@ -37,10 +37,8 @@ pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
         ViewName::Section => "tube-section",
         ViewName::SpaceTime => "space-time",
     };
-    let out = arguments
-        .out
-        .clone()
-        .unwrap_or_else(|| folder.path().join(format!("{name}.{}", format.extension())));
+    let usual = || folder.path().join(format!("{name}.{}", format.extension()));
+    let out = arguments.out.clone().unwrap_or_else(usual);
     if arguments.view == ViewName::SpaceTime {
         return finish_picture(arguments, &out, format, &space_time(&run)?);
     }

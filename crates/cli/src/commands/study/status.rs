@@ -50,15 +50,13 @@ fn report(store: &Store, survey: &Survey) -> Value {
             })
         })
         .collect();
-    let runs: Vec<Value> = survey
-        .plan
-        .sorted_runs()
-        .iter()
+    let runs = survey.plan.sorted_runs().into_iter();
+    let runs: Vec<Value> = runs
         .map(|run| {
             let entry = survey.entries.get(&run.identity);
             json!({
                 "identity": run.identity.to_string(),
-                "point": survey.plan.point(run).in_words(),
+                "point": survey.plan.point(&run).in_words(),
                 "replicate": run.replicate,
                 "state": survey.state(run.identity),
                 "reason": entry.and_then(|entry| entry.reason.as_ref()),
@@ -79,18 +77,16 @@ fn report(store: &Store, survey: &Survey) -> Value {
 /// The status for a person.
 fn in_words(store: &Store, survey: &Survey) -> String {
     let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
-    let counts = survey.counts().into_iter();
-    let counts: Vec<_> = counts
-        .map(|(state, number)| format!("{number} {state}"))
-        .collect();
+    let in_state = |(state, number)| format!("{number} {state}");
+    let counts: Vec<String> = survey.counts().into_iter().map(in_state).collect();
     let (runs, counts) = (survey.plan.runs().len(), counts.join(", "));
     text.push_str(&format!("{runs} runs: {counts}\n"));
     let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
     let others = survey
         .entries
         .iter()
-        .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity))
-        .count();
+        .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity));
+    let others = others.count();
     if others > 0 {
         text += &format!("{others} finished runs are not part of the study as it stands\n");
     }
