@@ -103,7 +103,8 @@ impl Check {
             Kind::Spheres(_) => Ok(()),
             Kind::Reference(reference) => {
                 let value = finite("value of a reference line", reference.value)?;
-                let axis = if reference.vertical {
+                let is_vertical = reference.vertical;
+                let axis = if is_vertical {
                     &mut self.x
                 } else {
                     &mut self.y

@@ -164,11 +164,8 @@ impl Spaces {
         // The numbers at the ends of a horizontal axis reach over it, nearly alike for nearly equal widths.
         let width = width_beside(&left, right);
         let over = |index: usize| {
-            if bears_x(figure, index) {
-                overhang(&axes[index].x, width)
-            } else {
-                (0.0, 0.0)
-            }
+            let ends = bears_x(figure, index).then(|| overhang(&axes[index].x, width));
+            ends.unwrap_or_default()
         };
         for (column, space) in left.iter_mut().enumerate().skip(1) {
             let between = |index: usize| over(index - 1).1 + over(index).0 + NUMBER_GAP;
