@@ -11,7 +11,6 @@ use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
 
-/// Says what would run.
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let configuration = configuration(&arguments.configuration)?;
     let estimate = estimate(&configuration, request(&arguments.frames).as_ref())

@@ -8,7 +8,6 @@ use crate::arguments::{Arguments, CompletionsArguments};
 use crate::commands::print;
 use crate::failure::Failure;
 
-/// Prints completions for a shell.
 pub(crate) fn completions(arguments: &CompletionsArguments) -> Result<ExitCode, Failure> {
     let mut script = Vec::new();
     let mut command = Arguments::command();

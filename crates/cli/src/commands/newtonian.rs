@@ -8,7 +8,6 @@ use crate::arguments::NewtonianArguments;
 use crate::commands::{print, print_json};
 use crate::failure::Failure;
 
-/// Prints what a Newtonian fluid does.
 pub(crate) fn newtonian(arguments: &NewtonianArguments) -> Result<ExitCode, Failure> {
     let (width, radius, pressure) = (arguments.width, arguments.radius, arguments.pressure);
     let fluid = NewtonianPeristalsis::from_width(width, radius, pressure).ok_or_else(|| {

@@ -9,7 +9,6 @@ use crate::commands::{print, print_json};
 use crate::failure::Failure;
 use crate::sources::known_presets;
 
-/// Lists the presets, or prints one.
 pub(crate) fn presets(arguments: &PresetsArguments) -> Result<ExitCode, Failure> {
     if let Some(name) = &arguments.name {
         let Some(preset) = preset(name) else {

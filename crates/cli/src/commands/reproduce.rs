@@ -18,7 +18,6 @@ use crate::stop::Stop;
 /// Time between two checkpoints of a run.
 const CHECKPOINT_INTERVAL: Duration = Duration::from_secs(60);
 
-/// Examines the claims.
 pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let full = arguments.full;

@@ -27,7 +27,6 @@ const SAVE_INTERVAL: Duration = Duration::from_secs(60);
 /// Steps after which signals are looked for and the state is saved at the latest, far fewer than some samples are apart.
 const MOST_STEPS: u64 = 50_000;
 
-/// Runs one simulation.
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let (folder, mut run) = match &arguments.resume {

@@ -17,12 +17,10 @@ pub(crate) struct SchemaArguments {
     pub(crate) markdown: bool,
 }
 
-/// Prints the JSON schema of the configuration.
 pub(crate) fn schema(arguments: SchemaArguments) -> Result<ExitCode, Failure> {
     show(arguments, &peristalsis_configuration::schema(), "resolved")
 }
 
-/// Prints the JSON schema of a study file.
 pub(crate) fn study_schema(arguments: SchemaArguments) -> Result<ExitCode, Failure> {
     show(arguments, &peristalsis_study::schema(), "base")
 }

@@ -15,7 +15,6 @@ use crate::stop::Stop;
 /// Folder for frames from a saved state, in the folder of their run.
 const FROM_STATE: &str = "from-state";
 
-/// Writes frames from the saved state of a run on.
 pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let (folder, mut run) = RunFolder::open(&arguments.folder)?;

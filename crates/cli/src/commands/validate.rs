@@ -12,7 +12,6 @@ use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::stop::Stop;
 
-/// Runs the cases.
 pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let quick = arguments.quick;

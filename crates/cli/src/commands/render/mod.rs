@@ -26,7 +26,6 @@ use crate::stop::Stop;
 const DURATION: Span = Span::Periods(2.0);
 const INTERVAL: Span = Span::Periods(0.05);
 
-/// Draws a picture or a film of a run.
 pub(crate) fn render(arguments: &RenderArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let format = format(arguments)?;

@@ -9,7 +9,6 @@ use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, Sto
 use crate::commands::{code_of, print, say};
 use crate::failure::Failure;
 
-/// Lets runs be computed again.
 pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;
@@ -36,14 +35,12 @@ pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
     Ok(code_of(begun == runs.len()))
 }
 
-/// Checks all hashes.
 pub(crate) fn verify(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
     let found = Store::open(&arguments.store)?.scan()?;
     print(&in_words(&found))?;
     Ok(code_of(found.quarantined.is_empty()))
 }
 
-/// Makes the index again.
 pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
     print(&in_words(&Store::open(&arguments.store)?.scan()?))
 }
@@ -66,7 +63,6 @@ fn moved_aside(runs: &[(Identity, String)]) -> impl Iterator<Item = String> {
     })
 }
 
-/// Writes the tables.
 pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let exported = store.export(&arguments.out, arguments.series)?;
@@ -83,7 +79,6 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     Ok(code_of(exported.quarantined.is_empty()))
 }
 
-/// Writes the archive.
 pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     if !is_archive(&arguments.archive) {
         return Err(Failure::usage(
@@ -96,7 +91,6 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     print(&format!("{} finished runs in {archive}\n", packed.runs))
 }
 
-/// Takes finished runs over.
 pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     let path = &arguments.store.store;
     let store = match &arguments.study {

@@ -10,7 +10,6 @@ use crate::commands::print_report;
 use crate::failure::Failure;
 use crate::progress::seconds;
 
-/// Says what a study would run.
 pub(crate) fn plan(arguments: &PlanArguments) -> Result<ExitCode, Failure> {
     let study = Specification::read(&arguments.file)?;
     let plan = study.plan();

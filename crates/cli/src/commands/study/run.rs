@@ -11,7 +11,6 @@ use crate::commands::tell;
 use crate::failure::Failure;
 use crate::stop::Stop;
 
-/// Computes the missing runs of a study.
 pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let study = Specification::read(&arguments.file)?;

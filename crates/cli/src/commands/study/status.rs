@@ -13,7 +13,6 @@ use crate::failure::Failure;
 /// Runs that are named in words; more are counted.
 const NAMED: usize = 10;
 
-/// Says how far a study is.
 pub(crate) fn status(arguments: &StatusArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;
@@ -125,7 +124,6 @@ pub(super) fn estimate(bracket: &Bracket) -> String {
     format!("{of}: transition at {key} = {middle:.6} ± {half:.6}")
 }
 
-/// Says all that is known of a run.
 pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {
     let store = Store::open(&arguments.store.store)?;
     let survey = store.survey()?;

@@ -15,7 +15,6 @@ const WARNING: Duration = Duration::from_secs(60);
 /// Shortest time of a task: twice the time kept for saving at its end.
 const SHORTEST: Duration = Duration::from_secs(240);
 
-/// Makes the store of a study and writes a script for Slurm, an array of tasks that share it.
 pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     if arguments.time < SHORTEST {
         let [time, shortest] = [arguments.time, SHORTEST].map(|time| time.as_secs());

@@ -20,7 +20,6 @@ use studies::Studies;
 /// Configuration in the folder of a run.
 const CONFIGURATION: &str = "config.toml";
 
-/// Serves the viewer until a signal.
 pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
     let viewer = match (studies(arguments)?, trajectory(arguments)?) {
