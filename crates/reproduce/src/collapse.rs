@@ -62,7 +62,7 @@ pub(crate) fn collapse(
 #[derive(Default)]
 pub(crate) struct Curves {
     critical: Vec<f64>,
-    all: Vec<Curve>,
+    curves: Vec<Curve>,
 }
 
 impl Curves {
@@ -89,16 +89,13 @@ impl Curves {
             .collect();
         if points.len() >= 3 {
             self.critical.push(critical.value);
-            self.all.push(Curve { parameter, points });
+            self.curves.push(Curve { parameter, points });
         }
     }
 
     /// Collapses them, beginning the search at `start`; `None` where there are fewer than three.
     pub(crate) fn collapse(self, start: [f64; 2], claimed: Option<[f64; 2]>) -> Option<Collapsed> {
-        let Self {
-            critical,
-            all: curves,
-        } = self;
+        let Self { critical, curves } = self;
         if curves.len() < 3 {
             return None;
         }

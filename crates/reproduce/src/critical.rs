@@ -343,15 +343,12 @@ pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
         return None;
     }
     let weights: f64 = usable.iter().map(|one| one.error.powi(-2)).sum();
-    let mean = usable
+    let weighted = usable.iter().map(|one| one.value * one.error.powi(-2));
+    let mean = weighted.sum::<f64>() / weights;
+    let squares = usable
         .iter()
-        .map(|one| one.value * one.error.powi(-2))
-        .sum::<f64>()
-        / weights;
-    let chi_squared: f64 = usable
-        .iter()
-        .map(|one| ((one.value - mean) / one.error).powi(2))
-        .sum();
+        .map(|one| ((one.value - mean) / one.error).powi(2));
+    let chi_squared: f64 = squares.sum();
     let freedom = (usable.len() - 1).max(1) as f64;
     let ratio = (chi_squared / freedom).max(1.0).sqrt();
     Some(Uncertain::normal(mean, ratio / weights.sqrt()))

@@ -138,12 +138,10 @@ impl<'a> ForceLine<'a> {
     pub(crate) fn window(&self) -> Option<(f64, f64)> {
         let (first, last) = self.both_ends()?;
         let forces = || self.flow.points().map(|point| point.control);
-        let before = forces()
-            .filter(|force| *force < first)
-            .fold(f64::NEG_INFINITY, f64::max);
-        let after = forces()
-            .filter(|force| *force > last)
-            .fold(f64::INFINITY, f64::min);
+        let before = forces().filter(|force| *force < first);
+        let after = forces().filter(|force| *force > last);
+        let before = before.fold(f64::NEG_INFINITY, f64::max);
+        let after = after.fold(f64::INFINITY, f64::min);
         Some((last - first, after - before))
     }
 
@@ -159,16 +157,13 @@ impl<'a> ForceLine<'a> {
                 .min_by(|one, other| one.value.total_cmp(&other.value));
         }
         let number = both.len() as f64;
-        let distance = both
-            .iter()
-            .map(|(rest, jammed)| jammed.flow.value - rest.flow.value);
-        let variance = both
-            .iter()
-            .map(|(rest, jammed)| rest.flow.error.powi(2) + jammed.flow.error.powi(2));
-        Some(Uncertain::normal(
-            distance.sum::<f64>() / number,
-            variance.sum::<f64>().sqrt() / number,
-        ))
+        let flows = || both.iter().map(|(rest, jammed)| (rest.flow, jammed.flow));
+        let distance: f64 = flows()
+            .map(|(rest, jammed)| jammed.value - rest.value)
+            .sum();
+        let variance = flows().map(|(rest, jammed)| rest.error.powi(2) + jammed.error.powi(2));
+        let error = variance.sum::<f64>().sqrt();
+        Some(Uncertain::normal(distance / number, error / number))
     }
 
     /// Distance of the forces of the longer of the largest rises from either start.

@@ -83,12 +83,8 @@ impl Prose {
 
     /// What the source says, in our words; or the question.
     pub fn statement(&self) -> String {
-        joined(
-            self.opening()
-                .lines()
-                .skip(1)
-                .filter(|line| !line.starts_with("Source: ")),
-        )
+        let lines = self.opening().lines().skip(1);
+        joined(lines.filter(|line| !line.starts_with("Source: ")))
     }
 
     /// The paragraphs of a section that asks for no value; none of another.

@@ -1,5 +1,7 @@
 //! Rows of finished runs: the one form in which claims read runs.
 
+use std::cmp::Ordering;
+
 use peristalsis_analysis::{Transition, Uncertain, mean_and_error};
 use peristalsis_formats::{FormatError, Table, Values};
 use peristalsis_run::THRESHOLDS;
@@ -254,11 +256,8 @@ pub(crate) fn grouped<T: Copy, K: PartialOrd + Copy>(
     key: impl Fn(&T) -> K,
 ) -> Vec<(K, Vec<T>)> {
     let mut keyed: Vec<(K, T)> = all.into_iter().map(|one| (key(&one), one)).collect();
-    keyed.sort_by(|one, other| {
-        one.0
-            .partial_cmp(&other.0)
-            .unwrap_or(std::cmp::Ordering::Equal)
-    });
+    let order = |one: &(K, T), other: &(K, T)| one.0.partial_cmp(&other.0);
+    keyed.sort_by(|one, other| order(one, other).unwrap_or(Ordering::Equal));
     keyed
         .chunk_by(|one, other| one.0 == other.0)
         .map(|group| (group[0].0, group.iter().map(|(_, one)| *one).collect()))

@@ -137,10 +137,8 @@ fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
         return Ok(());
     };
     let (all, otherwise) = (widths.iter().copied(), (*first, first + 0.01));
-    let chart =
-        grid(2, panels)
-            .share_y()
-            .colour_scale(colours(&label(Axis::Width), all, otherwise));
+    let scale = colours(&label(Axis::Width), all, otherwise);
+    let chart = grid(2, panels).share_y().colour_scale(scale);
     draft.chart("flow-in-time", &[], chart)
 }
 

@@ -95,10 +95,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &needed));
     }
     let summary = PROSE.text("summary", values!(counts = counts.join(" and "), why));
-    draft
-        .finding
-        .quantities
-        .splice(0..0, means.into_iter().rev());
+    let quantities = &mut draft.finding.quantities;
+    quantities.splice(0..0, means.into_iter().rev());
     draft.table("jumps", values!(near = NEAR_THE_JUMP), rows);
     let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));

@@ -99,11 +99,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(statistics, &Q1_NEEDED));
     }
     let words = LATTICES.map(|lattice| {
-        let here: Vec<&Line> = lines
-            .iter()
-            .filter(|line| line.lattice == lattice)
-            .collect();
-        in_words(lattice, &here)
+        let here = lines.iter().filter(|line| line.lattice == lattice);
+        in_words(lattice, &here.collect::<Vec<_>>())
     });
     let summary = PROSE.text("summary", values!(lattices = words.join(". ")));
     let mut draft = Draft::of(PROSE);
@@ -153,11 +150,8 @@ fn turning(lines: &[&Line]) -> String {
 
 /// The strain rate at which the flow passes one half in the widest tube, in words.
 fn turning_of_half(lines: &[&Line]) -> String {
-    let halves = || {
-        lines
-            .iter()
-            .filter_map(|line| Some((line.strain_rate, line.half?)))
-    };
+    let half = |line: &&Line| Some((line.strain_rate, line.half?));
+    let halves = || lines.iter().filter_map(half);
     let widest = halves().max_by(|one, other| one.1.total_cmp(&other.1));
     match (halves().next(), widest) {
         (Some(slowest), Some(widest)) if widest.0 > slowest.0 => {
@@ -190,10 +184,8 @@ fn figure(lines: &[Line]) -> ChartFigure {
         // Where nothing jumps, the largest fall has no meaning. Bars are the brackets.
         let jumps = of().filter(|line| line.jumps);
         let jumps = jumps.map(|line| (line.strain_rate, bar(&line.critical)));
-        let halves = of().filter_map(|line| {
-            let exact = Uncertain::normal(line.half?, 0.0);
-            Some((line.strain_rate, exact))
-        });
+        let exact = |half| Uncertain::normal(half, 0.0);
+        let halves = of().filter_map(|line| Some((line.strain_rate, exact(line.half?))));
         let heights = of().filter_map(|line| Some((line.strain_rate, line.height?)));
         let halves = points(&format!("{lattice}, *J* = *J*_{{max}}/2"), halves);
         let widths = [

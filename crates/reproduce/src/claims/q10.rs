@@ -165,8 +165,7 @@ impl<'a> Outcome<'a> {
         }
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let [gives_way, jumps, back, forward] = self.holds().map(|holds| match holds {
             Some(true) => "yes",
             Some(false) => "no",
@@ -213,7 +212,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let summary = PROSE.text("summary", values!(settings, tight, holding));
     let statistics = Statistics::weakest_at_one_rate(outcomes.iter().map(Outcome::statistics));
     let mut draft = Draft::of(PROSE).varying("force");
-    draft.table("settings", &[], outcomes.iter().map(Outcome::cells));
+    draft.table("settings", &[], outcomes.iter().map(Outcome::row));
     let panels: Vec<ChartPanel> = outcomes.iter().filter_map(flow_of).collect();
     if !panels.is_empty() {
         let chart = grid(3, panels).share_x().share_y();

@@ -147,13 +147,8 @@ fn against_step(lattice: &str, outcomes: &[Outcome]) -> ChartPanel {
             is_adams_bashforth,
             ..Method::DEFAULT
         };
-        let here = outcomes.iter().filter(|one| {
-            let Method { time_step, .. } = one.method;
-            one.method
-                == Method {
-                    time_step,
-                    ..method
-                }
+        let here = outcomes.iter().filter(|Outcome { method: one, .. }| {
+            one.is_adams_bashforth == is_adams_bashforth && one.skin == method.skin
         });
         let widths = here.map(|one| (one.method.time_step, bar(&one.critical)));
         joined(method.integrator(), widths)

@@ -72,8 +72,7 @@ impl Sampled<'_> {
         self.flow.value < -SIGNED_BY * self.flow.error.max(0.0)
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let parts = |kind: &str, part: &str| {
             let (whole, part) = (format!("wall_{kind}"), format!("{part}_{kind}"));
             let (force, rest) = (self.force(&part), self.rest(&whole, &part));
@@ -210,7 +209,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let flow = sampled.map(|one| one.flow);
         draft.quantity("flow", values!(name), flow);
     }
-    draft.table("forces", &[], samples.0.iter().map(Sampled::cells));
+    draft.table("forces", &[], samples.0.iter().map(Sampled::row));
     figures::causes(&mut draft, &samples)?;
     figures::balance(&mut draft, results, &samples)?;
     Ok(draft.concluded(Verdict::Answered, summary, statistics, &Q6_NEEDED))

@@ -128,8 +128,7 @@ impl<'a> Corner<'a> {
         }
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let control = |value: f64| number(value, self.wall.digits);
         let state = |point: Option<&Point<'_>>| {
             cell_of(point, |point| {
@@ -215,7 +214,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("lowest", values!(corner), lowest);
         draft.quantity("gap", values!(corner), gap);
     }
-    draft.table("corners", &[], corners.iter().map(Corner::cells));
+    draft.table("corners", &[], corners.iter().map(Corner::row));
     let left_out: usize = corners.iter().map(|corner| corner.left_out).sum();
     if left_out > 0 {
         draft.weakness("left out", values!(states = left_out));

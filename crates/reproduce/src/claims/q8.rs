@@ -70,8 +70,7 @@ impl<'a> Ladder<'a> {
         Some(format!("{}{doubt} in {} waves", rise.height, self.waves))
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let (rise, fluctuation) = (self.rise(), self.largest_fluctuation());
         let thousandths = |value: f64| number(1e3 * value, 2);
         vec![
@@ -131,8 +130,7 @@ impl Loop {
         Some(format!("{width} in {} periods", self.periods))
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let force = |force: Option<Uncertain>| cell(force.map(|force| force.scaled(1e3)));
         vec![
             number(1e3 * self.rate, 2),
@@ -246,10 +244,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         at.add_quantities(&mut draft);
     }
     if !ladders.is_empty() {
-        draft.table("ladders", &[], ladders.iter().map(Ladder::cells));
+        draft.table("ladders", &[], ladders.iter().map(Ladder::row));
     }
     if !loops.is_empty() {
-        draft.table("loops", &[], loops.iter().map(Loop::cells));
+        draft.table("loops", &[], loops.iter().map(Loop::row));
     }
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(passed = PASSED));
     let panels = figures::panels(&rates);

@@ -82,10 +82,8 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Some(true) if outcomes.len() >= 4 => Verdict::Reproduced,
         _ => Verdict::Open,
     };
-    let flows: Vec<String> = scenes
-        .iter()
-        .map(|scene| format!("{} at {}", scene.flow, scene.name()))
-        .collect();
+    let flow = |scene: &Scene<'_>| format!("{} at {}", scene.flow, scene.name());
+    let flows: Vec<String> = scenes.iter().map(flow).collect();
     let lines = ForceLine::all_of(&evidence.study("elastic-branches")?.rows());
     let summary = PROSE.text("summary", values!(flows = flows.join(", ")));
     let mut draft = draft(PROSE);

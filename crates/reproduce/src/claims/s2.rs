@@ -141,11 +141,8 @@ fn figure(study: &StudyResults, ladder: &[Rung<'_>]) -> Result<ChartFigure> {
         .y_range(..=1.05)
         .title("from jammed, one run a force")
         .with_all(courses);
-    let panels = is_coloured
-        .then_some(in_time)
-        .into_iter()
-        .chain([times(ladder)]);
-    let mut chart = grid(2, panels);
+    let in_time = is_coloured.then_some(in_time);
+    let mut chart = grid(2, in_time.into_iter().chain([times(ladder)]));
     if is_coloured {
         let first = ladder[0].force;
         let forces = ladder.iter().map(|rung| rung.force);
@@ -175,12 +172,8 @@ fn times(ladder: &[Rung<'_>]) -> ChartPanel {
         times.map(|time| (rung.force, time * rung.strain_rate))
     });
     let (force, time): (Vec<f64>, Vec<f64>) = single.unzip();
-    let single = (!force.is_empty()).then(|| {
-        Points::new("runs", &force, &time)
-            .series(0)
-            .tint(Tint::Grey)
-            .open()
-    });
+    let runs = Points::new("runs", &force, &time).series(0).open();
+    let single = (!force.is_empty()).then(|| runs.tint(Tint::Grey));
     let mean = |rung: &Rung<'_>| rung.mean().filter(|_| rung.most_yield());
     let means = ladder
         .iter()

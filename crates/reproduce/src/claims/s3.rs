@@ -139,11 +139,9 @@ fn heights(tight: &[&ForceLine<'_>]) -> Option<ChartPanel> {
         let height = line.height();
         let at = height.map(|height| Uncertain::normal(height.value.max(0.0), height.error));
         let point = points("", at.map(|height| (line.strain_rate, height)));
-        let is_open = line.kind() == Kind::Unclear;
-        let point = if is_open {
-            point.map(Points::open)
-        } else {
-            point
+        let point = match line.kind() {
+            Kind::Unclear => point.map(Points::open),
+            Kind::Jump | Kind::Smooth => point,
         };
         (line.strain_rate, point)
     };

@@ -24,16 +24,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(nothing(&PROSE));
     }
     let frictional = ForceLine::all_of(&branch_rows(evidence)?);
-    let pairs: Vec<Pair<'_, '_>> = tight
-        .iter()
-        .map(|line| {
-            let mut others = frictional.iter();
-            (
-                *line,
-                others.find(|other| other.strain_rate == line.strain_rate),
-            )
-        })
-        .collect();
+    let beside = |line: &ForceLine<'_>| {
+        let mut others = frictional.iter();
+        others.find(|other| other.strain_rate == line.strain_rate)
+    };
+    let pairs: Vec<Pair<'_, '_>> = tight.iter().map(|line| (*line, beside(line))).collect();
     let flows_back = tight.iter().any(|line| !negative(line).is_empty());
     let points = || tight.iter().flat_map(|line| line.flow.points());
     let never = points()

@@ -104,8 +104,7 @@ impl<'a> Flow<'a> {
         }
     }
 
-    /// The row of the table.
-    fn cells(&self) -> Vec<String> {
+    fn row(&self) -> Vec<String> {
         let means = NUMBERS.iter().map(|(_, _, value)| {
             let mean = self.mean(*value);
             if mean.error.is_finite() {
@@ -212,7 +211,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         }
     }
     let flows = frictional.iter().chain(&frictionless);
-    let mut table = PROSE.table("flows", &[], flows.map(Flow::cells));
+    let mut table = PROSE.table("flows", &[], flows.map(Flow::row));
     let symbols = NUMBERS.iter().map(|(_, symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
     draft.finding.tables.push(table);
