@@ -5,7 +5,6 @@ use serde::Serialize;
 
 use crate::check::{Check, Convergence};
 pub use crate::contents::{Quantity, ReportFigure, ReportTable};
-use crate::prose::{Prose, Values};
 
 /// The verdict on a claim or a textbook case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -193,14 +192,6 @@ impl Finding {
     /// The same, with the parameter that is varied at each strain rate.
     pub(crate) fn varying(self, varied: &'static str) -> Self {
         Self { varied, ..self }
-    }
-
-    /// A finding of a textbook case that holds its method, as its text describes it, and nothing else yet.
-    pub(crate) fn described(prose: &Prose, values: &Values<'_>) -> Self {
-        Self {
-            paragraphs: prose.paragraphs("method", values),
-            ..Self::default()
-        }
     }
 
     /// The verdict that follows from checks and orders alone; open where nothing was checked.

@@ -100,6 +100,14 @@ impl Prose {
         Finding::nothing(&self.text("nothing", &[]), statistics, needed)
     }
 
+    /// A finding that holds the section `method` and nothing else yet.
+    pub(crate) fn described(&self, values: &Values<'_>) -> Finding {
+        Finding {
+            paragraphs: self.paragraphs("method", values),
+            ..Finding::default()
+        }
+    }
+
     /// A section as one paragraph.
     pub(crate) fn text(&self, section: &str, values: &Values<'_>) -> String {
         filled(&joined(self.section(section).lines()), values)

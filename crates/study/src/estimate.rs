@@ -74,11 +74,8 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
         tried += work(configuration);
     }
     let replicates = f64::from(study.replicates);
-    let grain_steps: f64 = points
-        .iter()
-        .map(|point| work(&point.configuration))
-        .sum::<f64>()
-        * replicates;
+    let work_of_points = points.iter().map(|point| work(&point.configuration));
+    let grain_steps = work_of_points.sum::<f64>() * replicates;
     let record = &study.record;
     let columns = record.columns.as_ref().map_or(COLUMNS.len(), Vec::len) as f64;
     let kept = |is_kept: bool, numbers: f64| if is_kept { numbers } else { 0.0 };
@@ -99,15 +96,12 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
             BYTES_A_RUN + BYTES_A_NUMBER * numbers
         })
         .sum();
+    let steps = points.iter().map(|point| point.configuration.run.steps());
     Ok(StudyEstimate {
         points: points.len(),
         runs: plan.runs().len(),
         refinement_runs: usual_added_points(study, plan) * study.replicates as usize,
-        steps: points
-            .iter()
-            .map(|point| point.configuration.run.steps())
-            .sum::<u64>()
-            * u64::from(study.replicates),
+        steps: steps.sum::<u64>() * u64::from(study.replicates),
         grain_steps,
         processor_seconds: seconds / tried * grain_steps,
         bytes: bytes * replicates,
@@ -126,10 +120,8 @@ fn all_warnings(plan: &Plan) -> Vec<StudyWarning> {
     let mut all: Vec<StudyWarning> = Vec::new();
     for point in plan.points() {
         for warning in warnings(&point.configuration) {
-            match all
-                .iter_mut()
-                .find(|other| other.warning.key == warning.key)
-            {
+            let is_same = |other: &&mut StudyWarning| other.warning.key == warning.key;
+            match all.iter_mut().find(is_same) {
                 Some(other) => other.points += 1,
                 None => all.push(StudyWarning {
                     points: 1,

@@ -75,17 +75,14 @@ impl Identity {
             "peristalsis run of a study 1\nphysics {PHYSICS_VERSION}\nconfiguration {}\n",
             hexadecimal(&configuration.run_hash())
         );
-        match stopping {
-            None => run.push_str("to its end\n"),
-            Some(Stopping { settled_periods }) => {
-                run.push_str(&format!("settled {settled_periods}\n"));
-            }
-        }
-        match &record.columns {
-            None => run.push_str("all columns\n"),
-            Some(columns) => run.push_str(&format!("columns {}\n", columns.join(" "))),
-        }
-        run.push_str(&format!("profile {}\n", record.profile));
+        let end = stopping.map_or("to its end".to_owned(), |stopping| {
+            format!("settled {}", stopping.settled_periods)
+        });
+        let columns = record.columns.as_ref();
+        let columns = columns.map_or("all columns".to_owned(), |names| {
+            format!("columns {}", names.join(" "))
+        });
+        run.push_str(&format!("{end}\n{columns}\nprofile {}\n", record.profile));
         // An option that is absent is not written.
         if record.waves {
             run.push_str("waves\n");
@@ -130,20 +127,12 @@ impl FromStr for Identity {
     type Err = NotAnIdentity;
 
     fn from_str(text: &str) -> Result<Self, NotAnIdentity> {
-        let digits = text.as_bytes();
-        let valid = digits.len() == 32
-            && digits
-                .iter()
-                .all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'));
-        if !valid {
+        let is_digit = |byte: u8| matches!(byte, b'0'..=b'9' | b'a'..=b'f');
+        if text.len() != 32 || !text.bytes().all(is_digit) {
             return Err(NotAnIdentity);
         }
-        let mut bytes = [0; 16];
-        for (index, byte) in bytes.iter_mut().enumerate() {
-            *byte = u8::from_str_radix(&text[2 * index..2 * index + 2], 16)
-                .map_err(|_| NotAnIdentity)?;
-        }
-        Ok(Self(bytes))
+        let number = u128::from_str_radix(text, 16).map_err(|_| NotAnIdentity)?;
+        Ok(Self(number.to_be_bytes()))
     }
 }
 

@@ -105,16 +105,10 @@ impl Point {
     }
 
     fn order(&self, other: &Self) -> Ordering {
-        self.settings
-            .iter()
-            .zip(&other.settings)
-            .map(|(one, other)| one.value.order(&other.value))
-            .find(|order| order.is_ne())
-            .unwrap_or_else(|| {
-                state_name(self.state)
-                    .cmp(state_name(other.state))
-                    .reverse()
-            })
+        let pairs = self.settings.iter().zip(&other.settings);
+        let mut orders = pairs.map(|(one, other)| one.value.order(&other.value));
+        let by_state = || state_name(other.state).cmp(state_name(self.state));
+        orders.find(|order| order.is_ne()).unwrap_or_else(by_state)
     }
 }
 
@@ -168,15 +162,13 @@ impl Plan {
             let index = self.points.len();
             let configuration = &point.configuration;
             let runs = Identity::of(configuration, self.stopping, &self.record, self.replicates);
-            let planned = (0..)
-                .zip(runs)
-                .map(|(replicate, (identity, seed))| PlannedRun {
-                    identity,
-                    point: index,
-                    replicate,
-                    seed,
-                });
-            self.runs.extend(planned);
+            let planned = |(replicate, (identity, seed))| PlannedRun {
+                identity,
+                point: index,
+                replicate,
+                seed,
+            };
+            self.runs.extend((0..).zip(runs).map(planned));
             self.points.push(point);
         }
         self.runs.sort_by_key(|run| (run.replicate, run.point));

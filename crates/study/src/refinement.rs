@@ -144,19 +144,16 @@ impl Line<'_> {
             return Vec::new();
         };
         let known = self.known(counts);
-        let below = known
-            .iter()
-            .rposition(|(value, count)| *value <= lower && count.unanimity().is_some());
-        let above = known
-            .iter()
-            .position(|(value, count)| *value >= upper && count.unanimity().is_some());
+        let all_agree = |count: &Count| count.unanimity().is_some();
+        let mut points = known.iter();
+        let below = points.rposition(|(value, count)| *value <= lower && all_agree(count));
+        let mut points = known.iter();
+        let above = points.position(|(value, count)| *value >= upper && all_agree(count));
         let (Some(below), Some(above)) = (below, above) else {
             return vec![(lower, upper)];
         };
-        known[below..=above]
-            .windows(2)
-            .map(|pair| (pair[0].0, pair[1].0))
-            .collect()
+        let pairs = known[below..=above].windows(2);
+        pairs.map(|pair| (pair[0].0, pair[1].0)).collect()
     }
 
     /// The last two neighbouring values between which the majority changes, points that say nothing yet left out.
@@ -192,10 +189,8 @@ pub fn brackets(
             upper,
         })
     };
-    lines(study, plan, axis)
-        .into_iter()
-        .filter_map(of_line)
-        .collect()
+    let lines = lines(study, plan, axis).into_iter();
+    lines.filter_map(of_line).collect()
 }
 
 /// Adds the points that refinement asks for, as far as the runs that have ended decide them; answers whether there are
@@ -220,11 +215,8 @@ pub fn refine(
         let counts = counts(plan, found);
         let mut added = Vec::new();
         for line in lines(study, plan, refine.axis) {
-            let all_ended = line
-                .0
-                .iter()
-                .all(|(_, point, _)| counts.get(point).is_some_and(|count| count.open == 0));
-            if !all_ended {
+            let has_ended = |point| counts.get(point).is_some_and(|count| count.open == 0);
+            if !line.0.iter().all(|(_, point, _)| has_ended(point)) {
                 continue;
             }
             for (lower, upper) in line.undecided(&counts) {

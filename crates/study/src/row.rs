@@ -15,28 +15,19 @@ pub struct Row {
 
 /// The columns of a row, in order: the run's place in its study, then the quantities of the run.
 fn columns() -> impl Iterator<Item = RowColumn> {
-    let place = |name: &str, unit, text, kind| RowColumn {
+    let identity = "hash of configuration, physics version and replicate";
+    let replicate = "number of the replicate, from 0";
+    let place = [
+        ("identity", "", identity, ValueKind::Text),
+        ("replicate", "1", replicate, ValueKind::Integer),
+    ];
+    let place = place.map(|(name, unit, text, kind)| RowColumn {
         name: name.to_owned(),
         unit,
         text,
         kind,
-    };
-    [
-        place(
-            "identity",
-            "",
-            "hash of configuration, physics version and replicate",
-            ValueKind::Text,
-        ),
-        place(
-            "replicate",
-            "1",
-            "number of the replicate, from 0",
-            ValueKind::Integer,
-        ),
-    ]
-    .into_iter()
-    .chain(row_columns().iter().cloned())
+    });
+    place.into_iter().chain(row_columns().iter().cloned())
 }
 
 impl Row {
@@ -59,27 +50,20 @@ impl Row {
     /// # Errors
     /// A sentence: the column that is missing or of another kind, or the text that is no identity.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
-        let identities = table
-            .texts("identity")
-            .map_err(|error| error.to_string())?
-            .to_vec();
-        (0..table.rows())
-            .map(|row| {
-                let identity = identities[row]
-                    .parse()
-                    .map_err(|error| format!("row {}: {error}", row + 1))?;
-                let columns: Result<Vec<Column>, FormatError> = columns()
-                    .map(|column| {
-                        let values = one_of(table, &column, row)?;
-                        Ok(with_values(column, values))
-                    })
-                    .collect();
-                Ok(Self {
-                    identity,
-                    table: joined(columns.map_err(|error| error.to_string())?),
-                })
-            })
-            .collect()
+        let in_words = |error: FormatError| error.to_string();
+        let identities = table.texts("identity").map_err(in_words)?.iter();
+        let row_of = |(row, identity): (usize, &String)| {
+            let identity = identity.parse();
+            let identity = identity.map_err(|error| format!("row {}: {error}", row + 1))?;
+            let column_of = |column: RowColumn| {
+                let values = one_of(table, &column, row).map_err(in_words)?;
+                Ok(with_values(column, values))
+            };
+            let columns: Result<Vec<Column>, String> = columns().map(column_of).collect();
+            let table = joined(columns?);
+            Ok(Self { identity, table })
+        };
+        identities.enumerate().map(row_of).collect()
     }
 
     /// Reads the text that [`Row::to_csv`] wrote.
@@ -129,11 +113,8 @@ impl Row {
 
     /// tau \[t\]; `None` without a transition.
     pub fn transition_time(&self) -> Option<f64> {
-        self.table
-            .reals("transition_time")
-            .ok()
-            .and_then(|values| values.first().copied())
-            .filter(|time| !time.is_nan())
+        let times = self.table.reals("transition_time").ok()?;
+        times.first().copied().filter(|time| !time.is_nan())
     }
 
     /// A table without rows, for studies without a finished run.

@@ -103,17 +103,15 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
         let places = (0..head.rings).map(|ring| ring as f64 * spacing);
         places.map(|z| wave.radius(z, wall.cycles())).collect()
     });
-    encode(
-        head,
-        [
-            &flat(of_grains),
-            &flat(&velocity[..*grains]),
-            &diameter[..*grains],
-            &flat(spin),
-            &flat(of_wall),
-            &rings,
-        ],
-    )
+    let arrays: [&[f64]; 6] = [
+        &flat(of_grains),
+        &flat(&velocity[..*grains]),
+        &diameter[..*grains],
+        &flat(spin),
+        &flat(of_wall),
+        &rings,
+    ];
+    encode(head, arrays)
 }
 
 #[cfg(feature = "server")]
@@ -128,17 +126,15 @@ pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) 
         })
         .collect();
     let of_wall = &frame.position[frame.position.len() - head.wall_spheres..];
-    encode(
-        head,
-        [
-            frame.position[..grains].as_flattened(),
-            frame.velocity[..grains].as_flattened(),
-            &frame.diameter[..grains],
-            spin.map_or(&[], |it| it.angular_velocity.as_flattened()),
-            of_wall.as_flattened(),
-            &rings,
-        ],
-    )
+    let arrays = [
+        frame.position[..grains].as_flattened(),
+        frame.velocity[..grains].as_flattened(),
+        &frame.diameter[..grains],
+        spin.map_or(&[], |it| it.angular_velocity.as_flattened()),
+        of_wall.as_flattened(),
+        &rings,
+    ];
+    encode(head, arrays)
 }
 
 fn flat<Vector: Copy + Into<[f64; 3]>>(vectors: &[Vector]) -> Vec<f64> {

@@ -89,12 +89,8 @@ impl Timeline<'_> {
 
     /// The row of a sample.
     pub(crate) fn row_of(self, number: usize, sample: &Sample) -> Row {
-        self.row(
-            number,
-            sample.time,
-            sample.flow_rate_ratio,
-            sample.bottleneck,
-        )
+        let (ratio, bottleneck) = (sample.flow_rate_ratio, sample.bottleneck);
+        self.row(number, sample.time, ratio, bottleneck)
     }
 
     /// The driven parameters at a time in periods.

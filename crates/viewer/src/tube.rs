@@ -235,12 +235,8 @@ impl Tube {
             };
             self.mark_now_and_then();
         }
-        if self
-            .seeking
-            .is_some_and(|target| self.run.simulation().step() >= target)
-        {
-            self.seeking = None;
-        }
+        let step = self.run.simulation().step();
+        self.seeking = self.seeking.filter(|target| step < *target);
     }
 
     fn steps_of_a_frame(&mut self) -> u64 {
@@ -262,10 +258,8 @@ impl Tube {
         let time_step = self.run.configuration().run.time_step;
         let mut target = (period * self.unit_period() / time_step).round() as u64;
         if target < self.run.simulation().step() {
-            let known = self
-                .marks
-                .partition_point(|mark| mark.simulation().step() <= target);
-            let index = known.saturating_sub(1);
+            let is_known = |mark: &Run| mark.simulation().step() <= target;
+            let index = self.marks.partition_point(is_known).saturating_sub(1);
             self.marks.truncate(index + 1);
             let mark = self.marks[index].clone();
             let reached = mark.simulation().step();
@@ -279,9 +273,7 @@ impl Tube {
             self.ended = false;
             self.epoch += 1;
             self.due = 0.0;
-            for (_, wanted) in &mut self.wanted {
-                *wanted = None;
-            }
+            self.wanted = self.wanted.map(|(parameter, _)| (parameter, None));
         }
         self.seeking = Some(target);
     }

@@ -57,19 +57,17 @@ pub(crate) type Ranges = Sliders<(f64, f64)>;
 
 impl Ranges {
     fn of(configuration: &Configuration) -> Self {
-        let own = Driven::by(configuration, |parameter| {
-            configuration.drive.own(parameter)
-        });
+        let drive = &configuration.drive;
+        let own = Driven::by(configuration, |parameter| drive.own(parameter));
         let widest = 2.0 * configuration.tube.radius;
         let diameter = configuration.wall.sphere_diameter;
         // From a throat that a grain just does not pass to a straight tube.
         let narrowest = |width: f64| (1.6 * diameter).min(width).min(widest);
         let moving = own.strain_rate.filter(|rate| *rate > 0.0);
+        let strongest = |force: f64| (0.0, (2.5 * force).max(0.008));
         Self {
             width: own.width.map(|width| (narrowest(width), widest)),
-            force_amplitude: own
-                .force_amplitude
-                .map(|force| (0.0, (2.5 * force).max(0.008))),
+            force_amplitude: own.force_amplitude.map(strongest),
             strain_rate: moving.map(|rate| (0.1 * rate, 4.0 * rate)),
             friction: own.friction.map(|kinetic| (0.01, kinetic.max(1.0))),
         }

@@ -28,20 +28,15 @@ pub(crate) fn figure_files(examinations: &[Examination]) -> FigureFiles<'_> {
             .map(|figure| {
                 let name = plain_name(&figure.name);
                 let mut numbered = name.clone();
-                let mut number = 1;
-                loop {
+                for number in 2.. {
                     match files.iter().position(|(other, _)| *other == numbered) {
                         Some(place) if files[place].1.drawing == figure.drawing => return place,
-                        Some(_) => {
-                            number += 1;
-                            numbered = format!("{name}-{number}");
-                        }
-                        None => {
-                            files.push((numbered, figure));
-                            return files.len() - 1;
-                        }
+                        Some(_) => numbered = format!("{name}-{number}"),
+                        None => break,
                     }
                 }
+                files.push((numbered, figure));
+                files.len() - 1
             })
             .collect()
     });
@@ -51,16 +46,8 @@ pub(crate) fn figure_files(examinations: &[Examination]) -> FigureFiles<'_> {
 
 /// A name that is a file's name everywhere: letters, digits and hyphens.
 pub(crate) fn plain_name(name: &str) -> String {
-    let plain: String = name
-        .chars()
-        .map(|letter| {
-            if letter.is_ascii_alphanumeric() {
-                letter.to_ascii_lowercase()
-            } else {
-                '-'
-            }
-        })
-        .collect();
+    let plain = name.to_ascii_lowercase();
+    let plain = plain.replace(|letter: char| !letter.is_ascii_alphanumeric(), "-");
     if plain.is_empty() {
         "figure".to_owned()
     } else {
@@ -76,10 +63,8 @@ pub(crate) fn table_files(report: &Report) -> Result<Vec<(String, Table)>, Forma
         files.push(("quantities.csv".to_owned(), quantity_table(&quantities)?));
     }
     for examination in &report.examinations {
-        for (name, table) in table_names(examination)
-            .into_iter()
-            .zip(&examination.finding.tables)
-        {
+        let names = table_names(examination).into_iter();
+        for (name, table) in names.zip(&examination.finding.tables) {
             if let Some(name) = name {
                 files.push((name, plain_table(table)?));
             }
@@ -154,9 +139,8 @@ fn plain_table(table: &ReportTable) -> Result<Table, FormatError> {
             name.push('\'');
         }
         columns = columns.word(&name, "", |row| {
-            row.get(place)
-                .map(|cell| plain_cell(cell))
-                .unwrap_or_default()
+            let cell = row.get(place);
+            cell.map_or_else(String::new, |cell| plain_cell(cell))
         });
     }
     columns.table()

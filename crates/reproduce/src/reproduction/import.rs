@@ -104,9 +104,8 @@ fn files_of(folder: &Path) -> Result<Vec<PathBuf>, StudyError> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder).map_err(failed)? {
         let path = entry.map_err(failed)?.path();
-        let is_table = path
-            .extension()
-            .is_some_and(|extension| extension == "csv" || extension == "parquet");
+        let ending = path.extension();
+        let is_table = ending.is_some_and(|ending| ending == "csv" || ending == "parquet");
         if is_table && path.is_file() {
             files.push(path);
         }

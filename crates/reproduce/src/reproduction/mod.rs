@@ -55,11 +55,8 @@ impl Work {
         let survey = store.survey()?;
         let is_bare =
             |identity| survey.state(identity) == State::Done && !store.holds_products(identity);
-        let mut needed = survey
-            .plan
-            .runs()
-            .iter()
-            .filter(|run| run.replicate < replicates);
+        let runs = survey.plan.runs().iter();
+        let mut needed = runs.filter(|run| run.replicate < replicates);
         if !needed.any(|run| is_bare(run.identity)) {
             return Ok(None);
         }
@@ -166,17 +163,11 @@ impl Reproduction {
             if works.iter().any(|work| work.file.name == *name) {
                 continue;
             }
-            let file = studies
-                .iter()
-                .find(|study| study.name == *name)
-                .ok_or_else(|| ClaimError::NoSuchStudy((*name).to_owned()))?;
+            let file = studies.iter().find(|study| study.name == *name);
+            let file = *file.ok_or_else(|| ClaimError::NoSuchStudy((*name).to_owned()))?;
             let study = file.specification(size)?;
             let store = Store::create(&stores.join(file.name), &study);
-            works.push(Work {
-                file: *file,
-                study,
-                store,
-            });
+            works.push(Work { file, study, store });
         }
         Ok(Self {
             size,
@@ -322,20 +313,24 @@ impl<'a> Course<'a> {
         let loads_of =
             |study: &StudyCourse<'_>| study.passes().map(|pass| Load::of(pass.1)).collect();
         let loads: Vec<Vec<Load>> = self.studies.iter().map(loads_of).collect();
-        let left_of = |loads: &Vec<Load>| loads.iter().map(|load| load.left).sum();
-        let costs: Vec<f64> = loads.iter().map(left_of).collect();
+        let left_of = |loads: &[Load]| loads.iter().map(|load| load.left).sum();
+        let costs: Vec<f64> = loads.iter().map(|loads| left_of(loads)).collect();
         let names: Vec<&str> = self.studies.iter().map(StudyCourse::name).collect();
         let order = order::cheapest_claims_first(self.claims, &names, &costs);
         let total: f64 = loads.iter().flatten().map(|load| load.all).sum();
         let left_before: f64 = costs.iter().sum();
-        let mut left_later = left_before;
         for (turn, &place) in order.iter().enumerate() {
             let study = &self.studies[place];
             let mut ending = match &study.work.store {
                 Ok(_) => Ok(Ending::Complete),
                 Err(error) => Err(error.to_string()),
             };
-            for ((specification, store), load) in study.passes().zip(&loads[place]) {
+            // A pass that fails leaves nothing of its study to do.
+            let later_turns = order[turn + 1..].iter().map(|place| costs[*place]);
+            let left_in_turns: f64 = later_turns.sum();
+            for (number, (specification, store)) in study.passes().enumerate() {
+                let load = loads[place][number];
+                let left_in_passes: f64 = left_of(&loads[place][number + 1..]);
                 let limit = effort
                     .limit
                     .map(|limit| limit.saturating_sub(begin.elapsed()));
@@ -347,9 +342,8 @@ impl<'a> Course<'a> {
                         return Ending::TimeUp;
                     }
                 }
-                left_later = (left_later - load.left).max(0.0);
                 let mut show = |board: &Board| {
-                    let left = left_later + load.all * (1.0 - board.fraction);
+                    let left = left_in_turns + left_in_passes + load.all * (1.0 - board.fraction);
                     let gained = left_before - left;
                     (self.watch)(Event::Progress(Stage {
                         study: study.name(),
@@ -433,10 +427,8 @@ impl<'a> Course<'a> {
         let outcome = without_panic(|| (claim.examine)(&self.evidence));
         // An error of a claim follows from the failure of one of its studies, if one failed.
         let failure = |name| {
-            Some(format!(
-                "study {name}: {}",
-                self.study(name)?.failure.as_ref()?
-            ))
+            let reason = self.study(name)?.failure.as_ref()?;
+            Some(format!("study {name}: {reason}"))
         };
         let outcome = outcome.map_err(|error| match error {
             ClaimError::Panicked => error.to_string(),

@@ -125,11 +125,8 @@ impl Validation {
         }
         let figures = path.parent().unwrap_or(Path::new("")).join(FIGURES);
         make_folder(&figures)?;
-        for figure in self
-            .examinations
-            .iter()
-            .flat_map(|one| &one.finding.figures)
-        {
+        let examinations = self.examinations.iter();
+        for figure in examinations.flat_map(|one| &one.finding.figures) {
             let file = figures.join(&figure.name).with_extension("svg");
             atomic::write(&file, figure.drawing.svg().as_bytes())?;
         }
@@ -141,10 +138,8 @@ impl Validation {
     fn summary(&self) -> ReportTable {
         let row = |examination: &Examination<Case>| {
             let finding = &examination.finding;
-            let used = finding
-                .checks
-                .iter()
-                .map(|check| check.deviation / check.tolerance);
+            let checks = finding.checks.iter();
+            let used = checks.map(|check| check.deviation / check.tolerance);
             let orders = || finding.convergences.iter().filter_map(|one| one.order);
             let least = orders().fold(f64::INFINITY, f64::min);
             let largest = orders().fold(f64::NEG_INFINITY, f64::max);

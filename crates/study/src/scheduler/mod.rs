@@ -196,10 +196,8 @@ pub fn work_on(
         }
         ending = coordinate(&shared, stop, watch);
     });
-    let mut common = shared
-        .common
-        .into_inner()
-        .unwrap_or_else(PoisonError::into_inner);
+    let common = shared.common.into_inner();
+    let mut common = common.unwrap_or_else(PoisonError::into_inner);
     if let Some(error) = common.error.take() {
         return Err(error);
     }
@@ -224,13 +222,10 @@ fn coordinate(
     loop {
         let is_last = shared.common().active == 0;
         if ending == Ending::Complete && !is_last {
+            let limit = shared.effort.limit;
             if stop() {
                 ending = Ending::Stopped;
-            } else if shared
-                .effort
-                .limit
-                .is_some_and(|limit| begin.elapsed() >= limit)
-            {
+            } else if limit.is_some_and(|limit| begin.elapsed() >= limit) {
                 ending = Ending::TimeUp;
             }
             if ending != Ending::Complete {
@@ -240,10 +235,8 @@ fn coordinate(
         let mut common = shared.common();
         if heartbeat.elapsed() > HEARTBEAT || is_last {
             heartbeat = Instant::now();
-            let outcome = common
-                .index
-                .renew(&shared.owner)
-                .and_then(|_| common.refresh(shared.study));
+            let renewed = common.index.renew(&shared.owner);
+            let outcome = renewed.and_then(|_| common.refresh(shared.study));
             if let Err(error) = outcome {
                 shared.stop.store(true, Ordering::Relaxed);
                 common.error.get_or_insert(error);
@@ -292,11 +285,8 @@ impl Gauge {
     ) {
         self.board.workers = working;
         self.board.news = std::mem::take(&mut common.news);
-        if is_last
-            || self
-                .measured
-                .is_none_or(|last| last.elapsed() > MEASUREMENT)
-        {
+        let is_old = |last: Instant| last.elapsed() > MEASUREMENT;
+        if is_last || self.measured.is_none_or(is_old) {
             self.measure(study, common);
             self.measured = Some(Instant::now());
         }
@@ -304,11 +294,13 @@ impl Gauge {
 
     fn measure(&mut self, study: &Specification, common: &Common) {
         let runs = common.plan.runs();
-        let entries = || {
-            runs.iter()
-                .filter_map(|run| common.entries.get(&run.identity))
+        let count = |state: State| {
+            let entries = runs.iter().map(|run| common.entries.get(&run.identity));
+            entries
+                .flatten()
+                .filter(|entry| entry.state == state)
+                .count()
         };
-        let count = |state: State| entries().filter(|entry| entry.state == state).count();
         let (done, failed) = (count(State::Done), count(State::Failed));
         if self.brackets.0 != done + failed {
             let found = |identity: &Identity| finding(&common.entries, identity);
@@ -331,15 +323,13 @@ impl Gauge {
 
 /// Part of the work of a study that is done.
 fn fraction(common: &Common, working: &[Option<Working>]) -> f64 {
-    let working: HashMap<Identity, f64> = working
-        .iter()
-        .flatten()
-        .filter_map(|working| {
-            let progress = working.progress?;
-            let part = progress.samples as f64 / progress.samples_total.max(1) as f64;
-            Some((working.identity, part))
-        })
-        .collect();
+    let part_of = |working: &Working| {
+        let progress = working.progress?;
+        let part = progress.samples as f64 / progress.samples_total.max(1) as f64;
+        Some((working.identity, part))
+    };
+    let working = working.iter().flatten().filter_map(part_of);
+    let working: HashMap<Identity, f64> = working.collect();
     let (mut all, mut done) = (0.0, 0.0);
     for run in common.plan.runs() {
         let work = work(&common.plan.point(run).configuration);

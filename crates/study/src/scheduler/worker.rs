@@ -54,15 +54,10 @@ fn attend(shared: &Shared<'_>, slot: usize, identity: Identity) -> Result<()> {
     let outcome = catch_unwind(AssertUnwindSafe(|| {
         carry_out(shared, slot, &files, &assignment)
     }));
-    let outcome = match outcome {
-        Ok(outcome) => outcome,
-        Err(panic) => give_up(
-            shared,
-            &files,
-            identity,
-            &format!("panic: {}", said(&*panic)),
-        ),
-    };
+    let outcome = outcome.unwrap_or_else(|panic| {
+        let reason = format!("panic: {}", said(&*panic));
+        give_up(shared, &files, identity, &reason)
+    });
     match outcome {
         Ok(Some(entry)) => {
             shared.release(identity, Some(&entry))?;
@@ -90,9 +85,7 @@ fn carry_out(
             files.remove_checkpoints();
             return Ok(Some(done(&row, stamp)));
         }
-        Verdict::Failed(reason) => {
-            return Ok(Some(Entry::new(State::Failed, Some(reason))));
-        }
+        Verdict::Failed(reason) => return Ok(Some(Entry::new(State::Failed, Some(reason)))),
         Verdict::Damaged(reason) => {
             shared.store.quarantine_run(identity, &reason)?;
             shared.tell(format!(
@@ -193,9 +186,7 @@ fn give_up(
 }
 
 fn said(panic: &(dyn std::any::Any + Send)) -> &str {
-    panic
-        .downcast_ref::<&str>()
-        .copied()
-        .or_else(|| panic.downcast_ref::<String>().map(String::as_str))
-        .unwrap_or("no message")
+    let formatted = || panic.downcast_ref::<String>().map(String::as_str);
+    let plain = panic.downcast_ref::<&str>().copied();
+    plain.or_else(formatted).unwrap_or("no message")
 }

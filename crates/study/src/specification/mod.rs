@@ -249,22 +249,15 @@ impl Specification {
     /// Refuses a grid that nobody meant.
     fn check_size(&self, table: &Table) -> Result<()> {
         let states = self.states.as_ref().map_or(1, Vec::len);
-        let runs = self
-            .axes
-            .iter()
-            .map(|axis| axis.rows.len() as f64)
-            .product::<f64>()
-            * states as f64
-            * f64::from(self.replicates);
+        let rows = self.axes.iter().map(|axis| axis.rows.len() as f64);
+        let runs = rows.product::<f64>() * states as f64 * f64::from(self.replicates);
         if runs <= MOST_RUNS as f64 {
             return Ok(());
         }
-        let mut problem = Problem::new(
-            ProblemKind::OutOfRange,
-            format!("a study of {runs} runs is beyond reach"),
-        )
-        .key("axes")
-        .help(format!("at most {MOST_RUNS} runs: axes multiply"));
+        let message = format!("a study of {runs} runs is beyond reach");
+        let mut problem = Problem::new(ProblemKind::OutOfRange, message)
+            .key("axes")
+            .help(format!("at most {MOST_RUNS} runs: axes multiply"));
         if let Some(entry) = document::entry(table, "axes") {
             problem = problem.at(&entry.key, "these axes");
         }
@@ -276,21 +269,16 @@ impl Specification {
 
 /// Checks the keys of a study beyond the schema.
 fn check_keys(table: &Table, problems: &mut Problems) {
+    let is_plain = |letter: char| letter.is_ascii_alphanumeric() || "-_".contains(letter);
     if let Some(entry) = document::entry(table, "name")
         && let Node::Text(name) = &entry.item.node
-        && (name.is_empty()
-            || name.len() > 100
-            || !name
-                .chars()
-                .all(|letter| letter.is_ascii_alphanumeric() || "-_".contains(letter)))
+        && (!(1..=100).contains(&name.len()) || !name.chars().all(is_plain))
     {
-        let problem = Problem::new(
-            ProblemKind::OutOfRange,
-            format!("{name:?} cannot name a study"),
-        )
-        .key("name")
-        .at(&entry.item.origin, "this name")
-        .help("one to a hundred letters, digits, - and _: exported files are called by it");
+        let message = format!("{name:?} cannot name a study");
+        let problem = Problem::new(ProblemKind::OutOfRange, message)
+            .key("name")
+            .at(&entry.item.origin, "this name")
+            .help("one to a hundred letters, digits, - and _: exported files are called by it");
         problems.push(problem);
     }
     let conflicts = [
@@ -333,10 +321,10 @@ fn check_keys(table: &Table, problems: &mut Problems) {
 
 fn axes(table: &Table, problems: &mut Problems) -> Vec<Axis> {
     let axes: Vec<Axis> = match document::entry(table, "axes").map(|entry| &entry.item.node) {
-        Some(Node::Array(items)) => items
-            .iter()
-            .filter_map(|item| Axis::read(item, problems))
-            .collect(),
+        Some(Node::Array(items)) => {
+            let read = items.iter().filter_map(|item| Axis::read(item, problems));
+            read.collect()
+        }
         _ => Vec::new(),
     };
     let mut seen: Vec<(&str, &Origin)> = Vec::new();
@@ -363,21 +351,16 @@ fn refinement(
     let RefineKeys { key, tolerance } = keys;
     let origin = &document::entry(table, "refine.key")?.item.origin;
     let can_be = |axis: &Axis| axis.is_numeric() && axis.rows.len() > 1;
-    let place = axes
-        .iter()
-        .position(|axis| can_be(axis) && axis.keys[0].0 == *key);
-    if let Some(axis) = place {
+    let is_meant = |axis: &Axis| can_be(axis) && axis.keys[0].0 == *key;
+    if let Some(axis) = axes.iter().position(is_meant) {
         return Some(Refine {
             axis,
             tolerance: *tolerance,
             origin: origin.clone(),
         });
     }
-    let candidates: Vec<&str> = axes
-        .iter()
-        .filter(|axis| can_be(axis))
-        .map(|axis| axis.keys[0].0.as_str())
-        .collect();
+    let candidates = axes.iter().filter(|axis| can_be(axis));
+    let candidates: Vec<&str> = candidates.map(|axis| axis.keys[0].0.as_str()).collect();
     let problem = Problem::new(
         ProblemKind::Inconsistent,
         format!("{key} cannot be refined: it is not an axis of one key with two numbers or more"),
@@ -395,11 +378,8 @@ fn refinement(
 /// The columns kept, in the order of all; `None` where these are all.
 fn in_order(wanted: Vec<String>) -> Option<Vec<String>> {
     let all = column_names();
-    let kept: Vec<String> = all
-        .iter()
-        .map(|name| (*name).to_owned())
-        .filter(|name| wanted.contains(name))
-        .collect();
+    let kept = all.iter().map(|name| (*name).to_owned());
+    let kept: Vec<String> = kept.filter(|name| wanted.contains(name)).collect();
     (kept.len() < all.len()).then_some(kept)
 }
 

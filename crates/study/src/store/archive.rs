@@ -28,14 +28,9 @@ impl Store {
     /// # Errors
     /// Errors of reading and writing.
     pub fn pack(&self, archive: &Path) -> Result<Packed> {
-        let mut identities: Vec<Identity> = self
-            .index()?
-            .entries()?
-            .into_iter()
-            .filter(|(_, entry)| entry.is_computed())
-            .map(|(identity, _)| identity)
-            .collect();
-        identities.sort();
+        let mut entries = self.index()?.entries()?;
+        entries.retain(|_, entry| entry.is_computed());
+        let identities: BTreeSet<Identity> = entries.into_keys().collect();
         let mut packed = Packed::default();
         atomic::write_with(archive, |file| {
             let mut builder = tar::Builder::new(io::BufWriter::new(file));
@@ -70,15 +65,10 @@ impl Store {
             .map_err(StudyError::io("make a folder in", self.path()))?;
         let mut archive = tar::Archive::new(io::BufReader::new(file));
         let mut identities = BTreeSet::new();
-        let entries = archive
-            .entries()
-            .map_err(|error| refused(error.to_string()))?;
-        for entry in entries {
-            let mut entry = entry.map_err(|error| refused(error.to_string()))?;
-            let name = entry
-                .path()
-                .map_err(|error| refused(error.to_string()))?
-                .into_owned();
+        let broken = |error: io::Error| refused(error.to_string());
+        for entry in archive.entries().map_err(broken)? {
+            let mut entry = entry.map_err(broken)?;
+            let name = entry.path().map_err(broken)?.into_owned();
             let Some((identity, file)) = member(&name) else {
                 return Err(refused(format!("it has a member {}", name.display())));
             };
@@ -105,10 +95,10 @@ impl Store {
         for identity in identities {
             let finished = known.get(identity).is_some_and(Entry::is_computed);
             let unpacked = RunFiles::new(scratch, *identity);
-            if finished || leases.contains_key(identity) {
-                continue;
-            }
-            if !matches!(unpacked.verdict(None), Verdict::Done { .. }) {
+            if finished
+                || leases.contains_key(identity)
+                || !matches!(unpacked.verdict(None), Verdict::Done { .. })
+            {
                 continue;
             }
             let target = self.run_folder(*identity);
@@ -153,10 +143,8 @@ fn member(path: &Path) -> Option<(Identity, String)> {
             _ => None,
         })
         .collect();
-    match parts?.as_slice() {
-        [runs, identity, name] if *runs == RUNS => {
-            Some((identity.parse().ok()?, (*name).to_owned()))
-        }
+    match *parts? {
+        [RUNS, identity, name] => Some((identity.parse().ok()?, name.to_owned())),
         _ => None,
     }
 }

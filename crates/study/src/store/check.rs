@@ -113,10 +113,8 @@ impl Store {
                 Entry::new(State::Quarantined, self.reason_of_quarantine(identity))
             });
         }
-        found.imported = entries
-            .values()
-            .filter(|entry| entry.state == State::Done && entry.reason.is_some())
-            .count();
+        let is_imported = |entry: &&Entry| entry.state == State::Done && entry.reason.is_some();
+        found.imported = entries.values().filter(is_imported).count();
         index.replace(&entries, &before)?;
         Ok(found)
     }
@@ -167,10 +165,9 @@ impl Store {
     }
 
     fn reason_of_quarantine(&self, identity: Identity) -> Option<String> {
-        self.quarantines(identity)
-            .last()
-            .and_then(|folder| fs::read_to_string(folder.join(REASON)).ok())
-            .map(|text| text.trim().to_owned())
+        let folders = self.quarantines(identity);
+        let text = fs::read_to_string(folders.last()?.join(REASON)).ok()?;
+        Some(text.trim().to_owned())
     }
 
     /// The folders that files of a run were moved aside to, in this order.

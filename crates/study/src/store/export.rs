@@ -109,19 +109,15 @@ impl Store {
         let rows = rows_table(&survey, &finished)?;
         parquet::write(&note(format!("{name}.parquet")), &rows)?;
         csv::write(&note(format!("{name}.csv")), &rows)?;
-        csv::write(
-            &note(format!("{name}-timing.csv")),
-            &self.timing_table(&finished)?,
-        )?;
+        let timing = self.timing_table(&finished)?;
+        csv::write(&note(format!("{name}-timing.csv")), &timing)?;
         let failed = failed_table(&survey)?;
         if failed.rows() > 0 {
             csv::write(&note(format!("{name}-failed.csv")), &failed)?;
         }
         if series {
-            parquet::write(
-                &note(format!("{name}-series.parquet")),
-                &self.series_table(&finished)?,
-            )?;
+            let series = self.series_table(&finished)?;
+            parquet::write(&note(format!("{name}-series.parquet")), &series)?;
         }
         Ok(exported)
     }
@@ -138,12 +134,10 @@ impl Store {
     ) -> Result<(Vec<Finished>, Vec<(Identity, String)>)> {
         let (mut finished, mut quarantined) = (Vec::new(), Vec::new());
         for run in survey.plan.sorted_runs() {
-            let Some(entry) = survey.entries.get(&run.identity) else {
+            let entry = survey.entries.get(&run.identity);
+            let Some(entry) = entry.filter(|it| it.state == State::Done) else {
                 continue;
             };
-            if entry.state != State::Done {
-                continue;
-            }
             if entry.reason.is_some() {
                 finished.push(self.finished_by_index(run, entry)?);
                 continue;
@@ -199,12 +193,9 @@ impl Store {
             let table = parquet::read(&self.run_folder(identity).join(TIMESERIES))?;
             // A study may keep other columns.
             let missing = || vec![f64::NAN; table.rows()];
-            let values = |name| {
-                table
-                    .reals(name)
-                    .map_or_else(|_| missing(), <[f64]>::to_vec)
-            };
-            series.push((identity, columns.map(|[name, ..]| values(name))));
+            let values = columns.map(|[name, ..]| table.reals(name));
+            let values = values.map(|values| values.map_or_else(|_| missing(), <[f64]>::to_vec));
+            series.push((identity, values));
         }
         by_run(columns, series)
     }
@@ -299,28 +290,16 @@ fn failed_table(survey: &Survey) -> Result<Table> {
         })
         .collect();
     let runs: Vec<PlannedRun> = failed.iter().map(|(run, _)| *run).collect();
-    let text = |value: &dyn Fn(&(PlannedRun, &Entry)) -> String| {
-        Values::Text(failed.iter().map(value).collect())
-    };
+    let identities = runs.iter().map(|run| run.identity.to_string());
+    let identities = Values::Text(identities.collect());
+    let replicates = Values::Integer(runs.iter().map(|run| run.replicate.into()).collect());
+    let number = "number of the replicate, from 0";
+    let reasons = failed.iter().map(|(_, entry)| entry.reason.clone());
+    let reasons = Values::Text(reasons.map(Option::unwrap_or_default).collect());
     Ok(Table::builder()
         .columns(axis_columns(&survey.plan, &runs))
-        .column(
-            "identity",
-            "",
-            "the run",
-            text(&|(run, _)| run.identity.to_string()),
-        )
-        .column(
-            "replicate",
-            "1",
-            "number of the replicate, from 0",
-            Values::Integer(runs.iter().map(|run| run.replicate.into()).collect()),
-        )
-        .column(
-            "reason",
-            "",
-            "the error that it ended in",
-            text(&|(_, entry)| entry.reason.clone().unwrap_or_default()),
-        )
+        .column("identity", "", "the run", identities)
+        .column("replicate", "1", number, replicates)
+        .column("reason", "", "the error that it ended in", reasons)
         .build()?)
 }

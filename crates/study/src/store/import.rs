@@ -28,12 +28,8 @@ impl Store {
             return Ok(0);
         };
         let survey = self.survey()?;
-        let runs: HashMap<Identity, &PlannedRun> = survey
-            .plan
-            .runs()
-            .iter()
-            .map(|run| (run.identity, run))
-            .collect();
+        let runs = survey.plan.runs().iter().map(|run| (run.identity, run));
+        let runs: HashMap<Identity, &PlannedRun> = runs.collect();
         for row in &rows {
             let contradiction = runs
                 .get(&row.identity())
@@ -56,15 +52,12 @@ impl Store {
         atomic::write(&folder.join(format!("{name}.csv")), text.as_bytes())?;
         let mut index = self.index()?;
         let known = index.entries()?;
-        let new: Vec<(Identity, Entry)> = rows
-            .iter()
-            .filter(|row| {
-                known
-                    .get(&row.identity())
-                    .is_none_or(|entry| entry.state != State::Done)
-            })
-            .map(|row| (row.identity(), imported_entry(row, &name)))
-            .collect();
+        let is_new = |row: &&Row| {
+            let entry = known.get(&row.identity());
+            entry.is_none_or(|entry| entry.state != State::Done)
+        };
+        let entry_of = |row: &Row| (row.identity(), imported_entry(row, &name));
+        let new: Vec<(Identity, Entry)> = rows.iter().filter(is_new).map(entry_of).collect();
         index.note(new.iter().map(|(identity, entry)| (*identity, entry)))?;
         Ok(number)
     }
@@ -78,10 +71,8 @@ impl Store {
         let mut found = HashMap::new();
         let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
         paths.sort();
-        for path in paths
-            .iter()
-            .filter(|path| path.extension().is_some_and(|extension| extension == "csv"))
-        {
+        let is_csv = |path: &&PathBuf| path.extension().is_some_and(|it| it == "csv");
+        for path in paths.iter().filter(is_csv) {
             let name = path.file_stem().unwrap_or_default().to_string_lossy();
             // A copy carries its hash in its name; one that was damaged must be imported again.
             let bytes = fs::read(path).map_err(StudyError::io("read", path))?;

@@ -56,29 +56,18 @@ impl Index {
             StudyError::Index { .. } if refusal.is_closed() => {}
             _ => return Err(refusal),
         }
-        let opened = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).and_then(
-            |connection| {
-                let layout = layout(&connection)?;
-                Ok((connection, layout == LAYOUT))
-            },
-        );
-        match opened {
-            Ok((connection, true)) => Ok(Self {
-                path: path.to_owned(),
-                connection,
-            }),
-            _ => Err(refusal),
-        }
+        let opened = Connection::open_with_flags(path, OpenFlags::SQLITE_OPEN_READ_ONLY).ok();
+        let is_ours = |connection: &Connection| layout(connection).is_ok_and(|it| it == LAYOUT);
+        let connection = opened.filter(is_ours).ok_or(refusal)?;
+        let path = path.to_owned();
+        Ok(Self { path, connection })
     }
 
     fn try_open(path: &Path) -> Result<(Self, bool)> {
         let mut connection = Connection::open(path).map_err(failed(path))?;
         let is_new = prepare(&mut connection).map_err(failed(path))?;
-        let index = Self {
-            path: path.to_owned(),
-            connection,
-        };
-        Ok((index, is_new))
+        let path = path.to_owned();
+        Ok((Self { path, connection }, is_new))
     }
 
     fn read<T>(&self, answer: impl FnOnce(&Connection) -> rusqlite::Result<T>) -> Result<T> {
@@ -98,12 +87,12 @@ impl Index {
     /// The entry of a run.
     pub(crate) fn entry(&self, identity: Identity) -> Result<Option<Entry>> {
         let query = format!("{ENTRIES} WHERE identity = ?1");
+        let entry_of = |row: &rusqlite::Row<'_>| entry_from(row).map(|(_, entry)| entry);
         self.read(|connection| {
             connection
-                .query_row(&query, [identity], entry_from)
+                .query_row(&query, [identity], entry_of)
                 .optional()
         })
-        .map(|found| found.map(|(_, entry)| entry))
     }
 
     /// All leases that hold.
@@ -158,6 +147,12 @@ impl Index {
         owner: &Owner,
         timeout: Duration,
     ) -> Result<Claim> {
+        let Owner {
+            host,
+            process,
+            started,
+            token,
+        } = owner;
         self.change(|transaction| {
             let entries = select_entries(transaction, FINDINGS)?;
             let leases = all_leases(transaction)?;
@@ -175,21 +170,13 @@ impl Index {
                 }
                 transaction.execute(
                     "INSERT OR REPLACE INTO leases VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
-                    params![
-                        identity,
-                        owner.host,
-                        owner.process,
-                        owner.started,
-                        owner.token,
-                        now()
-                    ],
+                    params![identity, host, process, started, token, now()],
                 )?;
                 return Ok(Claim::Taken(*identity));
             }
-            Ok(if others > 0 {
-                Claim::Wait { leased: others }
-            } else {
-                Claim::Nothing
+            Ok(match others {
+                0 => Claim::Nothing,
+                leased => Claim::Wait { leased },
             })
         })
     }
@@ -233,16 +220,14 @@ impl Index {
         &mut self,
         action: impl FnOnce(&Transaction<'_>) -> rusqlite::Result<T>,
     ) -> Result<T> {
-        let transaction = self
-            .connection
-            .transaction_with_behavior(TransactionBehavior::Immediate);
-        transaction
-            .and_then(|transaction| {
-                let outcome = action(&transaction)?;
-                transaction.commit()?;
-                Ok(outcome)
-            })
-            .map_err(failed(&self.path))
+        let begin = TransactionBehavior::Immediate;
+        let transaction = self.connection.transaction_with_behavior(begin);
+        let outcome = transaction.and_then(|transaction| {
+            let outcome = action(&transaction)?;
+            transaction.commit()?;
+            Ok(outcome)
+        });
+        outcome.map_err(failed(&self.path))
     }
 }
 
@@ -315,10 +300,8 @@ impl ToSql for Identity {
 
 impl FromSql for Identity {
     fn column_result(value: ValueRef<'_>) -> FromSqlResult<Self> {
-        value
-            .as_str()?
-            .parse()
-            .map_err(FromSqlError::other::<crate::NotAnIdentity>)
+        let identity = value.as_str()?.parse();
+        identity.map_err(FromSqlError::other::<crate::NotAnIdentity>)
     }
 }
 
@@ -361,19 +344,12 @@ fn all_leases(connection: &Connection) -> rusqlite::Result<HashMap<Identity, Lea
 }
 
 fn put(connection: &Connection, identity: Identity, entry: &Entry) -> rusqlite::Result<()> {
-    connection
-        .execute(
-            "INSERT OR REPLACE INTO runs VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
-            params![
-                identity,
-                entry.state.name(),
-                entry.reason,
-                entry.row,
-                entry.transition_time,
-                entry.stamp
-            ],
-        )
-        .map(|_| ())
+    let (state, tau) = (entry.state.name(), entry.transition_time);
+    connection.execute(
+        "INSERT OR REPLACE INTO runs VALUES (?1, ?2, ?3, ?4, ?5, ?6)",
+        params![identity, state, entry.reason, entry.row, tau, entry.stamp],
+    )?;
+    Ok(())
 }
 
 #[cfg(test)]

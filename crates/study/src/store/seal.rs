@@ -85,23 +85,17 @@ impl Seal {
             return Err(format!("{SEAL} is that of run {}", seal.contents.identity));
         }
         // Names come from a file: none of them may lead out of the folder.
-        if let Some(product) = seal
-            .contents
-            .products
-            .iter()
-            .find(|product| product.name.contains(['/', '\\']) || product.name.starts_with('.'))
-        {
-            return Err(format!("{SEAL} names {:?}", product.name));
+        let leads_out = |name: &&str| name.contains(['/', '\\']) || name.starts_with('.');
+        if let Some(name) = seal.names().find(leads_out) {
+            return Err(format!("{SEAL} names {name:?}"));
         }
         Ok(seal)
     }
 
     /// Names of the products.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
-        self.contents
-            .products
-            .iter()
-            .map(|product| product.name.as_str())
+        let products = self.contents.products.iter();
+        products.map(|product| product.name.as_str())
     }
 
     /// Checks the hash of every product; `Err` is a sentence on the first that differs.
@@ -110,12 +104,9 @@ impl Seal {
             let name = &product.name;
             let bytes = std::fs::read(folder.join(name))
                 .map_err(|error| format!("{name} cannot be read: {error}"))?;
-            if bytes.len() as u64 != product.bytes {
-                return Err(format!(
-                    "{name} has {} bytes, sealed were {}",
-                    bytes.len(),
-                    product.bytes
-                ));
+            let (found, sealed) = (bytes.len() as u64, product.bytes);
+            if found != sealed {
+                return Err(format!("{name} has {found} bytes, sealed were {sealed}"));
             }
             if hexadecimal(&Sha256::digest(&bytes)) != product.sha256 {
                 return Err(format!("{name} does not match its hash"));

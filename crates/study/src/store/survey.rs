@@ -26,14 +26,11 @@ pub struct Survey {
 impl Survey {
     /// What has become of a run.
     pub fn state(&self, identity: Identity) -> State {
-        let state = self
-            .entries
-            .get(&identity)
-            .map_or(State::Pending, |entry| entry.state);
-        if state != State::Done && self.leases.contains_key(&identity) {
-            return State::Leased;
+        match self.entries.get(&identity).map(|entry| entry.state) {
+            Some(State::Done) => State::Done,
+            _ if self.leases.contains_key(&identity) => State::Leased,
+            state => state.unwrap_or(State::Pending),
         }
-        state
     }
 
     /// Runs of the plan in each state.
@@ -56,12 +53,9 @@ impl Survey {
     }
 
     fn work_of(&self, which: impl Fn(&Identity) -> bool) -> f64 {
-        self.plan
-            .runs()
-            .iter()
-            .filter(|run| which(&run.identity))
-            .map(|run| work(&self.plan.point(run).configuration))
-            .sum()
+        let runs = self.plan.runs().iter().filter(|run| which(&run.identity));
+        let work = |run| work(&self.plan.point(run).configuration);
+        runs.map(work).sum()
     }
 
     /// What a run that has ended says of its point.

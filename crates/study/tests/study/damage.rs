@@ -2,11 +2,12 @@
 //! time has changed: left alone.
 
 use std::fs;
+use std::path::PathBuf;
 use std::time::{Duration, SystemTime};
 
 use peristalsis_study::{State, Store, work_on};
 
-use crate::{Place, SMALL, TWO_WORKERS, entries, flip};
+use crate::{Place, SMALL, TWO_WORKERS, entries, flip, seal_times};
 
 #[test]
 fn a_bit_that_flipped_in_any_product_is_found_and_computed_again() {
@@ -90,20 +91,12 @@ fn a_file_whose_time_changed_is_as_good_as_before() {
     let place = Place::new(SMALL);
     place.complete();
     let time = SystemTime::now() - Duration::from_secs(1_000_000);
-    for path in place
-        .run_folders()
-        .iter()
-        .flat_map(|folder| entries(folder))
-    {
+    for path in place.run_files() {
         let file = fs::File::options().write(true).open(path).unwrap();
         file.set_modified(time).unwrap();
     }
     assert_eq!(place.complete(), Vec::<String>::new());
-    for path in place
-        .run_folders()
-        .iter()
-        .flat_map(|folder| entries(folder))
-    {
+    for path in place.run_files() {
         assert_eq!(path.metadata().unwrap().modified().unwrap(), time);
     }
 }
@@ -114,31 +107,12 @@ fn the_index_is_made_again_whatever_became_of_it() {
     place.complete();
     let tables = place.tables();
     let index = place.path("store/index.sqlite");
-    let times = |place: &Place| -> Vec<SystemTime> {
-        place
-            .run_folders()
-            .iter()
-            .map(|folder| {
-                folder
-                    .join("done.json")
-                    .metadata()
-                    .unwrap()
-                    .modified()
-                    .unwrap()
-            })
-            .collect()
-    };
-    let before = times(&place);
+    let before = seal_times(&place.run_folders());
     let whole = fs::read(&index).unwrap();
+    let text = "this is no database, and it is long enough not to be taken for an empty one";
     let damages: [&dyn Fn(); 4] = [
         &|| fs::remove_file(&index).unwrap(),
-        &|| {
-            fs::write(
-                &index,
-                "this is no database, and it is long enough not to be taken for an empty one",
-            )
-            .unwrap()
-        },
+        &|| fs::write(&index, text).unwrap(),
         &|| fs::write(&index, &whole[..whole.len() / 2]).unwrap(),
         &|| {
             let mut bytes = whole.clone();
@@ -152,26 +126,19 @@ fn the_index_is_made_again_whatever_became_of_it() {
         damage();
         assert_eq!(place.complete(), Vec::<String>::new());
         assert_eq!(place.tables(), tables);
-        assert_eq!(times(&place), before);
+        assert_eq!(seal_times(&place.run_folders()), before);
     }
     let found = place.store().scan().unwrap();
     assert_eq!((found.whole, found.quarantined.len()), (6, 0));
 }
 
 /// Works on a long run until it has both generations of its checkpoint.
-fn stopped_half_way(place: &Place) -> std::path::PathBuf {
+fn stopped_half_way(place: &Place) -> PathBuf {
+    let has_both = |folder: &PathBuf| folder.join("state.checkpoint.1").exists();
     place.work_until(|_| {
-        let folders = place.path("store/runs");
-        folders.exists()
-            && entries(&folders)
-                .iter()
-                .any(|folder| folder.join("state.checkpoint.1").exists())
+        place.path("store/runs").exists() && place.run_folders().iter().any(has_both)
     });
-    place
-        .run_folders()
-        .into_iter()
-        .find(|folder| folder.join("state.checkpoint.1").exists())
-        .unwrap()
+    place.run_folders().into_iter().find(has_both).unwrap()
 }
 
 #[test]
@@ -224,13 +191,8 @@ fn a_run_that_fails_is_kept_with_its_reason_and_can_be_tried_again() {
     for run in &failed {
         let reason = survey.entries[&run.identity].reason.clone().unwrap();
         assert!(reason.contains("diverged at step"), "{reason}");
-        assert!(
-            place
-                .store()
-                .run_folder(run.identity)
-                .join("failed.json")
-                .exists()
-        );
+        let folder = place.store().run_folder(run.identity);
+        assert!(folder.join("failed.json").exists());
     }
     // It is in a table of its own, and survives the loss of the index.
     let exported = place.store().export(&place.path("out"), false).unwrap();
@@ -255,9 +217,8 @@ fn a_store_is_that_of_one_study_and_of_nothing_else() {
     let place = Place::new(SMALL);
     place.store();
     let other = crate::study(&SMALL.replace("\"small\"", "\"other\""));
-    let message = Store::create(&place.path("store"), &other)
-        .unwrap_err()
-        .to_string();
+    let refused = Store::create(&place.path("store"), &other).unwrap_err();
+    let message = refused.to_string();
     assert!(message.contains("`small`, not `other`"), "{message}");
     fs::create_dir(place.path("full")).unwrap();
     fs::write(place.path("full/notes.txt"), "mine").unwrap();

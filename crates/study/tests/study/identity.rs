@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use peristalsis_study::{Identity, Plan};
 
-use crate::{SMALL, plan};
+use crate::{SMALL, bits, plan};
 
 /// Identity and seed of every run, by its point in words and its replicate.
 fn runs(plan: &Plan) -> BTreeMap<(String, u32), (Identity, u64)> {
@@ -134,13 +134,7 @@ fn results_are_what_the_version_of_the_physics_says() {
     let place = crate::Place::new(&SMALL.replace("replicates = 3", "replicates = 1"));
     place.complete();
     let rows = place.store().rows().unwrap();
-    let bits = |name: &str| {
-        let values = rows.reals(name).unwrap();
-        values
-            .iter()
-            .map(|value| value.to_bits())
-            .collect::<Vec<_>>()
-    };
+    let bits = |name: &str| bits(rows.reals(name).unwrap());
     assert_eq!(peristalsis_study::PHYSICS_VERSION, 2);
     assert_eq!(
         bits("flow_rate_ratio_raw"),

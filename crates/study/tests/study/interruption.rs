@@ -6,7 +6,7 @@ use std::time::Duration;
 use peristalsis_formats::parquet;
 use peristalsis_study::{Effort, Ending, State, work_on};
 
-use crate::{Place, SMALL, entries};
+use crate::{Place, SMALL, bits, entries, seal_times};
 
 /// Six runs of a tenth of a second or two each.
 fn longer() -> String {
@@ -27,13 +27,9 @@ fn stops_in_the_middle_of_runs_change_nothing() {
         // Whenever any run has got on since this process began.
         let begun = Cell::new(None);
         let ending = interrupted.work_until(|board| {
-            let samples: u64 = board
-                .workers
-                .iter()
-                .flatten()
-                .filter_map(|working| working.progress)
-                .map(|progress| progress.samples)
-                .sum();
+            let working = board.workers.iter().flatten();
+            let progress = working.filter_map(|working| working.progress);
+            let samples: u64 = progress.map(|progress| progress.samples).sum();
             match begun.get() {
                 None => {
                     begun.set((samples > 0).then_some(samples));
@@ -84,13 +80,8 @@ fn one_worker_or_five_in_two_processes_of_work_come_to_the_same() {
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
-                let ending = work_on(
-                    &several.store(),
-                    &several.study,
-                    many,
-                    &|| false,
-                    &mut |_| {},
-                );
+                let store = several.store();
+                let ending = work_on(&store, &several.study, many, &|| false, &mut |_| {});
                 assert_eq!(ending.unwrap(), Ending::Complete);
             });
         }
@@ -118,31 +109,12 @@ fn a_limit_of_time_ends_the_work_with_every_run_saved() {
 fn points_that_are_added_leave_finished_runs_alone() {
     let mut place = Place::new(SMALL);
     place.complete();
-    let before: Vec<_> = place
-        .run_folders()
-        .iter()
-        .map(|folder| {
-            folder
-                .join("done.json")
-                .metadata()
-                .unwrap()
-                .modified()
-                .unwrap()
-        })
-        .collect();
     let folders = place.run_folders();
+    let before = seal_times(&folders);
     place.study = crate::study(&SMALL.replace("[2.5, 2.8]", "[2.5, 2.6, 2.8]"));
     place.complete();
     assert_eq!(place.run_folders().len(), 9);
-    for (folder, before) in folders.iter().zip(before) {
-        let now = folder
-            .join("done.json")
-            .metadata()
-            .unwrap()
-            .modified()
-            .unwrap();
-        assert_eq!(now, before);
-    }
+    assert_eq!(seal_times(&folders), before);
     // And the other way round: a run no longer asked for stays, and is not in the table.
     place.study = crate::study(&SMALL.replace("[2.5, 2.8]", "[2.6]"));
     place.complete();
@@ -165,13 +137,8 @@ fn a_run_that_may_settle_is_the_beginning_of_one_that_may_not() {
     let series = |place: &Place, run: usize| {
         let survey = place.store().survey().unwrap();
         let identity = survey.plan.runs()[run].identity;
-        parquet::read(
-            &place
-                .store()
-                .run_folder(identity)
-                .join("timeseries.parquet"),
-        )
-        .unwrap()
+        let folder = place.store().run_folder(identity);
+        parquet::read(&folder.join("timeseries.parquet")).unwrap()
     };
     // Narrow: jams and settles. Wide: never does, and goes on to its end.
     let (short, long) = (series(&settled, 0), series(&whole, 0));
@@ -180,12 +147,6 @@ fn a_run_that_may_settle_is_the_beginning_of_one_that_may_not() {
     for column in short.columns() {
         let name = &column.name;
         let [one, other] = [&short, &long].map(|table| &table.reals(name).unwrap()[..short.rows()]);
-        let bits = |values: &[f64]| {
-            values
-                .iter()
-                .map(|value| value.to_bits())
-                .collect::<Vec<_>>()
-        };
         assert_eq!(bits(one), bits(other), "{name}");
     }
     assert_eq!(series(&settled, 1).rows(), 60 * 20);

@@ -15,7 +15,7 @@ mod transfer;
 
 use std::cell::Cell;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 use peristalsis_study::{Board, Effort, Ending, Plan, Specification, Store, StudyError, work_on};
 use tempfile::TempDir;
@@ -131,6 +131,23 @@ impl Place {
         folders.sort();
         folders
     }
+
+    /// All files of all runs.
+    fn run_files(&self) -> Vec<PathBuf> {
+        let folders = self.run_folders();
+        folders.iter().flat_map(|folder| entries(folder)).collect()
+    }
+}
+
+/// When each of these runs was sealed.
+fn seal_times(folders: &[PathBuf]) -> Vec<SystemTime> {
+    let metadata = |folder: &PathBuf| folder.join("done.json").metadata().unwrap();
+    let times = folders.iter().map(metadata);
+    times.map(|metadata| metadata.modified().unwrap()).collect()
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
 }
 
 fn entries(folder: &Path) -> Vec<PathBuf> {

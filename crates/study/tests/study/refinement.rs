@@ -33,24 +33,18 @@ fn critical(strain_rate: f64, state: InitialState) -> f64 {
 
 /// What a run would find.
 fn truth(plan: &Plan, identity: &Identity) -> Finding {
-    let run = plan
-        .runs()
-        .iter()
-        .find(|run| run.identity == *identity)
-        .unwrap();
+    let mut runs = plan.runs().iter();
+    let run = runs.find(|run| run.identity == *identity).unwrap();
     let point = plan.point(run);
     let [strain_rate, width] =
         [0, 1].map(|index: usize| point.settings[index].value.number().unwrap());
     let is_below = width < critical(strain_rate, point.state);
     // The last replicate always differs from the others: the majority counts.
-    match (
-        run.replicate,
-        is_below == (point.state == InitialState::Rest),
-    ) {
-        (2, turned) if !turned => Finding::Transition,
-        (2, _) => Finding::NoTransition,
-        (_, true) => Finding::Transition,
-        (_, false) => Finding::NoTransition,
+    let turned = is_below == (point.state == InitialState::Rest);
+    if turned == (run.replicate != 2) {
+        Finding::Transition
+    } else {
+        Finding::NoTransition
     }
 }
 
@@ -72,10 +66,8 @@ fn grown(next: impl Fn(usize) -> usize) -> Plan {
         let identity = open[next(open.len())];
         ended.push((identity, truth(&plan, &identity)));
         let found = |identity: &Identity| {
-            ended
-                .iter()
-                .find(|(other, _)| other == identity)
-                .map(|(_, finding)| *finding)
+            let known = ended.iter().find(|(other, _)| other == identity);
+            known.map(|(_, finding)| *finding)
         };
         refine(&study, &mut plan, &found).unwrap();
     }

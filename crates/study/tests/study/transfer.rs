@@ -77,10 +77,8 @@ fn a_row_that_contradicts_its_run_is_refused_with_its_table() {
     first.tables();
     let text = fs::read_to_string(first.path("tables/small.csv")).unwrap();
     let head = text.lines().find(|line| line.contains("identity")).unwrap();
-    let place = head
-        .split(',')
-        .position(|name| name == "strain_rate")
-        .unwrap();
+    let mut names = head.split(',');
+    let place = names.position(|name| name == "strain_rate").unwrap();
     let edited: Vec<String> = text
         .lines()
         .map(|line| {
@@ -131,10 +129,8 @@ fn an_imported_copy_that_was_damaged_is_not_believed() {
     first.complete();
     first.tables();
     let second = Place::new(SMALL);
-    second
-        .store()
-        .import_table(&first.path("tables/small.csv"))
-        .unwrap();
+    let table = first.path("tables/small.csv");
+    second.store().import_table(&table).unwrap();
     let copy = entries(&second.path("store/imported")).remove(0);
     flip(&copy, 0.9);
     assert_eq!(second.store().scan().unwrap().imported, 0);
@@ -220,10 +216,6 @@ fn an_archive_cannot_write_outside_of_the_runs() {
     builder.finish().unwrap();
     let error = place.store().import_archive(&path).unwrap_err();
     assert!(error.to_string().contains("study.toml"), "{error}");
-    assert!(
-        Store::open(&place.path("store"))
-            .unwrap()
-            .specification()
-            .is_ok()
-    );
+    let store = Store::open(&place.path("store")).unwrap();
+    assert!(store.specification().is_ok());
 }

@@ -109,9 +109,8 @@ impl Gallery {
         }
         let run = self.run(place).ok_or(Closed::Unknown)?;
         if open.len() >= OPEN {
-            let left = open
-                .iter()
-                .position(|(_, session)| !session.subscribers.are_present());
+            let is_left = |(_, session): &(Place, Session)| !session.subscribers.are_present();
+            let left = open.iter().position(is_left);
             open.remove(left.ok_or(Closed::Full)?);
         }
         let saves = self.saves.clone();
@@ -133,17 +132,16 @@ fn show(run: StudyRun, saves: PathBuf, subscribers: Subscribers, requests: &Rece
     let outcome = match &run.trajectory {
         Some(path) => {
             let recording = Recording::open(path, run.configuration.clone(), Vec::new());
-            recording
-                .map_err(|error| error.to_string())
-                .map(|recording| {
-                    RecordingHost {
-                        recording,
-                        title: run.title,
-                        within: Some(run.within),
-                        subscribers,
-                    }
-                    .work(requests);
-                })
+            let recording = recording.map_err(|error| error.to_string());
+            recording.map(|recording| {
+                let host = RecordingHost {
+                    recording,
+                    title: run.title,
+                    within: Some(run.within),
+                    subscribers,
+                };
+                host.work(requests);
+            })
         }
         None => begin(&run).map(|tube| {
             let labels = Labels {

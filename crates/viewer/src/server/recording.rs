@@ -48,7 +48,7 @@ impl Recording {
         let wall = walls(&configuration);
         let mut recording = Self {
             path: path.to_owned(),
-            times: Vec::with_capacity(reader.frames()),
+            times: Vec::new(),
             grains: first.grains,
             rows: Vec::new(),
             reader,
@@ -75,15 +75,11 @@ impl Recording {
     /// The first message to a page.
     pub(crate) fn welcome(&self, title: &str) -> Welcome {
         let timeline = Timeline(&self.configuration);
-        let clocks = self
-            .times
-            .iter()
-            .map(|&time| timeline.clock(time))
-            .collect();
+        let clocks = self.times.iter().map(|&time| timeline.clock(time));
         let mut welcome = Welcome::of(&self.configuration, &self.wall, self.grains, title);
         welcome.rows = thin(self.rows.iter().copied());
         welcome.recorded = Some(Recorded {
-            clocks,
+            clocks: clocks.collect(),
             lost_frames: self.lost_frames(),
         });
         welcome
@@ -103,13 +99,11 @@ impl Recording {
         let slack = SLACK * timeline.unit_period();
         let run = &self.configuration.run;
         let interval = run.steps_per_sample as f64 * run.time_step + slack;
-        let taken = self
-            .samples
-            .partition_point(|sample| sample.time <= frame.time + slack);
+        let is_taken = |sample: &Sample| sample.time <= frame.time + slack;
+        let taken = self.samples.partition_point(is_taken);
         // What went on from a saved state has frames long after the last sample.
-        let sample = self.samples[..taken]
-            .last()
-            .filter(|sample| frame.time - sample.time <= interval);
+        let is_recent = |sample: &&Sample| frame.time - sample.time <= interval;
+        let sample = self.samples[..taken].last().filter(is_recent);
         let head = Head {
             number: Some(number),
             epoch: 0,

@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 use peristalsis_configuration::{Configuration, InitialState};
 use peristalsis_formats::{Table, Values, parquet};
 use peristalsis_run::{TrajectoryFormat, label};
-use peristalsis_study::{Finding, Identity, Plan, PlannedRun, Specification, Store, refine};
+use peristalsis_study::{
+    Finding, Identity, Plan, PlannedRun, Specification, Store, StudyError, refine,
+};
 use serde::Serialize;
 
 use super::error::ViewerError;
@@ -110,10 +112,7 @@ impl Study {
         let said = |key: &str| table.metadata().get(key).cloned();
         let name = said("peristalsis.study").unwrap_or_else(|| name.to_owned());
         let title = said("peristalsis.title").unwrap_or_default();
-        let plan = match design {
-            Some(design) => Some(plan_of(design, &table)?),
-            None => None,
-        };
+        let plan = design.map(|design| plan_of(design, &table)).transpose()?;
         let mut study = Self::new(name, title, table);
         study.counts = BTreeMap::from([("done", study.table.rows())]);
         if let Some(plan) = plan {
@@ -200,6 +199,7 @@ impl Study {
             Values::Real(values) => values.iter().any(|value| value.is_finite()),
             _ => true,
         };
+        let is_counted = |state: &&str| self.counts.contains_key(state);
         Shown {
             version: self.version,
             name: &self.name,
@@ -217,19 +217,14 @@ impl Study {
                 .collect(),
             runs: self.numbers_of_rows(),
             counts: &self.counts,
-            growing: self.store.is_some()
-                && UNFINISHED
-                    .iter()
-                    .any(|state| self.counts.contains_key(state)),
+            growing: self.store.is_some() && UNFINISHED.iter().any(is_counted),
         }
     }
 
     fn numbers_of_rows(&self) -> Vec<Option<usize>> {
         let identities = identities(&self.table).unwrap_or_default();
-        identities
-            .iter()
-            .map(|identity| self.numbers.get(identity).copied())
-            .collect()
+        let number = |identity: &Identity| self.numbers.get(identity).copied();
+        identities.iter().map(number).collect()
     }
 
     /// The run of this number.
@@ -238,33 +233,26 @@ impl Study {
         let identity = self.runs.get(number)?;
         let run = plan.runs().iter().find(|run| run.identity == *identity)?;
         let siblings = plan.runs().iter().filter(|it| it.point == run.point);
-        let folder = self
-            .store
-            .as_ref()
-            .map(|store| store.run_folder(run.identity));
-        let trajectory = folder
-            .as_ref()
-            .map(|folder| folder.join(TrajectoryFormat::Gsd.file_name()));
+        let sibling = |run: &PlannedRun| {
+            let replicate = run.replicate;
+            let number = *self.numbers.get(&run.identity)?;
+            Some(Sibling { number, replicate })
+        };
+        let folder = self.store.as_ref().map(|store| store.run_folder(*identity));
+        let file = |name: &str| Some(folder.as_ref()?.join(name));
+        let record = file(SERIES).and_then(|path| series(&path));
+        let trajectory = file(TrajectoryFormat::Gsd.file_name());
         let identity = identity.to_string();
         Some(StudyRun {
             configuration: plan.configuration(run),
             title: title_of(plan, run),
             stem: format!("{}-{}", file_name(&self.name), &identity[..8]),
-            record: folder
-                .and_then(|folder| series(&folder.join(SERIES)))
-                .unwrap_or_default(),
+            record: record.unwrap_or_default(),
             trajectory: trajectory.filter(|path| path.is_file()),
             within: Within {
                 study: self.name.clone(),
                 number,
-                siblings: siblings
-                    .filter_map(|it| {
-                        Some(Sibling {
-                            number: *self.numbers.get(&it.identity)?,
-                            replicate: it.replicate,
-                        })
-                    })
-                    .collect(),
+                siblings: siblings.filter_map(sibling).collect(),
             },
         })
     }
@@ -274,35 +262,23 @@ impl Study {
 fn plan_of(design: &Specification, table: &Table) -> Result<Plan, ViewerError> {
     let identities = identities(table).unwrap_or_default();
     let times = table.reals("transition_time").unwrap_or_default();
-    let findings: HashMap<Identity, Finding> = identities
-        .into_iter()
-        .zip(times)
-        .map(|(identity, time)| {
-            let finding = if time.is_nan() {
-                Finding::NoTransition
-            } else {
-                Finding::Transition
-            };
-            (identity, finding)
-        })
-        .collect();
+    let finding = |time: &f64| match time.is_nan() {
+        true => Finding::NoTransition,
+        false => Finding::Transition,
+    };
+    let findings = identities.into_iter().zip(times.iter().map(finding));
+    let findings: HashMap<Identity, Finding> = findings.collect();
+    let found = |identity: &Identity| findings.get(identity).copied();
     let mut plan = design.plan().clone();
-    refine(design, &mut plan, &|identity| {
-        findings.get(identity).copied()
-    })
-    .map_err(peristalsis_study::StudyError::from)?;
+    refine(design, &mut plan, &found).map_err(StudyError::from)?;
     Ok(plan)
 }
 
 /// Identities of the runs of the rows.
 fn identities(table: &Table) -> Result<Vec<Identity>, String> {
-    let texts = table
-        .texts("identity")
-        .map_err(|error| error.to_string())?
-        .iter();
-    texts
-        .map(|text| text.parse().map_err(|error| format!("{text}: {error}")))
-        .collect()
+    let texts = table.texts("identity").map_err(|error| error.to_string())?;
+    let parsed = |text: &String| text.parse().map_err(|error| format!("{text}: {error}"));
+    texts.iter().map(parsed).collect()
 }
 
 /// Time and J/Jmax of a run; `None` if they are not kept or cannot be read.
@@ -324,13 +300,11 @@ fn title_of(plan: &Plan, run: &PlannedRun) -> String {
             format!("{} {}", key.replace('_', " "), setting.value)
         })
         .collect();
-    words.push(
-        match point.state {
-            InitialState::Rest => "from rest",
-            InitialState::Jammed => "from jammed",
-        }
-        .to_owned(),
-    );
+    let start = match point.state {
+        InitialState::Rest => "from rest",
+        InitialState::Jammed => "from jammed",
+    };
+    words.push(start.to_owned());
     words.join(", ")
 }
 

@@ -242,12 +242,7 @@ fn router(shared: Shared) -> Router {
 
 /// The pages of studies and of their runs.
 fn rooms(gallery: Arc<Gallery>) -> Router<Shared> {
-    let (list, study, figure, run) = (
-        Arc::clone(&gallery),
-        Arc::clone(&gallery),
-        Arc::clone(&gallery),
-        gallery,
-    );
+    let [list, study, figure] = [(); 3].map(|()| Arc::clone(&gallery));
     type Numbers = (String, usize, usize);
     Router::new()
         .route("/{token}/", get(async || asset("study.html")))
@@ -273,7 +268,7 @@ fn rooms(gallery: Arc<Gallery>) -> Router<Shared> {
         .route(
             "/{token}/study/{study}/run/{run}/",
             get(async move |Path((_, study, number)): Path<Numbers>| {
-                if run.holds((study, number)) {
+                if gallery.holds((study, number)) {
                     asset("tube.html")
                 } else {
                     StatusCode::NOT_FOUND.into_response()
@@ -351,10 +346,10 @@ async fn file(Path((_, name)): Path<(String, String)>) -> Response {
     asset(&name)
 }
 
-async fn live(
-    State(shared): State<Shared>,
-    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
-) -> Response {
+/// A request for a WebSocket, or what is wrong with it.
+type Upgrade = Result<WebSocketUpgrade, WebSocketUpgradeRejection>;
+
+async fn live(State(shared): State<Shared>, upgrade: Upgrade) -> Response {
     match &shared.exhibit {
         Exhibit::Tube(session) => talk(&shared, session.clone(), upgrade),
         Exhibit::Gallery(_) => StatusCode::NOT_FOUND.into_response(),
@@ -364,7 +359,7 @@ async fn live(
 async fn live_in_study(
     State(shared): State<Shared>,
     Path((_, study, run)): Path<(String, usize, usize)>,
-    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
+    upgrade: Upgrade,
 ) -> Response {
     let Exhibit::Gallery(gallery) = &shared.exhibit else {
         return StatusCode::NOT_FOUND.into_response();
@@ -380,11 +375,7 @@ async fn live_in_study(
 }
 
 /// Upgrades to a WebSocket, if there is a place for one more client.
-fn talk(
-    shared: &Shared,
-    session: Session,
-    upgrade: Result<WebSocketUpgrade, WebSocketUpgradeRejection>,
-) -> Response {
+fn talk(shared: &Shared, session: Session, upgrade: Upgrade) -> Response {
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
         Err(rejection) => return rejection.into_response(),

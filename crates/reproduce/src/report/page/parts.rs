@@ -43,9 +43,6 @@ pub(crate) fn counts(study: &StudyOutcome) -> String {
 
 /// A number with its noun.
 pub(crate) fn number_of(number: usize, noun: &str) -> String {
-    if number == 1 {
-        format!("1 {noun}")
-    } else {
-        format!("{number} {noun}s")
-    }
+    let ending = if number == 1 { "" } else { "s" };
+    format!("{number} {noun}{ending}")
 }

@@ -89,7 +89,7 @@ struct Row {
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let half_periods = circumstances.size.choose(4, 10);
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let mut rows: Vec<Row> = Vec::new();
     for experiment in experiments(GRAINS) {
         for mode in [1, 2, 4, 8, 12, 16] {

@@ -103,15 +103,12 @@ struct Row {
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let replicates = circumstances.size.choose(4, 28);
-    let mut finding = Finding::described(
-        &PROSE,
-        &[
-            ("replicates", &replicates),
-            ("grains", &GRAINS),
-            ("fraction", &VOLUME_FRACTION),
-            ("systematic", &(100.0 * SYSTEMATIC)),
-        ],
-    );
+    let mut finding = PROSE.described(&[
+        ("replicates", &replicates),
+        ("grains", &GRAINS),
+        ("fraction", &VOLUME_FRACTION),
+        ("systematic", &(100.0 * SYSTEMATIC)),
+    ]);
     let mut rows: Vec<Row> = Vec::new();
     for restitution in RESTITUTIONS {
         let experiment = Experiment::new(restitution)?;

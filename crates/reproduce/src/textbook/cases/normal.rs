@@ -111,7 +111,7 @@ fn expected(reference: &HertzImpact) -> [f64; 3] {
 }
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let mut rows: Vec<(String, &str, f64, f64)> = Vec::new();
     for experiment in &EXPERIMENTS {
         circumstances.go_on()?;

@@ -158,7 +158,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         let by = [experiment.simulated(angle)?, integrated, mindlin, sliding];
         rows.push(Row { angle, by });
     }
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     finding.checks = experiment.checks()?;
     finding.checks.extend([
         beside_mindlin(1, &rows, 0.05),
@@ -174,13 +174,11 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         finding.convergences.extend(errors);
     }
     let (sticks, slides) = finding.convergences.split_at(2);
-    let errors = error_chart(
-        &PER_CONTACT,
-        &[
-            ("15 degrees, sticks and slides", sticks),
-            ("60 degrees, slides", slides),
-        ],
-    );
+    let groups = [
+        ("15 degrees, sticks and slides", sticks),
+        ("60 degrees, slides", slides),
+    ];
+    let errors = error_chart(&PER_CONTACT, &groups);
     finding.figures = vec![
         PROSE.chart("oblique-impact", &[], drawing(&experiment, &rows))?,
         PROSE.chart("oblique-impact-errors", &[], errors)?,
@@ -205,16 +203,15 @@ fn drawing(experiment: &Experiment, rows: &[Row]) -> ChartFigure {
             Line::new(name, &dense, &expected.iter().map(of).collect::<Vec<f64>>())
         };
         // Sliding throughout makes sense only where the slip that is left is not far below zero.
-        let sliding = line("sliding throughout", &|[.., slid]| {
+        let slides = |slid: &[f64; 3]| {
             if slid[2] > -10.0 {
                 slid[place]
             } else {
                 f64::NAN
             }
-        });
-        let mindlin = line("Mindlin (Maw et al. 1976)", &|[_, mindlin, _]| {
-            mindlin[place]
-        });
+        };
+        let sliding = line("sliding throughout", &|[.., slid]| slides(slid));
+        let mindlin = line("Mindlin (Maw et al. 1976)", &|expected| expected[1][place]);
         let integrated = line("equation of motion", &|[integrated, ..]| integrated[place]);
         ChartPanel::new("angle of incidence (degrees)", label)
             .x_range(0.0..=90.0)

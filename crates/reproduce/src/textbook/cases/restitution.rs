@@ -120,7 +120,7 @@ struct Row {
 }
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let mut rows: Vec<Row> = Vec::new();
     for series in &SERIES {
         for wanted in WANTED {

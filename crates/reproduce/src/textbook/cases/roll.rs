@@ -36,7 +36,7 @@ fn slip_time() -> f64 {
 }
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let duration = DURATION * slip_time();
     let mut usual = Vec::new();
     for means in Means::INTEGRATORS {
@@ -68,10 +68,9 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
     let middle = course[(0.5 * slip_time() / TIME_STEP) as usize];
     let slowed = THROW.friction.kinetic_friction * THROW.gravity * middle.time;
     // Where velocity and spin cross the line between their values and those of rolling.
-    let rolls = course
-        .iter()
-        .find(|instant| instant.rolling >= instant.velocity)
-        .map_or(f64::NAN, |instant| instant.time);
+    let mut instants = course.iter();
+    let rolls = instants.find(|instant| instant.rolling >= instant.velocity);
+    let rolls = rolls.map_or(f64::NAN, |instant| instant.time);
     let over_start = |velocity: f64| velocity / THROW.speed;
     let check = |quantity, reference, expected, found, tolerance| {
         Check::relative(quantity, setting, expected, found, tolerance).by(reference)
@@ -79,23 +78,13 @@ fn checks(course: &[Instant], setting: &str) -> Vec<Check> {
     let [v, r_omega] = [last.velocity, last.rolling].map(over_start);
     let (slow, slowed) = (over_start(middle.velocity), 1.0 - over_start(slowed));
     let half_way = "v half way through the slip, over v_0";
+    let (spin, end) = ("r omega at the end, over v_0", 5.0 / 7.0);
+    let (rolling, time) = ("time at which it rolls", slip_time());
     vec![
-        check("v at the end, over v_0", "5/7", 5.0 / 7.0, v, 1e-4),
-        check(
-            "r omega at the end, over v_0",
-            "5/7",
-            5.0 / 7.0,
-            r_omega,
-            1e-4,
-        ),
+        check("v at the end, over v_0", "5/7", end, v, 1e-4),
+        check(spin, "5/7", end, r_omega, 1e-4),
         check(half_way, "v_0 - mu g t", slowed, slow, 1e-3),
-        check(
-            "time at which it rolls",
-            "2 v_0/(7 mu g)",
-            slip_time(),
-            rolls,
-            5e-3,
-        ),
+        check(rolling, "2 v_0/(7 mu g)", time, rolls, 5e-3),
     ]
 }
 

@@ -150,7 +150,7 @@ struct Row {
 }
 
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let experiments = MEETS.each_ref().map(Experiment::new);
     let mut rows: Vec<Row> = Vec::new();
     for experiment in &experiments {

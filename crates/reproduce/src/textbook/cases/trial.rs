@@ -9,6 +9,7 @@ use crate::textbook::experiment::Means;
 use crate::textbook::experiment::impact::{Impact, Rebound};
 use crate::textbook::reference::hertz::contact_time;
 use crate::textbook::reference::impact::outcome;
+use crate::textbook::reference::ode::bisected;
 use crate::{Check, Convergence};
 
 /// Steps in units of the contact time t_c.
@@ -114,15 +115,9 @@ pub(super) fn dissipation_time(restitution: f64, impact: impl Fn(f64) -> Impact)
     if restitution >= 1.0 {
         return 0.0;
     }
-    let (mut low, mut high) = (0.0, 50.0 * contact_time(&impact(0.0)));
-    for _ in 0..50 {
-        let middle = 0.5 * (low + high);
-        if expected_restitution(&impact(middle)) > restitution {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let ends = [0.0, 50.0 * contact_time(&impact(0.0))];
+    let is_below = |time: f64| expected_restitution(&impact(time)) > restitution;
+    let [low, high] = bisected(ends, 50, is_below);
     0.5 * (low + high)
 }
 

@@ -25,14 +25,10 @@ pub(super) const PROSE: Prose = Prose::new(include_str!("viscoelastic.md"));
 /// the same force at the same overlap, and so the same equation of motion head-on.
 const LARGE: f64 = 10.0;
 
-/// The factors of the dissipation time, by their names in the table and in the figure.
-const FORMS: [(&str, &str, DissipationForm); 2] = [
-    (
-        "viscoelastic",
-        "viscoelastic",
-        DissipationForm::Viscoelastic,
-    ),
-    ("as_printed", "as printed", DissipationForm::Printed),
+/// The factors of the dissipation time, by their names.
+const FORMS: [(&str, DissipationForm); 2] = [
+    ("viscoelastic", DissipationForm::Viscoelastic),
+    ("as printed", DissipationForm::Printed),
 ];
 
 fn law(dissipation_form: DissipationForm) -> ViscoelasticHertz {
@@ -76,7 +72,7 @@ struct Row {
 pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     const PRESET: DissipationForm = DissipationForm::Viscoelastic;
     let preset = |speed: f64| Trial::of(impact(PRESET, speed));
-    let mut finding = Finding::described(&PROSE, &[]);
+    let mut finding = PROSE.described(&[]);
     let mut check = |speed: &str, reference: &str, expected, found, tolerance| {
         let setting = format!("v = {speed}");
         let check = Check::absolute("restitution", &setting, expected, found, tolerance);
@@ -101,7 +97,7 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
     let mut rows: Vec<Row> = Vec::new();
     for speed in speeds(circumstances.size.choose(9, 25)) {
         circumstances.go_on()?;
-        let [one, other] = FORMS.map(|(.., form)| Trial::of(impact(form, speed)));
+        let [one, other] = FORMS.map(|(_, form)| Trial::of(impact(form, speed)));
         rows.push(Row {
             speed,
             expected: [&one, &other].map(|trial| expected_restitution(&trial.impact)),
@@ -114,12 +110,12 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
         PROSE.chart("viscoelastic-errors", &[], errors)?,
     ];
     let mut data = Columns::of(&rows).number("speed", "d/t", "relative speed", |row| row.speed);
-    for (place, (name, ..)) in FORMS.into_iter().enumerate() {
+    for (place, (name, _)) in FORMS.into_iter().enumerate() {
+        let name = name.replace(' ', "_");
         let [expected, found] = ["expected", "found"].map(|whose| format!("{name}_{whose}"));
+        let equation = "equation of motion";
         data = data
-            .number(&expected, "", "equation of motion", |row| {
-                row.expected[place]
-            })
+            .number(&expected, "", equation, |row| row.expected[place])
             .number(&found, "", "engine", |row| row.found[place]);
     }
     finding.data = Some(data.table()?);
@@ -128,10 +124,9 @@ pub(super) fn examine(circumstances: Circumstances<'_>) -> Result<Finding> {
 
 /// Speeds from 1e-6 to 1 at equal ratios.
 fn speeds(number: usize) -> Vec<f64> {
-    let exponents = spaced(-6.0, 0.0, number);
+    let exponents = spaced(-6.0, 0.0, number).into_iter();
     exponents
-        .iter()
-        .map(|exponent| libm::pow(10.0, *exponent))
+        .map(|exponent| libm::pow(10.0, exponent))
         .collect()
 }
 
@@ -140,18 +135,15 @@ fn drawing(rows: &[Row]) -> ChartFigure {
     let mut panel = ChartPanel::new("speed *v* (*d*/*t*\\*)", "restitution *e*")
         .x_scale(Scale::Logarithmic)
         .y_range(0.84..=1.0);
-    for (place, (_, name, form)) in FORMS.into_iter().enumerate() {
+    for (place, (name, form)) in FORMS.into_iter().enumerate() {
         let equation = |speed| expected_restitution(&impact(form, speed));
         let series = |speed| viscoelastic_series(small_parameter(form, speed));
         let curve = |name, of: &dyn Fn(f64) -> f64| curve(named_once(name, place), &dense, of);
         let found = points(name, rows, |row: &Row| (row.speed, row.found[place]));
+        let series = curve("series", &series).pattern(Pattern::Dashed);
         panel = panel
             .with(curve("equation of motion", &equation).tint(Tint::Black))
-            .with(
-                curve("series", &series)
-                    .tint(Tint::Green)
-                    .pattern(Pattern::Dashed),
-            )
+            .with(series.tint(Tint::Green))
             .with(found.series(place));
     }
     let source = Reference::horizontal(0.85).label("0.85, the source at *v* = 1");

@@ -8,6 +8,7 @@ use peristalsis_physics::contact::Normal;
 
 use super::{Means, far_away, smooth};
 use crate::error::Result;
+use crate::textbook::reference::ode::bisected;
 
 /// A ring of grains of diameter and mass 1, closed by the period of the tube; each overlaps both neighbours.
 ///
@@ -88,14 +89,6 @@ fn root_of_cubic(from: (f64, f64), to: (f64, f64), time_step: f64) -> f64 {
     let cubic = 2.0 * (p0 - p1) + m0 + m1;
     let square = 3.0 * (p1 - p0) - 2.0 * m0 - m1;
     let value = |s: f64| ((cubic * s + square) * s + m0) * s + p0;
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if value(middle) * p0 > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let [low, high] = bisected([0.0, 1.0], 60, |s| value(s) * p0 > 0.0);
     0.5 * (low + high)
 }

@@ -111,12 +111,9 @@ impl Gas {
         let wall = far_away(radius + 3.0, self.length);
         let parameters = means.parameters(contact, time_step, 0.3);
         let mut simulation = Simulation::new(self.start(seed), wall.clone(), parameters);
-        let look = (LOOK * self.law.contact_time(0.5) / time_step)
-            .round()
-            .max(1.0) as u64;
-        let looks = (duration / samples / (time_step * look as f64))
-            .round()
-            .max(1.0) as u64;
+        let whole = |number: f64| number.round().max(1.0) as u64;
+        let look = whole(LOOK * self.law.contact_time(0.5) / time_step);
+        let looks = whole(duration / samples / (time_step * look as f64));
         let mut course = vec![[0.0, temperature(simulation.bodies())]];
         for _ in 0..samples as u64 {
             circumstances.go_on()?;
@@ -160,10 +157,6 @@ fn reflected(simulation: Simulation, radius: f64, ahead: f64) -> Result<Simulati
 fn temperature(bodies: &Bodies) -> f64 {
     let number = bodies.grains as f64;
     let mean = bodies.velocity.iter().sum::<DVec3>() / number;
-    let squares: f64 = bodies
-        .velocity
-        .iter()
-        .map(|v| (*v - mean).length_squared())
-        .sum();
-    squares / (3.0 * number)
+    let squares = bodies.velocity.iter().map(|v| (*v - mean).length_squared());
+    squares.sum::<f64>() / (3.0 * number)
 }

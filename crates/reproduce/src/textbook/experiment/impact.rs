@@ -49,7 +49,7 @@ pub(crate) struct Impact {
 }
 
 /// Motion after an impact, and extremes in it.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Rebound {
     /// Velocities after it; a plane stays at rest.
     pub(crate) velocity: [DVec3; 2],
@@ -142,13 +142,7 @@ impl Impact {
         let lead = (1.0 + phase) * time_step;
         let mut experiment = Experiment::new(self, means, time_step, lead);
         let mut past = [experiment.look(); 3];
-        let mut answer = Rebound {
-            velocity: [DVec3::ZERO; 2],
-            spin: [0.0; 2],
-            contact_time: 0.0,
-            largest_overlap: 0.0,
-            peak_force: 0.0,
-        };
+        let mut answer = Rebound::default();
         let mut met = false;
         for step in 1..=MOST_STEPS {
             experiment.simulation.advance(1)?;
@@ -262,14 +256,9 @@ impl Experiment {
 
     fn motion(&self) -> ([DVec3; 2], [f64; 2]) {
         let bodies = self.simulation.bodies();
-        let second = |vectors: &[DVec3]| vectors.get(1).copied().unwrap_or_default();
-        (
-            [bodies.velocity[0], second(&bodies.velocity)],
-            [
-                bodies.angular_velocity[0].z,
-                second(&bodies.angular_velocity).z,
-            ],
-        )
+        let both = |vectors: &[DVec3]| [vectors[0], vectors.get(1).copied().unwrap_or_default()];
+        let spins = both(&bodies.angular_velocity).map(|spin| spin.z);
+        (both(&bodies.velocity), spins)
     }
 }
 

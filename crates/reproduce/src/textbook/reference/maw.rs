@@ -84,21 +84,15 @@ mod tests {
     fn a_grazing_impact_slides_throughout_and_a_steep_one_does_not() {
         let chi = 3.5 * 0.7 / 1.7;
         let limit = (4.0 * chi - 1.0) * 0.1 * 1.7 / 1.4;
-        assert!(
-            (ratio(1.05 * limit) - 1.0).abs() < 3e-3,
-            "{}",
-            ratio(1.05 * limit)
-        );
-        assert!(ratio(0.9 * limit) < 0.99, "{}", ratio(0.9 * limit));
+        let [beyond, within] = [1.05 * limit, 0.9 * limit].map(ratio);
+        assert!((beyond - 1.0).abs() < 3e-3, "{beyond}");
+        assert!(within < 0.99, "{within}");
         // The slip after the impact over the slip before: impacts next to the normal stop their surface almost, oblique ones
         // turn it back (Maw et al. 1976).
         let left = |slip_ratio: f64| 1.0 - 3.5 * 2.0 * 0.1 * ratio(slip_ratio) / slip_ratio;
         let of_angle = |psi: f64| psi * 0.1 * 1.7 / 1.4;
-        assert!(
-            (0.0..0.4).contains(&left(of_angle(0.2))),
-            "{}",
-            left(of_angle(0.2))
-        );
-        assert!(left(of_angle(2.5)) < -0.05, "{}", left(of_angle(2.5)));
+        let [steep, oblique] = [0.2, 2.5].map(|psi| left(of_angle(psi)));
+        assert!((0.0..0.4).contains(&steep), "{steep}");
+        assert!(oblique < -0.05, "{oblique}");
     }
 }

@@ -27,16 +27,10 @@ pub(crate) fn until<const N: usize>(
                     .position(|event| event(&y) < 0.0 && event(state) >= 0.0)
             };
             if happened(&next).is_some() {
-                let (mut low, mut high) = (0.0, step);
-                for _ in 0..80 {
-                    let middle = 0.5 * (low + high);
+                let [_, high] = bisected([0.0, step], 80, |middle| {
                     let (state, _) = dormand_prince(&f, &y, middle, tolerance);
-                    if happened(&state).is_some() {
-                        high = middle;
-                    } else {
-                        low = middle;
-                    }
-                }
+                    happened(&state).is_none()
+                });
                 let (state, _) = dormand_prince(&f, &y, high, tolerance);
                 let which = happened(&state).unwrap_or(events.len());
                 return (time + high, state, which);
@@ -47,6 +41,23 @@ pub(crate) fn until<const N: usize>(
         h = step * (0.9 * libm::pow(error.max(1e-10), -0.2)).clamp(0.2, 4.0);
     }
     (time, y, events.len())
+}
+
+/// The ends of an interval after so many halvings about the place where `is_below` changes from true to false.
+pub(crate) fn bisected(
+    [mut low, mut high]: [f64; 2],
+    halvings: usize,
+    is_below: impl Fn(f64) -> bool,
+) -> [f64; 2] {
+    for _ in 0..halvings {
+        let middle = 0.5 * (low + high);
+        if is_below(middle) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    [low, high]
 }
 
 /// One step, and its estimated error in units of the tolerance.
