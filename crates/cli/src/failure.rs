@@ -8,7 +8,7 @@ use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use peristalsis_configuration::{ConfigurationError, Problem};
 use peristalsis_engine::EngineError;
 use peristalsis_formats::FormatError;
-use peristalsis_reproduce::ClaimError;
+use peristalsis_reproduce::ReproduceError;
 use peristalsis_run::{RenderError, RunError};
 use peristalsis_study::StudyError;
 use peristalsis_viewer::ViewerError;
@@ -52,7 +52,7 @@ pub(crate) enum Failure {
     Study(#[from] StudyError),
     /// Claims, textbook cases or the report of them.
     #[error(transparent)]
-    Claim(ClaimError),
+    Claim(ReproduceError),
     /// The viewer.
     #[error(transparent)]
     Viewer(#[from] ViewerError),
@@ -69,11 +69,11 @@ const BAD_INPUT: u8 = 2;
 /// Exit code for work that failed.
 const FAILED: u8 = 1;
 
-impl From<ClaimError> for Failure {
-    fn from(error: ClaimError) -> Self {
+impl From<ReproduceError> for Failure {
+    fn from(error: ReproduceError) -> Self {
         match error {
             // A study says the same whoever asked for it.
-            ClaimError::Study(error) => Self::Study(error),
+            ReproduceError::Study(error) => Self::Study(error),
             other => Self::Claim(other),
         }
     }
@@ -236,17 +236,17 @@ fn of_study(error: &StudyError) -> Advice {
     }
 }
 
-fn of_claim(error: &ClaimError) -> Advice {
+fn of_claim(error: &ReproduceError) -> Advice {
     match error {
-        ClaimError::NoSuchExperiment { kind, known, .. } => {
+        ReproduceError::NoSuchExperiment { kind, known, .. } => {
             wrong(format!("{kind}s: {}", known.join(", ")))
         }
-        ClaimError::NoPlace { block, .. } => wrong(format!(
+        ReproduceError::NoPlace { block, .. } => wrong(format!(
             "put the lines <!-- validate {block} --> and <!-- /validate --> where the results are to stand"
         )),
-        ClaimError::Folder { .. } => wrong("name another folder with --out"),
-        ClaimError::Read { .. } => (BAD_INPUT, None),
-        ClaimError::Format(_) | ClaimError::Figure(_) => failed(MEND),
+        ReproduceError::Folder { .. } => wrong("name another folder with --out"),
+        ReproduceError::Read { .. } => (BAD_INPUT, None),
+        ReproduceError::Format(_) | ReproduceError::Figure(_) => failed(MEND),
         _ => (FAILED, None),
     }
 }

@@ -11,7 +11,7 @@ use peristalsis_study::StudyError;
 /// An error on the way from an experiment to its report. Neither too few runs nor a failed check is an error: both are part
 /// of a [`Finding`](crate::Finding).
 #[derive(Debug, thiserror::Error)]
-pub enum ClaimError {
+pub enum ReproduceError {
     /// A study could not be read or worked on.
     #[error(transparent)]
     Study(#[from] StudyError),
@@ -83,11 +83,11 @@ pub enum ClaimError {
 }
 
 /// What may fail here.
-pub(crate) type Result<T> = std::result::Result<T, ClaimError>;
+pub(crate) type Result<T> = std::result::Result<T, ReproduceError>;
 
 /// Makes a folder for results.
 pub(crate) fn make_folder(path: &Path) -> Result<()> {
-    std::fs::create_dir_all(path).map_err(|source| ClaimError::Folder {
+    std::fs::create_dir_all(path).map_err(|source| ReproduceError::Folder {
         path: path.to_owned(),
         source,
     })

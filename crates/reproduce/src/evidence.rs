@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use peristalsis_formats::{Table, parquet};
 use peristalsis_study::Store;
 
-use crate::error::{ClaimError, Result};
+use crate::error::{ReproduceError, Result};
 use crate::row::{Row, check, rows_of};
 
 /// The results of one study.
@@ -66,11 +66,11 @@ impl Evidence {
     /// The results of a study.
     ///
     /// # Errors
-    /// [`ClaimError::NoSuchStudy`].
+    /// [`ReproduceError::NoSuchStudy`].
     pub fn study(&self, name: &str) -> Result<&StudyResults> {
         self.studies
             .get(name)
-            .ok_or_else(|| ClaimError::NoSuchStudy(name.to_owned()))
+            .ok_or_else(|| ReproduceError::NoSuchStudy(name.to_owned()))
     }
 }
 

@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use crate::claim::Claim;
-use crate::error::ClaimError;
+use crate::error::ReproduceError;
 use crate::finding::{Finding, Statistics, Verdict};
 
 /// An experiment, a claim or a textbook case, with its finding.
@@ -49,27 +49,27 @@ impl<E> Examination<E> {
 
 /// Calls an examination; a panic, which is a bug in this one, costs no other.
 pub(crate) fn without_panic(
-    examine: impl FnOnce() -> Result<Finding, ClaimError>,
-) -> Result<Finding, ClaimError> {
-    catch_unwind(AssertUnwindSafe(examine)).unwrap_or(Err(ClaimError::Panicked))
+    examine: impl FnOnce() -> Result<Finding, ReproduceError>,
+) -> Result<Finding, ReproduceError> {
+    catch_unwind(AssertUnwindSafe(examine)).unwrap_or(Err(ReproduceError::Panicked))
 }
 
 /// The experiments of these names, in the order of `all`; all of them where no name is given. Case does not matter.
 ///
 /// # Errors
-/// [`ClaimError::NoSuchExperiment`].
+/// [`ReproduceError::NoSuchExperiment`].
 pub(crate) fn experiments_named<E: Copy>(
     kind: &'static str,
     all: &[E],
     name_of: impl Fn(&E) -> &'static str,
     names: &[String],
-) -> Result<Vec<E>, ClaimError> {
+) -> Result<Vec<E>, ReproduceError> {
     let has = |experiment: &E, name: &String| name_of(experiment).eq_ignore_ascii_case(name.trim());
     if let Some(unknown) = names
         .iter()
         .find(|name| !all.iter().any(|one| has(one, name)))
     {
-        return Err(ClaimError::NoSuchExperiment {
+        return Err(ReproduceError::NoSuchExperiment {
             kind,
             asked: unknown.clone(),
             known: all.iter().map(name_of).collect(),

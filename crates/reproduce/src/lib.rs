@@ -34,7 +34,7 @@ mod thresholds;
 pub use check::{Check, Convergence};
 pub use claim::Claim;
 pub use claims::CLAIMS;
-pub use error::ClaimError;
+pub use error::ReproduceError;
 pub use evidence::{Evidence, StudyResults};
 pub use examination::Examination;
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};

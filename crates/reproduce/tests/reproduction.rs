@@ -11,7 +11,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use peristalsis_reproduce::{
-    Claim, ClaimError, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Prose,
+    Claim, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Prose, ReproduceError,
     Reproduction, Size, Statistics, StudyFile, Verdict, chosen,
 };
 use peristalsis_study::{Effort, Ending, Store};
@@ -46,7 +46,7 @@ const STUDIES: [StudyFile; 2] = [
     ),
 ];
 
-fn count(evidence: &Evidence, study: &str) -> Result<Finding, ClaimError> {
+fn count(evidence: &Evidence, study: &str) -> Result<Finding, ReproduceError> {
     let results = evidence.study(study)?;
     let statistics = Statistics {
         strain_rates: 4,
@@ -68,7 +68,7 @@ fn count(evidence: &Evidence, study: &str) -> Result<Finding, ClaimError> {
 const fn claim(
     id: &'static str,
     studies: &'static [&'static str],
-    examine: fn(&Evidence) -> Result<Finding, ClaimError>,
+    examine: fn(&Evidence) -> Result<Finding, ReproduceError>,
 ) -> Claim {
     Claim {
         id,
@@ -82,7 +82,7 @@ const CLAIMS: [Claim; 4] = [
     claim("F1", &["long"], |evidence| count(evidence, "long")),
     claim("F2", &["short"], |evidence| count(evidence, "short")),
     claim("F3", &["short"], |_| {
-        Err(ClaimError::NoSuchStudy("elsewhere".to_owned()))
+        Err(ReproduceError::NoSuchStudy("elsewhere".to_owned()))
     }),
     claim("F4", &["short"], |evidence| {
         // A bug of an analysis.
@@ -327,7 +327,7 @@ fn a_store_that_cannot_be_used_costs_only_its_claims() {
 
 #[test]
 fn claims_are_chosen_by_name() {
-    let names = |names: &[&str]| -> Result<Vec<&str>, ClaimError> {
+    let names = |names: &[&str]| -> Result<Vec<&str>, ReproduceError> {
         let names: Vec<String> = names.iter().map(|name| (*name).to_owned()).collect();
         Ok(chosen(&CLAIMS, &names)?
             .iter()
@@ -337,7 +337,7 @@ fn claims_are_chosen_by_name() {
     assert_eq!(names(&["f3", " F1"]).unwrap(), ["F1", "F3"]);
     assert_eq!(names(&[]).unwrap(), ["F1", "F2", "F3", "F4"]);
     match names(&["F1", "F10"]) {
-        Err(ClaimError::NoSuchExperiment { asked, known, .. }) => {
+        Err(ReproduceError::NoSuchExperiment { asked, known, .. }) => {
             assert_eq!(asked, "F10");
             assert_eq!(known, ["F1", "F2", "F3", "F4"]);
         }
@@ -352,11 +352,11 @@ fn what_is_missing_is_said_before_anything_runs() {
     fs::write(&file, "").unwrap();
     let out = file.join("out");
     match Reproduction::prepare(&out, Size::Quick, &CLAIMS, &STUDIES) {
-        Err(ClaimError::Folder { path, .. }) => assert_eq!(path, out),
+        Err(ReproduceError::Folder { path, .. }) => assert_eq!(path, out),
         other => panic!("{other:?}"),
     }
     assert!(matches!(
         Reproduction::prepare(folder.path(), Size::Quick, &CLAIMS, &STUDIES[..1]),
-        Err(ClaimError::NoSuchStudy(name)) if name == "short"
+        Err(ReproduceError::NoSuchStudy(name)) if name == "short"
     ));
 }

@@ -8,7 +8,7 @@
 use std::fs;
 
 use peristalsis_reproduce::textbook::{CASES, Case, Circumstances, Validation, chosen};
-use peristalsis_reproduce::{Check, ClaimError, Convergence, Finding, Prose, Size};
+use peristalsis_reproduce::{Check, Convergence, Finding, Prose, ReproduceError, Size};
 
 /// Cases of a few seconds in all; the others are for `peristalsis validate`.
 const FAST: [&str; 6] = [
@@ -67,7 +67,7 @@ fn the_engine_agrees_with_the_textbook() {
 
 const fn case(
     name: &'static str,
-    examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
+    examine: fn(Circumstances<'_>) -> Result<Finding, ReproduceError>,
 ) -> Case {
     Case {
         name,
@@ -114,13 +114,13 @@ fn a_wrong_number_and_a_panic_fail_their_own_case_only() {
 #[test]
 fn a_request_to_stop_is_heard() {
     let stopped = Validation::run(Size::Full, &named(&["chain"]), &|| true, &mut |_| ());
-    assert!(matches!(stopped, Err(ClaimError::Stopped)));
+    assert!(matches!(stopped, Err(ReproduceError::Stopped)));
 }
 
 #[test]
 fn an_unknown_case_is_named_with_those_that_exist() {
     match chosen(CASES, &["hertz".to_owned()]) {
-        Err(ClaimError::NoSuchExperiment { asked, known, .. }) => {
+        Err(ReproduceError::NoSuchExperiment { asked, known, .. }) => {
             assert_eq!((&*asked, known.len()), ("hertz", CASES.len()));
         }
         other => panic!("{:?}", other.map(|cases| cases.len())),
@@ -150,7 +150,7 @@ fn results_are_written_into_their_places_and_nowhere_else() {
     assert_eq!(read(), found);
 
     match run(&MADE_UP).write_into(&path, &MADE_UP) {
-        Err(ClaimError::NoPlace { block, line, .. }) => {
+        Err(ReproduceError::NoPlace { block, line, .. }) => {
             assert_eq!((&*block, &*line), ("wrong", "<!-- validate wrong -->"));
         }
         other => panic!("{other:?}"),

@@ -4,7 +4,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use peristalsis_reproduce::textbook::{CASES, Case, Validation, chosen};
-use peristalsis_reproduce::{ClaimError, Examination, Size};
+use peristalsis_reproduce::{Examination, ReproduceError, Size};
 
 use crate::arguments::ValidateArguments;
 use crate::commands::{code_of, print, tell};
@@ -45,7 +45,7 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
         },
     );
     let validation = match outcome {
-        Err(ClaimError::Stopped) => {
+        Err(ReproduceError::Stopped) => {
             tell("stopped, nothing is written");
             return Ok(ExitCode::from(stop.requested().unwrap_or(1)));
         }

@@ -5,7 +5,7 @@ use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line, Reference};
 use peristalsis_figures::{FigureError, Width};
 use peristalsis_reproduce::report::{Program, Report};
 use peristalsis_reproduce::{
-    Claim, ClaimError, Examination, Finding, Prose, Quantity, ReportFigure, ReportTable, Size,
+    Claim, Examination, Finding, Prose, Quantity, ReportFigure, ReportTable, ReproduceError, Size,
     Statistics, StudyFile, StudyOutcome, Verdict,
 };
 
@@ -44,7 +44,7 @@ macro_rules! claim {
                 $statement
             )),
             studies: $studies,
-            examine: |_| Err(ClaimError::NoSuchStudy("none".to_owned())),
+            examine: |_| Err(ReproduceError::NoSuchStudy("none".to_owned())),
         }
     };
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::{Check, ClaimError, Convergence, Finding, ReportTable};
+use crate::{Check, Convergence, Finding, ReportTable, ReproduceError};
 
 /// A finding: its paragraphs, checks, errors and figures; `figures` is the folder of the pictures as the document sees it.
 pub(crate) fn finding(finding: &Finding, figures: &str) -> String {
@@ -40,15 +40,15 @@ pub(crate) fn table(table: &ReportTable) -> String {
 /// The text of the document `path` with the block `name` in place of the text between its markers.
 ///
 /// # Errors
-/// [`ClaimError::NoPlace`] with the line that is missing: its first marker, or the next end of a block.
+/// [`ReproduceError::NoPlace`] with the line that is missing: its first marker, or the next end of a block.
 pub(crate) fn replaced(
     path: &Path,
     text: &str,
     name: &str,
     block: &str,
-) -> Result<String, ClaimError> {
+) -> Result<String, ReproduceError> {
     let (first, last) = (format!("<!-- validate {name} -->"), "<!-- /validate -->");
-    let missing = |line: &str| ClaimError::NoPlace {
+    let missing = |line: &str| ReproduceError::NoPlace {
         path: path.to_owned(),
         block: name.to_owned(),
         line: line.to_owned(),

@@ -20,7 +20,7 @@ use peristalsis_figures::Drawing;
 use peristalsis_formats::{atomic, csv};
 
 use self::files::{figure_files, table_files};
-use crate::error::{ClaimError, make_folder};
+use crate::error::{ReproduceError, make_folder};
 use crate::{Examination, Outcome, Size, StudyOutcome};
 
 pub(crate) use json::json_text;
@@ -91,7 +91,7 @@ impl Report {
     ///
     /// # Errors
     /// Errors of making folders and writing files, and of drawing pictures.
-    pub fn write(&self, folder: &Path) -> Result<PathBuf, ClaimError> {
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, ReproduceError> {
         let (figures, tables) = (figure_files(&self.examinations), table_files(self)?);
         make_folder(folder)?;
         if !figures.files.is_empty() {
@@ -124,7 +124,7 @@ pub(crate) fn write_drawing(
     folder: &Path,
     name: &str,
     drawing: &Drawing,
-) -> Result<(), ClaimError> {
+) -> Result<(), ReproduceError> {
     let path = folder.join(name);
     atomic::write(&path.with_extension("svg"), drawing.svg().as_bytes())?;
     atomic::write(&path.with_extension("png"), &drawing.png()?)?;

@@ -8,7 +8,7 @@ use peristalsis_formats::read_table;
 use peristalsis_study::{Identity, Row, State, Store, StudyError};
 
 use super::Reproduction;
-use crate::error::ClaimError;
+use crate::error::ReproduceError;
 
 /// What tables of finished runs gave.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -45,7 +45,7 @@ impl Reproduction {
     /// # Errors
     /// A path that cannot be read; a file that was named and holds no rows of runs (one in a folder is skipped); errors of
     /// writing to a store.
-    pub fn import(&self, paths: &[PathBuf]) -> Result<Import, ClaimError> {
+    pub fn import(&self, paths: &[PathBuf]) -> Result<Import, ReproduceError> {
         let mut import = Import::default();
         let mut tables = Vec::new();
         for path in paths {

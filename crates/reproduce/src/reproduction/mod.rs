@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use peristalsis_study::{Board, Effort, Ending, Specification, State, Store, StudyError, work_on};
 
 use crate::claim::Claim;
-use crate::error::{ClaimError, make_folder};
+use crate::error::{ReproduceError, make_folder};
 use crate::evidence::Evidence;
 use crate::examination::{Examination, experiments_named, without_panic};
 use crate::studies::{Products, Size, StudyFile};
@@ -137,8 +137,8 @@ pub struct Outcome {
 /// The claims of these names, in the order of `all`; every claim where no name is given. Case does not matter.
 ///
 /// # Errors
-/// [`ClaimError::NoSuchExperiment`].
-pub fn chosen(all: &[Claim], names: &[String]) -> Result<Vec<Claim>, ClaimError> {
+/// [`ReproduceError::NoSuchExperiment`].
+pub fn chosen(all: &[Claim], names: &[String]) -> Result<Vec<Claim>, ReproduceError> {
     experiments_named("claim", all, |claim| claim.id, names)
 }
 
@@ -148,13 +148,13 @@ impl Reproduction {
     /// A store that cannot be opened is told of later, and costs only the claims that need it.
     ///
     /// # Errors
-    /// [`ClaimError::Folder`], [`ClaimError::NoSuchStudy`], and [`ClaimError::Study`] for a file that is not a valid study.
+    /// [`ReproduceError::Folder`], [`ReproduceError::NoSuchStudy`], and [`ReproduceError::Study`] for a file that is not a valid study.
     pub fn prepare(
         folder: &Path,
         size: Size,
         claims: &[Claim],
         studies: &[StudyFile],
-    ) -> Result<Self, ClaimError> {
+    ) -> Result<Self, ReproduceError> {
         let stores = folder.join(STORES);
         make_folder(folder)?;
         make_folder(&stores)?;
@@ -164,7 +164,7 @@ impl Reproduction {
                 continue;
             }
             let file = studies.iter().find(|study| study.name == *name);
-            let file = *file.ok_or_else(|| ClaimError::NoSuchStudy((*name).to_owned()))?;
+            let file = *file.ok_or_else(|| ReproduceError::NoSuchStudy((*name).to_owned()))?;
             let study = file.specification(size)?;
             let store = Store::create(&stores.join(file.name), &study);
             works.push(Work { file, study, store });
@@ -431,7 +431,7 @@ impl<'a> Course<'a> {
             Some(format!("study {name}: {reason}"))
         };
         let outcome = outcome.map_err(|error| match error {
-            ClaimError::Panicked => error.to_string(),
+            ReproduceError::Panicked => error.to_string(),
             error => {
                 let failed_study = claim.studies.iter().copied().find_map(failure);
                 failed_study.unwrap_or_else(|| error.to_string())

@@ -41,11 +41,11 @@ fn cost(places: &[usize], costs: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::ClaimError;
+    use crate::error::ReproduceError;
     use crate::{Evidence, Finding};
 
-    fn unexamined(_: &Evidence) -> Result<Finding, ClaimError> {
-        Err(ClaimError::NoSuchStudy(String::new()))
+    fn unexamined(_: &Evidence) -> Result<Finding, ReproduceError> {
+        Err(ReproduceError::NoSuchStudy(String::new()))
     }
 
     fn claim(id: &'static str, studies: &'static [&'static str]) -> Claim {

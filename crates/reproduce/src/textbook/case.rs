@@ -1,6 +1,6 @@
 //! A case: one textbook experiment with its reference.
 
-use crate::error::ClaimError;
+use crate::error::ReproduceError;
 use crate::finding::Finding;
 use crate::prose::Prose;
 use crate::studies::Size;
@@ -17,9 +17,9 @@ pub struct Circumstances<'a> {
 
 impl Circumstances<'_> {
     /// An error once somebody asked to stop.
-    pub(crate) fn go_on(&self) -> Result<(), ClaimError> {
+    pub(crate) fn go_on(&self) -> Result<(), ReproduceError> {
         if (self.stops)() {
-            Err(ClaimError::Stopped)
+            Err(ReproduceError::Stopped)
         } else {
             Ok(())
         }
@@ -34,7 +34,7 @@ pub struct Case {
     /// Its title, author and year of experiment and reference, its method and the captions of its figures.
     pub prose: Prose,
     /// Examines it.
-    pub examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
+    pub examine: fn(Circumstances<'_>) -> Result<Finding, ReproduceError>,
 }
 
 impl Case {
@@ -42,7 +42,7 @@ impl Case {
     pub(crate) const fn new(
         name: &'static str,
         prose: Prose,
-        examine: fn(Circumstances<'_>) -> Result<Finding, ClaimError>,
+        examine: fn(Circumstances<'_>) -> Result<Finding, ReproduceError>,
     ) -> Self {
         Self {
             name,

@@ -11,7 +11,7 @@ use crate::error::{Result, make_folder};
 use crate::examination::without_panic;
 use crate::report::{json_text, markdown, write_drawing};
 use crate::textbook::case::{Case, Circumstances};
-use crate::{Check, ClaimError, Convergence, Examination, ReportTable, Size};
+use crate::{Check, Convergence, Examination, ReportTable, ReproduceError, Size};
 
 /// Version of the layout of `validation.json`.
 const FORMAT: u32 = 1;
@@ -32,7 +32,7 @@ impl Validation {
     /// Examines cases in turn, telling of each as it ends. A case that fails, even by a panic, costs no other.
     ///
     /// # Errors
-    /// [`ClaimError::Stopped`] once `stops` says so.
+    /// [`ReproduceError::Stopped`] once `stops` says so.
     pub fn run(
         size: Size,
         cases: &[Case],
@@ -43,7 +43,7 @@ impl Validation {
         for case in cases {
             let outcome = without_panic(|| (case.examine)(Circumstances { size, stops }));
             let outcome = match outcome {
-                Err(ClaimError::Stopped) => return Err(ClaimError::Stopped),
+                Err(ReproduceError::Stopped) => return Err(ReproduceError::Stopped),
                 outcome => outcome.map_err(|error| error.to_string()),
             };
             let mut examination = Examination::new(*case, outcome);
@@ -95,7 +95,7 @@ impl Validation {
     /// Whether a document has a place for each of these cases.
     ///
     /// # Errors
-    /// [`ClaimError::Read`] and [`ClaimError::NoPlace`].
+    /// [`ReproduceError::Read`] and [`ReproduceError::NoPlace`].
     pub fn check_places(path: &Path, cases: &[Case]) -> Result<()> {
         let document = document(path)?;
         for case in cases {
@@ -108,7 +108,7 @@ impl Validation {
     /// and, where all cases were examined, for `summary`; figures go to `docs/images/validation` beside the document.
     ///
     /// # Errors
-    /// [`ClaimError::Read`], and [`ClaimError::NoPlace`] where a marker is missing; nothing is changed then.
+    /// [`ReproduceError::Read`], and [`ReproduceError::NoPlace`] where a marker is missing; nothing is changed then.
     pub fn write_into(&self, path: &Path, all_cases: &[Case]) -> Result<()> {
         let mut document = document(path)?;
         for examination in &self.examinations {
@@ -176,7 +176,7 @@ fn block(examination: &Examination<Case>, figures: &str) -> String {
 
 /// The text of a document with places for findings.
 fn document(path: &Path) -> Result<String> {
-    fs::read_to_string(path).map_err(|source| ClaimError::Read {
+    fs::read_to_string(path).map_err(|source| ReproduceError::Read {
         path: path.to_owned(),
         source,
     })

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use peristalsis_reproduce::ClaimError;
+use peristalsis_reproduce::ReproduceError;
 
 use crate::{hostile, specimen};
 
@@ -87,7 +87,7 @@ fn a_folder_that_cannot_be_made_is_named() {
     let file = folder.path().join("file");
     fs::write(&file, "").unwrap();
     match specimen().unwrap().write(&file.join("below")) {
-        Err(ClaimError::Folder { path, .. }) => assert_eq!(path, file.join("below")),
+        Err(ReproduceError::Folder { path, .. }) => assert_eq!(path, file.join("below")),
         other => panic!("{other:?}"),
     }
 }

@@ -32,7 +32,7 @@ pub const CASES: &[Case] = &[
 /// The cases of these names, in the order of the table; all where none is named.
 ///
 /// # Errors
-/// [`ClaimError::NoSuchExperiment`](crate::ClaimError::NoSuchExperiment).
+/// [`ReproduceError::NoSuchExperiment`](crate::ReproduceError::NoSuchExperiment).
 pub fn chosen(cases: &[Case], names: &[String]) -> Result<Vec<Case>> {
     experiments_named("case", cases, |case| case.name, names)
 }

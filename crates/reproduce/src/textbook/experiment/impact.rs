@@ -5,7 +5,7 @@ use peristalsis_engine::{Bodies, Simulation};
 use peristalsis_physics::contact::ContactModel;
 
 use super::{Means, far_away, plane};
-use crate::error::{ClaimError, Result};
+use crate::error::{ReproduceError, Result};
 
 /// Diameter of the wall's sphere that stands for a plane \[d\].
 ///
@@ -162,7 +162,7 @@ impl Impact {
                 return Ok(answer);
             }
         }
-        Err(ClaimError::NoRebound {
+        Err(ReproduceError::NoRebound {
             steps: MOST_STEPS,
             time_step,
         })
