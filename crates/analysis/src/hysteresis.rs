@@ -25,14 +25,14 @@ pub struct Hysteresis {
 /// Hysteresis loop from runs of both starts.
 ///
 /// `rest`, `jammed`: the widths of the runs from either start and whether each *ended* jammed; see
-/// [`fraction_crossing`] for w_c and w_c'. The interval of the loop combines the distances to the ends of both
+/// [`fraction_crossing`](crate::fraction_crossing) for w_c and w_c'. The interval of the loop combines the distances to the ends of both
 /// intervals in quadrature (Zou & Donner, Stat. Med. 27, 1693 (2008)), brackets included. The ratio of the likelihoods
 /// compares two half widths with one, the spreads free in either case. w_c in this sense depends on the time for which
 /// runs are watched: from rest it rises with it and from jammed w_c' falls, so that a loop narrows with time where the
 /// states are metastable.
 ///
 /// # Errors
-/// Those of [`fraction_crossing`] for either start.
+/// Those of [`fraction_crossing`](crate::fraction_crossing) for either start.
 ///
 /// ```
 /// use peristalsis_analysis::hysteresis;

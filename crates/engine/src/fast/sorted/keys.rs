@@ -158,14 +158,18 @@ mod tests {
     #[test]
     fn strips_are_put_in_the_one_stable_order_whoever_does_it() {
         let number = 3 * PIECE as u32 + 17;
-        // Strips of many lengths, none among them.
-        let ends = [0, 5, 5, PIECE as u32 + 1, 2 * PIECE as u32, number];
-        for disorder in [0.0, 0.5, 40.0, 1e9] {
+        // Strips of many lengths, none among them; and one that holds all.
+        let six = vec![0, 5, 5, PIECE as u32 + 1, 2 * PIECE as u32, number];
+        for (ends, disorder) in [six, vec![number]]
+            .iter()
+            .flat_map(|ends| [0.0, 0.5, 40.0, 1e9].map(|disorder| (ends, disorder)))
+        {
             for parallel in [false, true] {
                 let mut found = keys(number, disorder);
-                put_strips_in_order(&mut found, &ends.map(|end| [0, 0, end]), parallel);
+                let strips: Vec<_> = ends.iter().map(|&end| [0, 0, end]).collect();
+                put_strips_in_order(&mut found, &strips, parallel);
                 let mut begin = 0;
-                for end in ends.map(|end| end as usize) {
+                for end in ends.iter().map(|&end| end as usize) {
                     let mut expected = keys(number, disorder)[begin..end].to_vec();
                     expected.sort_by(|one, other| one.0.total_cmp(&other.0));
                     assert!(found[begin..end] == expected, "{disorder} {parallel}");
