@@ -74,6 +74,19 @@ impl Evidence {
     }
 }
 
+/// A table that a run may have kept.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Product {
+    /// A row a sample.
+    Timeseries,
+    /// The flow of each wave over each period.
+    Waves,
+    /// Late means in the wave's frame.
+    Profile,
+    /// The spheres at the end.
+    Snapshot,
+}
+
 /// The first of some runs whose product was kept, with the product; `None` where no run's was.
 pub(crate) fn first_kept<'a>(
     rows: &[Row<'a>],
@@ -98,18 +111,23 @@ impl StudyResults {
     /// # Errors
     /// Errors of reading.
     pub fn series(&self, row: &Row<'_>) -> Result<Option<Table>> {
-        self.product(row, "timeseries")
+        self.product(row, Product::Timeseries)
     }
 
-    /// A table that a run may have kept: its `waves`, the flow of each over each period, its `profile` in the wave's frame, late
-    /// means, or its `snapshot`, the spheres at the end; `None` where it was not kept, or only its row was imported.
-    pub(crate) fn product(&self, row: &Row<'_>, name: &str) -> Result<Option<Table>> {
+    /// A table that a run may have kept; `None` where it was not kept, or only its row was imported.
+    pub(crate) fn product(&self, row: &Row<'_>, product: Product) -> Result<Option<Table>> {
         let Ok(identity) = row.identity().parse() else {
             return Ok(None);
         };
+        let file = match product {
+            Product::Timeseries => "timeseries.parquet",
+            Product::Waves => "waves.parquet",
+            Product::Profile => "profile.parquet",
+            Product::Snapshot => "snapshot.parquet",
+        };
         let stores = [&self.store, &self.again].into_iter().flatten();
         let path = stores
-            .map(|store| store.run_folder(identity).join(format!("{name}.parquet")))
+            .map(|store| store.run_folder(identity).join(file))
             .find(|path| path.is_file());
         Ok(path.map(|path| parquet::read(&path)).transpose()?)
     }

@@ -161,7 +161,8 @@ struct FreeFlight {
 impl FreeFlight {
     /// Of the first run with a profile; `None` where there is none.
     fn of(results: &StudyResults, one: &Sampled<'_>) -> Result<Option<Self>> {
-        let Some((row, profile)) = first_kept(&one.rows, |row| results.product(row, "profile"))?
+        let Some((row, profile)) =
+            first_kept(&one.rows, |row| results.product(row, Product::Profile))?
         else {
             return Ok(None);
         };

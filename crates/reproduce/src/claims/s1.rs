@@ -60,7 +60,7 @@ impl<'a> Scene<'a> {
 
     /// The first run whose spheres were kept.
     fn picture(&self, study: &StudyResults) -> Result<Option<Picture<'a>>> {
-        let kept = first_kept(&self.rows, |row| study.product(row, "snapshot"))?;
+        let kept = first_kept(&self.rows, |row| study.product(row, Product::Snapshot))?;
         Ok(kept.map(|(row, spheres)| Picture {
             name: self.name(),
             row,

@@ -74,7 +74,8 @@ pub(super) fn balance(
         let Some(one) = samples.at(Point { friction, ..PRESET }) else {
             continue;
         };
-        if let Some((row, profile)) = first_kept(&one.rows, |row| results.product(row, "profile"))?
+        if let Some((row, profile)) =
+            first_kept(&one.rows, |row| results.product(row, Product::Profile))?
         {
             columns.push(column(friction, row.wave_speed(), &profile)?);
         }

@@ -98,7 +98,9 @@ fn profiles(pump: &Pump<'_>) -> Result<Vec<(&'static str, Table)>> {
         } else {
             "largest Δ*p* pumped against"
         };
-        let kept = first_kept(&point.rows, |row| pump.results.product(row, "profile"))?;
+        let kept = first_kept(&point.rows, |row| {
+            pump.results.product(row, Product::Profile)
+        })?;
         profiles.extend(kept.map(|(_, profile)| (name, profile)));
     }
     Ok(profiles)
