@@ -12,6 +12,7 @@ mod pictures;
 mod reproducing;
 mod running;
 mod sources;
+mod strangers;
 mod streams;
 mod study;
 mod trajectories;

@@ -1,0 +1,1 @@
+//! Folders of runs, signals, full disks, going on.

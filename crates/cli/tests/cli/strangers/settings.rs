@@ -1,0 +1,1 @@
+//! Settings, warnings and what `check` says.
