@@ -33,10 +33,9 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
     let store = store_path(&arguments.store, &study);
     // So that a study that cannot run is refused here, and no two tasks make it.
     drop(Store::create(&store, &study)?);
-    let program = std::env::current_exe().map_err(Failure::read(Path::new("this program")))?;
     let job = Job {
         name: &study.name,
-        program: absolute(&program)?,
+        program: program()?,
         study: absolute(&arguments.file)?,
         store: absolute(&store)?,
         arguments,
@@ -128,6 +127,19 @@ fn quoted(path: &Path) -> String {
     } else {
         format!("'{}'", text.replace('\'', r"'\''"))
     }
+}
+
+/// This program: the file that runs or, where Python runs it, the command that was called.
+fn program() -> Result<PathBuf, Failure> {
+    let is_named = |path: &Path| path.file_stem().is_some_and(|name| name == "peristalsis");
+    let running = std::env::current_exe().map_err(Failure::read(Path::new("this program")))?;
+    if is_named(&running) {
+        return absolute(&running);
+    }
+    let mut words = std::env::args_os().map(PathBuf::from);
+    let called = words.find(|word| is_named(word) && word.is_file());
+    // What `python -m peristalsis` leaves: the one that the task will find.
+    called.map_or(Ok(PathBuf::from("peristalsis")), |path| absolute(&path))
 }
 
 /// The path from the root on, which the script can hold.
