@@ -44,9 +44,9 @@ create_exception!(
     "Data that an estimator can say nothing about."
 );
 
-/// A configuration that cannot be.
+/// A configuration that cannot be; an override stands in the message as ``key=value``, without the command line's flag.
 pub(crate) fn of_configuration(error: peristalsis_configuration::ConfigurationError) -> PyErr {
-    ConfigurationError::new_err(error.to_string())
+    ConfigurationError::new_err(error.to_string().replace("--set ", ""))
 }
 
 /// A run that cannot be, or failed.

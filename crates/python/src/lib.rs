@@ -12,6 +12,18 @@ mod run;
 mod study;
 mod table;
 
+use pyo3::prelude::*;
+
+/// What a function of the package, written in Python, makes of one of our objects.
+fn helped<'py, T: pyo3::PyTypeInfo>(
+    object: &Bound<'py, T>,
+    module: &str,
+    function: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let module = object.py().import(format!("peristalsis.{module}"))?;
+    module.call_method1(function, (object,))
+}
+
 #[pyo3::pymodule]
 mod _core {
     #[pymodule_export]

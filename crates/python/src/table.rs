@@ -10,17 +10,39 @@ use arrow_array::{
     StringArray,
 };
 use arrow_schema::{Field, Schema};
-use numpy::{Element, PyArray1, PyArrayMethods};
-use peristalsis_formats::{FormatError, Values};
-use pyo3::exceptions::{PyKeyError, PyRuntimeError};
+use numpy::{Element, PyArray1, PyArrayMethods, PyReadonlyArray1};
+use peristalsis_formats::{Column, FormatError, Values};
+use pyo3::exceptions::{PyKeyError, PyRuntimeError, PyTypeError};
 use pyo3::prelude::*;
-use pyo3::types::{IntoPyDict, PyCapsule, PyDict};
+use pyo3::types::{IntoPyDict, PyCapsule, PyDict, PyIterator};
 
-/// Columns of equal length; pandas, polars, pyarrow and DuckDB take it as it is.
-#[pyclass(frozen, module = "peristalsis._core")]
+use crate::helped;
+
+/// Columns of equal length with their units; it does not change.
+///
+/// As a data frame does, it iterates over the names of its columns and is as long as it has rows; ``dict(table)`` is a
+/// dictionary of arrays. ``pandas.DataFrame(table)`` works with any pandas from 2 on, and by Arrow's PyCapsule
+/// interface ``pyarrow.table(table)``, ``polars.DataFrame(table)`` and DuckDB take it without a copy. It can be
+/// pickled and compared. A number that is missing is NaN in NumPy and pandas, null in Arrow and polars.
+///
+/// Examples
+/// --------
+/// >>> import peristalsis
+/// >>> sim = peristalsis.Simulation.preset("frictionless", waves=2, seed=1)
+/// >>> sim.run(periods=2)
+/// >>> table = sim.timeseries()
+/// >>> len(table), "flow_rate" in table, table.units["flow_rate"]
+/// (40, True, '1/t')
+/// >>> table["time"].shape
+/// (40,)
+#[pyclass(frozen, eq, module = "peristalsis._core")]
+#[derive(PartialEq)]
 pub(crate) struct Table {
     batch: RecordBatch,
 }
+
+/// A column from Python: name, unit, description, values.
+type Given<'py> = (String, String, String, Bound<'py, PyAny>);
 
 impl Table {
     /// A table of ours; a missing number (NaN) becomes a null, as in Parquet.
@@ -64,12 +86,57 @@ fn array(values: &Values) -> ArrayRef {
     }
 }
 
+/// Values from an array of NumPy, or from a list of texts.
+fn values(given: &Bound<'_, PyAny>) -> PyResult<Values> {
+    if let Ok(reals) = given.extract::<PyReadonlyArray1<'_, f64>>() {
+        return Ok(Values::Real(reals.as_slice()?.to_vec()));
+    }
+    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
+        return Ok(Values::Integer(integers.as_slice()?.to_vec()));
+    }
+    if let Ok(truths) = given.extract::<PyReadonlyArray1<'_, bool>>() {
+        return Ok(Values::Boolean(truths.as_slice()?.to_vec()));
+    }
+    let texts = given.extract().map_err(|_| {
+        PyTypeError::new_err("a column is an array of float64, int64 or bool, or a list of texts")
+    });
+    texts.map(Values::Text)
+}
+
 fn failed(error: impl std::fmt::Display) -> PyErr {
     PyRuntimeError::new_err(error.to_string())
 }
 
 #[pymethods]
 impl Table {
+    /// A table from its columns (name, unit, description, values), as a pickle holds them.
+    #[new]
+    #[pyo3(signature = (columns, metadata=None))]
+    fn from_columns(
+        columns: Vec<Given<'_>>,
+        metadata: Option<HashMap<String, String>>,
+    ) -> PyResult<Self> {
+        let columns = columns.into_iter().map(|(name, unit, description, given)| {
+            let values = values(&given)?;
+            Ok(Column {
+                name,
+                unit,
+                description,
+                values,
+            })
+        });
+        let columns = columns.collect::<PyResult<Vec<_>>>()?;
+        let mut table = peristalsis_formats::Table::builder().columns(columns);
+        for (key, value) in metadata.unwrap_or_default() {
+            table = table.metadata(key, value);
+        }
+        Self::made(table.build())
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "reduced")
+    }
+
     /// The table as a stream of record batches (one), without a copy.
     #[pyo3(signature = (requested_schema=None))]
     fn __arrow_c_stream__<'py>(
@@ -98,6 +165,163 @@ impl Table {
         self.batch.column_by_name(name).is_some()
     }
 
+    /// Names of the columns.
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        self.column_names().into_pyobject(py)?.try_iter()
+    }
+
+    /// Rows as objects, which is how ``pandas.DataFrame(table)`` takes them; `to_pandas` is faster.
+    #[pyo3(signature = (dtype=None, copy=None))]
+    fn __array__<'py>(
+        slf: &Bound<'py, Self>,
+        dtype: Option<&Bound<'py, PyAny>>,
+        copy: Option<bool>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let _ = (dtype, copy);
+        helped(slf, "_tables", "rows")
+    }
+
+    /// Names of the columns, as `column_names`.
+    ///
+    /// Returns
+    /// -------
+    /// list of str
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> peristalsis.Simulation.preset("frictionless", waves=2).timeseries().keys()[:2]
+    /// ['time', 'period']
+    fn keys(&self) -> Vec<String> {
+        self.column_names()
+    }
+
+    /// The columns.
+    ///
+    /// Returns
+    /// -------
+    /// list of ndarray or list of str
+    ///     Each of shape (rows,).
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> len(table.values()) == len(table.keys())
+    /// True
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let names = self.column_names();
+        names
+            .iter()
+            .map(|name| self.__getitem__(py, name))
+            .collect()
+    }
+
+    /// The columns with their names.
+    ///
+    /// Returns
+    /// -------
+    /// list of (str, ndarray or list of str)
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> [name for name, column in table.items()] == table.keys()
+    /// True
+    fn items<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+        let names = self.column_names().into_iter();
+        let items = names.map(|name| self.__getitem__(py, &name).map(|column| (name, column)));
+        items.collect()
+    }
+
+    /// The columns as a dictionary, as ``dict(table)`` gives it.
+    ///
+    /// Returns
+    /// -------
+    /// dict of str to ndarray or list of str
+    ///     New arrays of shape (rows,), in the order of the columns.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> table.to_dict()["time"].dtype
+    /// dtype('float64')
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.items(py)?.into_py_dict(py)
+    }
+
+    /// The table as a frame of pandas, of any version from 2 on.
+    ///
+    /// Returns
+    /// -------
+    /// pandas.DataFrame
+    ///     Its ``attrs`` hold the dictionaries ``units``, ``descriptions`` and ``metadata``.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     Where pandas is not installed.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> frame = peristalsis.Simulation.preset("frictionless", waves=2).timeseries().to_pandas()
+    /// >>> frame.attrs["units"]["time"]
+    /// 't'
+    fn to_pandas<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "to_pandas")
+    }
+
+    /// The table as a frame of polars, without a copy.
+    ///
+    /// Returns
+    /// -------
+    /// polars.DataFrame
+    ///     A frame of polars has no place for units: they stay in `units`.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     Where polars is not installed.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> table.to_polars().columns == table.column_names
+    /// True
+    fn to_polars<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "to_polars")
+    }
+
+    /// The table as a data set of xarray.
+    ///
+    /// Returns
+    /// -------
+    /// xarray.Dataset
+    ///     One variable a column, with its unit and meaning as ``attrs["units"]`` and ``attrs["long_name"]``, which
+    ///     xarray writes at axes. Its dimension is the first column where that rises from row to row, such as the time,
+    ///     otherwise ``row``.
+    ///
+    /// Raises
+    /// ------
+    /// ImportError
+    ///     Where xarray is not installed.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> sim = peristalsis.Simulation.preset("frictionless", waves=2)
+    /// >>> sim.run(periods=1)
+    /// >>> data = sim.timeseries().to_xarray()
+    /// >>> list(data.dims), data["flow_rate"].attrs["units"]
+    /// (['time'], '1/t')
+    fn to_xarray<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "to_xarray")
+    }
+
     /// A column as a new NumPy array (numbers; NaN where one is missing) or list.
     fn __getitem__<'py>(&self, py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let column = self.batch.column_by_name(name).ok_or_else(|| {
@@ -123,6 +347,12 @@ impl Table {
     }
 
     /// Names of the columns.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> peristalsis.Simulation.preset("frictionless", waves=2).timeseries().column_names[0]
+    /// 'time'
     #[getter]
     fn column_names(&self) -> Vec<String> {
         let schema = self.batch.schema();
@@ -130,27 +360,50 @@ impl Table {
         fields.map(|field| field.name().clone()).collect()
     }
 
-    /// Unit of each column; "1" for a pure number.
+    /// Unit of each column in m, d, t; "1" for a pure number, empty for words.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> peristalsis.Simulation.preset("frictionless", waves=2).timeseries().units["flow_rate_ratio"]
+    /// '1'
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.about(py, "unit")
     }
 
     /// Meaning of each column.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> sorted(table.descriptions) == sorted(table.column_names)
+    /// True
     #[getter]
     fn descriptions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.about(py, "description")
     }
 
     /// Version, revision and configuration that the table comes from.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> table = peristalsis.Simulation.preset("frictionless", waves=2).timeseries()
+    /// >>> "[drive]" in table.metadata["peristalsis.configuration"]
+    /// True
     #[getter]
     fn metadata(&self) -> HashMap<String, String> {
         self.batch.schema().metadata().clone().into()
     }
 
-    fn __repr__(&self) -> String {
-        let (rows, names) = (self.batch.num_rows(), self.column_names().join(", "));
-        format!("<peristalsis.Table: {rows} rows of {names}>")
+    fn __repr__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "text")
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
+        helped(slf, "_tables", "html_text")
     }
 }
 

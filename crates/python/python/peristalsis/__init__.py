@@ -10,6 +10,8 @@ the wave; vectors (`Simulation.positions`, `Simulation.velocities`) are in the f
 `Simulation.heading` says which way the wave runs in it.
 """
 
+from collections.abc import Mapping
+
 from . import analysis, newtonian
 from ._core import (
     AnalysisError,
@@ -25,7 +27,10 @@ from ._core import (
 )
 from ._run import run
 from ._simulation import Simulation
-from ._study import Study, study
+from ._study import PlannedRun, Study, study
+from ._warnings import KeyedWarning
+
+Mapping.register(Configuration)
 
 __all__ = [
     "AnalysisError",
@@ -33,6 +38,8 @@ __all__ = [
     "ConfigurationError",
     "DivergedError",
     "DoesNotFitError",
+    "KeyedWarning",
+    "PlannedRun",
     "Simulation",
     "SnapshotError",
     "Study",

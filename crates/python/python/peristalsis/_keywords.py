@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
 from functools import cache
 from typing import Any
 
@@ -46,11 +47,13 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
     Raises
     ------
     ConfigurationError
-        For a keyword that could mean several keys.
+        For a keyword that there is not, or that could mean several keys.
     """
     joined = dict(_flat(settings or {}))
     for keyword, value in given.items():
-        keys = keywords().get(keyword, (keyword,))
+        keys = keywords().get(keyword)
+        if keys is None:
+            raise ConfigurationError(f"there is no keyword {keyword}{_meant(keyword, keywords())}")
         if len(keys) > 1:
             raise ConfigurationError(
                 f"{keyword} could mean {' or '.join(keys)}\n"
@@ -58,6 +61,18 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
             )
         joined[keys[0]] = value
     return joined
+
+
+def missing(key: str, keys: Iterable[str]) -> str:
+    """What to say of a dotted key that a configuration does not have."""
+    of_that_name = [other for other in keys if other.rpartition(".")[2] == key.rpartition(".")[2]]
+    meant = f"; did you mean {of_that_name[0]!r}?" if of_that_name else _meant(key, keys)
+    return f"there is no key {key!r} in this configuration{meant}"
+
+
+def _meant(word: str, known: Iterable[str]) -> str:
+    near = get_close_matches(word, known, 1)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def _flat(settings: Mapping[str, Any], path: str = "") -> Iterator[tuple[str, Any]]:

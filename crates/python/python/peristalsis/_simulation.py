@@ -335,8 +335,8 @@ class Simulation:
     def timeseries(self) -> Table:
         """What was measured so far, one row a sample.
 
-        The table has the Arrow PyCapsule interface: ``pyarrow.table(t)``, ``polars.DataFrame(t)`` and
-        ``pandas.DataFrame.from_arrow(t)`` take it without a copy; ``t["flow_rate_ratio"]`` is a column as an array.
+        ``t["flow_rate_ratio"]`` is a column as an array; `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` are
+        frames with units, and ``pyarrow.table(t)`` takes it without a copy.
         """
         return self._run.timeseries()
 

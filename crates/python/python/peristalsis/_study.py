@@ -13,7 +13,26 @@ from ._core import Configuration, Table
 
 
 class PlannedRun(NamedTuple):
-    """One run of a study."""
+    """One run of a study.
+
+    Attributes
+    ----------
+    identity : str
+        Name of the run, which follows from what it computes.
+    replicate : int
+        Number of the replicate at its point, from 0.
+    settings : dict
+        Values of the study's axes at its point, by their dotted keys.
+    configuration : Configuration
+        Every resolved value.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> content = {"name": "widths", "preset": "frictionless", "axes": [{"key": "drive.width", "values": [2.6, 2.8]}]}
+    >>> [run.settings for run in peristalsis.study(content).plan()]
+    [{'drive.width': 2.6}, {'drive.width': 2.8}]
+    """
 
     identity: str
     replicate: int
