@@ -71,7 +71,8 @@ fuzz_target!(|input: &[u8]| {
     } else {
         damaged(&known.file, rest)
     };
-    let mut run = match Run::from_checkpoint(known.configuration.clone(), &bytes) {
+    let mut run = match Run::from_snapshot(&bytes)
+        .and_then(|run| run.under(known.configuration.clone())) {
         Ok(run) => run,
         Err(error) => {
             assert!(!error.to_string().is_empty());

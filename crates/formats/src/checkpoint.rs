@@ -92,6 +92,14 @@ pub fn encode<State: Serialize>(
     Ok(bytes.into_inner())
 }
 
+/// Hash of the physics that the state in the bytes of a checkpoint belongs to, of whatever kind it is.
+///
+/// # Errors
+/// Those of [`decode`] about the header.
+pub fn physics_hash(bytes: &[u8]) -> Result<[u8; 32], FormatError> {
+    Header::from_bytes(bytes).map(|header| header.identity.physics_hash)
+}
+
 /// The state in the bytes of a checkpoint.
 ///
 /// # Errors

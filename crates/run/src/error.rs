@@ -81,6 +81,14 @@ pub enum RunError {
         /// The missing part.
         reason: String,
     },
+    /// A run has gone further than it is asked to go.
+    #[error("the run has done {done} steps, and the length asked for has {asked}")]
+    TooShort {
+        /// Steps done.
+        done: u64,
+        /// Steps of the length asked for.
+        asked: u64,
+    },
     /// The saved state of a run cannot be gone on with.
     #[error("{} cannot be gone on with: {source}", path.display())]
     State {

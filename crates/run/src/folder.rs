@@ -119,7 +119,8 @@ impl RunFolder {
         let configuration = Configuration::from_toml(&name.display().to_string(), &text)?;
         let path = folder.file(STATE);
         let state = std::fs::read(&path).map_err(|error| missing(STATE, error))?;
-        let run = Run::from_checkpoint(configuration, &state).map_err(|source| {
+        let run = Run::from_snapshot(&state).and_then(|run| run.under(configuration));
+        let run = run.map_err(|source| {
             let source = Box::new(source);
             RunError::State { path, source }
         })?;

@@ -8,6 +8,7 @@ use std::time::Duration;
 use peristalsis_configuration::Configuration;
 use peristalsis_engine::initial::PackingReport;
 use peristalsis_engine::{EngineError, Instructions, Simulation, Snapshot, SnapshotView};
+use peristalsis_formats::FormatError;
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_observe::Orientations;
 
@@ -18,7 +19,7 @@ use crate::stopwatch::Stopwatch;
 use crate::{PHYSICS_VERSION, RunError};
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
-const STATE_LAYOUT: u32 = 8;
+const STATE_LAYOUT: u32 = 9;
 /// Steps between two looks at how grains turn, of which a contact takes tens.
 const STEPS_PER_TURN: u64 = 10;
 
@@ -103,8 +104,7 @@ impl Run {
         if !state.recorder.fits(&configuration, &simulation)
             || turning.is_some_and(|orientations| !orientations.fit(grains))
         {
-            let reason = "what was measured is not of so many steps, grains or waves".to_owned();
-            return Err(EngineError::SnapshotMismatch { reason }.into());
+            return Err(mismatch());
         }
         Ok(Self {
             configuration,
@@ -117,53 +117,55 @@ impl Run {
         })
     }
 
-    /// Goes on from a checkpoint that [`Run::write_checkpoint`] wrote for the same configuration.
+    /// Goes on, with the same bits, from what [`Run::to_snapshot`] or [`Run::write_checkpoint`] wrote.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the checkpoint is damaged, another's or of another version of the physics;
-    /// [`RunError::Engine`] where the state does not fit the configuration.
-    pub fn from_checkpoint(configuration: Configuration, bytes: &[u8]) -> Result<Self, RunError> {
-        let identity = checkpoint_identity(&configuration);
-        let state = checkpoint::decode(&identity, bytes)?;
+    /// [`RunError::Format`] where the bytes are damaged, something else or of another version of the physics;
+    /// [`RunError::Engine`] where the state does not fit its configuration.
+    pub fn from_snapshot(bytes: &[u8]) -> Result<Self, RunError> {
+        let identity = identity(checkpoint::physics_hash(bytes)?);
+        let (text, state): (String, RunState) = checkpoint::decode(&identity, bytes)?;
+        let configuration = Configuration::from_toml("snapshot", &text)?;
+        require(&configuration, identity.physics_hash)?;
         Self::resume(configuration, state)
     }
 
-    /// The bytes of a checkpoint, from which [`Run::from_checkpoint`] goes on.
+    /// The same run under a configuration of the same physics, which may ask for another length or for another late part.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the state is too large.
-    pub fn to_checkpoint(&self) -> Result<Vec<u8>, RunError> {
-        let identity = checkpoint_identity(&self.configuration);
-        Ok(checkpoint::encode(&identity, &self.state_view())?)
+    /// [`RunError::Format`] where the configuration is of other physics; [`RunError::Engine`] where what was measured does
+    /// not fit it; [`RunError::TooShort`] where the run has gone further than it asks for.
+    pub fn under(mut self, configuration: Configuration) -> Result<Self, RunError> {
+        require(&configuration, self.configuration.physics_hash())?;
+        if !self.recorder.fits(&configuration, &self.simulation) {
+            return Err(mismatch());
+        }
+        let (done, asked) = (self.simulation.step(), configuration.run.steps());
+        if done > asked && configuration.run.samples != self.configuration.run.samples {
+            return Err(RunError::TooShort { done, asked });
+        }
+        self.configuration = configuration;
+        Ok(self)
     }
 
-    /// Writes the state to a checkpoint file, whole or not at all.
-    ///
-    /// # Errors
-    /// [`RunError::Format`] where it is too large or cannot be written; an older file stays.
-    pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
-        let identity = checkpoint_identity(&self.configuration);
-        Ok(checkpoint::write(path, &identity, &self.state_view())?)
-    }
-
-    /// Configuration and state in one piece, from which [`Run::from_snapshot`] goes on anywhere.
+    /// Configuration, state and measurements in one piece, from which [`Run::from_snapshot`] goes on anywhere.
     ///
     /// # Errors
     /// [`RunError::Format`] where the state is too large.
     pub fn to_snapshot(&self) -> Result<Vec<u8>, RunError> {
+        let identity = identity(self.configuration.physics_hash());
         let whole = (self.configuration.to_toml(), self.state_view());
-        Ok(checkpoint::encode(&SNAPSHOT, &whole)?)
+        Ok(checkpoint::encode(&identity, &whole)?)
     }
 
-    /// Goes on from what [`Run::to_snapshot`] gave, with the same bits.
+    /// Writes what [`Run::to_snapshot`] gives to a file, whole or not at all.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the bytes are damaged, something else or of another version of the physics, and as
-    /// [`Run::from_checkpoint`].
-    pub fn from_snapshot(bytes: &[u8]) -> Result<Self, RunError> {
-        let (text, state): (String, RunState) = checkpoint::decode(&SNAPSHOT, bytes)?;
-        let configuration = Configuration::from_toml("snapshot", &text)?;
-        Self::resume(configuration, state)
+    /// [`RunError::Format`] where it is too large or cannot be written; an older file stays.
+    pub fn write_checkpoint(&self, path: &Path) -> Result<(), RunError> {
+        let identity = identity(self.configuration.physics_hash());
+        let whole = (self.configuration.to_toml(), self.state_view());
+        Ok(checkpoint::write(path, &identity, &whole)?)
     }
 
     /// Lets the run end before its time. The rule is no part of the state: give it again after a restart.
@@ -307,20 +309,26 @@ impl Run {
     }
 }
 
-/// The identity of the checkpoints of a run.
-fn checkpoint_identity(configuration: &Configuration) -> CheckpointIdentity {
+/// What a checkpoint of a run says of itself.
+fn identity(physics_hash: [u8; 32]) -> CheckpointIdentity {
     CheckpointIdentity {
         kind: *b"run     ",
         layout_version: STATE_LAYOUT,
         physics_version: PHYSICS_VERSION,
-        physics_hash: configuration.physics_hash(),
+        physics_hash,
     }
 }
 
-/// The identity of snapshots, whose configuration is inside.
-const SNAPSHOT: CheckpointIdentity = CheckpointIdentity {
-    kind: *b"snapshot",
-    layout_version: STATE_LAYOUT,
-    physics_version: PHYSICS_VERSION,
-    physics_hash: [0; 32],
-};
+/// That a configuration is of the physics that a state was found in.
+fn require(configuration: &Configuration, found: [u8; 32]) -> Result<(), RunError> {
+    let expected = configuration.physics_hash();
+    match found == expected {
+        true => Ok(()),
+        false => Err(FormatError::OtherPhysics { found, expected }.into()),
+    }
+}
+
+fn mismatch() -> RunError {
+    let reason = "what was measured is not of so many steps, grains or waves".to_owned();
+    EngineError::SnapshotMismatch { reason }.into()
+}

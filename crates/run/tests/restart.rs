@@ -5,8 +5,8 @@
 mod common;
 
 use peristalsis_run::{
-    Run, RunFolder, Status, Summary, Written, profile_table, snapshot_table, timeseries_table,
-    waves_table,
+    Run, RunError, RunFolder, Status, Summary, Written, profile_table, snapshot_table,
+    timeseries_table, waves_table,
 };
 
 const STRAIN: &str = "grains.number=30 tube.waves=2 run.periods=2 drive.width=2.3";
@@ -56,8 +56,7 @@ fn a_state_goes_on_to_the_same_bits() {
             while parts.progress().samples < stop {
                 parts.advance().unwrap();
             }
-            let state = parts.to_checkpoint().unwrap();
-            parts = Run::from_checkpoint(configuration.clone(), &state).unwrap();
+            parts = Run::from_snapshot(&parts.to_snapshot().unwrap()).unwrap();
         }
         let parts = finish(parts);
         let tables = |run: &Run| {
@@ -159,4 +158,42 @@ fn a_run_of_a_thousand_short_pieces_is_the_run_in_one_go() {
     assert!(in_pieces("frictionless", &strain, 7) > 1000);
     let frictional = format!("{STRESS} {FRICTION} run.periods=1");
     assert!(in_pieces("frictional", &frictional, 4) > 1000);
+}
+
+/// PYTHON, high 5: one kind of checkpoint for the command line and Python.
+#[test]
+fn a_snapshot_is_the_checkpoint_of_a_folder_and_goes_on_under_other_lengths_of_the_same_physics() {
+    let configuration = common::configuration("frictionless", STRAIN);
+    let place = tempfile::tempdir().unwrap();
+    let folder = RunFolder::create(&place.path().join("run"), &configuration).unwrap();
+    let mut run = Run::new(configuration).unwrap();
+    run.advance().unwrap();
+    folder.save_state(&run).unwrap();
+    let bytes = std::fs::read(folder.path().join("state.checkpoint")).unwrap();
+    assert!(bytes == run.to_snapshot().unwrap());
+
+    let lasting = |periods: &str| {
+        let settings = STRAIN.replace("run.periods=2", &format!("run.periods={periods}"));
+        common::configuration("frictionless", &settings)
+    };
+    let longer = Run::from_snapshot(&bytes).unwrap().under(lasting("3"));
+    let whole = finish(Run::new(lasting("3")).unwrap());
+    let longer = finish(longer.unwrap());
+    assert_eq!(longer.recorder(), whole.recorder());
+    assert_eq!(
+        longer.configuration().to_toml(),
+        whole.configuration().to_toml()
+    );
+    assert_eq!(
+        longer.simulation().snapshot(),
+        whole.simulation().snapshot()
+    );
+    let refused = finish(run).under(lasting("1")).unwrap_err();
+    assert!(matches!(refused, RunError::TooShort { .. }), "{refused}");
+    let other = common::configuration("frictionless", &format!("{STRAIN} run.seed=9"));
+    let refused = Run::from_snapshot(&bytes)
+        .unwrap()
+        .under(other)
+        .unwrap_err();
+    assert!(refused.to_string().contains("other physics"), "{refused}");
 }

@@ -322,8 +322,9 @@ impl Tube {
     fn save(&mut self) -> Result<(), RunError> {
         let configuration = self.longer();
         let toml = configuration.to_toml();
+        let run = self.run.clone().under(configuration)?;
         let (folder, state) = match &self.labels.saves {
-            Saves::Page => (None, Some(STANDARD.encode(self.run.to_checkpoint()?))),
+            Saves::Page => (None, Some(STANDARD.encode(run.to_snapshot()?))),
             Saves::Folders { inside, stem } => {
                 let mut names = (1..=SAVES).map(|number| inside.join(format!("{stem}-{number}")));
                 let Some(path) = names.find(|path| path.symlink_metadata().is_err()) else {
@@ -332,8 +333,8 @@ impl Tube {
                         source: std::io::ErrorKind::AlreadyExists.into(),
                     });
                 };
-                let folder = RunFolder::create(&path, &configuration)?;
-                folder.save_state(&self.run)?;
+                let folder = RunFolder::create(&path, run.configuration())?;
+                folder.save_state(&run)?;
                 (Some(path.display().to_string()), None)
             }
         };

@@ -182,7 +182,7 @@ impl RunFiles {
                 Err(error) if error.kind() == ErrorKind::NotFound => continue,
                 Err(error) => return Err(StudyError::io("read", path)(error)),
             };
-            match Run::from_checkpoint(configuration(), &bytes) {
+            match Run::from_snapshot(&bytes).and_then(|run| run.under(configuration())) {
                 Ok(found) => {
                     run = Some(found);
                     break;
