@@ -2,6 +2,8 @@
 
 from pathlib import Path
 
+import matplotlib.pyplot as plt
+import numpy as np
 import pytest
 
 from peristalsis import Simulation, plot
@@ -11,27 +13,28 @@ def test_every_picture_of_a_run(small: Simulation, tmp_path: Path) -> None:
     small.run(periods=5)
     flow = plot.flow(small)
     assert len(flow.lines[1].get_xdata()) == 5
+    assert np.mean(flow.lines[1].get_ydata()) == pytest.approx(small.timeseries()["flow_rate_ratio"].mean())
     snapshot = plot.snapshot(small)
     assert snapshot.get_xlim() == (0.0, small.length)
     profile = plot.profile(small, "axial_velocity")
-    assert profile.get_ylabel() == "axial velocity [d/t]"
+    assert profile.get_ylabel() == "axial velocity, $v_z/c$"
     points = plot.stationary_flow([2.4, 2.6], [0.9, 0.4], [0.01, 0.02])
     assert points.get_legend() is not None
     for number, axes in enumerate((flow, snapshot, profile, points)):
         path = tmp_path / f"{number}.png"
         axes.figure.savefig(path)
         assert path.stat().st_size > 5000
-        plot.plt.close(axes.figure)
+        plt.close(axes.figure)
 
 
 def test_into_axes_that_there_are(small: Simulation) -> None:
     small.run(periods=1)
     own = plot.axes()
     assert plot.flow(small, own) is own
-    plot.plt.close(own.figure)
+    plt.close(own.figure)
 
 
 @pytest.fixture(autouse=True)
 def nothing_is_left_open() -> object:
     yield
-    plot.plt.close("all")
+    plt.close("all")

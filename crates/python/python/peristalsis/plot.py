@@ -1,238 +1,424 @@
-"""Matplotlib axes in the style of the program's figures.
+"""Matplotlib axes in the style of the command line's figures.
 
-Every function draws into `axes`, or into a new figure of one column's width, and answers the axes. Colours are those of
-Okabe and Ito, which stay apart for colour-blind readers; red moves along the wave, blue against it.
+Every function draws into `ax`, or into a new figure as wide as a journal's column, and answers the axes. New figures have
+the fonts, symbols and sizes of `STYLE`; axes of yours keep your settings. Colours are those of Okabe and Ito, which stay
+apart for colour-blind readers; red moves along the wave, blue against it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from functools import wraps
-from typing import TYPE_CHECKING, Any, ParamSpec
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
 
 from . import newtonian
 from ._simulation import Simulation
+from ._snapshot import snapshot
+from ._style import ALONG, COLOURS, DOUBLE_COLUMN, GREY, SINGLE_COLUMN, STYLE, axes, drawing, title
 from .analysis import Collapse, CollapseResult, Survival
-
-try:
-    import matplotlib
-    import matplotlib.pyplot as plt
-    from cycler import cycler
-    from matplotlib.collections import EllipseCollection
-    from matplotlib.colors import Normalize
-except ImportError as error:
-    raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from error
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.lines import Line2D
 
-Parameters = ParamSpec("Parameters")
+__all__ = [
+    "COLOURS",
+    "DOUBLE_COLUMN",
+    "SINGLE_COLUMN",
+    "STYLE",
+    "axes",
+    "collapse",
+    "flow",
+    "hysteresis",
+    "profile",
+    "snapshot",
+    "stationary_flow",
+    "survival",
+]
 
-__all__ = ["STYLE", "axes", "collapse", "flow", "profile", "snapshot", "stationary_flow", "survival"]
+Array = npt.NDArray[np.float64]
 
-#: Millimetres in an inch.
-_INCH = 25.4
-#: One column of a journal, and two [mm].
-SINGLE_COLUMN, DOUBLE_COLUMN = 86.0, 178.0
-#: Blue, vermillion, bluish green, orange, reddish purple, sky blue (Okabe & Ito).
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
-ALONG, AGAINST, GREY = "#B2182B", "#2166AC", "#808080"
-
-#: Matplotlib settings of the program's figures: ``with matplotlib.rc_context(STYLE): ...``.
-STYLE: Any = {
-    "font.family": "sans-serif",
-    "font.sans-serif": ["Arimo", "Arial", "Liberation Sans", "Helvetica", "DejaVu Sans"],
-    "font.size": 7.0,
-    "axes.titlesize": 7.5,
-    "axes.labelsize": 8.0,
-    "xtick.labelsize": 7.0,
-    "ytick.labelsize": 7.0,
-    "legend.fontsize": 6.8,
-    "legend.frameon": False,
-    "axes.linewidth": 0.55,
-    "axes.prop_cycle": cycler(color=COLOURS),
-    "xtick.direction": "in",
-    "ytick.direction": "in",
-    "xtick.top": True,
-    "ytick.right": True,
-    "xtick.major.size": 3.0,
-    "ytick.major.size": 3.0,
-    "xtick.minor.size": 1.6,
-    "ytick.minor.size": 1.6,
-    "xtick.major.width": 0.55,
-    "ytick.major.width": 0.55,
-    "xtick.minor.width": 0.55,
-    "ytick.minor.width": 0.55,
-    "xtick.minor.visible": True,
-    "ytick.minor.visible": True,
-    "lines.linewidth": 1.0,
-    "lines.markersize": 3.5,
-    "errorbar.capsize": 1.5,
-    "svg.fonttype": "none",
-    "pdf.fonttype": 42,
-    "savefig.dpi": 300,
+BLUE, VERMILLION, GREEN, ORANGE, PURPLE, SKY = COLOURS
+_RATIO = r"flow rate, $J/J_{\mathrm{max}}$"
+_PHASE = r"position in the wave frame, $(z - ct)/\lambda$"
+_PARAMETERS = {
+    "width": r"width of the bottleneck, $w/d$",
+    "strain_rate": r"strain rate, $\dot{\varepsilon}$ [$1/t$]",
+    "force_amplitude": r"force amplitude, $f^{\mathrm{P}}$ [$m\,d/t^2$]",
 }
+#: Words and symbol of a column of the profile, its colour, and what it is drawn in where that is not its unit.
+_COLUMNS = {
+    "density": ("grains per length", "n_1", BLUE),
+    "axial_velocity": ("axial velocity", "v_z", ALONG),
+    "granular_temperature": ("granular temperature", r"T_{\mathrm{g}}", PURPLE),
+    "radius": ("wall radius", "R", BLUE),
+    "wall_pressure": ("pressure on the wall", "p", ORANGE),
+    "wall_shear": ("shear on the wall", r"\tau", GREEN),
+    "wall_axial_velocity": ("axial velocity of the wall", "v_z", ALONG),
+}
+#: Name that marks what is drawn once in axes, however often a function is called.
+_REFERENCE, _CURVE = "peristalsis: reference", "peristalsis: curve"
 
 
-def _styled(draw: Callable[Parameters, Axes]) -> Callable[Parameters, Axes]:
-    """The same function with the settings of `STYLE`."""
+class Loop(Protocol):
+    """A parameter that was driven there and back, as `Simulation.ramp` returns it."""
 
-    @wraps(draw)
-    def styled(*arguments: Parameters.args, **keywords: Parameters.kwargs) -> Axes:
-        with matplotlib.rc_context(STYLE):
-            return draw(*arguments, **keywords)
-
-    return styled
+    @property
+    def parameter(self) -> str: ...
+    def table(self) -> Any: ...
 
 
-def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
-    """New axes in the style, in a figure of `width` by `height` millimetres."""
-    with matplotlib.rc_context(STYLE):
-        figure, new = plt.subplots(figsize=(width / _INCH, height / _INCH), layout="constrained")
-        # Ticks are made lazily, by the settings of that moment.
-        new.xaxis.get_major_ticks(), new.yaxis.get_major_ticks()
-        new.xaxis.get_minor_ticks(), new.yaxis.get_minor_ticks()
-    return new
+def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:
+    """J/Jmax against time: samples faint, the mean over each period over them, the Newtonian fluid for reference.
 
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation that has measured something.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw; a second simulation in the same axes takes the next colour.
+    label : str, optional
+        Its name in the legend, where several are compared.
+    **line
+        Keywords of ``Axes.plot`` for the mean over each period.
 
-@_styled
-def flow(simulation: Simulation, into: Axes | None = None, **line: Any) -> Axes:
-    """J/Jmax against time: samples faint, period averages over them, the Newtonian fluid for reference."""
-    new = axes() if into is None else into
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Raises
+    ------
+    ValueError
+        Where nothing has been measured, or the wave is at rest and has no Jmax.
+
+    Examples
+    --------
+    >>> from peristalsis import Simulation, plot
+    >>> sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1, waves=2)
+    >>> sim.run(periods=3)
+    >>> plot.flow(sim).get_xlabel()
+    'time, $t/T$'
+    """
     series, summary = simulation.timeseries(), simulation.summary()
-    time, ratio = series["time"], series["flow_rate_ratio"]
-    each = _samples_per_period(simulation)
-    (drawn,) = new.plot(time, ratio, **{"alpha": 0.4, "linewidth": 0.5, "color": COLOURS[0], **line})
-    if each and len(time) >= each:
-        whole = len(time) // each * each
-        middle = time[:whole].reshape(-1, each).mean(axis=1)
-        new.plot(middle, ratio[:whole].reshape(-1, each).mean(axis=1), color=drawn.get_color())
-    if (fluid := summary["newtonian_flow_rate_ratio"]) is not None:
-        new.axhline(fluid, color=GREY, linestyle="--", linewidth=0.7, label="Newtonian fluid")
-    if (transition := simulation.transition_time) is not None:
-        new.axvline(transition, color=GREY, linestyle=":", linewidth=0.7, label=r"$\tau$")
-    new.set(xlabel=r"time $t$ [$t$]", ylabel=r"flow rate $J/J_{\mathrm{max}}$")
-    if new.get_legend_handles_labels()[0]:
-        new.legend()
+    period, ratio = series["period"], series["flow_rate_ratio"]
+    if not np.isfinite(ratio).any():
+        raise ValueError("there is no flow rate to draw: run the simulation first, with a wave that moves")
+    is_alone = ax is None and label is None
+    with drawing(ax) as new:
+        known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
+        colour = line.pop("color", COLOURS[known % len(COLOURS)])
+        faint = {"color": SKY, "label": "samples"} if is_alone else {"color": colour, "alpha": 0.4}
+        new.plot(np.convolve(np.r_[0.0, period], [0.5, 0.5], "valid"), ratio, linewidth=0.6, **faint)
+        middle, mean = _period_means(simulation, period, ratio)
+        style = {"linewidth": 1.1, "marker": "o" if len(mean) <= 60 else "", "markersize": 3.0, "markeredgewidth": 0.0}
+        name = label or ("mean over a period" if is_alone else None)
+        new.plot(middle, mean, **{**style, **line}, color=colour, label=name, gid=_CURVE)
+        _flow_references(new, summary)
+        if is_alone:
+            _late_mean(new, summary, period[-1])
+            if summary["transition_time"] is not None:
+                place = float(np.interp(summary["transition_time"], series["time"], period))
+                new.axvline(place, color=VERMILLION, linewidth=0.9, label=rf"$\tau$ = {summary['transition_time']:.4g} $t$")
+            new.set_title(title(simulation))
+        new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, max(period[-1], new.get_xlim()[1] if ax else 0.0)))
+        handles = sorted(new.get_legend_handles_labels()[0], key=lambda drawn: drawn.get_gid() != _CURVE)
+        new.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
     return new
 
 
-def _samples_per_period(simulation: Simulation) -> int:
-    """Samples in a period of the wave as it is driven now; 0 for a static wave."""
-    interval = simulation.configuration.time_step * simulation._run.steps_per_sample
-    return round(1.0 / (simulation.strain_rate * interval)) if simulation.strain_rate else 0
+def _period_means(simulation: Simulation, period: Array, ratio: Array) -> tuple[Array, Array]:
+    """Middles of the whole periods since the start, and the means over them; samples where there is no whole one."""
+    # A sample is the mean over the interval that ends with it.
+    whole = np.ceil(np.round(period, 9)).astype(int)
+    last = int(np.round(period[-1], 9))
+    if not last:
+        return period, ratio
+    means = np.array([ratio[whole == number].mean() for number in range(1, last + 1) if (whole == number).any()])
+    return np.unique(whole[whole <= last]) - 0.5, means
 
 
-@_styled
-def snapshot(simulation: Simulation, into: Axes | None = None) -> Axes:
-    """Grains from the side, the wave to the right, coloured by axial velocity along it in units of its speed."""
-    new = axes(DOUBLE_COLUMN, 45.0) if into is None else into
-    length, heading = simulation.length, simulation.heading
-
-    def along(z: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
-        return z if heading > 0 else length - z
-
-    wall, grains, diameters = simulation.wall_positions, simulation.positions, simulation.diameters
-    speed = simulation.strain_rate * length / simulation.configuration.waves
-    velocity = heading * simulation.velocities[:, 2] / (speed or 1.0)
-    order = np.argsort(grains[:, 0])
-    new.scatter(along(wall[:, 2]), wall[:, 1], s=1.0, color=GREY, linewidths=0, alpha=0.4)
-    drawn = EllipseCollection(
-        diameters[order],
-        diameters[order],
-        np.zeros(len(order)),
-        units="xy",
-        offsets=np.column_stack([along(grains[order, 2]), grains[order, 1]]),
-        offset_transform=new.transData,
-        array=velocity[order],
-        cmap="RdBu_r",
-        norm=Normalize(-1.0, 1.0),
-        edgecolors="black",
-        linewidths=0.2,
-    )
-    new.add_collection(drawn)
-    # Grains that escaped are far away, and not shown.
-    outermost = 1.1 * float(np.hypot(wall[:, 0], wall[:, 1]).max())
-    new.set(xlabel=r"$z$ [$d$]", ylabel=r"$y$ [$d$]", aspect="equal", xlim=(0.0, length), ylim=(-outermost, outermost))
-    new.figure.colorbar(drawn, ax=new, label=r"$v_z/c$", shrink=0.8)
-    return new
+def _once(ax: Axes, name: str) -> bool:
+    """Whether a reference is new to these axes."""
+    return all(line.get_gid() != f"{_REFERENCE} {name}" for line in ax.lines)
 
 
-@_styled
-def profile(simulation: Simulation, column: str = "density", into: Axes | None = None, **line: Any) -> Axes:
-    """A column of the late profile against the position in the wave's frame, with its error where it has one."""
-    new = axes() if into is None else into
+def _level(ax: Axes, value: float, name: str | None, **line: Any) -> None:
+    """A level from side to side, once; a second value of the same name stays out of the legend."""
+    if _once(ax, f"{name} {value!r}"):
+        names = [drawn.get_label() for drawn in ax.lines]
+        ax.axhline(value, **line, gid=f"{_REFERENCE} {name} {value!r}", label=None if name in names else name)
+
+
+def _flow_references(ax: Axes, summary: Mapping[str, Any]) -> None:
+    for value in (0.0, 1.0):
+        _level(ax, value, None, color=GREY, linewidth=0.4, zorder=0.5)
+    _level(ax, summary["transition_threshold"], "threshold", color="black", linestyle=":", linewidth=0.8)
+    for key, name, dashes in (
+        ("newtonian_flow_rate_ratio", "Newtonian fluid", "--"),
+        ("newtonian_flow_rate_ratio_clear_bore", "the same, clear bore", "-."),
+    ):
+        if summary[key] is not None:
+            _level(ax, summary[key], name, color=GREEN, linestyle=dashes, linewidth=0.9)
+
+
+def _late_mean(ax: Axes, summary: Mapping[str, Any], last: float) -> None:
+    mean, error, late = (summary[key] for key in ("flow_rate_ratio", "flow_rate_ratio_error", "late_periods"))
+    if None not in (mean, error, late) and np.isfinite([mean, error, late]).all():
+        span = np.array([last - late, last])
+        ax.fill_between(span, mean - error, mean + error, color=ORANGE, alpha=0.25, linewidth=0)
+        ax.plot(span, [mean, mean], color=ORANGE, label=f"late mean {_with_error(mean, error)}")
+
+
+def _with_error(value: float, error: float) -> str:
+    """A number to the first digit of its error."""
+    digits = max(0, -math.floor(math.log10(error))) if error > 0 else 4
+    return f"{value:.{digits}f} ± {error:.{digits}f}".replace("-", "\u2212")
+
+
+def profile(simulation: Simulation, column: str = "density", ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:
+    """A column of the late profile against the position in the wave's frame, with the band of its error where it has one.
+
+    Velocities are drawn in units of the wave's speed c, all else in the unit of its column.
+
+    Parameters
+    ----------
+    simulation : Simulation
+        A simulation that has measured something.
+    column : str
+        A column of `Simulation.profile`: ``density``, ``axial_velocity``, ``granular_temperature``, ``radius``, ...
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    label : str, optional
+        Its name in a legend.
+    **line
+        Keywords of ``Axes.plot``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> from peristalsis import Simulation, plot
+    >>> sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1, waves=2)
+    >>> sim.run(periods=3)
+    >>> plot.profile(sim, "axial_velocity").get_ylabel()
+    'axial velocity, $v_z/c$'
+    """
     table = simulation.profile()
-    values, errors = table[column], None
-    if f"{column}_error" in table:
-        errors = table[f"{column}_error"]
-    (drawn,) = new.plot(table["position"], values, **line)
-    if errors is not None:
-        new.fill_between(table["position"], values - errors, values + errors, color=drawn.get_color(), alpha=0.25, linewidth=0)
+    if column not in table:
+        raise ValueError(f"the profile has no column {column!r}; it has {', '.join(table.column_names)}")
     unit = table.units[column]
-    name = column.replace("_", " ")
-    new.set(xlabel=r"$(z - ct)/\lambda$", ylabel=name if unit == "1" else f"{name} [{unit}]", xlim=(0.0, 1.0))
+    words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
+    speed = simulation.strain_rate * simulation.length / simulation.configuration.waves
+    scale, unit = (1.0 / speed, "c") if unit == "d/t" and speed else (1.0, unit)
+    place = np.r_[table["position"][-1] - 1.0, table["position"], table["position"][0] + 1.0]
+
+    def closed(name: str) -> Array:
+        values = scale * table[name]
+        return np.r_[values[-1], values, values[0]]
+
+    with drawing(ax) as new:
+        known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
+        colour = line.pop("color", colour if not known else COLOURS[known % len(COLOURS)])
+        new.plot(place, closed(column), color=colour, label=label, gid=_CURVE, **line)
+        if f"{column}_error" in table:
+            error = np.nan_to_num(closed(f"{column}_error"))
+            new.fill_between(place, closed(column) - error, closed(column) + error, color=colour, alpha=0.25, linewidth=0)
+        if column not in ("radius", "least_radius", "largest_radius"):
+            _level(new, 0.0, None, color=GREY, linewidth=0.4, zorder=0.5)
+        new.set(xlabel=_PHASE, ylabel=_quantity(words, symbol, unit), xlim=(0.0, 1.0))
+        if label is not None:
+            new.legend()
     return new
 
 
-@_styled
+def _quantity(words: str, symbol: str, unit: str) -> str:
+    """Label of an axis that bears plain numbers: words, and the symbol over its unit."""
+    if not symbol:
+        return words if unit == "1" else f"{words} [{unit}]"
+    unit = unit.replace(" ", r"\,")
+    return f"{words}, ${symbol}$" if unit == "1" else f"{words}, ${symbol}/{unit if len(unit) == 1 else f'({unit})'}$"
+
+
 def stationary_flow(
     width: npt.ArrayLike,
     ratio: npt.ArrayLike,
     error: npt.ArrayLike | None = None,
-    into: Axes | None = None,
+    ax: Axes | None = None,
     *,
     radius: float | None = 1.5,
+    label: str | None = None,
     **points: Any,
 ) -> Axes:
-    """Stationary J/Jmax against the width, with the Newtonian fluid in a tube of mean radius `radius`; None: without."""
-    new = axes() if into is None else into
-    new.errorbar(width, ratio, yerr=error, **{"fmt": "o", **points})
-    if radius is not None:
-        widths = np.linspace(*new.get_xlim(), 200)
-        widths = widths[(widths >= 0) & (widths <= 2 * radius)]
-        new.plot(widths, newtonian.flow_rate_ratio(widths, radius), color=GREY, linestyle="--", linewidth=0.7, label="Newtonian fluid")
-        new.legend()
-    new.set(xlabel=r"width $w$ [$d$]", ylabel=r"flow rate $J/J_{\mathrm{max}}$")
+    """Stationary J/Jmax against the width, beside the Newtonian fluid.
+
+    Parameters
+    ----------
+    width, ratio : array_like
+        w [d] and J/Jmax.
+    error : array_like, optional
+        Standard errors of J/Jmax.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    radius : float or None
+        Mean radius of the tube [d], for the fluid; None: without it.
+    label : str, optional
+        Name of these points in the legend.
+    **points
+        Keywords of ``Axes.errorbar``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> from peristalsis import plot
+    >>> plot.stationary_flow([2.4, 2.6], [0.9, 0.4], [0.01, 0.02]).get_xlabel()
+    'width of the bottleneck, $w/d$'
+    """
+    with drawing(ax) as new:
+        new.errorbar(width, ratio, yerr=error, label=label, **{"fmt": "o", **points})
+        if radius is not None:
+            _newtonian_curve(new, radius)
+        new.set(xlabel=_PARAMETERS["width"], ylabel=_RATIO)
+        if new.get_legend_handles_labels()[0]:
+            new.legend()
     return new
 
 
-@_styled
-def survival(curve: Survival, into: Axes | None = None, **line: Any) -> Axes:
-    """Part of the runs without a transition, as a step function with its interval of 68 per cent."""
-    new = axes() if into is None else into
+def _newtonian_curve(ax: Axes, radius: float) -> None:
+    """The fluid over all widths of the axes, drawn anew where points have widened them."""
+    name = f"{_REFERENCE} {radius!r}"
+    for line in [line for line in ax.lines if line.get_gid() == name]:
+        line.remove()
+    widths = np.linspace(*ax.get_xlim(), 200)
+    widths = widths[(widths >= 0) & (widths <= 2 * radius)]
+    if len(widths):
+        ratio = newtonian.flow_rate_ratio(widths, radius)
+        ax.plot(widths, ratio, color=GREEN, linestyle="--", linewidth=0.9, label="Newtonian fluid", gid=name)
+
+
+def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = None) -> Axes:
+    """J/Jmax as a parameter of the drive is ramped there and back, with errors: a loop where the way matters.
+
+    Parameters
+    ----------
+    loop
+        What `Simulation.ramp` returns.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    radius : float, optional
+        Mean radius of the tube [d]: draws the Newtonian fluid too, where the parameter is the width.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
+    table = loop.table()
+    branch = np.asarray(table["branch"])
+    value, ratio, error = (np.asarray(table[name], float) for name in ("value", "flow_rate_ratio", "flow_rate_ratio_error"))
+    with drawing(ax) as new:
+        for name, colour, look in (("there", BLUE, {"marker": "o"}), ("back", VERMILLION, {"marker": "s", "markerfacecolor": "white"})):
+            here = branch == name
+            if not here.any():
+                continue
+            way = "upwards" if value[here][-1] >= value[here][0] else "downwards"
+            if here.sum() == 1:
+                way = name
+            new.errorbar(value[here], ratio[here], yerr=error[here], color=colour, linestyle="-", label=f"{name}, {way}", **look)
+            _arrow(new.lines[-1], value[here], ratio[here], colour, new)
+        if radius is not None and loop.parameter == "width":
+            _newtonian_curve(new, radius)
+        new.set(xlabel=_PARAMETERS.get(loop.parameter, loop.parameter), ylabel=_RATIO)
+        new.legend()
+    return new
+
+
+def _arrow(_: Line2D, x: Array, y: Array, colour: str, ax: Axes) -> None:
+    """The way of a branch, at the middle of its longest rise or fall."""
+    if len(x) > 1:
+        at = int(np.argmax(np.abs(np.diff(y))))
+        middle = 0.5 * (x[at] + x[at + 1]), 0.5 * (y[at] + y[at + 1])
+        ax.annotate("", xy=middle, xytext=(x[at], y[at]), arrowprops={"arrowstyle": "-|>", "color": colour, "linewidth": 0.8})
+
+
+def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = None, **line: Any) -> Axes:
+    """Part of the runs without a transition, as a step function with its interval of 68 per cent.
+
+    Parameters
+    ----------
+    curve : analysis.Survival
+        The Kaplan-Meier estimate. Times are in the unit that it was given.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    label : str, optional
+        Its name in the legend.
+    **line
+        Keywords of ``Axes.step``.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> from peristalsis import analysis, plot
+    >>> plot.survival(analysis.Survival([120.0, 340.0, 800.0], [True, True, False])).get_ylim()
+    (0.0, 1.05)
+    """
     time = np.array([0.0, *(step.time for step in curve.steps), curve.watched])
     levels = [step.survival for step in curve.steps]
     value = np.array([1.0, *(level.value for level in levels)])
     lower = np.array([1.0, *(level.interval_68.lower for level in levels)])
     upper = np.array([1.0, *(level.interval_68.upper for level in levels)])
-    (drawn,) = new.step(time, np.append(value, value[-1]), where="post", **line)
-    new.fill_between(
-        time, np.append(lower, lower[-1]), np.append(upper, upper[-1]), step="post", color=drawn.get_color(), alpha=0.25, linewidth=0
-    )
-    new.set(xlabel=r"time $t$ [$t$]", ylabel="runs without a transition", ylim=(0.0, 1.05))
+    with drawing(ax) as new:
+        (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, **line)
+        bounds = np.append(lower, lower[-1]), np.append(upper, upper[-1])
+        new.fill_between(time, *bounds, step="post", color=drawn.get_color(), alpha=0.25, linewidth=0)
+        new.set(xlabel="time, $t$", ylabel="runs without a transition, $S(t)$", ylim=(0.0, 1.05))
+        new.set_xlim(left=0.0)
+        if label is not None:
+            new.legend()
     return new
 
 
-@_styled
 def collapse(
     what: Collapse,
     parameters: CollapseResult | Sequence[float],
-    into: Axes | None = None,
+    ax: Axes | None = None,
     *,
     names: Iterable[str] | None = None,
 ) -> Axes:
-    """The scaled curves, one colour each, with the quality of the collapse in the title."""
-    new = axes() if into is None else into
+    """The scaled curves, one colour and mark each, with the quality of the collapse in the title.
+
+    Parameters
+    ----------
+    what : analysis.Collapse
+        The curves and their scaling.
+    parameters : CollapseResult or sequence of float
+        A result of ``what.fit``, or parameters of the scaling.
+    ax : matplotlib.axes.Axes, optional
+        Where to draw.
+    names : iterable of str, optional
+        Names of the curves; by default their sizes.
+
+    Returns
+    -------
+    matplotlib.axes.Axes
+    """
     chosen = parameters.parameters if isinstance(parameters, CollapseResult) else parameters
     labels = list(names) if names is not None else [f"{curve[0]:g}" for curve in what.curves]
-    for place, ((_, x, y, error), label) in enumerate(zip(what.scaled(chosen), labels, strict=True)):
-        new.errorbar(x, y, yerr=error, fmt="osD^v<>"[place % 7], color=COLOURS[place % len(COLOURS)], label=label)
     quality = what.quality(chosen)
-    new.set_title(f"S = {quality.quality:.2f}, overlap {quality.overlap:.0%}")
-    new.set(xlabel="scaled abscissa", ylabel="scaled ordinate")
-    new.legend()
+    with drawing(ax) as new:
+        for place, ((_, x, y, error), label) in enumerate(zip(what.scaled(chosen), labels, strict=True)):
+            colour = COLOURS[place % len(COLOURS)]
+            new.errorbar(x, y, yerr=error, fmt="osD^v<>"[place % 7], color=colour, label=label)
+        new.set_title(f"$S$ = {quality.quality:.2f}, overlap {quality.overlap:.0%}")
+        new.set(xlabel="scaled abscissa", ylabel="scaled ordinate")
+        new.legend()
     return new

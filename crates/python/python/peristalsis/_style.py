@@ -1,0 +1,137 @@
+"""The look of the program's figures: type, colours, weights of lines, and a Matplotlib figure that keeps them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+try:
+    import matplotlib
+    from cycler import cycler
+    from matplotlib import font_manager, pyplot
+    from matplotlib.figure import Figure
+except ImportError as error:
+    raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from error
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ._simulation import Simulation
+
+#: Millimetres in an inch.
+_INCH = 25.4
+#: One column of a journal, and two [mm].
+SINGLE_COLUMN, DOUBLE_COLUMN = 86.0, 178.0
+#: Blue, vermillion, bluish green, orange, reddish purple, sky blue (Okabe & Ito).
+COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
+ALONG, GREY = "#B2182B", "#808080"
+
+for _font in sorted((Path(__file__).parent / "fonts").glob("*.ttf")):
+    # Where it cannot be read, the next family of the list stands in.
+    with suppress(OSError, RuntimeError):
+        font_manager.fontManager.addfont(_font)
+_HAS_FONT = any(font.name == "Arimo" for font in font_manager.fontManager.ttflist)
+
+#: Settings of symbols: the italic of the same family, as in the figures of the command line.
+_SYMBOLS = {"mathtext.it": "Arimo:italic", "mathtext.bfit": "Arimo:italic"} | {
+    f"mathtext.{kind}": "Arimo" for kind in ("rm", "bf", "sf", "tt", "cal")
+}
+
+#: Matplotlib settings of the program's figures. Those that `axes` makes have them by themselves; for your own figures
+#: ``matplotlib.rcParams.update(STYLE)``.
+STYLE: Any = {
+    "font.family": ["Arimo", "DejaVu Sans"] if _HAS_FONT else ["sans-serif"],
+    **(_SYMBOLS | {"mathtext.fontset": "custom"} if _HAS_FONT else {}),
+    "font.size": 7.0,
+    "axes.titlesize": 7.5,
+    "axes.labelsize": 8.0,
+    "xtick.labelsize": 7.0,
+    "ytick.labelsize": 7.0,
+    "legend.fontsize": 6.8,
+    "legend.frameon": False,
+    "axes.linewidth": 0.55,
+    "axes.prop_cycle": cycler(color=COLOURS),
+    "xtick.direction": "in",
+    "ytick.direction": "in",
+    "xtick.top": True,
+    "ytick.right": True,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "xtick.minor.size": 1.6,
+    "ytick.minor.size": 1.6,
+    "xtick.major.width": 0.55,
+    "ytick.major.width": 0.55,
+    "xtick.minor.width": 0.55,
+    "ytick.minor.width": 0.55,
+    "xtick.minor.visible": True,
+    "ytick.minor.visible": True,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.5,
+    "errorbar.capsize": 1.5,
+    "svg.fonttype": "none",
+    "pdf.fonttype": 42,
+    "figure.dpi": 200,
+    "savefig.dpi": 300,
+}
+
+
+class StyledFigure(Figure):
+    """A figure that is laid out, drawn and saved by the settings of `STYLE`, whatever they are outside.
+
+    Matplotlib reads many settings as late as it draws: fonts of symbols, new ticks, dots per inch.
+    """
+
+    def draw(self, renderer: Any) -> None:
+        with matplotlib.rc_context(STYLE):
+            super().draw(renderer)
+
+    def get_tightbbox(self, *arguments: Any, **keywords: Any) -> Any:
+        with matplotlib.rc_context(STYLE):
+            return super().get_tightbbox(*arguments, **keywords)
+
+    def savefig(self, *arguments: Any, **keywords: Any) -> None:
+        with matplotlib.rc_context(STYLE):
+            super().savefig(*arguments, **keywords)
+
+
+def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
+    """New axes in the style, in a figure of its own.
+
+    Parameters
+    ----------
+    width, height : float
+        Size of the figure [mm].
+
+    Examples
+    --------
+    >>> from peristalsis import plot
+    >>> plot.axes(86, 60).figure.get_size_inches().round(2).tolist()
+    [3.39, 2.36]
+    """
+    # pyplot chooses its backend with its first figure, and settings made then are lost at the end of a context.
+    figure = pyplot.figure(
+        FigureClass=StyledFigure, figsize=(width / _INCH, height / _INCH), dpi=STYLE["figure.dpi"], layout="constrained"
+    )
+    with matplotlib.rc_context(STYLE):
+        return figure.add_subplot()
+
+
+@contextmanager
+def drawing(ax: Axes | None, width: float = SINGLE_COLUMN, height: float = 60.0) -> Iterator[Axes]:
+    """Axes to draw into: those given, in the settings of their owner, or new ones in the style."""
+    target = axes(width, height) if ax is None else ax
+    with matplotlib.rc_context(STYLE) if isinstance(target.figure, StyledFigure) else nullcontext():
+        yield target
+
+
+def title(simulation: Simulation) -> str:
+    """The parameters of a run in one line."""
+    configuration = simulation.configuration
+    try:
+        control = f"$w$ = {simulation.width:g} $d$"
+    except AttributeError:
+        control = rf"$f^{{\mathrm{{P}}}}$ = {simulation.force_amplitude:g} $m\,d/t^2$"
+    density = rf"$\rho$ = {configuration.volume_fraction:.3f}"
+    return rf"{control},  $\dot{{\varepsilon}}$ = {simulation.strain_rate:g},  {density},  $N$ = {configuration.grains}"
