@@ -22,7 +22,6 @@ from .analysis import Collapse, CollapseResult, Survival
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
 __all__ = [
     "COLOURS",
@@ -215,11 +214,11 @@ def profile(simulation: Simulation, column: str = "density", ax: Axes | None = N
     words, symbol, colour = _COLUMNS.get(column, (column.replace("_", " "), "", BLUE))
     speed = simulation.strain_rate * simulation.length / simulation.configuration.waves
     scale, unit = (1.0 / speed, "c") if unit == "d/t" and speed else (1.0, unit)
-    place = np.r_[table["position"][-1] - 1.0, table["position"], table["position"][0] + 1.0]
+    place = np.concatenate([table["position"][-1:] - 1.0, table["position"], table["position"][:1] + 1.0])
 
     def closed(name: str) -> Array:
-        values = scale * table[name]
-        return np.r_[values[-1], values, values[0]]
+        values: Array = scale * table[name]
+        return np.concatenate([values[-1:], values, values[:1]])
 
     with drawing(ax) as new:
         known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
@@ -323,15 +322,13 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
     branch = np.asarray(table["branch"])
     value, ratio, error = (np.asarray(table[name], float) for name in ("value", "flow_rate_ratio", "flow_rate_ratio_error"))
     with drawing(ax) as new:
-        for name, colour, look in (("there", BLUE, {"marker": "o"}), ("back", VERMILLION, {"marker": "s", "markerfacecolor": "white"})):
+        for name, colour, mark, face in (("there", BLUE, "o", BLUE), ("back", VERMILLION, "s", "white")):
             here = branch == name
-            if not here.any():
-                continue
-            way = "upwards" if value[here][-1] >= value[here][0] else "downwards"
-            if here.sum() == 1:
-                way = name
-            new.errorbar(value[here], ratio[here], yerr=error[here], color=colour, linestyle="-", label=f"{name}, {way}", **look)
-            _arrow(new.lines[-1], value[here], ratio[here], colour, new)
+            if here.any():
+                x, y = value[here], ratio[here]
+                way = f"{name}, {'upwards' if x[-1] >= x[0] else 'downwards'}"
+                new.errorbar(x, y, yerr=error[here], color=colour, marker=mark, markerfacecolor=face, label=way)
+                _arrow(new, x, y, colour)
         if radius is not None and loop.parameter == "width":
             _newtonian_curve(new, radius)
         new.set(xlabel=_PARAMETERS.get(loop.parameter, loop.parameter), ylabel=_RATIO)
@@ -339,7 +336,7 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
     return new
 
 
-def _arrow(_: Line2D, x: Array, y: Array, colour: str, ax: Axes) -> None:
+def _arrow(ax: Axes, x: Array, y: Array, colour: str) -> None:
     """The way of a branch, at the middle of its longest rise or fall."""
     if len(x) > 1:
         at = int(np.argmax(np.abs(np.diff(y))))
