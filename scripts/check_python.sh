@@ -33,6 +33,8 @@ step "the notebooks"
 
 step "types"
 "$environment/bin/mypy" --config-file crates/python/pyproject.toml crates/python/python
+"$environment/bin/stubtest" peristalsis --mypy-config-file crates/python/pyproject.toml
+PATH="$environment/bin:$PATH" pyright --verifytypes peristalsis --ignoreexternal
 
 step "the wheel in an empty environment, with the snippets of the README and the tutorial"
 scratch=$(mktemp -d)

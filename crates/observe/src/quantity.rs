@@ -93,6 +93,14 @@ impl<Of> Quantity<Of> {
         }
     }
 
+    /// Whether there may be none.
+    pub fn is_optional(&self) -> bool {
+        matches!(
+            self.reading,
+            Reading::Optional(_) | Reading::OptionalMeasured(_)
+        )
+    }
+
     /// Whether it has a standard error.
     pub fn is_measured(&self) -> bool {
         matches!(

@@ -26,6 +26,8 @@ fn helped<'py, T: pyo3::PyTypeInfo>(
 
 #[pyo3::pymodule]
 mod _core {
+    use super::*;
+
     #[pymodule_export]
     use crate::analysis::{
         apply_collapse, autocorrelation_time, compare_laws, dip_test, ensemble_moments,
@@ -36,7 +38,7 @@ mod _core {
         survival, survival_median, transition_time, two_peaks,
     };
     #[pymodule_export]
-    use crate::configuration::{Configuration, presets, schema};
+    use crate::configuration::{Configuration, presets, schema, summary_keys};
     #[pymodule_export]
     use crate::error::{
         AnalysisError, ConfigurationError, DivergedError, DoesNotFitError, SnapshotError,
@@ -56,4 +58,10 @@ mod _core {
     const __version__: &str = peristalsis_run::VERSION;
     #[pymodule_export]
     const REVISION: &str = peristalsis_run::REVISION;
+
+    /// Everything here is for the package alone: what is public says `peristalsis` itself.
+    #[pymodule_init]
+    fn without_all(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.delattr("__all__")
+    }
 }

@@ -38,7 +38,9 @@ pub use run::{Progress, Run};
 pub use scene::{Aspect, Eye, Field, Look, PictureScene, Place, WallLook, Writing};
 pub use si::SiEstimate;
 pub use stopping::Stopping;
-pub use summary::{Pumping, RowColumn, Status, Summary, label, row_columns, set_by};
+pub use summary::{
+    Pumping, RowColumn, Status, Summary, SummaryKey, label, row_columns, set_by, summary_keys,
+};
 pub use tables::{gathered, profile_table, snapshot_table, timeseries_table, waves_table};
 pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,

@@ -11,6 +11,8 @@ the wave; vectors (`Simulation.positions`, `Simulation.velocities`) are in the f
 """
 
 from collections.abc import Mapping
+from importlib import import_module
+from types import ModuleType
 
 from . import analysis, newtonian
 from ._core import (
@@ -28,9 +30,22 @@ from ._core import (
 from ._run import run
 from ._simulation import Simulation
 from ._study import PlannedRun, Study, study
+from ._types import Keywords, RunSummary, Summary
 from ._warnings import KeyedWarning
 
 Mapping.register(Configuration)
+
+
+def __getattr__(name: str) -> ModuleType:
+    """`plot`, which needs Matplotlib, once it is asked for."""
+    if name == "plot":
+        return import_module("peristalsis.plot")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), "plot"]
+
 
 __all__ = [
     "AnalysisError",
@@ -39,11 +54,14 @@ __all__ = [
     "DivergedError",
     "DoesNotFitError",
     "KeyedWarning",
+    "Keywords",
     "PlannedRun",
+    "RunSummary",
     "Simulation",
     "SnapshotError",
     "Study",
     "StudyFailure",
+    "Summary",
     "Table",
     "__version__",
     "analysis",

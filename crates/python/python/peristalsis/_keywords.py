@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
-from functools import cache
 from typing import Any
 
 from . import _core
 from ._core import ConfigurationError
+
+
+#: What `keywords` answers, once it has been asked.
+_KEYWORDS: dict[str, tuple[str, ...]] = {}
 
 
 def _leaves(schema: Mapping[str, Any], root: Mapping[str, Any], path: str = "") -> Iterator[str]:
@@ -27,12 +30,17 @@ def _leaves(schema: Mapping[str, Any], root: Mapping[str, Any], path: str = "") 
             yield from _leaves(below, root, full)
 
 
-@cache
 def keywords() -> dict[str, tuple[str, ...]]:
     """The keys that each keyword may mean: the last word of a key, or the whole of it with ``_`` for its dots."""
+    if not _KEYWORDS:
+        _KEYWORDS.update(_read())
+    return _KEYWORDS
+
+
+def _read() -> dict[str, tuple[str, ...]]:
     root = json.loads(_core.schema())
     found: dict[str, set[str]] = {}
-    every = set(_leaves(root, root))
+    every = set(_leaves(root, root)) - {"preset", "resolved"}
     for key in every:
         if any(other.startswith(key + ".") for other in every):
             continue

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from ._simulation import Simulation
 
+if TYPE_CHECKING:
+    from ._types import RunSummary
 
-def run(config: Mapping[str, Any]) -> dict[str, Any]:
+
+def run(config: Mapping[str, Any]) -> RunSummary:
     """Run a configuration to its end and answer its summary.
 
     Function, argument and answer can be pickled, so that replicas go through `concurrent.futures`, joblib, Dask or Ray
@@ -21,8 +24,15 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
 
     Returns
     -------
-    dict
-        The summary, with the given `config` under its own name.
+    RunSummary
+        A dictionary: the summary, with the given `config` under its own name.
+
+    Raises
+    ------
+    TypeError
+        Where it names neither a preset nor a file, or both.
+    ConfigurationError
+        Where a key or value cannot be.
 
     Examples
     --------
@@ -40,4 +50,4 @@ def run(config: Mapping[str, Any]) -> dict[str, Any]:
     else:
         simulation = Simulation.from_file(file, dotted, **settings)
     simulation.run()
-    return {"config": dict(config), **simulation.summary()}
+    return cast("RunSummary", {"config": dict(config), **simulation.summary()})

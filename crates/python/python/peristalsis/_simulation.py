@@ -10,7 +10,7 @@ import time as clock
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -18,6 +18,11 @@ import numpy.typing as npt
 from . import _core
 from ._core import Configuration, ConfigurationError, Table
 from ._keywords import overrides as joined
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from ._types import Keywords, Summary, _Preset
 
 #: Seconds from one look of the interpreter at a running simulation to the next: how long Ctrl-C may take.
 _PATIENCE = 0.05
@@ -74,7 +79,7 @@ class Simulation:
 
     @classmethod
     def preset(
-        cls, name: str, overrides: Mapping[str, Any] | None = None, **keywords: Any
+        cls, name: _Preset | str, overrides: Mapping[str, Any] | None = None, **keywords: Unpack[Keywords]
     ) -> Simulation:
         """A preset with some of its values replaced.
 
@@ -98,7 +103,7 @@ class Simulation:
 
     @classmethod
     def from_toml(
-        cls, text: str, overrides: Mapping[str, Any] | None = None, **keywords: Any
+        cls, text: str, overrides: Mapping[str, Any] | None = None, **keywords: Unpack[Keywords]
     ) -> Simulation:
         """A configuration in TOML, as in a file of the command line."""
         return cls(Configuration(text=text, overrides=joined(overrides, keywords)))
@@ -108,7 +113,7 @@ class Simulation:
         cls,
         path: str | os.PathLike[str],
         overrides: Mapping[str, Any] | None = None,
-        **keywords: Any,
+        **keywords: Unpack[Keywords],
     ) -> Simulation:
         """A configuration file, or the ``config.toml`` that a run left."""
         text = Path(path).read_text(encoding="utf-8")
@@ -348,7 +353,7 @@ class Simulation:
         """Flow of each wave over each whole period."""
         return self._run.waves()
 
-    def summary(self) -> dict[str, Any]:
+    def summary(self) -> Summary:
         """The outcome so far, as ``summary.json`` of the command line has it."""
         return self._run.summary()
 

@@ -13,7 +13,7 @@ use peristalsis_observe::{PartOfWave, Sample, WallFault, WavePart};
 pub use late::Pumping;
 use late::{axial_dispersion, residence_time};
 use local_flow::LocalFlow;
-pub use written::{RowColumn, label, row_columns, set_by};
+pub use written::{RowColumn, SummaryKey, label, row_columns, set_by, summary_keys};
 
 use crate::assemble::newtonian_reference;
 use crate::recorder::THRESHOLDS;

@@ -88,6 +88,40 @@ pub fn set_by(configuration: &Configuration) -> Vec<(&'static str, Value)> {
         .collect()
 }
 
+/// A key of a summary.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SummaryKey {
+    /// The key, after a dot where it stands in an object of its own.
+    pub key: String,
+    /// Unit, meaning and kind of its value.
+    pub column: RowColumn,
+    /// Whether not every run has it.
+    pub is_optional: bool,
+}
+
+/// The keys of a summary that hold the run's quantities, in their order.
+pub fn summary_keys() -> Vec<SummaryKey> {
+    let written = QUANTITIES
+        .iter()
+        .filter(|quantity| !quantity.key.is_empty());
+    let keys = written.flat_map(|quantity| {
+        let names = [quantity.key.to_owned(), format!("{}_error", quantity.key)];
+        let is_optional = match &quantity.source {
+            Source::Setting(setting) => setting.is_optional(),
+            Source::Result(result) => result.is_optional(),
+        };
+        names
+            .into_iter()
+            .zip(quantity.columns())
+            .map(move |(key, column)| SummaryKey {
+                key,
+                column,
+                is_optional,
+            })
+    });
+    keys.collect()
+}
+
 /// Words or symbol of a column at an axis; `None` where its name serves.
 pub fn label(column: &str) -> Option<&'static str> {
     QUANTITIES

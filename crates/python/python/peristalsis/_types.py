@@ -1,0 +1,509 @@
+"""Types of keywords and of summaries. Made by scripts/python_types.py from the schema and the table of quantities."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
+
+if TYPE_CHECKING:
+    #: Names of the presets.
+    _Preset = Literal["frictionless", "frictionless-fine", "frictional"]
+
+
+class Keywords(TypedDict, total=False):
+    """Keywords of a configuration: the last word of a key, or the whole of it with ``_`` for its dots.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> keywords: peristalsis.Keywords = {"width": 2.6, "initial_state": "jammed"}
+    >>> peristalsis.Configuration("frictionless", **keywords)["initial.state"]
+    'jammed'
+    """
+
+    amplitude: float
+    """drive.amplitude. Amplitude b of the radius R = a + b g((c t + z)/lambda), g the waveform, at most a; strain
+    control. (Unit: d.)"""
+    angle: Literal["reference", "current"]
+    """drive.angle. Angle that fixes the radial direction of the force on a wall sphere; stress control."""
+    axial: float
+    """wall.keep.axial. Stiffness of the axial tether of a wall sphere to its place. (Unit: m t^-2.)"""
+    axial_velocity: float
+    """initial.axial_velocity. Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's
+    speed when jammed. (Unit: d t^-1.)"""
+    azimuthal: float
+    """wall.keep.azimuthal. Stiffness of the azimuthal tether of a wall sphere to its place. (Unit: m t^-2.)"""
+    balance: bool
+    """wall.keep.balance. Whether a constant force on each wall sphere balances the springs in the straight tube."""
+    body_force: float
+    """drive.body_force. Body force on the grains g, force over mass along the wave: negative is back pressure,
+    against which the wave has to pump. With grains of several sizes it acts as gravity along the tube. The pressure
+    rise over a wavelength that it stands for is N m (-g) lambda/(L pi a^2). (Unit: d t^-2.)"""
+    contact_dissipation_form: Literal["printed", "viscoelastic"]
+    contact_dissipation_time: float
+    contact_kinetic_friction: float
+    contact_law: Literal["linear", "hertz"]
+    contact_normal_damping: float
+    contact_normal_stiffness: float
+    contact_poisson_ratio: float
+    contact_range: float
+    """wall.contact_range. Wall spheres whose places in the straight tube are farther apart than this repel on
+    contact, so that opposite sides of a throat do not pass through each other; stress control. (Unit: d.)"""
+    contact_sliding: Literal["spring", "balance", "literal"]
+    contact_static_friction: float
+    contact_tangential_damping: float
+    contact_tangential_stiffness: float
+    contact_young_modulus: float
+    """contact.young_modulus. Young's modulus Y of the Hertz law, f_n = 2 Y sqrt(R)/(3 (1 - nu^2)) (xi^(3/2) - A
+    sqrt(xi) v_n). (Unit: m d^-1 t^-2.)"""
+    control: Literal["strain", "stress"]
+    """drive.control. What of the wall is prescribed: its radius (strain) or the radial force on its spheres
+    (stress)."""
+    density: float
+    """units.density. Density of the grains' material; the unit of mass is the mass of a sphere of diameter d, m =
+    pi density d^3/6. (Unit: kg m^-3.)"""
+    diameter_max: float
+    """grains.diameter_max. Largest grain diameter, not below diameter_min. (Unit: d.)"""
+    diameter_min: float
+    """grains.diameter_min. Smallest grain diameter; diameters are uniformly distributed and the mass of a grain is
+    its diameter cubed. (Unit: d.)"""
+    direction: Literal["forward", "backward"]
+    """drive.direction. Which way the wave runs: forward is towards -z under strain control and towards +z under
+    stress control, as the source writes them. Flow rates are positive along the wave in either case."""
+    dissipation_form: Literal["printed", "viscoelastic"]
+    """contact.dissipation_form. Factor of the damping of the Hertz law: 1 as printed, 3/2 for the standard
+    viscoelastic sphere."""
+    dissipation_time: float
+    """contact.dissipation_time. Dissipation time A of the Hertz law. (Unit: t.)"""
+    drag: float
+    """wall.drag. Drag coefficient of a wall sphere against the laboratory, force -drag v; stress control. (Unit: m
+    t^-1.)"""
+    drive_amplitude: float
+    drive_angle: Literal["reference", "current"]
+    drive_body_force: float
+    drive_control: Literal["strain", "stress"]
+    drive_direction: Literal["forward", "backward"]
+    drive_force_amplitude: float
+    drive_ramp_periods: float
+    drive_schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
+    drive_strain_rate: float
+    drive_wave_speed: float
+    drive_waveform: Literal["sine", "bolus", "roller"]
+    drive_width: float
+    duration: float
+    """run.duration. Length of the run in time, rounded up to whole samples; the only choice for a static wave.
+    (Unit: t.)"""
+    force_amplitude: float
+    """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
+    t^-2.)"""
+    grain_diameter: float
+    """units.grain_diameter. Diameter of a grain whose diameter is 1 here: the unit of length d. (Unit: m.)"""
+    grains_diameter_max: float
+    grains_diameter_min: float
+    grains_number: int
+    grains_number_density: float
+    grains_volume_fraction: float
+    initial_axial_velocity: float
+    initial_state: Literal["rest", "jammed"]
+    integrator: Literal["verlet", "adams_bashforth"]
+    """run.integrator. How the equations of motion are stepped."""
+    kernel: Literal["fast", "reference"]
+    """run.kernel. Which kernel computes the forces."""
+    kinetic_friction: float
+    """contact.kinetic_friction. Kinetic friction mu_k, not above static_friction. If only static_friction is given,
+    equal to it. (A pure number.)"""
+    late_fraction: float
+    """observe.late_fraction. Part of the run, at its end, that late means and profiles are taken over. (A pure
+    number.)"""
+    law: Literal["linear", "hertz"]
+    """contact.law. Normal contact law. It takes the keys that name it; friction goes with every law."""
+    natural_length: float
+    """wall.natural_length. Natural length l of these springs; stress control. Missing: 0.7 of the mean distance of
+    lattice neighbours. An unstretched network buckles: keep it below the distance of neighbours. (Unit: d.)"""
+    neighbour_skin: float
+    """run.neighbour_skin. Distance by which the neighbour search looks farther than contacts reach: it sets the
+    speed, and the order of sums. Missing: 0.3 of the largest grain diameter. (Unit: d.)"""
+    net_force: Literal["free", "removed", "removed_per_ring"]
+    """wall.keep.net_force. What is done with the mean force on the wall at each step."""
+    normal_damping: float
+    """contact.normal_damping. Damping eta of the linear law. (Unit: m t^-1.)"""
+    normal_stiffness: float
+    """contact.normal_stiffness. Stiffness k of the linear law, f_n = k xi - eta v_n. (Unit: m t^-2.)"""
+    number: int
+    """grains.number. Number of grains N in the whole tube. (A pure number.)"""
+    number_density: float
+    """grains.number_density. Number density n = N d*^3/(pi a^2 L), d* the largest grain diameter; N is rounded to
+    the nearest whole number. (A pure number.)"""
+    observe_late_fraction: float
+    observe_profile_bins: int
+    observe_samples_per_period: int
+    observe_transition_threshold: float
+    periods: float
+    """run.periods. Length of the run in wave periods, rounded up to whole samples. (Unit: periods.)"""
+    poisson_ratio: float
+    """contact.poisson_ratio. Poisson's ratio nu of the Hertz law. (A pure number.)"""
+    profile_bins: int
+    """observe.profile_bins. Bins of the profiles over one wavelength. The largest pressure on the wall is that of
+    one of them. (A pure number.)"""
+    radial: float
+    """wall.keep.radial. Stiffness of the radial tether of a wall sphere to its place. (Unit: m t^-2.)"""
+    radius: float
+    """tube.radius. Mean radius a, to the centres of the wall spheres. (Unit: d.)"""
+    ramp_periods: float
+    """drive.ramp_periods. Length of the ramp of schedule = "ramp", in wave periods. (Unit: periods.)"""
+    rings_per_wave: int
+    """tube.rings_per_wave. Rings in a wavelength, alternate rings turned by half a spacing: even under strain
+    control; under stress control an odd number needs an even number of waves. (A pure number.)"""
+    run_duration: float
+    run_integrator: Literal["verlet", "adams_bashforth"]
+    run_kernel: Literal["fast", "reference"]
+    run_neighbour_skin: float
+    run_periods: float
+    run_seed: int
+    run_time_step: float
+    samples_per_period: int
+    """observe.samples_per_period. Samples of the time series in one wave period; a static run has 200 samples in
+    all. (A pure number.)"""
+    schedule: Literal["sudden", "ramp"] | Mapping[str, Any] | Sequence[Mapping[str, Any]]
+    """drive.schedule. How the drive's parameters follow time: "sudden" (constant from t = 0), "ramp" (the amplitude
+    grows from nothing within ramp_periods), a table such as { form = "ramp", parameter = "width", from = 3.0, to =
+    2.6, end = 100 } or { form = "steps", parameter = "width", at = [0, 100], values = [2.9, 2.7] }, in which
+    "course" instead of "steps" goes from value to value in straight lines, or a list of such tables, not an empty
+    one."""
+    seed: int
+    """run.seed. Seed of the random numbers that place the grains. (A pure number.)"""
+    sliding: Literal["spring", "balance", "literal"]
+    """contact.sliding. What becomes of the tangential displacement while a contact slides. Without effect while
+    both frictions are 0."""
+    sphere_diameter: float
+    """wall.sphere_diameter. Diameter of a wall sphere. (Unit: d.)"""
+    sphere_mass: float
+    """wall.sphere_mass. Mass of a wall sphere; stress control. (Unit: m.)"""
+    spheres_per_ring: int
+    """tube.spheres_per_ring. Wall spheres in a ring. (A pure number.)"""
+    spring_damping: float
+    """wall.spring_damping. Damping of each spring along its length; stress control. (Unit: m t^-1.)"""
+    spring_stiffness: float
+    """wall.spring_stiffness. Stiffness k_w of the spring between lattice neighbours; stress control. (Unit: m
+    t^-2.)"""
+    state: Literal["rest", "jammed"]
+    """initial.state. How the grains stand at t = 0: spread over the tube at rest, or gathered in the bellies and
+    moving with the wave."""
+    static_friction: float
+    """contact.static_friction. Static friction mu_s: a contact sticks while |f_t| < mu_s f_n. If only
+    kinetic_friction is given, equal to it; with both 0 grains are frictionless and do not rotate. (A pure
+    number.)"""
+    stiffness: float
+    """units.stiffness. Stiffness of a contact, what contact.normal_stiffness stands for: it fixes the unit of time,
+    sqrt(m/k) for k = 1. (Unit: N m^-1.)"""
+    strain_rate: float
+    """drive.strain_rate. Strain rate c/lambda, one over the wave's period; 0 is a static wave and needs
+    run.duration. (Unit: t^-1.)"""
+    tangential_damping: float
+    """contact.tangential_damping. Tangential damping eta_t. Without effect while both frictions are 0. (Unit: m
+    t^-1.)"""
+    tangential_stiffness: float
+    """contact.tangential_stiffness. Tangential stiffness k_t, f_t = -k_t u - eta_t v_t below the Coulomb limit.
+    Without effect while both frictions are 0. (Unit: m t^-2.)"""
+    time_step: float
+    """run.time_step. Longest time step allowed; the step taken divides the time between two samples. (Unit: t.)"""
+    transition_threshold: float
+    """observe.transition_threshold. J/Jmax that the period average crosses at a transition, upward from rest and
+    downward from jammed. (A pure number.)"""
+    tube_radius: float
+    tube_rings_per_wave: int
+    tube_spheres_per_ring: int
+    tube_wavelength: float
+    tube_waves: int
+    units_density: float
+    units_grain_diameter: float
+    units_stiffness: float
+    units_wave_frequency: float
+    units_young_modulus: float
+    """units.young_modulus. Young's modulus, what contact.young_modulus stands for: it fixes the unit of time,
+    sqrt(m/(Y d)) for Y = 1. (Unit: Pa.)"""
+    volume_fraction: float
+    """grains.volume_fraction. Volume fraction rho = N d^3/(6 a^2 L) of grains in a straight tube of radius a and
+    length L, d^3 averaged over the diameters; N is rounded to the nearest whole number. (A pure number.)"""
+    wall_contact_range: float
+    wall_drag: float
+    wall_keep_axial: float
+    wall_keep_azimuthal: float
+    wall_keep_balance: bool
+    wall_keep_net_force: Literal["free", "removed", "removed_per_ring"]
+    wall_keep_radial: float
+    wall_natural_length: float
+    wall_sphere_diameter: float
+    wall_sphere_mass: float
+    wall_spring_damping: float
+    wall_spring_stiffness: float
+    wave_frequency: float
+    """units.wave_frequency. Frequency of the wave, c/lambda in SI; instead of drive.strain_rate and
+    drive.wave_speed, with which the wave in SI follows stiffness or young_modulus. (Unit: Hz.)"""
+    wave_speed: float
+    """drive.wave_speed. Speed c of the wave; 0 is a static wave and needs run.duration. (Unit: d t^-1.)"""
+    waveform: Literal["sine", "bolus", "roller"]
+    """drive.waveform. Shape of the wave."""
+    wavelength: float
+    """tube.wavelength. Wavelength lambda. (Unit: d.)"""
+    waves: int
+    """tube.waves. Number of waves in the tube; its length is L = waves * wavelength. (A pure number.)"""
+    width: float
+    """drive.width. Width of the bottleneck w = 2 (a - b) between the centres of wall spheres, at most 2 a; strain
+    control. (Unit: d.)"""
+
+
+class ThresholdTime(TypedDict):
+    """The transition as another threshold sees it."""
+
+    threshold: float
+    """J/Jmax whose crossing counts."""
+    time: float | None
+    """tau [t]; `None` where there was no transition."""
+
+
+class Packing(TypedDict):
+    """How the grains were placed."""
+
+    inserted: int
+    """Grains that random insertion placed without overlap; the others were grown into place."""
+    iterations: int
+    """Iterations of the relaxation; 0 where insertion placed all."""
+    mean_overlap: float
+    """Mean overlap of the contacts left [d]."""
+    largest_overlap: float
+    """Largest overlap [d]."""
+    stored_energy: float
+    """Elastic energy stored [m d^2/t^2]."""
+
+
+class WarningEntry(TypedDict):
+    """A doubt about the run."""
+
+    key: str
+    """The key to look at."""
+    message: str
+    """The consequence to expect."""
+
+
+class PumpingSummary(TypedDict):
+    """What a summary says under ``pumping``."""
+
+    body_force: float
+    """force over mass on the grains along the wave; negative is back pressure [d/t^2]"""
+    pressure_rise: float
+    """pressure rise over a wavelength that the body force stands for [m/(d t^2)]"""
+    useful_power: float | None
+    """late mean power of the flow against the body force [m d^2/t^3]"""
+    useful_power_error: float | None
+    """its standard error [m d^2/t^3]"""
+    efficiency: float | None
+    """useful power over wall power"""
+    efficiency_error: float | None
+    """its standard error"""
+
+
+class ThroatSummary(TypedDict):
+    """What a summary says under ``throat``."""
+
+    density: float
+    """late mean of the grains per length of tube in the fifth of the wavelength where it is narrowest [1/d]"""
+    axial_velocity: float
+    """mean axial velocity along the wave there [d/t]"""
+    granular_temperature: float
+    """granular temperature there [m d^2/t^2]"""
+
+
+class BellySummary(TypedDict):
+    """What a summary says under ``belly``."""
+
+    density: float
+    """the same where the tube is widest [1/d]"""
+    axial_velocity: float
+    """the same where the tube is widest [d/t]"""
+    granular_temperature: float
+    """the same where the tube is widest [m d^2/t^2]"""
+
+
+class SiSummary(TypedDict):
+    """What a summary says under ``si``."""
+
+    mass_flow_rate_kg_per_s: float | None
+    """late mean flow J m; missing without the table units [kg/s]"""
+    wall_power_w: float | None
+    """wall_power in SI; missing without the table units [W]"""
+    useful_power_w: float | None
+    """useful_power in SI; missing without the table units [W]"""
+    pressure_rise_pa: float | None
+    """pressure_rise in SI; missing without the table units [Pa]"""
+    wall_pressure_pa: float | None
+    """wall_pressure in SI; missing without the table units [Pa]"""
+    wall_pressure_largest_pa: float | None
+    """wall_pressure_largest in SI; missing without the table units [Pa]"""
+    transition_time_s: float | None
+    """transition_time in SI [s]"""
+    residence_time_s: float | None
+    """residence_time in SI [s]"""
+    axial_dispersion_m2_per_s: float | None
+    """axial_dispersion in SI [m^2/s]"""
+    time_s: float | None
+    """time in SI [s]"""
+
+
+class Summary(TypedDict):
+    """The outcome of a run, as ``summary.json`` has it. Numbers that are not known are NaN.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> summary: peristalsis.Summary = peristalsis.Simulation.preset("frictionless", waves=2).summary()
+    >>> summary["grains"], summary["packing"]["inserted"]
+    (41, 41)
+    """
+
+    seed: int
+    """seed of the random numbers"""
+    status: Literal["complete", "settled", "interrupted", "diverged"]
+    """complete, or settled: ended early, after its transition"""
+    grains: int
+    """N"""
+    time: float
+    """time reached: where a run without a transition is censored [t]"""
+    periods: float
+    """wavelengths that the wave has run"""
+    transition_time: float | None
+    """tau; missing where there was none [t]"""
+    censored: bool
+    """whether the run ended before a transition"""
+    transition_threshold: float
+    """J/Jmax whose crossing counts as the transition"""
+    flow_rate_ratio: float
+    """late mean of J/Jmax, grains inside"""
+    flow_rate_ratio_error: float
+    """its standard error"""
+    flow_rate_ratio_drift: float
+    """late J/Jmax, mean of its second half less that of its first"""
+    flow_rate_ratio_variance: float
+    """variance of the late averages of J/Jmax over a period each"""
+    flow_rate_ratio_raw: float
+    """late mean of J/Jmax of all grains"""
+    flow_rate: float
+    """late mean of J [1/t]"""
+    newtonian_flow_rate_ratio: float | None
+    """J/Jmax of a Newtonian fluid in this tube, phi = b/a"""
+    newtonian_flow_rate_ratio_clear_bore: float | None
+    """the same for the clear bore, phi = b/(a - d/2)"""
+    escaped: int
+    """grains outside the tube at the end"""
+    escaped_most: int
+    """most grains outside the tube at any sample"""
+    largest_overlap: float
+    """largest overlap of a grain's contact at any step [d]"""
+    energy_residual: float
+    """|what the energy ledger misses|/integral of |power that entered|"""
+    granular_temperature: float
+    """late mean of the granular temperature [m d^2/t^2]"""
+    contacts: float
+    """late mean number of contacts of a grain"""
+    wall_power: float
+    """late mean power that wall or drive put in [m d^2/t^3]"""
+    dissipated_power: float
+    """late mean power lost [m d^2/t^3]"""
+    bottleneck: float
+    """late mean of the smallest bottleneck [d]"""
+    time_step: float
+    """length of a step [t]"""
+    steps: int
+    """steps done"""
+    wall_power_error: float
+    """standard error of wall_power [m d^2/t^3]"""
+    wall_normal_force: float
+    """late mean axial force of the wall on the grains of a wavelength along the normals of contacts [m d/t^2]"""
+    wall_normal_force_error: float
+    """its standard error [m d/t^2]"""
+    wall_tangential_force: float
+    """the same by friction [m d/t^2]"""
+    wall_tangential_force_error: float
+    """its standard error [m d/t^2]"""
+    narrow_normal_force: float
+    """part of wall_normal_force where the tube is narrower than on its mean [m d/t^2]"""
+    narrow_normal_force_error: float
+    """its standard error [m d/t^2]"""
+    narrow_tangential_force: float
+    """part of wall_tangential_force there [m d/t^2]"""
+    narrow_tangential_force_error: float
+    """its standard error [m d/t^2]"""
+    narrow_axial_velocity: float
+    """late mean axial velocity of the grains there, laboratory frame [d/t]"""
+    narrow_axial_velocity_error: float
+    """its standard error [d/t]"""
+    narrow_wall_velocity: float
+    """late mean axial velocity of the wall's spheres there; 0 for a prescribed wall [d/t]"""
+    narrow_wall_velocity_error: float
+    """its standard error [d/t]"""
+    front_normal_force: float
+    """part of wall_normal_force in the front of the wave, from its narrowest place to the widest one ahead [m
+    d/t^2]"""
+    front_normal_force_error: float
+    """its standard error [m d/t^2]"""
+    front_tangential_force: float
+    """part of wall_tangential_force in the front of the wave [m d/t^2]"""
+    front_tangential_force_error: float
+    """its standard error [m d/t^2]"""
+    wall_pressure: float
+    """late mean pressure on the wall [m/(d t^2)]"""
+    wall_pressure_largest: float
+    """largest late mean pressure on the wall over the phases of the wave [m/(d t^2)]"""
+    residence_time: float | None
+    """late mean time of a grain through the tube, N/J; missing where the flow is not along the wave [t]"""
+    residence_time_error: float | None
+    """its standard error [t]"""
+    axial_dispersion: float
+    """half the late rate at which the variance of axial displacements grows from period to period [d^2/t]"""
+    axial_dispersion_error: float
+    """its standard error [d^2/t]"""
+    late_periods: float
+    """periods that late means are over"""
+    wall_spheres: int
+    """spheres of the wall"""
+    grain_steps_per_second: float
+    """grains times steps over the seconds that engine and observables took [1/s]"""
+    seconds: float
+    """seconds that engine and observables took [s]"""
+    version: str
+    """version of the program"""
+    revision: str
+    """revision of its source"""
+    pumping: PumpingSummary | None
+    """Pumping against a body force; `None` without one."""
+    throat: ThroatSummary
+    """The fifth of the wavelength where the tube is narrowest."""
+    belly: BellySummary
+    """The fifth of the wavelength where it is widest."""
+    si: SiSummary | None
+    """Quantities in SI; `None` without the table ``units``."""
+    transition_times: list[ThresholdTime]
+    """The transition as other thresholds see it."""
+    packing: Packing
+    """How the grains were placed."""
+    message: str | None
+    """Why the run diverged, where it did."""
+    wall_diagnosis: list[str]
+    """Faults of an elastic wall: when, where, and the likely cause."""
+    warnings: list[WarningEntry]
+    """What looks doubtful."""
+
+
+class RunSummary(Summary):
+    """A summary with the configuration that was given to `peristalsis.run`.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> summary: peristalsis.RunSummary = peristalsis.run({"preset": "frictionless", "waves": 2, "periods": 1})
+    >>> summary["config"]["periods"]
+    1
+    """
+
+    config: dict[str, Any]
+    """The configuration as it was given."""

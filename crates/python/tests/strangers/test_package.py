@@ -1,0 +1,67 @@
+"""The package as a whole: its types, its documentation, what it brings."""
+
+import subprocess
+import sys
+from pathlib import Path
+from typing import get_args, get_type_hints
+
+import pytest
+
+import peristalsis
+from peristalsis import _keywords, _types
+
+ROOT = Path(__file__).parents[4]
+
+
+def test_the_types_of_keywords_and_summaries_are_up_to_date() -> None:
+    """What would delight: generated keyword stubs, typed summaries. `python scripts/python_types.py` writes them anew."""
+    sys.path.insert(0, str(ROOT / "scripts"))
+    try:
+        import python_types
+    finally:
+        sys.path.pop(0)
+    assert Path(_types.__file__).read_text(encoding="utf-8") == python_types.text()
+
+
+def test_keywords_are_typed() -> None:
+    """PYTHON, low: `preset(**keywords)` is `Any`."""
+    hints = get_type_hints(_types.Keywords)
+    assert hints["width"] is float and hints["waves"] is int
+    assert get_args(hints["initial_state"]) == get_args(hints["state"]) == ("rest", "jammed")
+    assert set(get_args(hints["law"])) == {"linear", "hertz"} and set(get_args(hints["control"])) == {"strain", "stress"}
+    unique = {keyword for keyword, keys in _keywords.keywords().items() if len(keys) == 1}
+    assert set(hints) == unique
+
+
+@pytest.mark.parametrize("settings", [{}, {"body_force": -0.001}])
+def test_a_summary_has_the_keys_of_its_type(settings: dict[str, float]) -> None:
+    """PYTHON, low: `summary()` is `Any`."""
+    simulation = peristalsis.Simulation.preset("frictionless", waves=2, **settings)
+    simulation.run(periods=2)
+
+    def check(found: object, kind: object) -> None:
+        if isinstance(found, dict) and (kinds := [it for it in (kind, *get_args(kind)) if hasattr(it, "__required_keys__")]):
+            hints = get_type_hints(kinds[0])
+            assert set(found) == set(hints)
+            for key, value in found.items():
+                check(value, hints[key])
+        elif isinstance(found, float | int | str):
+            kinds = [type(value) if isinstance(value, str) else value for value in get_args(kind)] or [kind]
+            assert type(found) in kinds, (found, kind)
+
+    check(simulation.summary(), peristalsis.Summary)
+
+
+def test_plot_is_there_without_being_imported() -> None:
+    """PYTHON, low: `peristalsis.plot` raises AttributeError until imported."""
+    program = "import peristalsis; print(callable(peristalsis.plot.flow), 'plot' in dir(peristalsis))"
+    assert subprocess.check_output([sys.executable, "-c", program], text=True).split() == ["True", "True"]
+
+
+def test_without_matplotlib_plot_says_what_to_install() -> None:
+    """PYTHON, low: a clear error where Matplotlib is missing."""
+    program = "import sys; sys.modules['matplotlib'] = None; import peristalsis; peristalsis.plot"
+    answer = subprocess.run([sys.executable, "-c", program], text=True, capture_output=True)
+    assert "ImportError" in answer.stderr and "pip install 'peristalsis[plot]'" in answer.stderr
+    with pytest.raises(AttributeError, match="'plots'"):
+        _ = peristalsis.plots  # type: ignore[attr-defined]
