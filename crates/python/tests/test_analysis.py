@@ -30,7 +30,7 @@ def test_collapse_of_data_that_are_not_ours() -> None:
     assert all(interval.lower <= found <= interval.upper for interval, found in zip(fit.contour, fit.parameters, strict=True))
     assert collapse.quality([0.125, 2.0, 2.27]).quality > 10 * fit.quality
     axes = plot.collapse(collapse, fit)
-    assert axes.get_title().startswith("S = ")
+    assert axes.get_title().startswith("$S$ = ")
 
 
 def test_a_function_of_python_gives_what_ours_gives() -> None:
@@ -122,7 +122,7 @@ def test_survival_by_hand() -> None:
     assert (curve.runs, curve.observed, curve.watched) == (4, 3, 4.0)
     # 1 up to 1, 3/4 up to 3, 3/8 up to 4
     assert curve.restricted_moments(4.0).mean.value == pytest.approx(1 + 1.5 + 0.375)
-    assert plot.survival(curve).get_ylabel() == "runs without a transition"
+    assert plot.survival(curve).get_ylabel() == "runs without a transition, $S(t)$"
     with pytest.raises(ValueError, match="4 times, but 3 observed"):
         analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True])
 

@@ -12,8 +12,8 @@ try:
     from cycler import cycler
     from matplotlib import font_manager, pyplot
     from matplotlib.figure import Figure
-except ImportError as error:
-    raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from error
+except ImportError as _error:
+    raise ImportError("peristalsis.plot needs Matplotlib: pip install 'peristalsis[plot]'") from _error
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -77,7 +77,7 @@ STYLE: Any = {
 }
 
 
-class StyledFigure(Figure):
+class _StyledFigure(Figure):
     """A figure that is laid out, drawn and saved by the settings of `STYLE`, whatever they are outside.
 
     Matplotlib reads many settings as late as it draws: fonts of symbols, new ticks, dots per inch.
@@ -112,7 +112,7 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     """
     # pyplot chooses its backend with its first figure, and settings made then are lost at the end of a context.
     figure = pyplot.figure(
-        FigureClass=StyledFigure, figsize=(width / _INCH, height / _INCH), dpi=STYLE["figure.dpi"], layout="constrained"
+        FigureClass=_StyledFigure, figsize=(width / _INCH, height / _INCH), dpi=STYLE["figure.dpi"], layout="constrained"
     )
     with matplotlib.rc_context(STYLE):
         return figure.add_subplot()
@@ -122,7 +122,7 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
 def drawing(ax: Axes | None, width: float = SINGLE_COLUMN, height: float = 60.0) -> Iterator[Axes]:
     """Axes to draw into: those given, in the settings of their owner, or new ones in the style."""
     target = axes(width, height) if ax is None else ax
-    with matplotlib.rc_context(STYLE) if isinstance(target.figure, StyledFigure) else nullcontext():
+    with matplotlib.rc_context(STYLE) if isinstance(target.figure, _StyledFigure) else nullcontext():
         yield target
 
 
