@@ -20,7 +20,7 @@ done
 echo "$(wc -w <<< "$names") tests"
 
 step "the blocks of the book, executed"
-python3 scripts/run_book.py docs/book/src/tutorial.md docs/book/src/how-to.md
+python3 scripts/run_snippets.py --only sh --together docs/book/src/tutorial.md docs/book/src/how-to.md
 
 step "pages"
 if ! mdbook=$(command -v mdbook); then

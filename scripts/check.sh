@@ -30,16 +30,29 @@ trap 'rm -rf "$scratch"' EXIT
 cargo run --locked -- run --preset frictionless --out "$scratch/run" --csv
 ls "$scratch/run"
 
+if command -v python3 >/dev/null; then
+    step "the README's commands, their output and their picture"
+    python3 scripts/run_snippets.py --only sh --programs target/debug README.md
+else
+    step "skipped: the README's commands (there is no python3)"
+fi
+
 if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     step "tables, as pyarrow reads them"
     cargo run --locked --quiet -- run --quiet --preset frictional --set grains.number=100 --set run.periods=0.2 \
         --out "$scratch/elastic" --csv
     cargo run --locked --quiet -- run --quiet --preset frictionless --set drive.strain_rate=0 --set run.duration=20 \
         --out "$scratch/static" --csv
-    "$scratch/venv/bin/pip" install --quiet --no-cache-dir pyarrow
+    "$scratch/venv/bin/pip" install --quiet --no-cache-dir numpy pyarrow
     "$scratch/venv/bin/python" tests/python/read_tables.py "$scratch/run" "$scratch/elastic" "$scratch/static"
+
+    step "the README's Python, its output"
+    cargo build --workspace --locked
+    cp -rL crates/python/python "$scratch/python"
+    cp target/debug/lib_core.so "$scratch/python/peristalsis/_core.abi3.so"
+    PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md
 else
-    step "skipped: tables, as pyarrow reads them (python3 makes no virtual environment here)"
+    step "skipped: tables, as pyarrow reads them, and the README's Python (python3 makes no virtual environment here)"
 fi
 
 step "all checks passed"

@@ -41,6 +41,6 @@ scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
 "$scratch/venv/bin/pip" install --quiet "$wheel"
-(cd "$scratch" && "$scratch/venv/bin/python" "$OLDPWD/scripts/run_snippets.py" "$OLDPWD/README.md" "$OLDPWD/crates/python/README.md" "$OLDPWD/docs/python/collapse.md")
+"$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md docs/python/collapse.md
 
 step "the Python package is well"
