@@ -18,10 +18,13 @@ const ORDINARY_POWERS: core::ops::Range<i32> = -3..6;
 /// Errors whose digits are below this have two of them: 1.95 is rounded to 2.
 const TWO_DIGITS: f64 = 1.95;
 
+/// Errors below this part of their number are rounding only, like none.
+const ROUNDING: f64 = 1e-12;
+
 /// What stands for a number that is not known.
 const MISSING: &str = "–";
 
-/// The number with its error, such as `2.794 ± 0.003`; alone where nothing is known of the error, or where it is 0.
+/// The number with its error, such as `2.794 ± 0.003`; alone where nothing is known of the error, or where it is 0 or rounding only.
 impl fmt::Display for Uncertain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let layout = Layout::of(self);
@@ -29,7 +32,7 @@ impl fmt::Display for Uncertain {
         let value = digits(self.value);
         let text = match Sides::of(self) {
             _ if !self.value.is_finite() => plain(self.value),
-            Sides::Equal(error) if error > 0.0 => {
+            Sides::Equal(error) if error > ROUNDING * self.value.abs() => {
                 let error = digits(error);
                 match layout.power {
                     0 => format!("{value} ± {error}"),

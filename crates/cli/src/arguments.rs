@@ -1,15 +1,18 @@
 //! The command line.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
+use peristalsis_configuration::PRESETS;
 use peristalsis_engine::Instructions;
 use peristalsis_run::{Span, TrajectoryFormat, Window};
 
 use crate::choice::{INSTRUCTIONS, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
-use crate::commands::study::{StudyCommand, WorkArguments};
+use crate::commands::study::{StudyCommand, WorkArguments, time_span};
 
 /// Grains in a peristaltic tube, by the discrete element method.
 #[derive(Debug, Parser)]
@@ -18,7 +21,7 @@ use crate::commands::study::{StudyCommand, WorkArguments};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130, 138, 143 stopped by a signal."
+    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 129, 130, 138, 143 stopped by a signal (a second one, a second later, ends at once)."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -29,6 +32,10 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     /// Run one simulation and write its tables and figures.
     Run(RunArguments),
+    /// List runs with what came out of them.
+    Runs(RunsArguments),
+    /// Draw the figures of runs again, from their saved states; computes nothing.
+    Figures(FiguresArguments),
     /// Say what would run, and warn of what looks doubtful; runs nothing.
     Check(CheckArguments),
     /// Write the spheres of a run, from its saved state on, for other programs to open.
@@ -55,13 +62,13 @@ pub(crate) enum Command {
 }
 
 /// Where a configuration comes from.
-#[derive(Debug, Args)]
+#[derive(Clone, Debug, Args)]
 pub(crate) struct ConfigurationArguments {
     /// Configuration in TOML.
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// Values to start from; a file's values go over them (see `peristalsis presets`).
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = presets())]
     pub(crate) preset: Option<String>,
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -72,7 +79,7 @@ pub(crate) struct ConfigurationArguments {
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArguments,
-    /// Folder for the results; the default is a new one below runs/.
+    /// Folder for the results; the default is a new one below runs/, NAME-1, NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to compute with, for equal smooth grains in a prescribed tube; they pay from some ten thousand grains on.
@@ -81,9 +88,23 @@ pub(crate) struct RunArguments {
     /// Instructions to compute with; the default is the widest that the machine has.
     #[arg(long, value_name = "SET", value_parser = one_of(INSTRUCTIONS))]
     pub(crate) instructions: Option<Instructions>,
-    /// Go on with a run that was stopped, to the same bits as if it had not been.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["file", "preset", "overrides", "out"])]
+    /// Go on with the run of a folder, to the same bits as if it had not been stopped; or, in a new folder, with the state
+    /// in a file, such as Python's `Simulation.save` writes.
+    #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["file", "preset", "overrides", "seeds"])]
     pub(crate) resume: Option<PathBuf>,
+    /// Let the resumed run, complete or not, end after so many periods, to the same bits as if it had been asked for them.
+    #[arg(long, value_name = "N", requires = "resume", value_parser = positive)]
+    pub(crate) periods: Option<f64>,
+    /// The same in time [t].
+    #[arg(long, value_name = "T", requires = "resume", conflicts_with = "periods", value_parser = positive)]
+    pub(crate) duration: Option<f64>,
+    /// Run once with each of these seeds, side by side, and show mean and scatter: 1..10, or 1,2,5. Each has a folder,
+    /// DIR/seed-K; --resume DIR goes on with all of them.
+    #[arg(long, value_name = "SEEDS", value_parser = seeds)]
+    pub(crate) seeds: Option<Seeds>,
+    /// Time between two savings of the state; it is saved when the run begins and ends, too.
+    #[arg(long, value_name = "TIME", default_value = "60s", value_parser = time_span)]
+    pub(crate) checkpoint_every: Duration,
     #[command(flatten)]
     pub(crate) frames: FrameArguments,
     /// Write the time series as CSV too.
@@ -119,7 +140,7 @@ pub(crate) struct FrameArguments {
 
 #[derive(Debug, Args)]
 pub(crate) struct TrajectoryArguments {
-    /// Folder of a run, finished or stopped; nothing in it is changed.
+    /// Folder of a run, finished or stopped; none of its files is changed.
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Formats: gsd, vtp, lammps.
@@ -138,7 +159,7 @@ pub(crate) struct TrajectoryArguments {
     /// Time between two frames; a tenth of a period unless given.
     #[arg(long, value_name = "SPAN")]
     pub(crate) every: Option<Span>,
-    /// Folder for the frames; the default is DIR/from-state.
+    /// Folder for the frames, not that of a run; the default is DIR/from-state.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print what was written as JSON.
@@ -173,6 +194,23 @@ pub(crate) struct ViewArguments {
     /// Threads to compute with; they pay from some ten thousand grains on.
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunsArguments {
+    /// Folders of runs, or folders below which they are.
+    #[arg(value_name = "DIR", default_value = "runs")]
+    pub(crate) folders: Vec<PathBuf>,
+    /// Print as JSON.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FiguresArguments {
+    /// Folders of runs, finished or stopped.
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
 }
 
 #[derive(Debug, Args)]
@@ -278,9 +316,71 @@ pub(crate) struct CompletionsArguments {
     pub(crate) shell: clap_complete::Shell,
 }
 
+/// The names of the presets.
+fn presets() -> PossibleValuesParser {
+    PossibleValuesParser::new(PRESETS.iter().map(|preset| preset.name))
+}
+
+/// A number above 0.
+fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "a number above 0".to_owned())
+}
+
+/// Seeds of replicas, each once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Seeds(pub(crate) Vec<u64>);
+
+/// Most replicas of one call.
+const MOST_SEEDS: usize = 10_000;
+
+fn seeds(text: &str) -> Result<Seeds, String> {
+    let misread = || "seeds such as 1..10, both ends among them, or 1,2,5".to_owned();
+    let number = |text: &str| text.trim().parse::<u64>().map_err(|_| misread());
+    let mut seeds = Vec::new();
+    for part in text.split(',') {
+        let (from, to) = match part.split_once("..") {
+            Some((from, to)) => (number(from)?, number(to.trim_start_matches('='))?),
+            None => (number(part)?, number(part)?),
+        };
+        if from > to || to - from >= MOST_SEEDS as u64 {
+            return Err(misread());
+        }
+        seeds.extend(from..=to);
+    }
+    let given = seeds.len();
+    seeds.sort_unstable();
+    seeds.dedup();
+    match seeds.len() {
+        number if number < given => Err("each seed once".to_owned()),
+        number if number > MOST_SEEDS => Err(format!("at most {MOST_SEEDS} seeds")),
+        _ => Ok(Seeds(seeds)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use clap::CommandFactory;
+
+    #[test]
+    fn seeds_are_a_range_or_a_list() {
+        let read = |text: &str| super::seeds(text).map(|seeds| seeds.0);
+        assert_eq!(read("1..4").unwrap(), [1, 2, 3, 4]);
+        assert_eq!(read("5,1,2").unwrap(), [1, 2, 5]);
+        assert_eq!(read("7..=8,1").unwrap(), [1, 7, 8]);
+        for text in [
+            "",
+            "a",
+            "4..1",
+            "1,1",
+            "1..3,2",
+            "-1",
+            "0..18446744073709551615",
+        ] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn the_command_line_is_consistent() {

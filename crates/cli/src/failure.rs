@@ -185,16 +185,24 @@ fn of_run(error: &RunError) -> Advice {
         RunError::Format(FormatError::UnreadableTrajectory { .. }) => wrong(
             "name a GSD trajectory that this program wrote, or let the frames be computed: --from state, --from start",
         ),
-        RunError::Format(FormatError::NotATrajectory { .. }) => failed(FOREIGN_FRAMES),
+        RunError::Format(FormatError::NotATrajectory { .. }) => wrong(FOREIGN_FRAMES),
+        RunError::TooShort { .. } => wrong(
+            "ask for at least as much with --periods or --duration, or begin anew in another folder: peristalsis run \
+             DIR/config.toml --set run.periods=N --out OTHER",
+        ),
+        RunError::NothingToResume { folder, reason } if reason.contains("complete") => {
+            wrong(format!(
+                "let it go on: peristalsis run --resume {} --periods N (or --duration T), N beyond its end",
+                folder.display()
+            ))
+        }
         RunError::TooManyGrains { .. } | RunError::Engine(EngineError::DoesNotFit { .. }) => {
             wrong(FEWER_GRAINS)
         }
         RunError::NoMemory { .. } => wrong(
             "take fewer waves (tube.waves) or grains (grains.number), or give the program more memory (`ulimit -v`)",
         ),
-        RunError::NothingToResume { folder, reason }
-            if folder.join("config.toml").is_file() && !reason.contains("complete") =>
-        {
+        RunError::NothingToResume { folder, .. } if folder.join("config.toml").is_file() => {
             wrong(format!(
                 "begin it anew in another folder: peristalsis run {} --out DIR",
                 folder.join("config.toml").display()
@@ -265,6 +273,9 @@ fn of_state(path: &Path, source: &RunError) -> String {
         _ => "put the file back from a copy",
     };
     let configuration = path.with_file_name("config.toml");
+    if !configuration.is_file() {
+        return remedy.to_owned();
+    }
     let again = format!("peristalsis run {} --out DIR", configuration.display());
     format!("{remedy}, or begin anew in another folder: {again}")
 }

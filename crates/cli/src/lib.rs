@@ -1,7 +1,7 @@
 //! `peristalsis`: grains in a peristaltic tube, from the command line; as a library, for the program and for Python's.
 //!
 //! Parses, calls, reports: this is the only crate that prints or exits. Results go to standard output, everything else
-//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 130, 138 and 143 stopped by a signal.
+//! to standard error. Exit codes: 0 done, 1 failed or diverged, 2 bad input, 129, 130, 138 and 143 stopped by a signal.
 
 #![forbid(unsafe_code)]
 
@@ -26,6 +26,8 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = Arguments::parse_from(words);
     let outcome = match arguments.command {
         Command::Run(arguments) => commands::run::run(&arguments),
+        Command::Runs(arguments) => commands::runs::runs(&arguments),
+        Command::Figures(arguments) => commands::figures::figures(&arguments),
         Command::Check(arguments) => commands::check::check(&arguments),
         Command::Trajectory(arguments) => commands::trajectory::trajectory(&arguments),
         Command::Render(arguments) => commands::render::render(&arguments),

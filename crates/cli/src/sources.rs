@@ -1,6 +1,8 @@
 //! Reads a configuration as the command line names it.
 
-use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources};
+use std::path::Path;
+
+use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources, preset};
 use peristalsis_engine::EngineError;
 use peristalsis_run::RunError;
 
@@ -16,7 +18,18 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     let file = match &arguments.file {
         None => None,
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(Failure::read(path))?;
+            let text = std::fs::read_to_string(path).map_err(|error| no_file(path, error))?;
+            if is_a_study(&text) {
+                let reason = format!(
+                    "{} is a study, not the configuration of one run",
+                    path.display()
+                );
+                let help = format!(
+                    "use: peristalsis study run {0}, or study plan {0}",
+                    path.display()
+                );
+                return Err(Failure::usage(reason, help));
+            }
             Some((path.display().to_string(), text))
         }
     };
@@ -25,6 +38,25 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
         preset: arguments.preset.as_deref(),
         overrides: &arguments.overrides,
     })?)
+}
+
+/// That a file cannot be read, which may be the name of a preset.
+fn no_file(path: &Path, error: std::io::Error) -> Failure {
+    match preset(&path.to_string_lossy()) {
+        Some(preset) => Failure::usage(
+            format!("cannot read {}: {error}", path.display()),
+            format!("a preset is named with --preset {}", preset.name),
+        ),
+        None => Failure::read(path)(error),
+    }
+}
+
+/// Whether a text is a study file: its tables are no tables of a configuration.
+fn is_a_study(text: &str) -> bool {
+    let begins = |line: &str| {
+        ["[base]", "[[axes]]"].contains(&line.split('#').next().unwrap_or_default().trim())
+    };
+    text.lines().any(begins)
 }
 
 /// The names of all presets, as help.

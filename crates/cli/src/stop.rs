@@ -1,12 +1,14 @@
-//! Stops on request: Ctrl-C, SIGTERM and SIGUSR1 (which batch systems send before their time is up) end a run cleanly, a
-//! second one at once.
+//! Stops on request: Ctrl-C, SIGTERM, SIGUSR1 (which batch systems send before their time is up) and SIGHUP (a lost
+//! connection) end work cleanly. One more ends it at once, but only a second later: some programs, `timeout` among them,
+//! send the same signal twice.
 
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::time::Duration;
 
 #[cfg(unix)]
-use signal_hook::consts::SIGUSR1;
+use signal_hook::consts::{SIGHUP, SIGUSR1};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use crate::failure::Failure;
@@ -20,27 +22,34 @@ pub(crate) struct Stop {
 
 /// Added to a signal's number in an exit code, by convention of the shell.
 const SIGNAL_BASE: u8 = 128;
+/// Time from the first signal in which more of them are the same request.
+const ONE_REQUEST: Duration = Duration::from_secs(1);
+/// Time between two looks for the first signal.
+const LOOK: Duration = Duration::from_millis(100);
 
 impl Stop {
     /// Begins to watch. Until [`Stop::keep_results`] a signal ends the program at once: there is nothing to lose.
     pub(crate) fn watch() -> Result<Self, Failure> {
         let signal = Arc::new(AtomicUsize::new(0));
         let at_once = Arc::new(AtomicBool::new(true));
-        for number in [
-            SIGINT,
-            SIGTERM,
-            #[cfg(unix)]
-            SIGUSR1,
-        ] {
+        for number in signals() {
             let code = i32::from(SIGNAL_BASE) + number;
-            // In this order: the first signal finds `at_once` false, sets it and is noted; a second one exits.
+            // In this order: a signal that is not to end the program is noted.
             signal_hook::flag::register_conditional_shutdown(number, code, Arc::clone(&at_once))
-                .and_then(|_| signal_hook::flag::register(number, Arc::clone(&at_once)))
                 .and_then(|_| {
                     signal_hook::flag::register_usize(number, Arc::clone(&signal), number as usize)
                 })
                 .map_err(Failure::Signals)?;
         }
+        let (noted, armed) = (Arc::clone(&signal), Arc::clone(&at_once));
+        // A thread of its own, for whoever asks may be at a long piece of work.
+        std::thread::spawn(move || {
+            while noted.load(Ordering::Relaxed) == 0 {
+                std::thread::sleep(LOOK);
+            }
+            std::thread::sleep(ONE_REQUEST);
+            armed.store(true, Ordering::Relaxed);
+        });
         Ok(Self { signal, at_once })
     }
 
@@ -61,4 +70,27 @@ impl Stop {
     pub(crate) fn exit_code(&self) -> ExitCode {
         self.requested().map_or(ExitCode::SUCCESS, ExitCode::from)
     }
+}
+
+/// The signals that ask to stop.
+fn signals() -> Vec<i32> {
+    let mut signals = vec![SIGINT, SIGTERM];
+    #[cfg(unix)]
+    {
+        signals.push(SIGUSR1);
+        if !ignores_hangups() {
+            signals.push(SIGHUP);
+        }
+    }
+    signals
+}
+
+/// Whether this program was begun to outlive its terminal, as by `nohup`. Where the system does not say it, hang-ups are
+/// left as they are.
+#[cfg(unix)]
+fn ignores_hangups() -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    mask.is_none_or(|mask| mask & (1 << (SIGHUP - 1)) != 0)
 }

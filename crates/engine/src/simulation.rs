@@ -171,6 +171,11 @@ impl Simulation {
         Ok(())
     }
 
+    /// Whether its kernel computes with several threads: that of equal smooth grains in a prescribed tube.
+    pub fn takes_threads(&self) -> bool {
+        self.sorted.is_some()
+    }
+
     /// Lets the drive take another course from now on: `wall` is this wall with other schedules, which have the values
     /// of the old ones now.
     ///

@@ -24,6 +24,23 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
     write_with(path, |file| file.write_all(bytes))
 }
 
+/// Like [`write`](fn@write), but only where there is no file of that name: of several programs that write it at once, one
+/// does.
+///
+/// # Errors
+/// As [`write`](fn@write); [`FormatError::Io`] with [`ErrorKind::AlreadyExists`] where there is one.
+pub fn write_new(path: &Path, bytes: &[u8]) -> Result<(), FormatError> {
+    let pending = Pending::with(path, |file| file.write_all(bytes))?;
+    let file = pending.partial.as_file();
+    file.sync_all()
+        .map_err(FormatError::io("synchronize", path))?;
+    let named = pending.partial.persist_noclobber(path);
+    named.map_err(|refused| FormatError::io("create", path)(refused.error))?;
+    folder_of(path)
+        .and_then(synchronize_folder)
+        .map_err(FormatError::io("synchronize the folder of", path))
+}
+
 /// Like [`write`](fn@write), for a content that is produced piece by piece.
 ///
 /// # Errors

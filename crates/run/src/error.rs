@@ -36,7 +36,7 @@ pub enum RunError {
     #[error(transparent)]
     Configuration(#[from] peristalsis_configuration::ConfigurationError),
     /// The folder holds another run.
-    #[error("{} holds another run ({found}): nothing was changed", folder.display())]
+    #[error("{} holds another run, or files that one would write over ({found}): nothing was changed", folder.display())]
     HoldsAnotherRun {
         /// The folder.
         folder: PathBuf,
@@ -82,12 +82,14 @@ pub enum RunError {
         reason: String,
     },
     /// A run has gone further than it is asked to go.
-    #[error("the run has done {done} steps, and the length asked for has {asked}")]
+    #[error("the run has done {} {unit} already, and the length asked for is {asked} {unit}", (1e6 * done).round() / 1e6)]
     TooShort {
-        /// Steps done.
-        done: u64,
-        /// Steps of the length asked for.
-        asked: u64,
+        /// How much is done.
+        done: f64,
+        /// How much is asked for.
+        asked: f64,
+        /// Periods, or units of time where the wave stands still.
+        unit: &'static str,
     },
     /// The saved state of a run cannot be gone on with.
     #[error("{} cannot be gone on with: {source}", path.display())]

@@ -1,5 +1,6 @@
 //! The folder of a run: configuration, summary, tables, figures, state.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use peristalsis_configuration::Configuration;
@@ -19,6 +20,18 @@ const TIMESERIES_CSV: &str = "timeseries.csv";
 const PROFILE: &str = "profile.parquet";
 const WAVES: &str = "waves.parquet";
 const STATE: &str = "state.checkpoint";
+/// What a run may leave besides its figures and trajectories.
+const FILES: [&str; 7] = [
+    CONFIGURATION,
+    SUMMARY,
+    TIMESERIES,
+    TIMESERIES_CSV,
+    PROFILE,
+    WAVES,
+    STATE,
+];
+/// How files of figures end.
+const ENDINGS: [&str; 2] = ["svg", "png"];
 
 /// A folder that holds one run, and no other.
 #[derive(Clone, Debug)]
@@ -36,40 +49,69 @@ pub enum Written {
 }
 
 impl RunFolder {
-    /// Makes a folder for a new run and writes its configuration there; an empty folder may exist.
+    /// Makes a folder for a new run and writes its configuration there; an empty folder may exist. Of several programs that
+    /// make the same folder at once, one gets it.
     ///
     /// # Errors
     /// [`RunError::HoldsAnotherRun`] where one is there already, [`RunError::Folder`] where the folder cannot be made or
     /// written to. Nothing is changed in either case.
     pub fn create(path: &Path, configuration: &Configuration) -> Result<Self, RunError> {
         Self::check(path)?;
-        let missing: Vec<&Path> = path
-            .ancestors()
-            .take_while(|it| !it.as_os_str().is_empty() && it.symlink_metadata().is_err())
-            .collect();
         let path = path.to_owned();
         let folder = Self { path };
-        folder.begin(configuration).inspect_err(|_| {
-            // Deepest first; what another program has filled meanwhile stays, for only empty folders go.
-            for made in missing {
-                drop(std::fs::remove_dir(made));
-            }
+        let make = || std::fs::create_dir_all(&folder.path).map_err(folder.refused());
+        or_undone(&folder.path, || {
+            make()?;
+            folder.begin(configuration)
         })?;
         Ok(folder)
     }
 
-    /// Makes the folder and writes the configuration.
+    /// The same in the first free one of the folders `inside/stem-1`, `inside/stem-2`, ..., which no other program gets.
+    ///
+    /// # Errors
+    /// [`RunError::Folder`] where it cannot be made or written to. Nothing is changed then.
+    pub fn create_next(
+        inside: &Path,
+        stem: &str,
+        configuration: &Configuration,
+    ) -> Result<Self, RunError> {
+        or_undone(inside, || {
+            let path = next_folder(inside, stem)?;
+            let folder = Self { path };
+            folder.begin(configuration).inspect_err(|_| {
+                drop(std::fs::remove_dir(&folder.path));
+            })?;
+            Ok(folder)
+        })
+    }
+
+    /// Writes the configuration, by which the folder is this run's.
     fn begin(&self, configuration: &Configuration) -> Result<(), RunError> {
-        let refused = |source| RunError::Folder {
-            folder: self.path.clone(),
-            source,
-        };
-        std::fs::create_dir_all(&self.path).map_err(refused)?;
         let text = configuration.to_toml();
-        atomic::write(&self.file(CONFIGURATION), text.as_bytes()).map_err(|error| match error {
-            FormatError::Io { source, .. } => refused(source),
+        let begun = atomic::write_new(&self.file(CONFIGURATION), text.as_bytes());
+        begun.map_err(|error| match error {
+            FormatError::Io { source, .. } if source.kind() == ErrorKind::AlreadyExists => {
+                let (folder, found) = (self.path.clone(), CONFIGURATION.to_owned());
+                RunError::HoldsAnotherRun { folder, found }
+            }
+            FormatError::Io { source, .. } => self.refused()(source),
             other => other.into(),
         })
+    }
+
+    fn refused(&self) -> impl Fn(std::io::Error) -> RunError {
+        let folder = self.path.clone();
+        move |source| RunError::Folder {
+            folder: folder.clone(),
+            source,
+        }
+    }
+
+    /// Takes the folder of a new run away again, if nothing but its configuration is there.
+    pub fn abandon(self) {
+        drop(std::fs::remove_file(self.file(CONFIGURATION)));
+        drop(std::fs::remove_dir(&self.path));
     }
 
     /// Whether a folder is free for a new run; makes nothing.
@@ -83,48 +125,81 @@ impl RunFolder {
                 source: std::io::ErrorKind::NotADirectory.into(),
             });
         }
-        let names = [CONFIGURATION, SUMMARY, TIMESERIES, PROFILE, WAVES, STATE];
-        RunError::if_one_is_in(path, &names)?;
-        Trajectory::check(path)
-    }
-
-    /// Opens the folder of a run that was stopped, to go on with it.
-    ///
-    /// # Errors
-    /// [`RunError::NothingToResume`] where configuration or state is missing; [`RunError::State`] where the state is damaged,
-    /// another run's or another version's; errors of the configuration.
-    pub fn resume(path: &Path) -> Result<(Self, Run), RunError> {
-        let (folder, run) = Self::open(path)?;
-        if run.is_complete() {
-            let (folder, reason) = (path.to_owned(), "it is complete".to_owned());
-            return Err(RunError::NothingToResume { folder, reason });
+        RunError::if_one_is_in(path, &FILES)?;
+        for ending in ENDINGS {
+            let names = pictures::NAMES.map(|name| format!("{name}.{ending}"));
+            RunError::if_one_is_in(path, &names.each_ref().map(String::as_str))?;
         }
-        Ok((folder, run))
+        Trajectory::check(path)
     }
 
     /// Opens the folder of a run, finished or not, with its state.
     ///
     /// # Errors
-    /// As [`RunFolder::resume`], but for a run that is complete.
+    /// [`RunError::NothingToResume`] where configuration or state is missing; [`RunError::State`] where the state is damaged,
+    /// another run's or another version's; errors of the configuration.
     pub fn open(path: &Path) -> Result<(Self, Run), RunError> {
-        let path = path.to_owned();
-        let folder = Self { path };
-        let missing = |name: &str, error: std::io::Error| RunError::NothingToResume {
-            folder: folder.path.clone(),
-            reason: format!("{name}: {error}"),
-        };
-        let name = folder.file(CONFIGURATION);
-        let text = std::fs::read_to_string(&name);
-        let text = text.map_err(|error| missing(CONFIGURATION, error))?;
-        let configuration = Configuration::from_toml(&name.display().to_string(), &text)?;
-        let path = folder.file(STATE);
-        let state = std::fs::read(&path).map_err(|error| missing(STATE, error))?;
-        let run = Run::from_snapshot(&state).and_then(|run| run.under(configuration));
-        let run = run.map_err(|source| {
-            let source = Box::new(source);
-            RunError::State { path, source }
+        let folder = Self::named(path);
+        let configuration = folder.configuration()?;
+        let run = folder.state()?;
+        let run = run.under(configuration).map_err(|source| RunError::State {
+            path: folder.file(STATE),
+            source: Box::new(source),
         })?;
         Ok((folder, run))
+    }
+
+    /// A folder that may hold a run.
+    pub fn named(path: &Path) -> Self {
+        let path = path.to_owned();
+        Self { path }
+    }
+
+    /// The configuration in the folder.
+    ///
+    /// # Errors
+    /// [`RunError::NothingToResume`] where it is missing; errors of the configuration.
+    pub fn configuration(&self) -> Result<Configuration, RunError> {
+        let name = self.file(CONFIGURATION);
+        let text =
+            std::fs::read_to_string(&name).map_err(|error| self.missing(CONFIGURATION, &error))?;
+        Ok(Configuration::from_toml(
+            &name.display().to_string(),
+            &text,
+        )?)
+    }
+
+    /// The run as its state in the folder was saved, with the configuration in it.
+    ///
+    /// # Errors
+    /// As [`RunFolder::open`].
+    pub fn state(&self) -> Result<Run, RunError> {
+        let state = self.file(STATE);
+        read_state(&state).map_err(|error| match error {
+            RunError::Format(FormatError::Io { source, .. }) => self.missing(STATE, &source),
+            error => error,
+        })
+    }
+
+    /// Whether a state was saved in it.
+    pub fn has_state(&self) -> bool {
+        self.file(STATE).is_file()
+    }
+
+    fn missing(&self, name: &str, error: &std::io::Error) -> RunError {
+        RunError::NothingToResume {
+            folder: self.path.clone(),
+            reason: format!("{name}: {error}"),
+        }
+    }
+
+    /// Writes the configuration of a run whose length has changed.
+    ///
+    /// # Errors
+    /// [`RunError::Format`] where the file cannot be written; the older one stays.
+    pub fn save_configuration(&self, run: &Run) -> Result<(), RunError> {
+        let text = run.configuration().to_toml();
+        Ok(atomic::write(&self.file(CONFIGURATION), text.as_bytes())?)
     }
 
     /// Where it is.
@@ -141,28 +216,100 @@ impl RunFolder {
     }
 
     /// Writes tables, state, summary and figures; the summary after the tables, so that its presence says they are there.
+    /// A time series in CSV that is there is renewed.
     ///
     /// # Errors
     /// The first file that cannot be written or drawn.
     pub fn finish(&self, run: &Run, summary: &Summary, written: Written) -> Result<(), RunError> {
         let timeseries = timeseries_table(run)?;
         parquet::write(&self.file(TIMESERIES), &timeseries)?;
-        if written == Written::WithCsv {
-            csv::write(&self.file(TIMESERIES_CSV), &timeseries)?;
+        let text = self.file(TIMESERIES_CSV);
+        if written == Written::WithCsv || text.exists() {
+            csv::write(&text, &timeseries)?;
         }
         parquet::write(&self.file(PROFILE), &profile_table(run)?)?;
         parquet::write(&self.file(WAVES), &waves_table(run)?)?;
         self.save_state(run)?;
         atomic::write(&self.file(SUMMARY), summary.to_json().as_bytes())?;
-        for (name, drawing) in pictures::draw_all(run, summary)? {
-            atomic::write(&self.file(&format!("{name}.svg")), drawing.svg().as_bytes())?;
-            let png = drawing.png().map_err(RunError::of_figure(name))?;
-            atomic::write(&self.file(&format!("{name}.png")), &png)?;
+        self.draw(run, summary).map(drop)
+    }
+
+    /// Draws the figures of the run over those that there are, and answers their files. A figure that the run no longer has
+    /// goes.
+    ///
+    /// # Errors
+    /// The first file that cannot be written or drawn.
+    pub fn draw(&self, run: &Run, summary: &Summary) -> Result<Vec<PathBuf>, RunError> {
+        let drawings = pictures::draw_all(run, summary)?;
+        let mut files = Vec::new();
+        for name in pictures::NAMES {
+            let [vectors, pixels] = ENDINGS.map(|ending| self.file(&format!("{name}.{ending}")));
+            let Some((_, drawing)) = drawings.iter().find(|(known, _)| *known == name) else {
+                drop(std::fs::remove_file(vectors));
+                drop(std::fs::remove_file(pixels));
+                continue;
+            };
+            atomic::write(&vectors, drawing.svg().as_bytes())?;
+            atomic::write(&pixels, &drawing.png().map_err(RunError::of_figure(name))?)?;
+            files.extend([vectors, pixels]);
         }
-        Ok(())
+        Ok(files)
     }
 
     fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
+}
+
+/// A run from a file that holds its state, with the configuration in it.
+///
+/// # Errors
+/// [`RunError::Format`] where the file cannot be read; [`RunError::State`] where it is damaged or another version's.
+pub fn read_state(path: &Path) -> Result<Run, RunError> {
+    let path = path.to_owned();
+    let bytes = std::fs::read(&path).map_err(|source| FormatError::Io {
+        operation: "read",
+        path: path.clone(),
+        source,
+    })?;
+    Run::from_snapshot(&bytes).map_err(|source| {
+        let source = Box::new(source);
+        RunError::State { path, source }
+    })
+}
+
+/// Makes the first free one of the folders `inside/stem-1`, `inside/stem-2`, ...: no two programs get the same.
+///
+/// # Errors
+/// [`RunError::Folder`] where it cannot be made.
+pub fn next_folder(inside: &Path, stem: &str) -> Result<PathBuf, RunError> {
+    let mut number = 1_u64;
+    loop {
+        let folder = inside.join(format!("{stem}-{number}"));
+        let made = std::fs::create_dir_all(inside).and_then(|()| std::fs::create_dir(&folder));
+        match made {
+            Ok(()) => return Ok(folder),
+            Err(error)
+                if error.kind() == ErrorKind::AlreadyExists
+                    && folder.symlink_metadata().is_ok() =>
+            {
+                number += 1;
+            }
+            Err(source) => return Err(RunError::Folder { folder, source }),
+        }
+    }
+}
+
+/// Makes things in a folder; where that fails, the folders that were made on the way go again.
+fn or_undone<T>(path: &Path, make: impl FnOnce() -> Result<T, RunError>) -> Result<T, RunError> {
+    let missing: Vec<&Path> = path
+        .ancestors()
+        .take_while(|it| !it.as_os_str().is_empty() && it.symlink_metadata().is_err())
+        .collect();
+    make().inspect_err(|_| {
+        // Deepest first; what another program has filled meanwhile stays, for only empty folders go.
+        for made in missing {
+            drop(std::fs::remove_dir(made));
+        }
+    })
 }

@@ -26,7 +26,7 @@ mod warnings;
 pub use assemble::{assemble, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate};
-pub use folder::{RunFolder, Written};
+pub use folder::{RunFolder, Written, next_folder, read_state};
 pub use peristalsis_configuration::Configuration;
 pub use peristalsis_figures::{Drawing, Paper};
 pub use peristalsis_formats::{Frame, TrajectoryFormat};

@@ -140,9 +140,15 @@ impl Run {
         if !self.recorder.fits(&configuration, &self.simulation) {
             return Err(mismatch());
         }
-        let (done, asked) = (self.simulation.step(), configuration.run.steps());
-        if done > asked && configuration.run.samples != self.configuration.run.samples {
-            return Err(RunError::TooShort { done, asked });
+        let (step, steps) = (self.simulation.step(), configuration.run.steps());
+        if step > steps && configuration.run.samples != self.configuration.run.samples {
+            let in_time = (configuration.run.duration, "t");
+            let (asked, unit) = configuration
+                .run
+                .periods
+                .map_or(in_time, |it| (it, "periods"));
+            let done = asked * step as f64 / steps as f64;
+            return Err(RunError::TooShort { done, asked, unit });
         }
         self.configuration = configuration;
         Ok(self)

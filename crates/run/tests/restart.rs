@@ -102,7 +102,7 @@ fn a_folder_goes_on_to_the_same_bits() {
         }
         folder.save_state(&run).unwrap();
         drop(run);
-        let (folder, run) = RunFolder::resume(&stopped).unwrap();
+        let (folder, run) = RunFolder::open(&stopped).unwrap();
         assert_eq!(run.progress().samples, 3);
         let run = finish(run);
         let summary = Summary::of(&run, Status::Complete, None);
@@ -132,7 +132,7 @@ fn in_pieces(preset: &str, settings: &str, steps: u64) -> u32 {
             break;
         }
         folder.save_state(&run).unwrap();
-        run = RunFolder::resume(&path).unwrap().1;
+        run = RunFolder::open(&path).unwrap().1;
         pieces += 1;
     }
     for table in [timeseries_table, profile_table, waves_table, snapshot_table] {

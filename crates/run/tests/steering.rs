@@ -72,7 +72,7 @@ fn a_steered_run_goes_on_from_its_checkpoint_to_the_same_bits() {
     let path = folder.path().join("saved");
     let saved = RunFolder::create(&path, run.configuration()).unwrap();
     saved.save_state(&run).unwrap();
-    let (_, mut resumed) = RunFolder::resume(&path).unwrap();
+    let (_, mut resumed) = RunFolder::open(&path).unwrap();
     advance(&mut run, 3);
     advance(&mut resumed, 3);
     assert_eq!(run.simulation().snapshot(), resumed.simulation().snapshot());

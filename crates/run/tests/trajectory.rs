@@ -148,7 +148,7 @@ fn killed_anywhere_and_gone_on_with_a_trajectory_is_the_same() {
         go_on(&mut run, &mut trajectory, 4);
         assert!(trajectory.report().frames > frames_then);
         drop((run, trajectory));
-        let (_, mut run) = RunFolder::resume(&stopped).unwrap();
+        let (_, mut run) = RunFolder::open(&stopped).unwrap();
         let mut trajectory = Trajectory::resume(&stopped, &mut run).unwrap().unwrap();
         assert_eq!(trajectory.report().frames, frames_then);
         go_on(&mut run, &mut trajectory, usize::MAX);

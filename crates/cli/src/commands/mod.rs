@@ -2,11 +2,13 @@
 
 pub(crate) mod check;
 pub(crate) mod completions;
+pub(crate) mod figures;
 pub(crate) mod newtonian;
 pub(crate) mod presets;
 pub(crate) mod render;
 pub(crate) mod reproduce;
 pub(crate) mod run;
+pub(crate) mod runs;
 pub(crate) mod schema;
 pub(crate) mod study;
 pub(crate) mod trajectory;

@@ -27,6 +27,7 @@ pub(crate) fn trajectory(arguments: &TrajectoryArguments) -> Result<ExitCode, Fa
     let plan = TrajectoryPlan::onward(&request, run.configuration(), now, arguments.duration)?;
     let usual = || folder.path().join(FROM_STATE);
     let out = arguments.out.clone().unwrap_or_else(usual);
+    RunFolder::check(&out)?;
     std::fs::create_dir_all(&out).map_err(|source| {
         let folder = out.clone();
         RunError::Folder { folder, source }

@@ -133,7 +133,7 @@ fn presets_and_arguments_that_do_not_exist() {
     let place = Place::new();
     place.refuses(
         "run --preset frictionles",
-        &["frictionles", "did you mean frictionless?"],
+        &["frictionles", "a similar value exists", "'frictionless'"],
     );
     place.refuses(
         "presets nothing",

@@ -1,21 +1,26 @@
 //! A run that is asked to stop: it ends with what it has, says so, and goes on to the same bits.
 
 use std::io::{BufRead, BufReader, Read};
+use std::process::Child;
 
 use crate::{Place, read_json, send};
 
 /// A run of a second or two, of which a tenth is done when its first line of progress comes.
-const LONG: &str =
+pub(crate) const LONG: &str =
     "run --preset frictionless-fine drive.width=2.6 drive.strain_rate=0.1 run.periods=150";
 
 /// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
 fn interrupted(place: &Place, line: &str, signal: &str) -> (Option<i32>, String) {
-    let mut child = place.start(line);
+    stopped_by(place.start(line), &[signal])
+}
+
+/// The same with a program that was started, and several signals at once.
+pub(crate) fn stopped_by(mut child: Child, signals: &[&str]) -> (Option<i32>, String) {
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut said = String::new();
     errors.read_line(&mut said).unwrap();
     assert!(said.contains("10 %"), "{said}");
-    send(signal, &child);
+    signals.iter().for_each(|signal| send(signal, &child));
     errors.read_to_string(&mut said).unwrap();
     (child.wait().unwrap().code(), said)
 }

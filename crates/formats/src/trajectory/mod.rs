@@ -163,6 +163,18 @@ impl TrajectoryFormat {
         })
     }
 
+    /// Gives the trajectory in a folder room for so many frames in all, to the same bytes as if it had been made so.
+    ///
+    /// # Errors
+    /// As [`TrajectoryFormat::resume`].
+    pub fn make_room(self, folder: &Path, frames: u64) -> Result<(), FormatError> {
+        match self {
+            Self::Gsd => gsd::make_room(&folder.join(self.file_name()), frames),
+            // They grow as they are written.
+            Self::Vtp | Self::Lammps => Ok(()),
+        }
+    }
+
     /// Bytes that a frame like this takes on disk, but for the first, which may hold more.
     pub fn frame_bytes(self, frame: &Frame) -> u64 {
         match self {

@@ -29,6 +29,9 @@ const MANY_PERIODS: f64 = 5.0;
 const HEIGHT: f64 = 42.0;
 const SPACE_TIME_HEIGHT: f64 = 50.0;
 
+/// The names of all figures.
+pub(crate) const NAMES: [&str; 4] = ["flow", "profile", "snapshot", "wall"];
+
 /// All figures of a run, by name. A static wave has no periods and no flow figure; without grains there is nothing to
 /// draw.
 pub(crate) fn draw_all(

@@ -67,20 +67,31 @@ impl Trajectory {
     /// [`RunError::HoldsAnotherRun`] where there is one; [`RunError::Format`] where a file cannot be written.
     pub fn begin(folder: &Path, plan: TrajectoryPlan, run: &mut Run) -> Result<Self, RunError> {
         Self::check(folder)?;
+        let formats = plan.formats.clone();
+        let begun = Self::new_files(folder, plan).and_then(|mut trajectory| {
+            run.follow_orientations();
+            trajectory.observe(run)?;
+            Ok(trajectory)
+        });
+        begun.inspect_err(|_| {
+            // So that it can be begun again.
+            let names = formats.iter().map(|format| format.file_name());
+            for name in names.chain([PLAN]) {
+                drop(std::fs::remove_file(folder.join(name)));
+            }
+        })
+    }
+
+    fn new_files(folder: &Path, plan: TrajectoryPlan) -> Result<Self, RunError> {
         let files = plan.formats.iter();
         let files = files.map(|format| format.create(folder, plan.frames()));
         let files = files.collect::<Result<_, _>>()?;
-        let text = toml::to_string(&plan)
-            .expect("a plan is whole numbers and names, which always serialise");
-        atomic::write(&folder.join(PLAN), text.as_bytes())?;
-        run.follow_orientations();
-        let mut trajectory = Self {
+        write_plan(folder, &plan)?;
+        Ok(Self {
             folder: folder.to_owned(),
             plan,
             files,
-        };
-        trajectory.observe(run)?;
-        Ok(trajectory)
+        })
     }
 
     /// Whether a folder is free for a trajectory; makes nothing.
@@ -93,8 +104,8 @@ impl Trajectory {
         RunError::if_one_is_in(folder, &[PLAN])
     }
 
-    /// Goes on with the trajectory in the folder of a run, without its frames after the run's present step; `None` where
-    /// it has none.
+    /// Goes on with the trajectory in the folder of a run, without its frames after the run's present step, and up to the
+    /// run's end, which may have changed; `None` where it has none.
     ///
     /// # Errors
     /// [`RunError::Format`] where a file cannot be read or written, or its frames are not the planned ones.
@@ -113,12 +124,20 @@ impl Trajectory {
                 .into());
             }
         };
-        let plan: TrajectoryPlan = toml::from_str(&text).map_err(|error| {
+        let written: TrajectoryPlan = toml::from_str(&text).map_err(|error| {
             let reason = error.message().to_owned();
             FormatError::NotATrajectory { path, reason }
         })?;
         run.follow_orientations();
         let step = run.simulation().step();
+        let plan = written.ending(run.configuration().run.steps());
+        if plan != written {
+            for format in &plan.formats {
+                drop(format.resume(folder, step)?);
+                format.make_room(folder, plan.frames())?;
+            }
+            write_plan(folder, &plan)?;
+        }
         let files = plan.formats.iter();
         let files = files.map(|format| format.resume(folder, step));
         let files = files.collect::<Result<_, _>>()?;
@@ -194,6 +213,12 @@ impl Trajectory {
             bytes: self.files.iter().map(|file| file.bytes()).sum(),
         }
     }
+}
+
+fn write_plan(folder: &Path, plan: &TrajectoryPlan) -> Result<(), RunError> {
+    let text =
+        toml::to_string(plan).expect("a plan is whole numbers and names, which always serialise");
+    Ok(atomic::write(&folder.join(PLAN), text.as_bytes())?)
 }
 
 /// What a trajectory of a whole run would take, by a frame of a run like it with `scale` times fewer spheres.

@@ -108,7 +108,8 @@ pub struct TrajectoryRequest {
     pub window: Window,
 }
 
-/// Which frames a trajectory has: steps `first`, `first + interval`, ..., at most `last`.
+/// Which frames a trajectory has: steps `first`, `first + interval`, ..., at most `last`, the end of the run unless its
+/// window ends before, with step `until`.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TrajectoryPlan {
@@ -116,6 +117,8 @@ pub struct TrajectoryPlan {
     pub(super) interval: u64,
     pub(super) first: u64,
     pub(super) last: u64,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub(super) until: Option<u64>,
 }
 
 impl TrajectoryPlan {
@@ -131,13 +134,13 @@ impl TrajectoryPlan {
         end: u64,
     ) -> Result<Self, RunError> {
         let interval = interval(request.every, configuration)?;
-        let place = |span: Option<Span>, missing: u64| {
-            span.map_or(Ok(missing), |span| {
-                Ok::<_, RunError>(span.steps(configuration)?.round() as u64)
-            })
+        let place = |span: Option<Span>| {
+            let steps = span.map(|span| span.steps(configuration)).transpose();
+            Ok::<_, RunError>(steps?.map(|steps| steps.round() as u64))
         };
-        let from = place(request.window.from, 0)?;
-        let to = place(request.window.to, end)?.min(end);
+        let from = place(request.window.from)?.unwrap_or(0);
+        let until = place(request.window.to)?;
+        let to = until.map_or(end, |until| until.min(end));
         // A trajectory that begins in the middle of a run keeps to the frames that it would have had from the start.
         let first = from + now.saturating_sub(from).div_ceil(interval) * interval;
         if first > to {
@@ -156,6 +159,7 @@ impl TrajectoryPlan {
             interval,
             first,
             last: to,
+            until,
         };
         let frames = plan.frames();
         if frames > MOST_FRAMES {
@@ -183,6 +187,15 @@ impl TrajectoryPlan {
             last: now.saturating_add(steps),
             ..on
         })
+    }
+
+    /// The same of a run that ends with step `end`.
+    pub(super) fn ending(&self, end: u64) -> Self {
+        let last = self.until.map_or(end, |until| until.min(end));
+        Self {
+            last,
+            ..self.clone()
+        }
     }
 
     /// Steps between two frames.

@@ -125,7 +125,7 @@ fn a_saved_state_goes_on_from_the_command_line() {
     );
     assert!(holds(&path, "config.toml") && holds(&path, "state.checkpoint"));
 
-    let (_, mut run) = RunFolder::resume(&path).unwrap();
+    let (_, mut run) = RunFolder::open(&path).unwrap();
     assert_eq!(run.simulation().step(), frame.head["step"]);
     let sent = run.simulation().bodies().position[0].to_array();
     assert_eq!(sent.map(|it| it as f32), frame.numbers[..3]);
@@ -149,6 +149,6 @@ fn a_state_beyond_the_end_of_its_run_has_something_to_go_on_with() {
     client.send(r#"{"type":"save"}"#);
     let saved = client.notice();
     assert_eq!(saved["type"], "saved", "{saved}");
-    let (_, run) = RunFolder::resume(&served.saves.join("tube-1")).unwrap();
+    let (_, run) = RunFolder::open(&served.saves.join("tube-1")).unwrap();
     assert_eq!(run.configuration().run.periods, Some(11.5));
 }

@@ -1,1 +1,436 @@
 //! Folders of runs, signals, full disks, going on.
+
+use serde_json::Value;
+
+use crate::{Place, read_json};
+
+/// What a run leaves, but for the time that it took.
+const PRODUCTS: &[&str] = &[
+    "config.toml",
+    "timeseries.parquet",
+    "profile.parquet",
+    "waves.parquet",
+    "flow.svg",
+    "flow.png",
+    "profile.svg",
+    "snapshot.svg",
+];
+
+/// The summary in a folder, but for the time that the run took.
+fn outcome(place: &Place, folder: &str) -> Value {
+    let mut summary = read_json(&place.path(folder).join("summary.json"));
+    let all = summary.as_object_mut().unwrap();
+    for key in ["seconds", "grain_steps_per_second", "trajectory"] {
+        all.remove(key);
+    }
+    summary
+}
+
+#[track_caller]
+fn assert_same_run(place: &Place, folders: [&str; 2]) {
+    place.assert_same(folders, PRODUCTS);
+    let [one, other] = folders.map(|folder| outcome(place, folder));
+    assert_eq!(one, other);
+}
+
+/// COMMAND-LINE, high 1.
+#[test]
+fn runs_that_begin_at_once_have_a_folder_each() {
+    let place = Place::new();
+    let run = |seed: u32| place.start(&format!("run SMALL run.seed={seed}"));
+    let mut children: Vec<_> = (1..=6).map(run).collect();
+    for child in &mut children {
+        assert!(child.wait().unwrap().success());
+    }
+    let mut seeds = Vec::new();
+    for number in 1..=6 {
+        let folder = place.path(&format!("runs/frictionless-{number}"));
+        let summary = read_json(&folder.join("summary.json"));
+        let text = std::fs::read_to_string(folder.join("config.toml")).unwrap();
+        let configuration: toml::Table = toml::from_str(&text).unwrap();
+        let seed = summary["seed"].as_i64().unwrap();
+        assert_eq!(configuration["run"]["seed"].as_integer(), Some(seed));
+        seeds.push(seed);
+    }
+    seeds.sort_unstable();
+    assert_eq!(seeds, [1, 2, 3, 4, 5, 6]);
+}
+
+/// COMMAND-LINE, high 1.
+#[test]
+fn of_runs_that_begin_at_once_in_one_folder_one_gets_it() {
+    let place = Place::new();
+    let run = |seed: u32| place.start(&format!("run SMALL --out one run.seed={seed}"));
+    let children: Vec<_> = (1..=5).map(run).collect();
+    let codes = children.into_iter().map(|mut child| child.wait().unwrap());
+    let mut codes: Vec<_> = codes.map(|status| status.code()).collect();
+    codes.sort_unstable();
+    assert_eq!(codes, [0, 2, 2, 2, 2].map(Some));
+    place.does("figures one");
+    let left = place.inventory().into_keys();
+    assert!(
+        !left
+            .into_iter()
+            .any(|name| name.to_string_lossy().contains("partial"))
+    );
+}
+
+/// COMMAND-LINE, low: the user's own `flow.png`.
+#[test]
+fn a_file_of_the_user_that_a_run_would_write_over_is_refused() {
+    for name in ["flow.png", "snapshot.svg", "timeseries.csv"] {
+        let place = Place::new();
+        std::fs::create_dir(place.path("mine")).unwrap();
+        place.write(&format!("mine/{name}"), "mine");
+        let before = place.inventory();
+        place.refuses("run SMALL --out mine", &["mine holds", name, "--out"]);
+        assert_eq!(place.inventory(), before);
+    }
+}
+
+/// COMMAND-LINE, medium 3 and 10.
+#[cfg(unix)]
+#[test]
+fn a_run_can_be_gone_on_with_from_its_first_step_after_a_kill() {
+    let place = Place::new();
+    let slow = "SMALL run.periods=1 run.time_step=1e-9";
+    let mut child = place.start(&format!("run --out killed {slow}"));
+    while !place.path("killed/state.checkpoint").is_file() {
+        std::thread::sleep(std::time::Duration::from_millis(10));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    place.does("figures killed");
+    place.refuses(
+        "run SMALL --checkpoint-every 3",
+        &["--checkpoint-every", "30m"],
+    );
+}
+
+/// COMMAND-LINE, medium 3.
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_with_frames_within_the_first_minute_leaves_a_state_and_a_true_promise() {
+    let place = Place::new();
+    let run = "run SMALL --trajectory lammps --trajectory-every 0.01 --checkpoint-every 1h";
+    crate::limits::with_small_files(&place, 256, &format!("{run} --out stopped"))
+        .expect_code(1)
+        .says(&["peristalsis run --resume stopped"]);
+    place.does("run --resume stopped");
+    place.does(&format!("{run} --out through"));
+    place.assert_same(["stopped", "through"], &["trajectory.lammpstrj"]);
+    assert_same_run(&place, ["stopped", "through"]);
+}
+
+/// PYTHON, high 4: GNU `timeout` signals the program and then its group; and COMMAND-LINE, medium 10: a lost connection.
+#[cfg(unix)]
+#[test]
+fn signals_that_come_twice_at_once_and_a_lost_connection_end_a_run_with_its_state() {
+    use crate::signals::{LONG, stopped_by};
+    for (signals, expected) in [
+        (["TERM", "TERM"], 143),
+        (["INT", "TERM"], 143),
+        (["HUP", "HUP"], 129),
+    ] {
+        let place = Place::new();
+        let child = place.start(&format!("{LONG} --out stopped"));
+        let (code, said) = stopped_by(child, &signals);
+        assert!(
+            code == Some(expected) || code == Some(130),
+            "{code:?} {said}"
+        );
+        assert!(said.contains("stopped after"), "{said}");
+        let summary = read_json(&place.path("stopped/summary.json"));
+        assert_eq!(summary["status"], "interrupted");
+    }
+}
+
+/// COMMAND-LINE, medium 10.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_under_nohup_outlives_its_terminal() {
+    use std::process::Stdio;
+    let place = Place::new();
+    let mut command = std::process::Command::new("sh");
+    let line = crate::words(crate::signals::LONG).join(" ");
+    let line = format!(
+        "trap '' HUP; exec {} {line} --out whole",
+        env!("CARGO_BIN_EXE_peristalsis")
+    );
+    let command = command.args(["-c", &line]).current_dir(place.path(""));
+    let child = command
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let (code, said) = crate::signals::stopped_by(child.unwrap(), &["HUP"]);
+    assert_eq!(code, Some(0), "{said}");
+}
+
+/// COMMAND-LINE, medium 4.
+#[test]
+fn a_table_that_a_run_left_is_renewed_when_it_goes_on() {
+    let place = Place::new();
+    place.does("run SMALL --csv --out on");
+    place.does("run --resume on --periods 6");
+    place.does("run SMALL --csv --out whole run.periods=6");
+    place.assert_same(["on", "whole"], &["timeseries.csv"]);
+    assert_same_run(&place, ["on", "whole"]);
+}
+
+/// COMMAND-LINE, medium 9.
+#[test]
+fn a_complete_run_is_lengthened_to_the_run_that_was_asked_for_at_once() {
+    for (preset, settings) in [
+        (
+            "frictionless",
+            "grains.number=20 tube.waves=2 observe.late_fraction=0.4",
+        ),
+        (
+            "frictionless",
+            "grains.number=20 tube.waves=2 drive.schedule=ramp drive.ramp_periods=3",
+        ),
+        (
+            "frictional",
+            "grains.number=20 observe.samples_per_period=40",
+        ),
+    ] {
+        let place = Place::new();
+        let unit = if preset == "frictional" { 0.05 } else { 1.0 };
+        let frames = format!(
+            "--trajectory gsd,vtp,lammps --trajectory-every {}",
+            0.3 * unit
+        );
+        let run = format!("run --preset {preset} {settings} {frames}");
+        let [short, long] = [2.0 * unit, 5.0 * unit];
+        place.does(&format!("{run} --out on run.periods={short}"));
+        place.refuses("run --resume on", &["it is complete", "--periods"]);
+        let before = place.inventory();
+        let less = format!("run --resume on --periods {unit}");
+        place.refuses(&less, &["has done", "periods already"]);
+        assert_eq!(place.inventory(), before);
+        place.does(&format!("run --resume on --periods {long}"));
+        place.does(&format!("{run} --out whole run.periods={long}"));
+        assert_same_run(&place, ["on", "whole"]);
+        place.assert_same(
+            ["on", "whole"],
+            &[
+                "trajectory.gsd",
+                "trajectory.pvd",
+                "trajectory.lammpstrj",
+                "trajectory.toml",
+            ],
+        );
+    }
+}
+
+/// COMMAND-LINE, medium 9.
+#[test]
+fn a_run_of_a_static_wave_is_lengthened_by_its_duration() {
+    let place = Place::new();
+    let run = "run --preset frictionless drive.strain_rate=0 grains.number=20 tube.waves=2";
+    place.does(&format!("{run} --out on run.duration=10"));
+    place
+        .does("run --resume on --duration 30")
+        .says(&["from its start"]);
+    place.does(&format!("{run} --out whole run.duration=30"));
+    place.assert_same(
+        ["on", "whole"],
+        &["config.toml", "timeseries.parquet", "snapshot.svg"],
+    );
+    place.refuses("run --resume on --duration 20", &["has done 30 t already"]);
+}
+
+/// COMMAND-LINE, medium 9.
+#[test]
+fn a_window_of_frames_that_a_longer_run_goes_on_with_ends_where_it_was_asked_to() {
+    let place = Place::new();
+    let run = "run SMALL --trajectory gsd --trajectory-window";
+    place.does(&format!("{run} 1:3 --out within"));
+    place.does(&format!("{run} 1:5 --out beyond"));
+    for folder in ["within", "beyond"] {
+        place.does(&format!("run --resume {folder} --periods 6"));
+    }
+    place.does(&format!("{run} 1:3 --out three run.periods=6"));
+    place.does(&format!("{run} 1:5 --out five run.periods=6"));
+    place.assert_same(["within", "three"], &["trajectory.gsd"]);
+    place.assert_same(["beyond", "five"], &["trajectory.gsd"]);
+}
+
+/// COMMAND-LINE, medium 9.
+#[test]
+fn figures_are_drawn_again_to_the_same_bytes() {
+    let place = Place::new();
+    place.does("run SMALL --out one");
+    let before = place.inventory();
+    for name in ["flow.svg", "flow.png", "profile.png", "snapshot.svg"] {
+        std::fs::remove_file(place.path("one").join(name)).unwrap();
+    }
+    place.does("figures one").shows(&["one/flow.svg"]);
+    let content = |inventory: crate::Inventory| {
+        let files = inventory.into_iter();
+        files
+            .map(|(name, file)| (name, file.map(|(bytes, _)| bytes)))
+            .collect::<Vec<_>>()
+    };
+    assert!(content(place.inventory()) == content(before));
+    place.refuses("figures nowhere", &["nowhere holds no run"]);
+}
+
+/// PYTHON, high 5: what either program saves, the other goes on with.
+#[test]
+fn a_state_in_a_file_goes_on_in_a_new_folder() {
+    let place = Place::new();
+    place.does("run SMALL --out short run.periods=2");
+    std::fs::copy(
+        place.path("short/state.checkpoint"),
+        place.path("mine.snapshot"),
+    )
+    .unwrap();
+    place.refuses("run --resume mine.snapshot", &["complete", "--periods"]);
+    place.does("run --resume mine.snapshot --periods 4 --out on");
+    place.does("run SMALL --out whole");
+    assert_same_run(&place, ["on", "whole"]);
+    place.does("run --resume mine.snapshot --periods 3");
+    assert!(place.path("runs/mine-1/summary.json").is_file());
+    place.does("run --resume short --periods 4 --out branch");
+    assert_same_run(&place, ["branch", "whole"]);
+
+    let bytes = std::fs::read(place.path("mine.snapshot")).unwrap();
+    place.write("mine.snapshot", &bytes[..bytes.len() / 2]);
+    place.refuses(
+        "run --resume mine.snapshot",
+        &["mine.snapshot", "cut short"],
+    );
+}
+
+/// COMMAND-LINE, wanted: `runs list`.
+#[test]
+fn runs_are_listed_with_what_came_out() {
+    let place = Place::new();
+    place.does("runs").shows(&["no runs below runs"]);
+    place.does("run SMALL");
+    place.does("run SMALL --out runs/below/other run.seed=2 run.periods=1");
+    std::fs::create_dir_all(place.path("runs/broken")).unwrap();
+    place.write("runs/broken/config.toml", "nothing = ");
+    let shown = place.does("runs");
+    shown.shows(&[
+        "runs/frictionless-1",
+        "4 of 4",
+        "complete",
+        "unreadable",
+        "0.05",
+    ]);
+    let runs = place.does("runs --json").json();
+    let runs = runs.as_array().unwrap();
+    let folders: Vec<_> = runs
+        .iter()
+        .map(|run| run["folder"].as_str().unwrap())
+        .collect();
+    assert_eq!(
+        folders,
+        ["runs/below/other", "runs/broken", "runs/frictionless-1"]
+    );
+    let summary = read_json(&place.path("runs/frictionless-1/summary.json"));
+    assert_eq!(runs[2]["flow_rate_ratio"], summary["flow_rate_ratio"]);
+    assert_eq!(runs[2]["grains"], 20);
+    assert_eq!(runs[0]["seed"], 2);
+    place.refuses("runs nowhere", &["nowhere", "folders of runs"]);
+}
+
+/// COMMAND-LINE, wanted: `run --seeds` with the scatter shown.
+#[test]
+fn seeds_run_side_by_side_and_their_scatter_is_shown() {
+    let place = Place::new();
+    let all = place
+        .does("run SMALL --seeds 1..3 --out many --json")
+        .json();
+    let ratios: Vec<f64> = (1..=3)
+        .map(|seed| {
+            let single = place.does(&format!(
+                "run SMALL --out one-{seed} --json run.seed={seed}"
+            ));
+            assert_same_run(
+                &place,
+                [&format!("one-{seed}"), &format!("many/seed-{seed}")],
+            );
+            single.json()["flow_rate_ratio"].as_f64().unwrap()
+        })
+        .collect();
+    let mean = ratios.iter().sum::<f64>() / 3.0;
+    let squares: f64 = ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum();
+    let flow = &all["flow_rate_ratio"];
+    let close = |value: &Value, expected: f64| (value.as_f64().unwrap() - expected).abs() < 1e-12;
+    assert!(
+        close(&flow["mean"], mean) && close(&flow["standard_deviation"], (squares / 2.0).sqrt())
+    );
+    assert!(close(&flow["error_of_mean"], (squares / 6.0).sqrt()));
+    assert_eq!(all["replicas"][1]["seed"], 2);
+
+    place.refuses(
+        "run SMALL --seeds 2,3 --out many",
+        &["many/seed-2 holds another run"],
+    );
+    place.refuses("run SMALL --seeds 3..1", &["1..10"]);
+    place.does("run SMALL --seeds 2,5").shows(&[
+        "seed 5: J/Jmax = ",
+        "within this run",
+        "mean of 2 seeds",
+        "scatter between seeds",
+    ]);
+    assert!(
+        place
+            .path("runs/frictionless-1/seed-5/summary.json")
+            .is_file()
+    );
+    place.does("run --resume many --periods 6 --quiet");
+    place.does("run SMALL --out longer run.seed=3 run.periods=6");
+    assert_same_run(&place, ["longer", "many/seed-3"]);
+}
+
+/// COMMAND-LINE, medium 5.
+#[test]
+fn the_error_says_what_it_is_an_error_of_and_rounding_is_none() {
+    let place = Place::new();
+    place
+        .does("run SMALL --out results")
+        .shows(&["within this run, mean of its last 25 %"]);
+    let short = place.does("run SMALL --out short run.periods=0.05").stdout;
+    assert!(
+        short.contains("no transition within 0.050 periods"),
+        "{short}"
+    );
+}
+
+/// COMMAND-LINE, medium 8 and low: `trajectory` into a run, a damaged trajectory, threads that change nothing.
+#[test]
+fn what_would_write_into_a_run_or_go_on_with_a_damaged_one_is_refused() {
+    let place = Place::new();
+    place.does("run SMALL --out one --trajectory gsd");
+    place.does("run SMALL --out other");
+    let before = place.inventory();
+    place.refuses("trajectory one --out one", &["one holds another run"]);
+    place.refuses("trajectory one --out other", &["other holds another run"]);
+    assert_eq!(place.inventory(), before);
+    place.write("one/trajectory.gsd", "damaged");
+    place.refuses("run --resume one --periods 6", &["trajectory.gsd"]);
+    place
+        .does("run --preset frictional --threads 2 --out frictional grains.number=20 run.periods=0.05")
+        .says(&["--threads changes nothing here"]);
+}
+
+/// COMMAND-LINE, low: messages.
+#[test]
+fn names_that_are_given_in_the_wrong_place_are_put_right() {
+    let place = Place::new();
+    place.refuses("run frictionless", &["--preset frictionless"]);
+    let study = "name = \"many\"\npreset = \"frictionless\"\n\n[base]\nrun.periods = 1\n";
+    place.write("study.toml", study);
+    place.refuses(
+        "run study.toml",
+        &["study.toml is a study", "study run study.toml"],
+    );
+    let completions = place.does("completions bash").stdout;
+    assert!(completions.contains("frictionless frictionless-fine frictional"));
+    let help = place.does("run --help").stdout;
+    assert!(help.contains("--checkpoint-every"));
+}

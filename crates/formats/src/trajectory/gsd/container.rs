@@ -13,10 +13,11 @@
 //! cut back and goes on has the same bytes as one in one go.
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use super::super::append::Growing;
+use crate::atomic;
 use crate::error::FormatError;
 
 pub(super) const MAGIC: u64 = 0x65df_65df_65df_65df;
@@ -155,25 +156,42 @@ impl Container {
     pub(super) fn create(path: &Path, capacity: u64) -> Result<Self, FormatError> {
         let mut file = Growing::create(path)?;
         let capacity = capacity.max(1);
-        let names_at = HEADER_BYTES + capacity * ENTRY_BYTES;
-        let mut header = [0; HEADER_BYTES as usize];
-        header[0..8].copy_from_slice(&MAGIC.to_le_bytes());
-        header[8..16].copy_from_slice(&HEADER_BYTES.to_le_bytes());
-        header[16..24].copy_from_slice(&capacity.to_le_bytes());
-        header[24..32].copy_from_slice(&names_at.to_le_bytes());
-        header[32..40].copy_from_slice(&(NAMES_BYTES / NAME_UNIT).to_le_bytes());
-        header[40..44].copy_from_slice(&SCHEMA_VERSION.to_le_bytes());
-        header[44..48].copy_from_slice(&FORMAT_VERSION.to_le_bytes());
-        header[48..48 + APPLICATION.len()].copy_from_slice(APPLICATION.as_bytes());
-        header[112..112 + SCHEMA.len()].copy_from_slice(SCHEMA.as_bytes());
-        file.append(&header)?;
-        file.set_end(names_at + NAMES_BYTES)?;
+        file.append(&header(capacity))?;
+        file.set_end(first_array(capacity))?;
         Ok(Self {
             file,
             capacity,
             entries: 0,
             names: Vec::new(),
             frames: 0,
+        })
+    }
+
+    /// Gives a file that [`Container::create`] made room for so many arrays, as if it had been made so.
+    pub(super) fn make_room(path: &Path, capacity: u64) -> Result<(), FormatError> {
+        let mut file = Growing::open(path)?;
+        let before = capacity_of(&mut file)?;
+        let after = capacity.max(1);
+        let entries = read_entries(file.file(), path, HEADER_BYTES, before)?;
+        if before == after || entries.len() as u64 > after {
+            return Ok(());
+        }
+        let (from, to) = (first_array(before), first_array(after));
+        let moved = |entry: &Entry| Entry {
+            location: entry.location.wrapping_sub(from).wrapping_add(to),
+            ..*entry
+        };
+        let index: Vec<u8> = entries
+            .iter()
+            .map(moved)
+            .flat_map(|it| it.encode())
+            .collect();
+        atomic::write_with(path, |new| {
+            new.write_all(&header(after))?;
+            new.write_all(&index)?;
+            new.seek(SeekFrom::Start(to - NAMES_BYTES))?;
+            file.file().seek(SeekFrom::Start(from - NAMES_BYTES))?;
+            std::io::copy(file.file(), new).map(drop)
         })
     }
 
@@ -186,22 +204,9 @@ impl Container {
     ) -> Result<Self, FormatError> {
         let mut file = Growing::open(path)?;
         let damaged = |reason: &str| FormatError::not_a_trajectory(path, reason);
-        let length = file.end();
-        let header = read(file.file(), path, 0, HEADER_BYTES.min(length))?;
-        if header.len() < HEADER_BYTES as usize || u64::at_start(&header) != MAGIC {
-            return Err(damaged("it does not begin like a GSD file"));
-        }
-        let [index_at, capacity, names_at] = [8, 16, 24].map(|at| u64::at_start(&header[at..]));
-        let first_array = capacity
-            .checked_mul(ENTRY_BYTES)
-            .and_then(|bytes| bytes.checked_add(HEADER_BYTES + NAMES_BYTES));
-        let of_ours = index_at == HEADER_BYTES
-            && header[48..].starts_with(b"peristalsis ")
-            && first_array.is_some_and(|end| end <= length && names_at == end - NAMES_BYTES);
-        let (true, Some(first_array)) = (of_ours, first_array) else {
-            return Err(damaged("it is another program's GSD file, or cut short"));
-        };
-        let names = read_names(file.file(), path, names_at, NAMES_BYTES)?;
+        let capacity = capacity_of(&mut file)?;
+        let (first_array, length) = (first_array(capacity), file.end());
+        let names = read_names(file.file(), path, first_array - NAMES_BYTES, NAMES_BYTES)?;
         let wanted = names.iter().position(|known| known == name);
 
         let written = read_entries(file.file(), path, HEADER_BYTES, capacity)?;
@@ -314,6 +319,48 @@ impl Container {
 
     fn next_entry(&self) -> u64 {
         HEADER_BYTES + self.entries * ENTRY_BYTES
+    }
+}
+
+/// Where the first array begins in a file with room for so many.
+fn first_array(capacity: u64) -> u64 {
+    HEADER_BYTES + capacity * ENTRY_BYTES + NAMES_BYTES
+}
+
+/// The header of a file with room for so many arrays.
+fn header(capacity: u64) -> [u8; HEADER_BYTES as usize] {
+    let names_at = first_array(capacity) - NAMES_BYTES;
+    let mut header = [0; HEADER_BYTES as usize];
+    header[0..8].copy_from_slice(&MAGIC.to_le_bytes());
+    header[8..16].copy_from_slice(&HEADER_BYTES.to_le_bytes());
+    header[16..24].copy_from_slice(&capacity.to_le_bytes());
+    header[24..32].copy_from_slice(&names_at.to_le_bytes());
+    header[32..40].copy_from_slice(&(NAMES_BYTES / NAME_UNIT).to_le_bytes());
+    header[40..44].copy_from_slice(&SCHEMA_VERSION.to_le_bytes());
+    header[44..48].copy_from_slice(&FORMAT_VERSION.to_le_bytes());
+    header[48..48 + APPLICATION.len()].copy_from_slice(APPLICATION.as_bytes());
+    header[112..112 + SCHEMA.len()].copy_from_slice(SCHEMA.as_bytes());
+    header
+}
+
+/// How many arrays a file of ours has room for.
+fn capacity_of(file: &mut Growing) -> Result<u64, FormatError> {
+    let (length, path) = (file.end(), file.path().to_owned());
+    let damaged = |reason: &str| FormatError::not_a_trajectory(&path, reason);
+    let header = read(file.file(), &path, 0, HEADER_BYTES.min(length))?;
+    if header.len() < HEADER_BYTES as usize || u64::at_start(&header) != MAGIC {
+        return Err(damaged("it does not begin like a GSD file"));
+    }
+    let [index_at, capacity, names_at] = [8, 16, 24].map(|at| u64::at_start(&header[at..]));
+    let end = capacity
+        .checked_mul(ENTRY_BYTES)
+        .and_then(|bytes| bytes.checked_add(HEADER_BYTES + NAMES_BYTES));
+    let is_ours = index_at == HEADER_BYTES
+        && header[48..].starts_with(b"peristalsis ")
+        && end.is_some_and(|end| end <= length && names_at == end - NAMES_BYTES);
+    match is_ours {
+        true => Ok(capacity),
+        false => Err(damaged("it is another program's GSD file, or cut short")),
     }
 }
 

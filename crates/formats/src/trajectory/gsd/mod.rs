@@ -49,6 +49,11 @@ pub(super) fn create(path: &Path, frames: u64) -> Result<Container, FormatError>
     Container::create(path, frames.saturating_mul(MOST_CHUNKS))
 }
 
+/// Gives a trajectory room for so many frames in all.
+pub(super) fn make_room(path: &Path, frames: u64) -> Result<(), FormatError> {
+    Container::make_room(path, frames.saturating_mul(MOST_CHUNKS))
+}
+
 /// A trajectory to go on with, without its frames after `step`.
 pub(super) fn resume(path: &Path, step: u64) -> Result<Container, FormatError> {
     Container::resume(path, STEP, |found| found <= step)

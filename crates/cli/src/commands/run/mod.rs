@@ -1,0 +1,217 @@
+//! `peristalsis run`
+
+mod replicas;
+mod words;
+mod work;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use peristalsis_configuration::{Configuration, SourceFile, Sources};
+use peristalsis_engine::Instructions;
+use peristalsis_run::{
+    Run, RunError, RunFolder, TrajectoryPlan, overlap_warning, read_state, warnings,
+};
+
+use crate::arguments::RunArguments;
+use crate::commands::trajectory::{in_words as in_one_line, request};
+use crate::commands::{print, say, tell, warn};
+use crate::failure::Failure;
+use crate::progress::Display;
+use crate::sources::{configuration, locate, name};
+use crate::stop::Stop;
+
+pub(crate) use self::words::known;
+use self::words::{how_far, in_words};
+use self::work::{Ending, Work};
+
+/// Where runs go that are given no folder.
+pub(crate) const RUNS: &str = "runs";
+/// Grains whose packing takes long enough to say so.
+const SLOW_PACKING: u64 = 5_000;
+
+pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
+    if let Some(replicas) = replicas::replicas(arguments)? {
+        return replicas::run(arguments, replicas);
+    }
+    let stop = Stop::watch()?;
+    let (folder, mut run) = match &arguments.resume {
+        Some(source) => go_on(arguments, source)?,
+        None => begin(arguments)?,
+    };
+    compute_with(arguments, &mut run)?;
+    stop.keep_results();
+    let work = Work::begin(arguments, folder, run)?;
+    let mut display = Display::new(arguments.quiet, work.run.configuration().run.samples);
+    let (work, outcome) = work.finish(&stop, &mut |progress| display.update(progress));
+    display.finish();
+    let (run, summary) = (&work.run, &outcome.summary);
+    print(&match arguments.json {
+        true => summary.to_json(),
+        false => in_words(run, summary),
+    })?;
+    overlap_warning(run).iter().for_each(warn);
+    let tell = |text: String| tell(arguments.quiet, &text);
+    if let Some(report) = &summary.trajectory {
+        tell(format!("trajectory: {}", in_one_line(report)));
+    }
+    // Where the disk is full, what could not be written first is what to speak of.
+    if !matches!(outcome.ending, Ending::Unwritten(_)) {
+        outcome.finished?;
+    }
+    let place = work.folder.path().display();
+    match outcome.ending {
+        Ending::Unwritten(source) => Err(Failure::Trajectory {
+            folder: work.folder.path().to_owned(),
+            source,
+        }),
+        Ending::Complete => {
+            tell(format!("written to {place}"));
+            Ok(ExitCode::SUCCESS)
+        }
+        Ending::Stopped(code) => {
+            tell(format!(
+                "stopped {}; what there is is in {place}\ngo on with: peristalsis run --resume {place}",
+                how_far(run, summary)
+            ));
+            Ok(ExitCode::from(code))
+        }
+        Ending::Failed(error) => {
+            tell(format!("what was measured, and the state, are in {place}"));
+            Err(error.into())
+        }
+    }
+}
+
+/// Takes the instructions and threads asked for.
+fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> {
+    let instructions = match arguments.instructions {
+        None => Instructions::widest(),
+        Some(wanted) if wanted.available() => wanted,
+        Some(_) => {
+            return Err(Failure::usage(
+                "this machine does not have the instructions that --instructions asks for",
+                "leave it out: the widest that there are is the default",
+            ));
+        }
+    };
+    if arguments.threads > 1 && !run.simulation().takes_threads() {
+        say(
+            "--threads changes nothing here: only equal smooth grains in a prescribed tube are computed by several threads",
+        );
+    }
+    Ok(run.compute_with(instructions, usize::from(arguments.threads))?)
+}
+
+/// Reads the configuration, packs the grains, makes the folder.
+fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
+    let configuration = checked(arguments, configuration(&arguments.configuration)?)?;
+    warnings(&configuration).iter().for_each(warn);
+    if let Some(path) = &arguments.out {
+        // Before the work of packing, and again when the folder is made.
+        RunFolder::check(path)?;
+    }
+    let run = packed(arguments, configuration)?;
+    let folder = new_folder(arguments, &name(&arguments.configuration), &run)?;
+    Ok((folder, run))
+}
+
+/// A configuration that can run as asked for: what is refused is refused before anything is made.
+fn checked(
+    arguments: &RunArguments,
+    configuration: Configuration,
+) -> Result<Configuration, Failure> {
+    if let Some(request) = request(&arguments.frames) {
+        TrajectoryPlan::new(&request, &configuration, 0, configuration.run.steps())?;
+    }
+    Ok(configuration)
+}
+
+/// A new run with its grains packed.
+fn packed(arguments: &RunArguments, configuration: Configuration) -> Result<Run, Failure> {
+    let grains = configuration.grains.number;
+    if grains > SLOW_PACKING {
+        tell(arguments.quiet, &format!("packing {grains} grains"));
+    }
+    let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
+    overlap_warning(&run).iter().for_each(warn);
+    Ok(run)
+}
+
+/// The folder asked for, or else the first free one runs/NAME-K.
+fn new_folder(arguments: &RunArguments, name: &str, run: &Run) -> Result<RunFolder, Failure> {
+    Ok(match &arguments.out {
+        Some(path) => RunFolder::create(path, run.configuration())?,
+        None => RunFolder::create_next(Path::new(RUNS), name, run.configuration())?,
+    })
+}
+
+/// Goes on with the run of a folder in it, or with the state in a file in a new folder.
+fn go_on(arguments: &RunArguments, source: &Path) -> Result<(RunFolder, Run), Failure> {
+    if !source.is_file() && arguments.out.is_none() {
+        return go_on_in(arguments, source);
+    }
+    let run = match source.is_file() {
+        true => read_state(source)?,
+        false => RunFolder::open(source)?.1,
+    };
+    let run = lasting(arguments, run, source)?;
+    let name = source.file_stem().unwrap_or_default().to_string_lossy();
+    let folder = new_folder(arguments, &name, &run)?;
+    Ok((folder, run))
+}
+
+/// Goes on with the run of a folder, in it.
+fn go_on_in(arguments: &RunArguments, path: &Path) -> Result<(RunFolder, Run), Failure> {
+    let (folder, run) = RunFolder::open(path)?;
+    let length = run.configuration().run.samples;
+    let run = lasting(arguments, run, path)?;
+    if run.configuration().run.samples != length || arguments.duration.is_some() {
+        folder.save_configuration(&run)?;
+    }
+    Ok((folder, run))
+}
+
+/// The run with the length asked for, if one is, and with something left to do.
+fn lasting(arguments: &RunArguments, run: Run, source: &Path) -> Result<Run, Failure> {
+    let length = match (arguments.periods, arguments.duration) {
+        (Some(periods), _) => format!("run.periods={periods}"),
+        (None, Some(duration)) => format!("run.duration={duration}"),
+        (None, None) if run.is_complete() => {
+            let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
+            return Err(RunError::NothingToResume { folder, reason }.into());
+        }
+        (None, None) => return Ok(run),
+    };
+    let text = run.configuration().to_toml();
+    let name = source.display().to_string();
+    let configuration = Configuration::from_sources(&Sources {
+        file: Some(SourceFile {
+            name: &name,
+            text: &text,
+        }),
+        preset: None,
+        overrides: &[length],
+    })?;
+    if run.configuration().drive.period().is_some() {
+        return Ok(run.under(configuration)?);
+    }
+    let (done, asked) = (run.simulation().time(), configuration.run.duration);
+    if asked < done {
+        let unit = "t";
+        return Err(RunError::TooShort { done, asked, unit }.into());
+    }
+    if source.join("trajectory.toml").exists() {
+        return Err(Failure::usage(
+            "a run of a wave that stands still is sampled at other times when it is longer, and its trajectory would not fit",
+            format!(
+                "begin it anew: peristalsis run {name}/config.toml --set run.duration={asked} --out DIR"
+            ),
+        ));
+    }
+    tell(
+        arguments.quiet,
+        "the wave stands still: a longer run is sampled at other times, and is computed from its start",
+    );
+    packed(arguments, configuration)
+}

@@ -1,0 +1,319 @@
+//! Runs that differ in their seed alone, side by side: a folder each, and mean and scatter of what they came to.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::time::Instant;
+
+use peristalsis_run::{RunFolder, next_folder, warnings};
+use serde_json::{Value, json};
+
+use super::words::known;
+use super::work::{Ending, Outcome, Work};
+use super::{RUNS, checked, compute_with, lasting, packed};
+use crate::arguments::{RunArguments, Seeds};
+use crate::commands::study::processors;
+use crate::commands::{code_of, print, print_json, tell, warn};
+use crate::failure::Failure;
+use crate::progress::Display;
+use crate::sources::{configuration, name};
+use crate::stop::Stop;
+
+/// What the folder of a replica is called before its seed.
+const STEM: &str = "seed-";
+
+/// The folders of replicas.
+pub(super) struct Replicas {
+    folder: PathBuf,
+    each: Vec<(u64, RunFolder)>,
+}
+
+/// A replica that was worked on: its seed, its folder, and what it came to.
+type Worked = (u64, PathBuf, Result<Outcome, Failure>);
+
+/// The replicas that are asked for or gone on with; `None` where the call is for one run.
+pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Failure> {
+    if let Some(seeds) = &arguments.seeds {
+        return begin(arguments, seeds).map(Some);
+    }
+    let Some(folder) = &arguments.resume else {
+        return Ok(None);
+    };
+    if arguments.out.is_some() || folder.join("config.toml").exists() {
+        return Ok(None);
+    }
+    let below = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let replica = |path: PathBuf| {
+        let seed = path
+            .file_name()?
+            .to_str()?
+            .strip_prefix(STEM)?
+            .parse()
+            .ok()?;
+        Some((seed, RunFolder::named(&path)))
+    };
+    let mut each: Vec<_> = below.filter_map(|entry| replica(entry.path())).collect();
+    each.sort_by_key(|(seed, _)| *seed);
+    let folder = folder.clone();
+    Ok((!each.is_empty()).then_some(Replicas { folder, each }))
+}
+
+/// Makes a folder for each seed; where one cannot be made, none is.
+fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
+    let of_seed = |seed: &u64| {
+        let mut sources = arguments.configuration.clone();
+        sources.overrides.push(format!("run.seed={seed}"));
+        let configuration = configuration(&sources)?;
+        Ok::<_, Failure>((*seed, checked(arguments, configuration)?))
+    };
+    let configurations = seeds.0.iter().map(of_seed);
+    let configurations = configurations.collect::<Result<Vec<_>, _>>()?;
+    if let Some((_, one)) = configurations.first() {
+        warnings(one).iter().for_each(warn);
+    }
+    let folder = match &arguments.out {
+        Some(folder) => {
+            RunFolder::check(folder)?;
+            folder.clone()
+        }
+        None => next_folder(Path::new(RUNS), &name(&arguments.configuration))?,
+    };
+    let mut each = Vec::new();
+    for (seed, configuration) in configurations {
+        match RunFolder::create(&folder.join(format!("{STEM}{seed}")), &configuration) {
+            Ok(made) => each.push((seed, made)),
+            Err(error) => {
+                each.into_iter().for_each(|(_, made)| made.abandon());
+                return Err(error.into());
+            }
+        }
+    }
+    Ok(Replicas { folder, each })
+}
+
+/// Runs as many replicas at a time as there are processors for, and says what they came to.
+pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCode, Failure> {
+    let stop = Stop::watch()?;
+    // Every replica has its folder, and can be gone on with from the first moment.
+    stop.keep_results();
+    let number = replicas.each.len();
+    let at_once = (processors() / usize::from(arguments.threads)).clamp(1, number);
+    let begin = Instant::now();
+    let display = Mutex::new((Display::new(arguments.quiet, 1000), vec![0.0; number]));
+    let waiting: Mutex<VecDeque<_>> = Mutex::new(replicas.each.into_iter().enumerate().collect());
+    let worked: Mutex<Vec<Worked>> = Mutex::default();
+    let next = || locked(&waiting).pop_front();
+    let work = || {
+        while let Some((index, (seed, folder))) = next() {
+            let path = folder.path().to_owned();
+            let mut show = |part: f64| {
+                let (display, parts) = &mut *locked(&display);
+                parts[index] = part;
+                let done = 1000.0 * parts.iter().sum::<f64>() / number as f64;
+                let ended = parts.iter().filter(|part| **part >= 1.0).count();
+                let words = || format!("{ended} of {number} seeds");
+                display.show([done as u64, 1000], begin.elapsed(), words);
+            };
+            let outcome = replica(arguments, folder, &stop, &mut show);
+            if let Ok(outcome) = &outcome {
+                locked(&display).0.tell(&line(seed, outcome));
+            }
+            locked(&worked).push((seed, path, outcome));
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..at_once {
+            scope.spawn(work);
+        }
+    });
+    locked(&display).0.finish();
+    let mut worked = worked.into_inner().unwrap_or_default();
+    worked.sort_by_key(|(seed, ..)| *seed);
+    conclude(arguments, &replicas.folder, worked, &stop)
+}
+
+/// What a lock guards: a thread that panicked ends the program anyway.
+fn locked<T>(guarded: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    guarded
+        .lock()
+        .unwrap_or_else(std::sync::PoisonError::into_inner)
+}
+
+/// Begins or goes on with one replica.
+fn replica(
+    arguments: &RunArguments,
+    folder: RunFolder,
+    stop: &Stop,
+    show: &mut dyn FnMut(f64),
+) -> Result<Outcome, Failure> {
+    let is_begun = folder.has_state();
+    let mut run = match is_begun {
+        true => RunFolder::open(folder.path())?.1,
+        false => packed(arguments, folder.configuration()?)?,
+    };
+    if arguments.periods.is_some() || arguments.duration.is_some() {
+        run = lasting(arguments, run, folder.path())?;
+        folder.save_configuration(&run)?;
+    }
+    compute_with(arguments, &mut run)?;
+    let work = Work::begin(arguments, folder, run)?;
+    let total = work.run.configuration().run.samples as f64;
+    let (_, outcome) = work.finish(stop, &mut |progress| show(progress.samples as f64 / total));
+    Ok(outcome)
+}
+
+/// What a replica came to, in a line.
+fn line(seed: u64, outcome: &Outcome) -> String {
+    let summary = &outcome.summary;
+    let flow = match known(summary.flow_rate_ratio) {
+        (ratio, Some(error)) => format!("J/Jmax = {ratio:.4} ± {error:.4} within this run"),
+        (ratio, None) if ratio.is_finite() => format!("J/Jmax = {ratio:.4}"),
+        _ => "no J/Jmax".to_owned(),
+    };
+    let transition = match summary.transition_time {
+        Some(time) => format!("transition at t = {time:.1}"),
+        None => "no transition".to_owned(),
+    };
+    let ending = match &outcome.ending {
+        Ending::Complete => "",
+        Ending::Stopped(_) => "; stopped",
+        Ending::Unwritten(_) => "; stopped, since its trajectory cannot be written",
+        Ending::Failed(_) => "; diverged",
+    };
+    format!("seed {seed}: {flow}; {transition}{ending}")
+}
+
+/// Prints what the replicas came to, and answers the exit code.
+fn conclude(
+    arguments: &RunArguments,
+    folder: &Path,
+    worked: Vec<Worked>,
+    stop: &Stop,
+) -> Result<ExitCode, Failure> {
+    let outcomes = || {
+        worked
+            .iter()
+            .filter_map(|(.., outcome)| outcome.as_ref().ok())
+    };
+    let complete = outcomes().filter(|it| matches!(it.ending, Ending::Complete));
+    let complete: Vec<&Outcome> = complete.collect();
+    let ratios = complete.iter().map(|it| it.summary.flow_rate_ratio.0);
+    let flow = Scatter::of(ratios.filter(|ratio| ratio.is_finite()).collect());
+    let times: Vec<f64> = complete
+        .iter()
+        .filter_map(|it| it.summary.transition_time)
+        .collect();
+    let transitions = times.len();
+    // Where some had none, the mean of the others would be too early.
+    let transition = match transitions == complete.len() {
+        true => Scatter::of(times),
+        false => None,
+    };
+    if arguments.json {
+        let of_replica = |(seed, folder, outcome): &Worked| {
+            let mut all = match outcome {
+                Ok(outcome) => serde_json::to_value(&outcome.summary).unwrap_or_default(),
+                Err(error) => json!({ "status": "failed", "message": error.to_string() }),
+            };
+            all["seed"] = json!(seed);
+            all["folder"] = json!(folder.to_string_lossy());
+            all
+        };
+        print_json(&json!({
+            "folder": folder.to_string_lossy(),
+            "replicas": worked.iter().map(of_replica).collect::<Vec<_>>(),
+            "complete": complete.len(),
+            "flow_rate_ratio": flow.as_ref().map(Scatter::report),
+            "transitions": transitions,
+            "transition_time": transition.as_ref().map(Scatter::report),
+        }))?;
+    } else {
+        let lines = worked
+            .iter()
+            .filter_map(|(seed, _, outcome)| Some(line(*seed, outcome.as_ref().ok()?)));
+        let mut text = lines.collect::<Vec<_>>().join("\n") + "\n";
+        if let Some(flow) = &flow {
+            text += &format!("J/Jmax = {}\n", flow.in_words(4));
+        }
+        match (&transition, complete.len()) {
+            (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words(1)),
+            (None, 0) => {}
+            (None, number) => text += &format!("transition in {transitions} of {number} runs\n"),
+        }
+        print(&text)?;
+    }
+    let place = folder.display();
+    let mut is_well = true;
+    for (seed, _, outcome) in worked {
+        let failure = match outcome {
+            Err(failure) => failure,
+            Ok(Outcome {
+                ending: Ending::Failed(error) | Ending::Unwritten(error),
+                ..
+            }) => error.into(),
+            Ok(Outcome {
+                finished: Err(error),
+                ..
+            }) => error.into(),
+            Ok(_) => continue,
+        };
+        crate::failure::say(&format!("seed {seed}:"));
+        failure.report();
+        is_well = false;
+    }
+    if let Some(code) = stop.requested() {
+        let again = format!("stopped; go on with: peristalsis run --resume {place}");
+        tell(arguments.quiet, &again);
+        return Ok(ExitCode::from(code));
+    }
+    tell(arguments.quiet, &format!("written to {place}"));
+    Ok(code_of(is_well))
+}
+
+/// Mean and scatter of a number over the seeds.
+struct Scatter {
+    mean: f64,
+    /// Standard deviation between seeds; `None` of one.
+    deviation: Option<f64>,
+    number: usize,
+}
+
+impl Scatter {
+    fn of(values: Vec<f64>) -> Option<Self> {
+        let number = values.len();
+        let mean = values.iter().sum::<f64>() / number as f64;
+        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+        let deviation = (number > 1).then(|| (squares / (number as f64 - 1.0)).sqrt());
+        (number > 0).then_some(Self {
+            mean,
+            deviation,
+            number,
+        })
+    }
+
+    /// Standard error of the mean.
+    fn error(&self) -> Option<f64> {
+        Some(self.deviation? / (self.number as f64).sqrt())
+    }
+
+    fn in_words(&self, decimals: usize) -> String {
+        let (mean, number) = (self.mean, self.number);
+        let Some((error, deviation)) = self.error().zip(self.deviation) else {
+            return format!("{mean:.decimals$}, of one seed: no scatter is known");
+        };
+        format!(
+            "{mean:.decimals$} ± {error:.decimals$}, mean of {number} seeds and its standard error; scatter between \
+             seeds {deviation:.decimals$} (standard deviation)"
+        )
+    }
+
+    fn report(&self) -> Value {
+        json!({
+            "mean": self.mean,
+            "error_of_mean": self.error(),
+            "standard_deviation": self.deviation,
+            "number": self.number,
+        })
+    }
+}

@@ -1,0 +1,142 @@
+//! What came out of a run, in words.
+
+use peristalsis_configuration::Units;
+use peristalsis_run::{Pumping, Run, Summary};
+
+use crate::commands::significant;
+use crate::progress::seconds;
+
+/// Errors below this part of their number are rounding only.
+const ROUNDING: f64 = 1e-12;
+
+/// How far a run came: in periods, or in time where the wave stands still.
+pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
+    let extent = run.configuration().run;
+    match extent.periods {
+        Some(periods) => format!("after {} of {periods} periods", tenths(summary.periods)),
+        None => format!("at t = {:.1} of {}", summary.time, extent.duration),
+    }
+}
+
+pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
+    let configuration = run.configuration();
+    let transition = match summary.transition_time {
+        Some(time) => format!(
+            "transition at t = {time:.1} ({} periods): J/Jmax crosses {}",
+            tenths(time * configuration.drive.strain_rate),
+            configuration.observe.transition_threshold
+        ),
+        None if configuration.drive.period().is_none() => "the wave stands still".to_owned(),
+        None => format!("no transition within {} periods", tenths(summary.periods)),
+    };
+    let late = 100.0 * configuration.observe.late_fraction;
+    let mut flow = match known(summary.flow_rate_ratio) {
+        (ratio, Some(error)) => {
+            format!(
+                "J/Jmax = {ratio:.4} ± {error:.4} within this run, mean of its last {late:.0} %"
+            )
+        }
+        (ratio, _) if ratio.is_finite() => {
+            format!("J/Jmax = {ratio:.4}, mean of its last {late:.0} % (too short for an error)")
+        }
+        _ => format!(
+            "J = {}, mean of its last {late:.0} %; no J/Jmax without grains inside and a moving wave",
+            significant(summary.flow_rate() + 0.0, 4)
+        ),
+    };
+    if let Some((newtonian, _)) = summary.newtonian {
+        // The load of a fluid counts against its viscosity, which grains do not have.
+        let is_loaded = summary.pumping.is_some();
+        let load = if is_loaded { " without load" } else { "" };
+        flow.push_str(&format!(" (a Newtonian fluid{load}: {newtonian:.4})"));
+    }
+    if let Some(pumping) = &summary.pumping {
+        let (rise, power) = (pumping.pressure_rise, pumping.useful_power.0);
+        flow.push_str(&format!(
+            "\nagainst a pressure rise of {rise:.3e} m/(d t^2) a wavelength: useful power {power:.3e}, {}",
+            efficiency(pumping)
+        ));
+    }
+    let mass_flow = summary.flow_rate() * configuration.mean_grain_mass();
+    if let (Some(mass_flow), Some(power), Some(pressure), Some(largest)) = (
+        summary.in_si(mass_flow, Units::mass_flow),
+        summary.in_si(summary.wall_power(), Units::power),
+        summary.in_si(summary.wall_pressure, Units::pressure),
+        summary.in_si(summary.wall_pressure_largest, Units::pressure),
+    ) {
+        flow.push_str(&format!(
+            "\nin SI: {mass_flow:.3e} kg/s, wall power {power:.3e} W, pressure on the wall {pressure:.3e} Pa (at most \
+             {largest:.3e} averaged over 1/{} of a wavelength)",
+            configuration.observe.profile_bins
+        ));
+    }
+    let mut text = format!(
+        "{transition}\n{flow}\n{} grains, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} steps in {}: \
+         {:.2} million grain-steps/s\n",
+        configuration.grains.number,
+        summary.escaped,
+        summary.largest_overlap,
+        summary.energy_residual,
+        summary.steps,
+        seconds(summary.seconds),
+        summary.grain_steps_per_second() / 1e6
+    );
+    for diagnosis in &summary.wall_diagnosis {
+        text.push_str(&format!("the wall: {diagnosis}\n"));
+    }
+    text
+}
+
+/// A number with its error, if one is known: none that is rounding only.
+pub(crate) fn known((value, error): (f64, f64)) -> (f64, Option<f64>) {
+    let is_known = error.is_finite() && error > ROUNDING * value.abs();
+    (value, is_known.then_some(error))
+}
+
+/// Periods to a tenth, fewer than one to two digits.
+fn tenths(periods: f64) -> String {
+    match periods.abs() < 1.0 && periods != 0.0 {
+        true => significant(periods, 2),
+        false => format!("{periods:.1}"),
+    }
+}
+
+/// The efficiency, or why there is none.
+fn efficiency(pumping: &Pumping) -> String {
+    let (efficiency, error) = pumping.efficiency;
+    if efficiency.is_nan() {
+        let reason = match pumping.useful_power.0 > 0.0 {
+            true => "the wall gives no power: stored energy is spent",
+            false => "the grains do not go against the body force",
+        };
+        return format!("efficiency – ({reason})");
+    }
+    let mut text = format!("efficiency {efficiency:.4}");
+    if error.is_finite() {
+        text.push_str(&format!(" ± {error:.4}"));
+    }
+    if efficiency > 1.0 {
+        text.push_str(" (above 1: stored energy is spent; run longer)");
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_efficiency_is_said_where_there_is_one() {
+        let said = |useful_power: f64, efficiency: f64| {
+            super::efficiency(&Pumping {
+                pressure_rise: 0.1,
+                useful_power: (useful_power, 0.0),
+                efficiency: (efficiency, 0.01),
+            })
+        };
+        assert_eq!(said(1.0, 0.25), "efficiency 0.2500 ± 0.0100");
+        assert!(said(1.0, 1.5).contains("stored energy is spent; run longer"));
+        assert!(said(1.0, f64::NAN).starts_with("efficiency – (the wall"));
+        assert!(said(-1.0, f64::NAN).starts_with("efficiency – (the grains"));
+    }
+}

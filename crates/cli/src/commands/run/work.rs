@@ -1,0 +1,169 @@
+//! The work of a run: to its end or to a signal, with everything saved.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use peristalsis_run::{
+    Progress, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
+};
+
+use crate::arguments::RunArguments;
+use crate::commands::say;
+use crate::commands::trajectory::request;
+use crate::failure::Failure;
+use crate::stop::Stop;
+
+/// Steps after which signals are looked for and the state is saved at the latest, far fewer than some samples are apart.
+const MOST_STEPS: u64 = 50_000;
+
+/// How the advance of a run ended.
+pub(super) enum Ending {
+    Complete,
+    /// By a signal, with its exit code.
+    Stopped(u8),
+    /// Since its trajectory could not be written.
+    Unwritten(RunError),
+    Failed(RunError),
+}
+
+/// What a run came to.
+pub(super) struct Outcome {
+    pub(super) ending: Ending,
+    pub(super) summary: Summary,
+    /// Whether its results could be written.
+    pub(super) finished: Result<(), RunError>,
+}
+
+/// A run and where it leaves what it finds.
+pub(super) struct Work {
+    pub(super) run: Run,
+    pub(super) folder: RunFolder,
+    trajectory: Option<Trajectory>,
+    save_every: Duration,
+    written: Written,
+}
+
+impl Work {
+    /// Opens the trajectory, goes on with it or begins it, and saves the state of a run that is new: from here on nothing
+    /// is lost.
+    pub(super) fn begin(
+        arguments: &RunArguments,
+        folder: RunFolder,
+        mut run: Run,
+    ) -> Result<Self, Failure> {
+        if !folder.has_state() {
+            folder.save_state(&run)?;
+        }
+        let trajectory = open_trajectory(arguments, folder.path(), &mut run)?;
+        let written = match arguments.csv {
+            true => Written::WithCsv,
+            false => Written::Standard,
+        };
+        Ok(Self {
+            run,
+            folder,
+            trajectory,
+            save_every: arguments.checkpoint_every,
+            written,
+        })
+    }
+
+    /// Advances to the end or to a signal, and writes what there is.
+    pub(super) fn finish(
+        mut self,
+        stop: &Stop,
+        show: &mut dyn FnMut(&Progress),
+    ) -> (Self, Outcome) {
+        let ending = self.advance(stop, show);
+        let (ending, report) = match (ending, self.synchronize()) {
+            (Ending::Complete | Ending::Stopped(_), Err(error)) => (Ending::Unwritten(error), None),
+            (ending, _) => (ending, self.trajectory.as_ref().map(Trajectory::report)),
+        };
+        let (status, message) = match &ending {
+            Ending::Complete => (Status::Complete, None),
+            Ending::Stopped(_) => (Status::Interrupted, None),
+            Ending::Unwritten(error) => (Status::Interrupted, Some(error.to_string())),
+            Ending::Failed(error) => (Status::Diverged, Some(error.to_string())),
+        };
+        let mut summary = Summary::of(&self.run, status, message);
+        summary.trajectory = report;
+        let finished = self.folder.finish(&self.run, &summary, self.written);
+        let outcome = Outcome {
+            ending,
+            summary,
+            finished,
+        };
+        (self, outcome)
+    }
+
+    fn advance(&mut self, stop: &Stop, show: &mut dyn FnMut(&Progress)) -> Ending {
+        let mut saved = Instant::now();
+        while !self.run.is_complete() {
+            if let Some(code) = stop.requested() {
+                return Ending::Stopped(code);
+            }
+            let most = self.steps_to_next().min(MOST_STEPS);
+            if let Err(error) = self.run.advance_at_most(most) {
+                return Ending::Failed(error);
+            }
+            if let Err(error) = self.observe() {
+                return Ending::Unwritten(error);
+            }
+            show(&self.run.progress());
+            if saved.elapsed() > self.save_every {
+                // The run can go on without this state; the final save reports the disk's fault.
+                if let Err(error) = self.save_state() {
+                    say(&error.to_string());
+                }
+                saved = Instant::now();
+            }
+        }
+        Ending::Complete
+    }
+
+    /// Saves the state, after the frames that led to it.
+    fn save_state(&mut self) -> Result<(), RunError> {
+        self.synchronize()?;
+        self.folder.save_state(&self.run)
+    }
+
+    fn synchronize(&mut self) -> Result<(), RunError> {
+        let mut trajectory = self.trajectory.iter_mut();
+        trajectory.try_for_each(Trajectory::synchronize)
+    }
+
+    fn observe(&mut self) -> Result<(), RunError> {
+        let mut trajectory = self.trajectory.iter_mut();
+        trajectory.try_for_each(|trajectory| trajectory.observe(&self.run))
+    }
+
+    /// Steps after which a frame is due.
+    fn steps_to_next(&self) -> u64 {
+        let trajectory = self.trajectory.as_ref();
+        let steps = trajectory.and_then(|trajectory| trajectory.steps_to_next(&self.run));
+        steps.unwrap_or(u64::MAX)
+    }
+}
+
+/// The trajectory that a run goes on with or begins, if it is to have one.
+fn open_trajectory(
+    arguments: &RunArguments,
+    folder: &Path,
+    run: &mut Run,
+) -> Result<Option<Trajectory>, Failure> {
+    let request = request(&arguments.frames);
+    let there = Trajectory::resume(folder, run)?;
+    match (there, request) {
+        (Some(_), Some(_)) => {
+            let folder = folder.display();
+            let reason = format!("{folder} has a trajectory, which goes on as it was begun");
+            Err(Failure::usage(reason, "leave out --trajectory"))
+        }
+        (None, Some(request)) => {
+            let (now, end) = (run.simulation().step(), run.configuration().run.steps());
+            let plan = TrajectoryPlan::new(&request, run.configuration(), now, end)?;
+            Ok(Some(Trajectory::begin(folder, plan, run)?))
+        }
+        (there, None) => Ok(there),
+    }
+}

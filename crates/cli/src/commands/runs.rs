@@ -1,0 +1,200 @@
+//! `peristalsis runs`: a line a run, with what came out of it.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use peristalsis_configuration::{Configuration, Control};
+use peristalsis_run::RunFolder;
+use serde_json::{Value, json};
+
+use super::run::{RUNS, known};
+use crate::arguments::RunsArguments;
+use crate::commands::{print, print_json};
+use crate::failure::Failure;
+
+pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
+    let mut found = Vec::new();
+    for folder in &arguments.folders {
+        match collect(folder, &mut found) {
+            Err(error)
+                if error.kind() == std::io::ErrorKind::NotFound && folder == Path::new(RUNS) => {}
+            done => done.map_err(|error| {
+                let reason = format!("cannot read {}: {error}", folder.display());
+                Failure::usage(
+                    reason,
+                    "name folders of runs, or folders below which they are",
+                )
+            })?,
+        }
+    }
+    let runs: Vec<Value> = found.iter().map(|folder| entry(folder)).collect();
+    if arguments.json {
+        return print_json(&runs);
+    }
+    if runs.is_empty() {
+        let places = arguments.folders.iter().map(|it| it.display().to_string());
+        let places: Vec<String> = places.collect();
+        return print(&format!("no runs below {}\n", places.join(", ")));
+    }
+    print(&table(&runs))
+}
+
+/// The folders of runs below a folder, itself included, by name.
+fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
+    if folder.join("config.toml").is_file() {
+        found.push(folder.to_owned());
+        return Ok(());
+    }
+    let mut below = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        // Links are not followed: they may lead round in a circle.
+        if entry.file_type()?.is_dir() {
+            below.push(entry.path());
+        }
+    }
+    below.sort_by_key(|path| natural(path));
+    below.iter().try_for_each(|path| collect(path, found))
+}
+
+/// A name with its last number apart, so that run-10 comes after run-9.
+fn natural(path: &Path) -> (String, u64) {
+    let name = path.to_string_lossy().into_owned();
+    let digits = name.len() - name.trim_end_matches(|it: char| it.is_ascii_digit()).len();
+    let (stem, number) = name.split_at(name.len() - digits);
+    (stem.to_owned(), number.parse().unwrap_or(0))
+}
+
+/// What is known of the run in a folder.
+fn entry(path: &Path) -> Value {
+    let folder = path.to_string_lossy();
+    let configuration = match RunFolder::named(path).configuration() {
+        Ok(configuration) => configuration,
+        Err(error) => {
+            let message = error.to_string();
+            return json!({ "folder": folder, "status": "unreadable", "message": message });
+        }
+    };
+    let summary = std::fs::read_to_string(path.join("summary.json")).ok();
+    let summary: Option<Value> = summary.and_then(|text| serde_json::from_str(&text).ok());
+    let of = |key: &str| summary.as_ref().map_or(Value::Null, |all| all[key].clone());
+    let warnings = of("warnings").as_array().map(Vec::len);
+    let (drive, amplitude) = amplitude(&configuration);
+    json!({
+        "folder": folder,
+        "grains": configuration.grains.number,
+        "seed": configuration.run.seed,
+        "strain_rate": configuration.drive.strain_rate,
+        "drive": drive,
+        "amplitude": amplitude,
+        "periods": of("periods"),
+        "periods_asked": configuration.run.periods,
+        "time": of("time"),
+        "duration_asked": configuration.run.duration,
+        "status": status(&configuration, &summary),
+        "flow_rate_ratio": of("flow_rate_ratio"),
+        "flow_rate_ratio_error": of("flow_rate_ratio_error"),
+        "transition_time": of("transition_time"),
+        "warnings": warnings,
+    })
+}
+
+/// The key of the wave's amplitude, and its value.
+fn amplitude(configuration: &Configuration) -> (&'static str, f64) {
+    match configuration.drive.control {
+        Control::Strain { width } => ("width", width),
+        Control::Stress {
+            force_amplitude, ..
+        } => ("force_amplitude", force_amplitude),
+    }
+}
+
+/// How a run ended; "unfinished" where it goes on, was killed, or is to be longer than it is.
+fn status(configuration: &Configuration, summary: &Option<Value>) -> String {
+    let Some(summary) = summary else {
+        return "unfinished".to_owned();
+    };
+    let steps = summary["steps"].as_u64().unwrap_or(0);
+    match summary["status"].as_str() {
+        Some("complete") if steps < configuration.run.steps() => "unfinished".to_owned(),
+        Some(status) => status.to_owned(),
+        None => "unreadable".to_owned(),
+    }
+}
+
+/// The runs as a table, its columns as wide as they must be.
+fn table(runs: &[Value]) -> String {
+    let headings = [
+        "run",
+        "grains",
+        "rate",
+        "width or force",
+        "periods",
+        "status",
+        "J/Jmax within the run",
+        "transition, t",
+        "warnings",
+    ];
+    let mut rows = vec![headings.map(str::to_owned)];
+    rows.extend(runs.iter().map(row));
+    let widths: Vec<usize> = (0..headings.len())
+        .map(|column| {
+            rows.iter()
+                .map(|row| row[column].chars().count())
+                .max()
+                .unwrap_or(0)
+        })
+        .collect();
+    let line = |row: &[String; 9]| {
+        let cells = row
+            .iter()
+            .zip(&widths)
+            .map(|(cell, &width)| format!("{cell:width$}"));
+        let cells: Vec<String> = cells.collect();
+        cells.join("  ").trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
+}
+
+fn row(run: &Value) -> [String; 9] {
+    let folder = run["folder"].as_str().unwrap_or_default().to_owned();
+    let status = run["status"].as_str().unwrap_or_default().to_owned();
+    if status == "unreadable" {
+        let mut row = [const { String::new() }; 9];
+        (row[0], row[5]) = (folder, status);
+        return row;
+    }
+    let number = |key: &str| run[key].as_f64();
+    let plain = |key: &str| number(key).map_or("–".to_owned(), |it| it.to_string());
+    let error = number("flow_rate_ratio_error").unwrap_or(f64::NAN);
+    let flow =
+        number("flow_rate_ratio").map_or("–".to_owned(), |ratio| match known((ratio, error)) {
+            (ratio, Some(error)) => format!("{ratio:.4} ± {error:.4}"),
+            (ratio, None) => format!("{ratio:.4}"),
+        });
+    let done = |done: &str, asked: &str, unit: &str| {
+        let done = number(done).map_or("–".to_owned(), |it| {
+            let thousandths = (1e3 * it).round() / 1e3;
+            thousandths.to_string()
+        });
+        format!("{done} of {}{unit}", plain(asked))
+    };
+    [
+        folder,
+        plain("grains"),
+        plain("strain_rate"),
+        format!(
+            "{} {}",
+            plain("amplitude"),
+            run["drive"].as_str().unwrap_or_default()
+        ),
+        match number("periods_asked") {
+            Some(_) => done("periods", "periods_asked", ""),
+            None => done("time", "duration_asked", " t"),
+        },
+        status,
+        flow,
+        number("transition_time").map_or("–".to_owned(), |time| format!("{time:.1}")),
+        plain("warnings"),
+    ]
+}
