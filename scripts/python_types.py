@@ -43,7 +43,7 @@ SUMMARY_EXAMPLE = '''
     >>> import peristalsis
     >>> summary: peristalsis.Summary = peristalsis.Simulation.preset("frictionless", waves=2).summary()
     >>> summary["grains"], summary["packing"]["inserted"]
-    (41, 41)
+    (41, 25)
     """
 
 '''

@@ -19,6 +19,20 @@ pub enum Scaling {
 }
 
 impl Scaling {
+    /// Names of the parameters for so many curves.
+    pub fn parameters(&self, curves: usize) -> Vec<String> {
+        let names: &[&str] = match self {
+            Self::CriticalLine => &["a", "b", "slope", "w_max"],
+            Self::CriticalEach | Self::CriticalKnown(_) => &["a", "b"],
+            Self::FiniteSize => &["a", "b", "x_c"],
+        };
+        let mut names: Vec<String> = names.iter().map(ToString::to_string).collect();
+        if let Self::CriticalEach = self {
+            names.extend((1..=curves).map(|curve| format!("w_c of curve {curve}")));
+        }
+        names
+    }
+
     /// The scaled point: abscissa, ordinate and its error.
     ///
     /// The critical scalings work in logarithms, X = ln((w_c - w)/p^b), Y = ln(y p^a), in which a power law is

@@ -303,6 +303,28 @@ impl<'py> FromPyObject<'_, 'py> for Scheme<'py> {
 }
 
 impl Scheme<'_> {
+    /// Refuses another number of parameters than a scaling of ours has, and of known places than there are curves.
+    fn check(&self, parameters: usize, curves: usize) -> PyResult<()> {
+        let Self::Named(scaling) = self else {
+            return Ok(());
+        };
+        let names = scaling.parameters(curves);
+        if names.len() != parameters {
+            let (needed, names) = (names.len(), names.join(", "));
+            let reason =
+                format!("this scaling has {needed} parameters ({names}), not {parameters}");
+            return Err(AnalysisError::new_err(reason));
+        }
+        match scaling {
+            Scaling::CriticalKnown(places) if places.len() != curves => {
+                let known = places.len();
+                let reason = format!("critical_known has {known} places for {curves} curves");
+                Err(AnalysisError::new_err(reason))
+            }
+            _ => Ok(()),
+        }
+    }
+
     fn apply(
         &self,
         parameters: &[f64],
@@ -367,6 +389,8 @@ pub(crate) fn fit_collapse<'py>(
     search: Search,
 ) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
+    scheme.check(search.start.len(), curves.len())?;
+    scheme.check(search.steps.len(), curves.len())?;
     let collapse = Collapse {
         curves: &curves,
         transform: &|parameters, curve, parameter, point| {
@@ -403,6 +427,7 @@ pub(crate) fn apply_collapse<'py>(
     parameters: Vec<f64>,
 ) -> Answer {
     let curves: Vec<Curve> = measured.into_iter().map(|curve| curve.0).collect();
+    scheme.check(parameters.len(), curves.len())?;
     let scaled = |(place, curve): (usize, &Curve)| -> Vec<CurvePoint> {
         let points = curve.points.iter();
         let scaled = points.map(|it| scheme.apply(&parameters, place, curve.parameter, *it));

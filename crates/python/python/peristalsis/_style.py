@@ -95,6 +95,10 @@ class _StyledFigure(Figure):
         with matplotlib.rc_context(STYLE):
             super().savefig(*arguments, **keywords)
 
+    def set(self, **kwargs: Any) -> list[Any]:
+        # Matplotlib gives a class without a `set` of its own one with other parameters than types know of.
+        return super().set(**kwargs)
+
 
 def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     """New axes in the style, in a figure of its own.

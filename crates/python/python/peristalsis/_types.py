@@ -358,7 +358,7 @@ class Summary(TypedDict):
     >>> import peristalsis
     >>> summary: peristalsis.Summary = peristalsis.Simulation.preset("frictionless", waves=2).summary()
     >>> summary["grains"], summary["packing"]["inserted"]
-    (41, 41)
+    (41, 25)
     """
 
     seed: int

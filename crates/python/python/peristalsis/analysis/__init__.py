@@ -1,0 +1,139 @@
+"""Estimators with error bars, on NumPy arrays of any origin.
+
+Columns come in, result objects go out, each with its uncertainties. Nothing here knows of grains, but for the names:
+a *width* is any control parameter that a *transition time* may diverge in.
+
+Runs that ended before a transition are *censored*: give the time at which they ended and ``observed=False``. They are
+used, not dropped.
+
+Scaling collapse
+----------------
+`Collapse` finds the exponents with which curves of several parameters fall on one another, for any scaling::
+
+    curves = [(L, x, y, error) for L in sizes]              # any data
+    collapse = Collapse(curves, "finite_size")              # y = L^-a f((x - x_c) L^b)
+    fit = collapse.fit(start=[0.1, 1.0, 0.5], steps=[0.1, 0.2, 0.05])
+    print(fit.parameters, fit.errors, fit.quality)
+
+The quality S of Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004): near 1 where the curves agree within their errors.
+A collapse must keep curves overlapping, so that a search cannot win by pulling them apart.
+"""
+
+from ._collapse import Collapse, CollapseFit, CollapseQuality, CollapseResult, Resampled
+from ._columns import Interval, Uncertain
+from ._laws import (
+    LawEvidence,
+    LawRunsFit,
+    ScatterLawFit,
+    WidthEnsemble,
+    WindowRunsFit,
+    compare_laws,
+    ensembles_by_width,
+    fit_law_to_runs,
+    fit_law_to_runs_in_windows,
+    fit_law_with_scatter,
+)
+from ._points import CurveFit, LawFit, LineFit, fit_law, fit_line, fit_parabola, power_exponent
+from ._order import (
+    DipTest,
+    FractionCrossing,
+    Hysteresis,
+    Jump,
+    Peak,
+    TwoPeaks,
+    dip_test,
+    fraction_crossing,
+    hysteresis,
+    jump_height,
+    two_peaks,
+)
+from ._series import (
+    AutocorrelationTime,
+    Estimate,
+    MomentPeak,
+    Moments,
+    SecondMoment,
+    Stationarity,
+    StationaryMean,
+    autocorrelation_time,
+    ensemble_moments,
+    mean_with_error,
+    second_moment,
+    second_moment_peak,
+    stationarity,
+    stationary_mean,
+)
+from ._transitions import (
+    LifetimeFit,
+    RestrictedMoments,
+    ShiftedExponentialFit,
+    Survival,
+    SurvivalStep,
+    TransitionTime,
+    fit_lifetime,
+    fit_shifted_exponential,
+    restricted_moments,
+    transition_time,
+)
+
+__all__ = [
+    "AutocorrelationTime",
+    "Collapse",
+    "CollapseFit",
+    "CollapseQuality",
+    "CollapseResult",
+    "CurveFit",
+    "DipTest",
+    "Estimate",
+    "FractionCrossing",
+    "Hysteresis",
+    "Interval",
+    "Jump",
+    "LawEvidence",
+    "LawFit",
+    "LawRunsFit",
+    "LifetimeFit",
+    "LineFit",
+    "MomentPeak",
+    "Moments",
+    "Peak",
+    "Resampled",
+    "RestrictedMoments",
+    "ScatterLawFit",
+    "SecondMoment",
+    "ShiftedExponentialFit",
+    "Stationarity",
+    "StationaryMean",
+    "Survival",
+    "SurvivalStep",
+    "TransitionTime",
+    "TwoPeaks",
+    "Uncertain",
+    "WidthEnsemble",
+    "WindowRunsFit",
+    "autocorrelation_time",
+    "compare_laws",
+    "dip_test",
+    "ensemble_moments",
+    "ensembles_by_width",
+    "fit_law",
+    "fit_law_to_runs",
+    "fit_law_to_runs_in_windows",
+    "fit_law_with_scatter",
+    "fit_lifetime",
+    "fit_line",
+    "fit_parabola",
+    "fit_shifted_exponential",
+    "fraction_crossing",
+    "hysteresis",
+    "jump_height",
+    "mean_with_error",
+    "power_exponent",
+    "restricted_moments",
+    "second_moment",
+    "second_moment_peak",
+    "stationarity",
+    "stationary_mean",
+    "transition_time",
+    "two_peaks",
+]

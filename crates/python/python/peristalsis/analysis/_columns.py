@@ -1,0 +1,170 @@
+"""Columns of numbers as the estimators take them, and numbers with their errors as they answer them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, TypeVar, get_args, get_type_hints
+
+import numpy as np
+import numpy.typing as npt
+
+from .._arrays import Array, Runs, RunTable
+from .._core import AnalysisError
+
+Numbers = npt.ArrayLike
+Result = TypeVar("Result")
+
+
+class BarrierPower(TypedDict):
+    """Power p of the barrier."""
+
+    power: float
+
+
+class Barrier(TypedDict):
+    """The law y = A exp(B/(w_c - w)^p)."""
+
+    barrier: BarrierPower
+
+
+if TYPE_CHECKING:
+    #: ``"power"``, ``"exponential"``, or ``{"barrier": {"power": 2.0}}``.
+    _Law = Literal["power", "exponential"] | Barrier
+    #: A distribution of transition times.
+    _Family = Literal["exponential", "gamma", "weibull"]
+
+
+def reals(values: Numbers) -> Array:
+    """A column of numbers."""
+    array = np.ascontiguousarray(values, dtype=np.float64)
+    if array.ndim != 1:
+        raise ValueError(f"a column has one dimension, not {array.ndim}")
+    return array
+
+
+def columns(*given: Numbers) -> list[Array]:
+    """Columns of equal length."""
+    arrays = [reals(column) for column in given]
+    if len({len(array) for array in arrays}) > 1:
+        raise ValueError(f"columns of unequal length: {', '.join(str(len(array)) for array in arrays)}")
+    return arrays
+
+
+def truths(values: npt.ArrayLike) -> npt.NDArray[np.bool_]:
+    """A column of truth values, none of them missing."""
+    array = np.asarray(values)
+    if array.dtype != bool:
+        try:
+            numbers = array.astype(np.float64)
+        except (TypeError, ValueError):
+            numbers = np.full(array.shape, np.nan)
+        if strange := [(index, value) for index, value in enumerate(array.flat) if numbers.flat[index] not in (0.0, 1.0)]:
+            index, value = strange[0]
+            raise AnalysisError(f"value {index} is {value!r}: true or false (1 or 0) is wanted, and none may be missing")
+        array = numbers == 1.0
+    return np.ascontiguousarray(array)
+
+
+def runs(time: Numbers, observed: npt.ArrayLike | None) -> Runs:
+    """Outcomes of runs: times, and whether there was a transition."""
+    times = reals(time)
+    if observed is None:
+        return times, np.ones(len(times), dtype=bool)
+    outcomes = truths(observed)
+    if outcomes.shape != times.shape:
+        raise ValueError(f"{len(times)} times, but {outcomes.size} observed")
+    return times, outcomes
+
+
+def run_table(width: Numbers, time: Numbers, observed: npt.ArrayLike | None) -> RunTable:
+    """Widths with the outcomes of runs."""
+    times, outcomes = runs(time, observed)
+    widths, times = columns(width, times)
+    return widths, (times, outcomes)
+
+
+def pair(value: Uncertain | float | tuple[float, float]) -> tuple[float, float]:
+    """A number and its standard error, 0 where it has none."""
+    if isinstance(value, Uncertain):
+        return value.value, value.error
+    if isinstance(value, tuple):
+        return value
+    return float(value), 0.0
+
+
+def law_of(law: str | Mapping[str, Any]) -> str | dict[str, Any]:
+    """A law as the core takes it."""
+    return law if isinstance(law, str) else dict(law)
+
+
+def result(kind: type[Result], answer: Any) -> Result:
+    """A dictionary as the result class of the same fields."""
+    hints = get_type_hints(kind)
+    values = {field.name: _value(hints[field.name], answer[field.name]) for field in fields(kind)}  # type: ignore[arg-type]
+    return kind(**values)
+
+
+def _value(hint: Any, value: Any) -> Any:
+    kinds = [kind for kind in get_args(hint) or (hint,) if hasattr(kind, "__dataclass_fields__")]
+    if value is None or not kinds:
+        return tuple(value) if isinstance(value, list) else value
+    if isinstance(value, list):
+        return tuple(result(kinds[0], item) for item in value)
+    return result(kinds[0], value)
+
+
+@dataclass(frozen=True)
+class Interval:
+    """Confidence interval; a side that the data leave open is infinite.
+
+    Attributes
+    ----------
+    lower : float
+        Lower end.
+    upper : float
+        Upper end.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.Interval(0.5, 1.5).upper
+    1.5
+    """
+
+    lower: float
+    upper: float
+
+
+@dataclass(frozen=True)
+class Uncertain:
+    """A number with its standard error and its confidence intervals.
+
+    Attributes
+    ----------
+    value : float
+        The estimate.
+    error : float
+        Its standard error (one standard deviation).
+    interval_68 : Interval
+        Interval that covers the truth in 68.27 per cent of repetitions.
+    interval_95 : Interval
+        Interval that covers the truth in 95 per cent of repetitions.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> slope = analysis.fit_line([0, 1, 2], [1, 3, 5], [0.1, 0.1, 0.1]).slope
+    >>> print(slope)
+    2 +- 0.071
+    >>> slope.interval_68.lower < 2.0 < slope.interval_68.upper
+    True
+    """
+
+    value: float
+    error: float
+    interval_68: Interval
+    interval_95: Interval
+
+    def __str__(self) -> str:
+        return f"{self.value:.6g} +- {self.error:.2g}"

@@ -1,0 +1,484 @@
+"""Laws of how a quantity grows with a width, fitted to values or to the runs themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy.typing as npt
+
+from .. import _core
+from ._columns import Numbers, Uncertain, law_of, result, run_table
+from ._transitions import LifetimeFit, RestrictedMoments
+
+if TYPE_CHECKING:
+    from ._columns import _Family, _Law
+
+
+@dataclass(frozen=True)
+class LawRunsFit:
+    """A law of the mean transition time fitted to the runs at all widths.
+
+    Attributes
+    ----------
+    law : str | dict[str, Any]
+        The law of the mean.
+    family : str
+        The family of the distribution about the mean.
+    critical_width : Uncertain | None
+        Critical width w_c; `None` for a law without one. Its lower end never lies below a width that saw a
+        transition; an upper end of infinity says that the runs do not tell the law from an exponential.
+    exponent : Uncertain
+        Exponent, or coefficient of the barrier, B.
+    ln_amplitude : float
+        ln A.
+    shape : Uncertain | None
+        Shape k, common to all widths; `None` for the exponential family.
+    log_likelihood : float
+        Largest log-likelihood.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> fit = analysis.fit_law_to_runs("power", width, time, family="exponential")
+    >>> fit.observed, fit.exponent.interval_95.lower < 1.0 < fit.exponent.interval_95.upper
+    (120, True)
+    """
+
+    law: str | dict[str, Any]
+    family: str
+    critical_width: Uncertain | None
+    exponent: Uncertain
+    ln_amplitude: float
+    shape: Uncertain | None
+    log_likelihood: float
+    observed: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class WindowRunsFit:
+    """A law fitted to the runs within a window of widths.
+
+    Attributes
+    ----------
+    least : float
+        Smallest width of the window.
+    largest : float
+        Largest width of the window.
+    fit : LawRunsFit
+        The fit.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> windows = analysis.fit_law_to_runs_in_windows("exponential", width, time, family="exponential")
+    >>> windows[0].least, windows[0].largest, windows[0].fit.observed
+    (2.4, 2.7, 120)
+    """
+
+    least: float
+    largest: float
+    fit: LawRunsFit
+
+
+@dataclass(frozen=True)
+class ScatterLawFit:
+    """Power laws of the mean transition time and of its relative variance, fitted to the runs at all widths.
+
+    Attributes
+    ----------
+    critical_width : Uncertain
+        Critical width w_c.
+    exponent : Uncertain
+        alpha of tau ~ (w_c - w)^-alpha.
+    scatter_exponent : Uncertain
+        q of chi_tau/tau^2 ~ (w_c - w)^-q.
+    variance_exponent : Uncertain
+        beta = 2 alpha + q of chi_tau ~ (w_c - w)^-beta.
+    ln_amplitude : float
+        ln A of tau = A (w_c - w)^-alpha.
+    ln_scatter : float
+        ln C of chi_tau/tau^2 = C (w_c - w)^-q.
+    log_likelihood : float
+        Largest log-likelihood; five parameters.
+    chance_probability : float
+        Probability of so large a likelihood ratio if chi_tau/tau^2 = 1 at all widths: nucleation at a constant rate.
+    constant_probability : float
+        The same if chi_tau/tau^2 has one value at all widths, q = 0.
+    inverse_probability : float
+        The same if chi_tau/tau^2 ~ 1/(w_c - w), q = 1.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> fit = analysis.fit_law_with_scatter(width, time)
+    >>> fit.observed, fit.chance_probability > 0.01
+    (120, True)
+    """
+
+    critical_width: Uncertain
+    exponent: Uncertain
+    scatter_exponent: Uncertain
+    variance_exponent: Uncertain
+    ln_amplitude: float
+    ln_scatter: float
+    log_likelihood: float
+    chance_probability: float
+    constant_probability: float
+    inverse_probability: float
+    observed: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class LawEvidence:
+    """What the runs say for one law.
+
+    Attributes
+    ----------
+    law : str | dict[str, Any]
+        The law.
+    log_likelihood : float
+        Largest log-likelihood.
+    akaike : float
+        Akaike's criterion 2 p - 2 ln L.
+    excess : float
+        Akaike's criterion less that of the best law: beyond some 10 the law has next to no support.
+    weight : float
+        Akaike weight exp(-excess/2) over the sum of all laws compared: how probable it is to be the nearest of them.
+    critical_width : float | None
+        Best w_c, infinite where the law does best as an exponential one; `None` for a law without w_c.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> evidence = analysis.compare_laws(["power", "exponential"], width, time, family="exponential")
+    >>> round(sum(law.weight for law in evidence), 6)
+    1.0
+    """
+
+    law: str | dict[str, Any]
+    log_likelihood: float
+    akaike: float
+    excess: float
+    weight: float
+    critical_width: float | None
+
+
+@dataclass(frozen=True)
+class WidthEnsemble:
+    """Transition times of the runs at one width, estimated in three ways.
+
+    Attributes
+    ----------
+    width : float
+        Width w.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+    watched : float
+        Longest time at which a run was watched.
+    naive_mean : float | None
+        Mean of the observed times alone, which near w_c lies below the truth for want of the long ones.
+    restricted : RestrictedMoments | None
+        Mean and variance of min(tau, `watched`): no distribution assumed. `None` below 3 transitions.
+    fit : LifetimeFit | None
+        Maximum likelihood under censoring, chi_tau its variance; `None` where it has no estimate.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> ensembles = analysis.ensembles_by_width(width, time)
+    >>> [(ensemble.width, ensemble.observed) for ensemble in ensembles][:2]
+    [(2.4, 30), (2.5, 30)]
+    """
+
+    width: float
+    observed: int
+    censored: int
+    watched: float
+    naive_mean: float | None
+    restricted: RestrictedMoments | None
+    fit: LifetimeFit | None
+
+
+def fit_law_to_runs(
+    law: _Law,
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: _Family = "gamma",
+) -> LawRunsFit:
+    """A law of the mean transition time, by the likelihood of every single run, the censored ones included.
+
+    ln L = sum of ln f(t_i; tau(w_i), k) over transitions + sum of ln S(t_i; tau(w_i), k) over censored runs.
+
+    Parameters
+    ----------
+    law : str or mapping
+        ``"power"``: tau = A (w_c - w)^-B; ``"exponential"``: tau = A exp(B w);
+        ``{"barrier": {"power": p}}``: tau = A exp(B/(w_c - w)^p).
+    width : array_like
+        w of each run, shape (runs,).
+    time : array_like
+        Its transition time, or its end without a transition.
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    family : {"gamma", "exponential", "weibull"}
+        Distribution of the times about their mean.
+
+    Returns
+    -------
+    LawRunsFit
+        Critical width, exponent and the shape k common to all widths.
+
+    Raises
+    ------
+    AnalysisError
+        Where fewer widths saw a transition than the law has parameters, or the likelihood has no maximum.
+    ValueError
+        For columns of unequal length.
+
+    Notes
+    -----
+    Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3; the intervals: Venzon &
+    Moolgavkar, Appl. Stat. 37, 87 (1988).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> fit = analysis.fit_law_to_runs("power", width, time, family="exponential")
+    >>> fit.observed, fit.exponent.interval_95.lower < 1.0 < fit.exponent.interval_95.upper
+    (120, True)
+    """
+    table = run_table(width, time, observed)
+    return result(LawRunsFit, _core.fit_law_to_runs(law_of(law), family, table))
+
+
+def fit_law_to_runs_in_windows(
+    law: _Law,
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: _Family = "gamma",
+) -> list[WindowRunsFit]:
+    """`fit_law_to_runs` in windows that leave out the smallest, then the largest widths one by one.
+
+    The first window holds all widths. An exponent that is one moves by no more than its error from window to window.
+
+    Parameters
+    ----------
+    law : str or mapping
+        ``"power"``: tau = A (w_c - w)^-B; ``"exponential"``: tau = A exp(B w);
+        ``{"barrier": {"power": p}}``: tau = A exp(B/(w_c - w)^p).
+    width : array_like
+        w of each run, shape (runs,).
+    time : array_like
+        Its transition time, or its end without a transition.
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    family : {"gamma", "exponential", "weibull"}
+        Distribution of the times about their mean.
+
+    Returns
+    -------
+    list of WindowRunsFit
+        Windows without a fit are left out; the fits share their runs.
+
+    Raises
+    ------
+    AnalysisError
+        Where fewer widths saw a transition than the law has parameters, or the likelihood has no maximum.
+    ValueError
+        For columns of unequal length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> windows = analysis.fit_law_to_runs_in_windows("exponential", width, time, family="exponential")
+    >>> windows[0].least, windows[0].largest, windows[0].fit.observed
+    (2.4, 2.7, 120)
+    """
+    table = run_table(width, time, observed)
+    answers = _core.fit_law_to_runs_in_windows(law_of(law), family, table)
+    return [result(WindowRunsFit, answer) for answer in answers]
+
+
+def fit_law_with_scatter(
+    width: Numbers, time: Numbers, observed: npt.ArrayLike | None = None
+) -> ScatterLawFit:
+    """Power laws of the mean transition time and of its relative variance at once, censored runs included.
+
+    tau = A (w_c - w)^-alpha and chi_tau/tau^2 = C (w_c - w)^-q, gamma distributions of shape tau^2/chi_tau; so
+    chi_tau ~ (w_c - w)^-(2 alpha + q).
+
+    Parameters
+    ----------
+    width : array_like
+        w of each run, shape (runs,).
+    time : array_like
+        Its transition time, or its end without a transition.
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+
+    Returns
+    -------
+    ScatterLawFit
+        w_c, alpha, q, and how probable simpler laws of the scatter are.
+
+    Raises
+    ------
+    AnalysisError
+        Where fewer than three widths saw a transition, or the likelihood has no maximum.
+    ValueError
+        For columns of unequal length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> fit = analysis.fit_law_with_scatter(width, time)
+    >>> fit.observed, fit.chance_probability > 0.01
+    (120, True)
+    """
+    table = run_table(width, time, observed)
+    return result(ScatterLawFit, _core.fit_law_with_scatter(table))
+
+
+def ensembles_by_width(
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: _Family = "gamma",
+) -> list[WidthEnsemble]:
+    """Transition times of a table of runs, one row a run, estimated width by width in three ways.
+
+    Mean and variance chi_tau with errors for `fit_law` are those of each answer's `fit`.
+
+    Parameters
+    ----------
+    width : array_like
+        w of each run, shape (runs,).
+    time : array_like
+        Its transition time, or its end without a transition.
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    family : {"gamma", "exponential", "weibull"}
+        Distribution of the times about their mean.
+
+    Returns
+    -------
+    list of WidthEnsemble
+        In order of width.
+
+    Raises
+    ------
+    AnalysisError
+        For values that are not finite, or times that are negative.
+    ValueError
+        For columns of unequal length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> ensembles = analysis.ensembles_by_width(width, time)
+    >>> [(ensemble.width, ensemble.observed) for ensemble in ensembles][:2]
+    [(2.4, 30), (2.5, 30)]
+    """
+    table = run_table(width, time, observed)
+    answers = _core.ensembles_by_width(family, table)
+    return [result(WidthEnsemble, answer) for answer in answers]
+
+
+def compare_laws(
+    laws: Iterable[_Law],
+    width: Numbers,
+    time: Numbers,
+    observed: npt.ArrayLike | None = None,
+    *,
+    family: _Family = "gamma",
+) -> list[LawEvidence]:
+    """What the runs say for each of several laws, by Akaike's criterion.
+
+    Parameters
+    ----------
+    laws : iterable of str or mapping
+        Laws as of `fit_law_to_runs`.
+    width : array_like
+        w of each run, shape (runs,).
+    time : array_like
+        Its transition time, or its end without a transition.
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    family : {"gamma", "exponential", "weibull"}
+        Distribution of the times about their mean.
+
+    Returns
+    -------
+    list of LawEvidence
+        In the order of the laws; the best has excess 0.
+
+    Raises
+    ------
+    AnalysisError
+        Where fewer widths saw a transition than the law has parameters, or the likelihood has no maximum.
+    ValueError
+        For columns of unequal length.
+
+    Notes
+    -----
+    Burnham & Anderson, Model Selection and Multimodel Inference (2002), sections 2.6 and 2.9.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat([2.4, 2.5, 2.6, 2.7], 30)
+    >>> time = np.random.default_rng(1).exponential(2.0 / (2.8 - width))
+    >>> evidence = analysis.compare_laws(["power", "exponential"], width, time, family="exponential")
+    >>> round(sum(law.weight for law in evidence), 6)
+    1.0
+    """
+    table = run_table(width, time, observed)
+    answers = _core.compare_laws([law_of(law) for law in laws], family, table)
+    return [result(LawEvidence, answer) for answer in answers]

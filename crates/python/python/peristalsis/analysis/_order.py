@@ -1,0 +1,402 @@
+"""The order of the transition: jumps, loops, and distributions with two peaks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy.typing as npt
+
+from .. import _core
+from ._columns import Numbers, Uncertain, columns, pair, reals, result, runs
+
+
+@dataclass(frozen=True)
+class FractionCrossing:
+    """The width at which the fraction of jammed runs falls through one half.
+
+    Attributes
+    ----------
+    width : Uncertain
+        The width, with intervals by profile likelihood; where the runs are separated the bracket that they leave.
+    spread : float
+        Range of widths over which the fraction falls, 1/steepness, by maximum likelihood; 0 where the runs are
+        separated.
+    last_all : float | None
+        Largest width at which all runs jam, with all below it doing so; `None` where already at the least some do
+        not.
+    first_none : float | None
+        Smallest width at which none jams, nor above it; `None` where at the largest some still do.
+    is_separated : bool
+        Whether the fraction falls from 1 to 0 between two neighbouring widths, or at a single one between: the data
+        then bracket the width and say nothing of the spread.
+    log_likelihood : float
+        Largest log-likelihood.
+    runs : int
+        Runs.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat(np.linspace(2.5, 2.9, 9), 4)
+    >>> found = analysis.fraction_crossing(width, width < 2.66)
+    >>> round(found.last_all, 2), round(found.first_none, 2), found.is_separated
+    (2.65, 2.7, True)
+    """
+
+    width: Uncertain
+    spread: float
+    last_all: float | None
+    first_none: float | None
+    is_separated: bool
+    log_likelihood: float
+    runs: int
+
+
+@dataclass(frozen=True)
+class Hysteresis:
+    """Width of the hysteresis loop and whether there is one.
+
+    Attributes
+    ----------
+    from_rest : FractionCrossing
+        w_c: half of the runs started from rest jam.
+    from_jammed : FractionCrossing
+        w_c': half of the runs started jammed stay so.
+    loop_width : Uncertain
+        Width of the loop, w_c' - w_c.
+    likelihood_ratio : float
+        Twice the log-likelihood lost when both starts must have one critical width.
+    probability : float
+        Probability of so large a ratio without a loop (chi^2 with one degree of freedom).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat(np.linspace(2.5, 2.9, 9), 4)
+    >>> loop = analysis.hysteresis(width, width < 2.66, width, width < 2.81)
+    >>> round(loop.loop_width.value, 2)
+    0.15
+    """
+
+    from_rest: FractionCrossing
+    from_jammed: FractionCrossing
+    loop_width: Uncertain
+    likelihood_ratio: float
+    probability: float
+
+
+@dataclass(frozen=True)
+class Jump:
+    """The two branches of the stationary flow rate at the critical width.
+
+    Attributes
+    ----------
+    upper : Uncertain
+        Jammed branch at w_c.
+    lower : Uncertain
+        Unjammed branch at w_c.
+    height : Uncertain
+        Their difference.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> upper, lower = ([2.6, 2.7], [1.0, 0.9], [0.01, 0.01]), ([2.9], [0.2], [0.03])
+    >>> jump = analysis.jump_height(upper, lower, 2.8)
+    >>> round(jump.upper.value, 3), round(jump.height.value, 3)
+    (0.8, 0.6)
+    """
+
+    upper: Uncertain
+    lower: Uncertain
+    height: Uncertain
+
+
+@dataclass(frozen=True)
+class DipTest:
+    """The dip of a sample with its significance.
+
+    Attributes
+    ----------
+    dip : float
+        Largest distance of the empirical distribution from the nearest one with a single peak: 1/(2n) at least, 1/4
+        at most (two equal atoms).
+    probability : float
+        Probability of a dip at least as large in as many uniform numbers, the single-peaked case that is hardest to
+        tell.
+    simulations : int
+        Simulated samples behind it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> apart = np.append(np.linspace(0, 1, 50), np.linspace(8, 9, 50))
+    >>> analysis.dip_test(apart, resamples=200).probability < 0.01
+    True
+    """
+
+    dip: float
+    probability: float
+    simulations: int
+
+
+@dataclass(frozen=True)
+class Peak:
+    """One peak of a mixture.
+
+    Attributes
+    ----------
+    weight : float
+        Fraction of the values that belong to it.
+    mean : float
+        Its mean.
+    mean_error : float
+        Standard error of the mean.
+    deviation : float
+        Its standard deviation.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> apart = np.append(np.linspace(0, 1, 50), np.linspace(8, 9, 50))
+    >>> peak = analysis.two_peaks(apart).upper
+    >>> round(peak.mean, 2), round(peak.weight, 2)
+    (8.5, 0.5)
+    """
+
+    weight: float
+    mean: float
+    mean_error: float
+    deviation: float
+
+
+@dataclass(frozen=True)
+class TwoPeaks:
+    """Mixture of two normal distributions against a single one.
+
+    Attributes
+    ----------
+    single : Peak
+        Mean and deviation of all values as one peak.
+    lower : Peak
+        Peak at the smaller mean.
+    upper : Peak
+        Peak at the larger mean.
+    criterion_gain : float
+        Schwarz's criterion of one peak less that of two: positive for two peaks, beyond 10 very clearly so.
+    separation : float
+        Distance of the peaks over their widths, sqrt(2) |m_2 - m_1|/sqrt(s_1^2 + s_2^2): two peaks can be seen beyond
+        2.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> apart = np.append(np.linspace(0, 1, 50), np.linspace(8, 9, 50))
+    >>> peaks = analysis.two_peaks(apart)
+    >>> round(peaks.lower.mean, 2), peaks.separation > 2
+    (0.5, True)
+    """
+
+    single: Peak
+    lower: Peak
+    upper: Peak
+    criterion_gain: float
+    separation: float
+
+
+def fraction_crossing(width: Numbers, jammed: npt.ArrayLike) -> FractionCrossing:
+    """Width at which the fraction of jammed runs falls through one half; one row a run.
+
+    By maximum likelihood of a logistic curve in w; where the runs are separated, the bracket that they leave.
+
+    Parameters
+    ----------
+    width : array_like
+        w of each run, shape (runs,).
+    jammed : array_like of bool
+        Whether it ended jammed.
+
+    Returns
+    -------
+    FractionCrossing
+        The width, in the unit of `width`.
+
+    Raises
+    ------
+    AnalysisError
+        Where all runs have one outcome, or one is missing.
+    ValueError
+        For columns of unequal length.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat(np.linspace(2.5, 2.9, 9), 4)
+    >>> found = analysis.fraction_crossing(width, width < 2.66)
+    >>> round(found.last_all, 2), round(found.first_none, 2), found.is_separated
+    (2.65, 2.7, True)
+    """
+    return result(FractionCrossing, _core.fraction_crossing(runs(width, jammed)))
+
+
+def hysteresis(
+    rest_width: Numbers,
+    rest_jammed: npt.ArrayLike,
+    jammed_width: Numbers,
+    jammed_jammed: npt.ArrayLike,
+) -> Hysteresis:
+    """Whether runs from rest and runs from jammed flow part at different widths, and by how much; one row a run.
+
+    The loop is w_c' - w_c, each the `fraction_crossing` of one start; it narrows with the time that runs are watched.
+
+    Parameters
+    ----------
+    rest_width, jammed_width : array_like
+        w of the runs from rest, and of those from jammed flow.
+    rest_jammed, jammed_jammed : array_like of bool
+        Whether they ended jammed.
+
+    Returns
+    -------
+    Hysteresis
+        The loop, and the probability of so wide a one by chance.
+
+    Raises
+    ------
+    AnalysisError
+        Where all runs of a start have one outcome, or one is missing.
+    ValueError
+        For columns of unequal length.
+
+    Notes
+    -----
+    The interval combines both: Zou & Donner, Stat. Med. 27, 1693 (2008).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> width = np.repeat(np.linspace(2.5, 2.9, 9), 4)
+    >>> loop = analysis.hysteresis(width, width < 2.66, width, width < 2.81)
+    >>> round(loop.loop_width.value, 2)
+    0.15
+    """
+    rest, jammed = runs(rest_width, rest_jammed), runs(jammed_width, jammed_jammed)
+    return result(Hysteresis, _core.hysteresis(rest, jammed))
+
+
+def jump_height(
+    upper: tuple[Numbers, Numbers, Numbers],
+    lower: tuple[Numbers, Numbers, Numbers],
+    critical_width: Uncertain | float | tuple[float, float],
+) -> Jump:
+    """The two branches of a flow rate, carried on to the critical width as straight lines, and their difference.
+
+    error^2 = error_upper^2 + error_lower^2 + (slope_upper - slope_lower)^2 error_w^2.
+
+    Parameters
+    ----------
+    upper, lower : tuple of array_like
+        Widths, values and errors of the jammed branch (w < w_c), and of the other.
+    critical_width : Uncertain, float or pair
+        w_c, with its error as a pair or an `Uncertain`.
+
+    Returns
+    -------
+    Jump
+        In the unit of the values.
+
+    Raises
+    ------
+    AnalysisError
+        For a branch without points, or an error that is not positive.
+    ValueError
+        For columns of unequal length.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> upper, lower = ([2.6, 2.7], [1.0, 0.9], [0.01, 0.01]), ([2.9], [0.2], [0.03])
+    >>> jump = analysis.jump_height(upper, lower, 2.8)
+    >>> round(jump.upper.value, 3), round(jump.height.value, 3)
+    (0.8, 0.6)
+    """
+    above, below = columns(*upper), columns(*lower)
+    return result(Jump, _core.jump_height(above, below, pair(critical_width)))
+
+
+def dip_test(values: Numbers, *, resamples: int = 1000, seed: int = 0) -> DipTest:
+    """Hartigan's dip test: whether a sample has more than one peak.
+
+    dip = the least sup |F_n(x) - F(x)| over distributions F with a single peak.
+
+    Parameters
+    ----------
+    values : array_like
+        Independent values, one a run, shape (n,).
+    resamples : int
+        Simulated samples for the probability, 20 at least.
+    seed : int
+        Of these.
+
+    Returns
+    -------
+    DipTest
+        The dip and its probability with a single peak.
+
+    Raises
+    ------
+    AnalysisError
+        Below 4 values, or for values that are not finite.
+
+    Notes
+    -----
+    Hartigan & Hartigan, Ann. Stat. 13, 70 (1985).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> apart = np.append(np.linspace(0, 1, 50), np.linspace(8, 9, 50))
+    >>> analysis.dip_test(apart, resamples=200).probability < 0.01
+    True
+    """
+    return result(DipTest, _core.dip_test(reals(values), int(resamples), int(seed)))
+
+
+def two_peaks(values: Numbers) -> TwoPeaks:
+    """A mixture of two normal distributions against a single one.
+
+    f(x) = p N(x; m_1, s_1) + (1 - p) N(x; m_2, s_2); read the gain beside the separation and the `dip_test`.
+
+    Parameters
+    ----------
+    values : array_like
+        Independent values, one a run, shape (n,).
+
+    Returns
+    -------
+    TwoPeaks
+        Both peaks, and what Schwarz's criterion says for two.
+
+    Raises
+    ------
+    AnalysisError
+        Below 8 values, for values that are not finite, and for equal ones.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> apart = np.append(np.linspace(0, 1, 50), np.linspace(8, 9, 50))
+    >>> peaks = analysis.two_peaks(apart)
+    >>> round(peaks.lower.mean, 2), peaks.separation > 2
+    (0.5, True)
+    """
+    return result(TwoPeaks, _core.two_peaks(reals(values)))

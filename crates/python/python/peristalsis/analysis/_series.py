@@ -1,0 +1,453 @@
+"""Means of correlated series, and moments over ensembles of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from .. import _core
+from ._columns import Numbers, Uncertain, columns, reals, result
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Mean of a series with its statistical error.
+
+    Attributes
+    ----------
+    mean : float
+        Mean of all samples.
+    error : float
+        Standard error of the mean (one standard deviation), correlations included.
+    error_uncertainty : float
+        Standard error of `error` itself: error/sqrt(2 (blocks - 1)).
+    autocorrelation_time : float
+        Integrated autocorrelation time that the error implies, in samples: (error/error of uncorrelated samples)^2/2.
+    block_length : int
+        Samples in a block.
+    blocks : int
+        Blocks behind the error.
+    samples : int
+        Samples in the series.
+    converged : bool
+        Whether the error has reached its plateau; if not it is a lower bound, and the series is too short.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> estimate = analysis.mean_with_error([1.0, 3.0] * 64)
+    >>> estimate.mean, estimate.samples
+    (2.0, 128)
+    """
+
+    mean: float
+    error: float
+    error_uncertainty: float
+    autocorrelation_time: float
+    block_length: int
+    blocks: int
+    samples: int
+    converged: bool
+
+
+@dataclass(frozen=True)
+class AutocorrelationTime:
+    """Integrated autocorrelation time of a series.
+
+    Attributes
+    ----------
+    time : float
+        tau = 1/2 + sum of the normalised autocorrelations, in samples; 1/2 for uncorrelated samples.
+    error : float
+        Its standard error, 2 tau sqrt((W + 1/2 - tau)/n); for exponential correlations some 15 per cent too large,
+        and meaningless unless converged.
+    window : int
+        Largest lag W of the sum, in samples.
+    converged : bool
+        Whether the window closed by itself; if not, `time` is a lower bound, and the series is too short.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> series = np.random.default_rng(1).normal(size=4096)
+    >>> found = analysis.autocorrelation_time(series)
+    >>> found.converged, abs(found.time - 0.5) < 3 * found.error
+    (True, True)
+    """
+
+    time: float
+    error: float
+    window: int
+    converged: bool
+
+
+@dataclass(frozen=True)
+class Stationarity:
+    """Comparison of the two halves of a series.
+
+    Attributes
+    ----------
+    first : Estimate
+        Mean of the first half.
+    second : Estimate
+        Mean of the second half.
+    score : float
+        Difference of the means, second less first, in units of its standard error.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> halves = analysis.stationarity(np.random.default_rng(1).normal(size=1024))
+    >>> abs(halves.score) < 3
+    True
+    """
+
+    first: Estimate
+    second: Estimate
+    score: float
+
+
+@dataclass(frozen=True)
+class StationaryMean:
+    """Mean of the stationary part of a series.
+
+    Attributes
+    ----------
+    discarded : int
+        Samples left out at the beginning.
+    estimate : Estimate
+        Mean of the rest with its error.
+    halves : Stationarity
+        Comparison of the halves of the rest.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> series = np.append(np.zeros(64), np.random.default_rng(1).normal(1.0, 0.1, size=512))
+    >>> found = analysis.stationary_mean(series)
+    >>> found.discarded >= 64, round(found.estimate.mean, 1)
+    (True, 1.0)
+    """
+
+    discarded: int
+    estimate: Estimate
+    halves: Stationarity
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Mean and variance of independent values, with jackknife errors.
+
+    Attributes
+    ----------
+    mean : float
+        Mean.
+    mean_error : float
+        Standard error of the mean.
+    variance : float
+        Variance `<x^2> - <x>^2` of the distribution, estimated without bias (divisor n - 1).
+    variance_error : float
+        Standard error of the variance, by the jackknife.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> moments = analysis.ensemble_moments([[1.0], [2.0], [3.0]])[0]
+    >>> moments.mean, moments.variance
+    (2.0, 1.0)
+    """
+
+    mean: float
+    mean_error: float
+    variance: float
+    variance_error: float
+
+
+@dataclass(frozen=True)
+class SecondMoment:
+    """Mean and variance of j = J/Jmax across an ensemble at one time.
+
+    Attributes
+    ----------
+    mean : float
+        Mean `<j>`.
+    variance : float
+        `chi_J = <j^2> - <j>^2`, estimated without bias (divisor n - 1).
+    runs : int
+        Runs behind it, held ones included.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> runs = [[0.0, 1.0], [0.0, 0.5], [0.0, 0.0]]
+    >>> moment = analysis.second_moment(runs)[1]
+    >>> moment.mean, moment.variance, moment.runs
+    (0.5, 0.25, 3)
+    """
+
+    mean: float
+    variance: float
+    runs: int
+
+
+@dataclass(frozen=True)
+class MomentPeak:
+    """Peak over time of the second moment.
+
+    Attributes
+    ----------
+    index : Uncertain
+        Position of the peak in the series, from 0, with bootstrap errors.
+    value : Uncertain
+        Height of the peak, with bootstrap errors.
+    bias : float
+        Mean height of the resampled peaks less `value`; the true height is likely near `value - bias`.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> runs = [[0.0, 1.0, 1.0], [0.0, 0.5, 1.0], [0.0, 0.0, 1.0]] * 4
+    >>> peak = analysis.second_moment_peak(runs, resamples=50)
+    >>> peak.index.value, round(peak.value.value, 3)
+    (1.0, 0.182)
+    """
+
+    index: Uncertain
+    value: Uncertain
+    bias: float
+
+
+def mean_with_error(series: Numbers) -> Estimate:
+    """Mean of a correlated series with its standard error, by blocks.
+
+    error^2 = sum (x_i - <x>)^2/(n (n - 1)) over n block averages x_i, the blocks as long as correlations need.
+
+    Parameters
+    ----------
+    series : array_like
+        Samples at equal distances in time, shape (n,), of any unit.
+
+    Returns
+    -------
+    Estimate
+        Mean and error in the unit of the series.
+
+    Raises
+    ------
+    AnalysisError
+        Below 4 samples, or where one is not finite.
+
+    Notes
+    -----
+    Flyvbjerg & Petersen, J. Chem. Phys. 91, 461 (1989); the length of the blocks: Lee, Foulkes & Needs, Phys. Rev. E 83,
+    066706 (2011).
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> mean = analysis.mean_with_error([1.0, 3.0] * 64)
+    >>> mean.mean, mean.converged
+    (2.0, True)
+    """
+    return result(Estimate, _core.mean_with_error(reals(series)))
+
+
+def autocorrelation_time(series: Numbers) -> AutocorrelationTime:
+    """Integrated autocorrelation time of a stationary series, in samples.
+
+    tau = 1/2 + sum of the normalised autocorrelations up to the least lag W >= 5 tau; the variance of the mean is 2 tau/n
+    times that of a sample.
+
+    Parameters
+    ----------
+    series : array_like
+        Samples at equal distances in time, shape (n,), of any unit.
+
+    Returns
+    -------
+    AutocorrelationTime
+        In samples.
+
+    Raises
+    ------
+    AnalysisError
+        Below 16 samples, or where one is not finite.
+
+    Notes
+    -----
+    Madras & Sokal, J. Stat. Phys. 50, 109 (1988), appendix C.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> series = np.random.default_rng(1).normal(size=4096)
+    >>> found = analysis.autocorrelation_time(series)
+    >>> found.converged, abs(found.time - 0.5) < 3 * found.error
+    (True, True)
+    """
+    return result(AutocorrelationTime, _core.autocorrelation_time(reals(series)))
+
+
+def stationary_mean(series: Numbers) -> StationaryMean:
+    """Mean of the stationary part of a series, its transient cut off.
+
+    Parameters
+    ----------
+    series : array_like
+        Samples at equal distances in time, shape (n,), of any unit.
+
+    Returns
+    -------
+    StationaryMean
+        The mean, what was cut off, and how the halves of the rest compare.
+
+    Raises
+    ------
+    AnalysisError
+        Where the series is too short, or not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> series = np.append(np.zeros(64), np.random.default_rng(1).normal(1.0, 0.1, size=512))
+    >>> found = analysis.stationary_mean(series)
+    >>> found.discarded >= 64, round(found.estimate.mean, 1)
+    (True, 1.0)
+    """
+    return result(StationaryMean, _core.stationary_mean(reals(series)))
+
+
+def stationarity(series: Numbers) -> Stationarity:
+    """Comparison of the two halves of a series.
+
+    Parameters
+    ----------
+    series : array_like
+        Samples at equal distances in time, shape (n,), of any unit.
+
+    Returns
+    -------
+    Stationarity
+        Means of the halves, and their difference over its standard error: beyond 3 the series drifts.
+
+    Raises
+    ------
+    AnalysisError
+        Where the series is too short, or not finite.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis
+    >>> halves = analysis.stationarity(np.random.default_rng(1).normal(size=1024))
+    >>> abs(halves.score) < 3
+    True
+    """
+    return result(Stationarity, _core.stationarity(reals(series)))
+
+
+def ensemble_moments(replicas: Iterable[Numbers]) -> list[Moments]:
+    """Mean and variance over replicas, at each place of their series, with jackknife errors.
+
+    Parameters
+    ----------
+    replicas : iterable of array_like
+        Series of equal length, one a replica.
+
+    Returns
+    -------
+    list of Moments
+        One for each place of the series.
+
+    Raises
+    ------
+    ValueError
+        For series of unequal length.
+    AnalysisError
+        For too few replicas, or values that are not finite.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> moments = analysis.ensemble_moments([[1.0], [2.0], [3.0]])[0]
+    >>> moments.mean, moments.variance
+    (2.0, 1.0)
+    """
+    rows = columns(*replicas)
+    return [result(Moments, answer) for answer in _core.ensemble_moments(rows)]
+
+
+def second_moment(runs: Iterable[Numbers], *, held: int | None = None) -> list[SecondMoment]:
+    """chi_J(t) = <j^2> - <j>^2 over runs of unequal length, up to the last time that three runs have reached.
+
+    Parameters
+    ----------
+    runs : iterable of array_like
+        j(t) of each run, at common times.
+    held : int, optional
+        A run that ended stays at the mean of so many of its last samples: right where runs were stopped because they
+        had settled. Without it runs that ended are left out from then on.
+
+    Returns
+    -------
+    list of SecondMoment
+        One for each time.
+
+    Raises
+    ------
+    AnalysisError
+        Below 3 runs, or for values that are not finite.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> runs = [[0.0, 1.0], [0.0, 0.5], [0.0, 0.0]]
+    >>> moment = analysis.second_moment(runs)[1]
+    >>> moment.mean, moment.variance, moment.runs
+    (0.5, 0.25, 3)
+    """
+    answers = _core.second_moment([reals(run) for run in runs], held)
+    return [result(SecondMoment, answer) for answer in answers]
+
+
+def second_moment_peak(
+    runs: Iterable[Numbers], *, held: int | None = None, resamples: int = 200, seed: int = 0
+) -> MomentPeak:
+    """The peak over time of `second_moment`, with errors by resampling whole runs.
+
+    Parameters
+    ----------
+    runs : iterable of array_like
+        j(t) of each run, at common times.
+    held : int, optional
+        As of `second_moment`.
+    resamples : int
+        Resampled ensembles, 20 at least.
+    seed : int
+        Of the resampling.
+
+    Returns
+    -------
+    MomentPeak
+        Place and height; the percentile intervals are pulled upward by the bias that stands beside them.
+
+    Raises
+    ------
+    AnalysisError
+        As `second_moment`, and for too few resamples.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> runs = [[0.0, 1.0, 1.0], [0.0, 0.5, 1.0], [0.0, 0.0, 1.0]] * 4
+    >>> peak = analysis.second_moment_peak(runs, resamples=50)
+    >>> peak.index.value, round(peak.value.value, 3)
+    (1.0, 0.182)
+    """
+    rows = [reals(run) for run in runs]
+    return result(MomentPeak, _core.second_moment_peak(rows, held, int(resamples), int(seed)))

@@ -1,0 +1,435 @@
+"""Transition times of one ensemble, those of runs that ended before included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from .. import _core
+from .._arrays import Array
+from ._columns import Numbers, Uncertain, reals, result, runs
+
+if TYPE_CHECKING:
+    from ._columns import _Family
+
+
+@dataclass(frozen=True)
+class TransitionTime:
+    """When a run changed, or how long it was watched without.
+
+    Attributes
+    ----------
+    time : float
+        tau, or the end of the run.
+    observed : bool
+        Whether there was a transition.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.TransitionTime(time=20.0, observed=True).observed
+    True
+    """
+
+    time: float
+    observed: bool
+
+
+@dataclass(frozen=True)
+class SurvivalStep:
+    """The survival curve just after one transition time.
+
+    Attributes
+    ----------
+    time : float
+        Time of the step, in the unit of the input.
+    at_risk : int
+        Runs watched up to this time without a transition before it.
+    transitions : int
+        Runs with their transition at this time.
+    survival : Uncertain
+        Probability S of no transition up to and including this time, with Greenwood's error and log-log intervals.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> step = analysis.Survival([1.0, 2.0, 3.0], [True, False, True]).steps[0]
+    >>> step.time, step.at_risk, round(step.survival.value, 3)
+    (1.0, 3, 0.667)
+    """
+
+    time: float
+    at_risk: int
+    transitions: int
+    survival: Uncertain
+
+
+@dataclass(frozen=True)
+class RestrictedMoments:
+    """Mean and variance of min(tau, horizon).
+
+    Attributes
+    ----------
+    horizon : float
+        Time at which every longer transition time is cut off.
+    mean : Uncertain
+        Restricted mean, with normal intervals.
+    variance : Uncertain
+        Restricted variance, with its error by the jackknife over runs.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.restricted_moments([1.0, 2.0, 3.0, 4.0], horizon=2.0).mean.value
+    1.75
+    """
+
+    horizon: float
+    mean: Uncertain
+    variance: Uncertain
+
+
+@dataclass(frozen=True)
+class LifetimeFit:
+    """A distribution fitted to the transition times of one ensemble.
+
+    Attributes
+    ----------
+    family : str
+        Family of the distribution.
+    mean : Uncertain
+        Mean `<tau>`, of the whole distribution, beyond the time watched too.
+    variance : Uncertain
+        Variance `chi_tau = <tau^2> - <tau>^2`.
+    shape : Uncertain | None
+        Shape k; `None` for the exponential.
+    log_likelihood : float
+        Largest log-likelihood, of densities in the unit of the times: comparable between families on the same runs.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_lifetime([10.0, 20.0, 30.0], [True, True, False], family="exponential")
+    >>> round(fit.mean.value, 6), fit.observed, fit.censored
+    (30.0, 2, 1)
+    """
+
+    family: str
+    mean: Uncertain
+    variance: Uncertain
+    shape: Uncertain | None
+    log_likelihood: float
+    observed: int
+    censored: int
+
+
+@dataclass(frozen=True)
+class ShiftedExponentialFit:
+    """Shifted exponential distribution fitted to the transition times of one ensemble.
+
+    Attributes
+    ----------
+    dead_time : Uncertain
+        Dead time t_0 before which no transition happens, corrected for its bias; 0 at least.
+    waiting_time : Uncertain
+        Mean waiting time theta after the dead time; 1/theta is the rate.
+    mean : Uncertain
+        Mean `<tau>` = t_0 + theta.
+    variance : Uncertain
+        Variance `chi_tau = theta^2`.
+    log_likelihood : float
+        Largest log-likelihood, comparable with that of a `LifetimeFit` on the same runs.
+    observed : int
+        Runs with an observed transition.
+    censored : int
+        Censored runs.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_shifted_exponential([10.0, 12.0, 16.0, 22.0])
+    >>> fit.dead_time.value < 10.0 < fit.mean.value
+    True
+    """
+
+    dead_time: Uncertain
+    waiting_time: Uncertain
+    mean: Uncertain
+    variance: Uncertain
+    log_likelihood: float
+    observed: int
+    censored: int
+
+
+class Survival:
+    """Part of the runs without a transition yet (Kaplan & Meier), from times some of which are censored.
+
+    S(t) = product over transition times t_i <= t of (1 - d_i/n_i): d_i transitions among n_i runs still at risk.
+
+    Parameters
+    ----------
+    time : array_like
+        Transition times, and ends of runs without a transition, shape (runs,).
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+
+    Attributes
+    ----------
+    steps : tuple of SurvivalStep
+        The curve, one step a transition time.
+    runs, observed : int
+        Runs, and those with a transition.
+    watched : float
+        Longest time that a run was watched.
+
+    Raises
+    ------
+    AnalysisError
+        Without a transition, for times that are negative or not finite, and where an outcome is missing.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> curve = analysis.Survival([1.0, 2.0, 3.0, 4.0], [True, False, True, True])
+    >>> curve.at([0.5, 2.5, 3.5]).tolist()
+    [1.0, 0.75, 0.375]
+    """
+
+    steps: tuple[SurvivalStep, ...]
+    runs: int
+    observed: int
+    watched: float
+
+    def __init__(self, time: Numbers, observed: npt.ArrayLike | None = None) -> None:
+        self._runs = runs(time, observed)
+        answer = _core.survival(self._runs)
+        self.steps = tuple(result(SurvivalStep, step) for step in answer["steps"])
+        self.runs = answer["runs"]
+        self.observed = answer["observed"]
+        self.watched = answer["watched"]
+
+    def at(self, time: Numbers) -> Array:
+        """Survival at times; 1 before the first transition.
+
+        Parameters
+        ----------
+        time : array_like
+            Any times, of any shape.
+
+        Returns
+        -------
+        ndarray
+            S, of the shape of `time`.
+
+        Examples
+        --------
+        >>> from peristalsis import analysis
+        >>> analysis.Survival([1.0, 2.0]).at([0.0, 1.5]).tolist()
+        [1.0, 0.5]
+        """
+        times = np.array([step.time for step in self.steps])
+        levels = np.array([1.0, *(step.survival.value for step in self.steps)])
+        return levels[np.searchsorted(times, np.asarray(time, dtype=np.float64), side="right")]
+
+    @property
+    def median(self) -> Uncertain:
+        """Median transition time, in the unit of the times.
+
+        Raises
+        ------
+        AnalysisError
+            Where fewer than half of the runs had a transition.
+
+        Examples
+        --------
+        >>> from peristalsis import analysis
+        >>> analysis.Survival([1.0, 2.0, 3.0]).median.value
+        2.0
+        """
+        return result(Uncertain, _core.survival_median(self._runs))
+
+    def restricted_moments(self, horizon: float) -> RestrictedMoments:
+        """Mean and variance of min(tau, horizon), without assuming a distribution.
+
+        Parameters
+        ----------
+        horizon : float
+            Time at which every longer time is cut off, at most the longest time watched.
+
+        Returns
+        -------
+        RestrictedMoments
+            In the unit of the times.
+
+        Raises
+        ------
+        AnalysisError
+            Below 3 transitions, or for a horizon beyond the time watched.
+
+        Examples
+        --------
+        >>> from peristalsis import analysis
+        >>> analysis.Survival([1.0, 2.0, 3.0]).restricted_moments(2.5).mean.value
+        1.8333333333333335
+        """
+        return result(RestrictedMoments, _core.restricted_moments(self._runs, float(horizon)))
+
+    def __repr__(self) -> str:
+        return f"<Survival: {self.observed} transitions in {self.runs} runs, watched up to {self.watched:g}>"
+
+
+def transition_time(
+    averages: Numbers,
+    *,
+    direction: Literal["upward", "downward"] = "upward",
+    threshold: float = 0.5,
+    period_duration: float = 1.0,
+) -> TransitionTime:
+    """Time at which the line through period averages crosses a threshold for good: three whole periods beyond it.
+
+    Parameters
+    ----------
+    averages : array_like
+        Average over each whole period since the start, such as J/Jmax.
+    direction : {"upward", "downward"}
+        From rest, or from jammed flow.
+    threshold : float
+        Value that is crossed.
+    period_duration : float
+        T; the answer is in its unit.
+
+    Returns
+    -------
+    TransitionTime
+        tau, or the end of the series where there was no transition.
+
+    Raises
+    ------
+    AnalysisError
+        For averages that are not finite.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.transition_time([0.1, 0.1, 0.9, 0.9, 0.9, 0.9], period_duration=10.0)
+    TransitionTime(time=20.0, observed=True)
+    """
+    return TransitionTime(*_core.transition_time(reals(averages), direction, threshold, period_duration))
+
+
+def restricted_moments(
+    time: Numbers, observed: npt.ArrayLike | None = None, *, horizon: float
+) -> RestrictedMoments:
+    """Mean and variance of min(tau, horizon), censoring accounted for.
+
+    <tau> = integral of S(t) from 0 to the horizon, S the survival of Kaplan & Meier: no distribution is assumed.
+
+    Parameters
+    ----------
+    time : array_like
+        Transition times, and ends of runs without a transition, shape (runs,).
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    horizon : float
+        Time at which every longer time is cut off.
+
+    Returns
+    -------
+    RestrictedMoments
+        In the unit of the times.
+
+    Raises
+    ------
+    AnalysisError
+        Below 3 transitions, or for a horizon beyond the time watched.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> analysis.restricted_moments([1.0, 2.0, 3.0, 4.0], horizon=2.0).mean.value
+    1.75
+    """
+    return Survival(time, observed).restricted_moments(horizon)
+
+
+def fit_lifetime(
+    time: Numbers, observed: npt.ArrayLike | None = None, *, family: _Family = "gamma"
+) -> LifetimeFit:
+    """A distribution of transition times by maximum likelihood under censoring.
+
+    ln L = sum of ln f(t) over transitions + sum of ln S(t) over censored runs, f = -dS/dt.
+
+    Parameters
+    ----------
+    time : array_like
+        Transition times, and ends of runs without a transition, shape (runs,).
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+    family : {"gamma", "exponential", "weibull"}
+        The distribution. A mean far beyond the time watched rests on its being right.
+
+    Returns
+    -------
+    LifetimeFit
+        Mean, variance and shape with intervals by profile likelihood.
+
+    Raises
+    ------
+    AnalysisError
+        Without a transition (exponential) or below 3 (others), and where the times do not scatter.
+
+    Notes
+    -----
+    Kalbfleisch & Prentice, The Statistical Analysis of Failure Time Data (2002), chapter 3.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_lifetime([10.0, 20.0, 30.0], [True, True, False], family="exponential")
+    >>> round(fit.mean.value, 6), fit.observed, fit.censored
+    (30.0, 2, 1)
+    """
+    return result(LifetimeFit, _core.fit_lifetime(family, runs(time, observed)))
+
+
+def fit_shifted_exponential(
+    time: Numbers, observed: npt.ArrayLike | None = None
+) -> ShiftedExponentialFit:
+    """A dead time, and exponential waiting after it: S(t) = exp(-(t - t_0)/theta) beyond t_0, 1 before.
+
+    Parameters
+    ----------
+    time : array_like
+        Transition times, and ends of runs without a transition, shape (runs,).
+    observed : array_like of bool, optional
+        Whether there was a transition; all, by default.
+
+    Returns
+    -------
+    ShiftedExponentialFit
+        t_0 and theta, both without bias, in the unit of the times.
+
+    Raises
+    ------
+    AnalysisError
+        Below 3 transitions, or where all are at one time.
+
+    Notes
+    -----
+    Lawless, Statistical Models and Methods for Lifetime Data (2003), section 4.5.
+
+    Examples
+    --------
+    >>> from peristalsis import analysis
+    >>> fit = analysis.fit_shifted_exponential([10.0, 12.0, 16.0, 22.0])
+    >>> fit.dead_time.value < 10.0 < fit.mean.value
+    True
+    """
+    return result(ShiftedExponentialFit, _core.fit_shifted_exponential(runs(time, observed)))
