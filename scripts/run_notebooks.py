@@ -1,14 +1,43 @@
-"""Executes notebooks from their first cell to the last; what a cell raises ends it. The files stay as they are."""
+"""Executes notebooks from their first cell to the last; what a cell raises ends it, and so does a figure that is missing.
+
+The metadata of a notebook say how many figures it shows: `"peristalsis": {"figures": 5}`. The files stay as they are;
+with --write they keep what their cells showed.
+
+    run_notebooks.py [--write] NOTEBOOK ...
+"""
 
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import nbclient
 import nbformat
 
-for path in map(Path, sys.argv[1:]):
-    begin = time.monotonic()
-    notebook = nbformat.read(path, as_version=4)
-    nbclient.NotebookClient(notebook, timeout=600, resources={"metadata": {"path": str(path.parent)}}).execute()
-    print(f"{path.name}: {len(notebook.cells)} cells in {time.monotonic() - begin:.0f} s")
+
+def figures(notebook: Any) -> int:
+    """Pictures among the outputs."""
+    outputs = (output for cell in notebook.cells if cell.cell_type == "code" for output in cell.outputs)
+    return sum("image/png" in output.get("data", {}) for output in outputs)
+
+
+def main(arguments: list[str]) -> None:
+    keep = "--write" in arguments
+    for path in (Path(argument) for argument in arguments if argument != "--write"):
+        begin = time.monotonic()
+        notebook = nbformat.read(path, as_version=4)
+        client = nbclient.NotebookClient(
+            notebook, timeout=600, record_timing=False, resources={"metadata": {"path": str(path.parent)}}
+        )
+        client.execute()
+        shown, expected = figures(notebook), notebook.metadata["peristalsis"]["figures"]
+        if shown != expected:
+            sys.exit(f"{path.name} shows {shown} figures, not {expected}")
+        if keep:
+            notebook.metadata.pop("language_info", None)
+            nbformat.write(notebook, path)
+        print(f"{path.name}: {len(notebook.cells)} cells, {shown} figures in {time.monotonic() - begin:.0f} s")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

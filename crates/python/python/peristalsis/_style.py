@@ -72,7 +72,7 @@ STYLE: Any = {
     "errorbar.capsize": 1.5,
     "svg.fonttype": "none",
     "pdf.fonttype": 42,
-    "figure.dpi": 200,
+    "figure.dpi": 160,
     "savefig.dpi": 300,
 }
 

@@ -107,8 +107,8 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
         raise ValueError("there is no flow rate to draw: run the simulation first, with a wave that moves")
     is_alone = ax is None and label is None
     with drawing(ax) as new:
-        known = sum(drawn.get_gid() == _CURVE for drawn in new.lines)
-        colour = line.pop("color", COLOURS[known % len(COLOURS)])
+        known = [drawn.get_xdata()[-1] for drawn in new.lines if drawn.get_gid() == _CURVE]
+        colour = line.pop("color", COLOURS[len(known) % len(COLOURS)])
         faint = {"color": SKY, "label": "samples"} if is_alone else {"color": colour, "alpha": 0.4}
         new.plot(np.convolve(np.r_[0.0, period], [0.5, 0.5], "valid"), ratio, linewidth=0.6, **faint)
         middle, mean = _period_means(simulation, period, ratio)
@@ -122,9 +122,9 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
                 place = float(np.interp(summary["transition_time"], series["time"], period))
                 new.axvline(place, color=VERMILLION, linewidth=0.9, label=rf"$\tau$ = {summary['transition_time']:.4g} $t$")
             new.set_title(title(simulation))
-        new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, max(period[-1], new.get_xlim()[1] if ax else 0.0)))
+        new.set(xlabel="time, $t/T$", ylabel=_RATIO, xlim=(0.0, math.ceil(max([period[-1] - 1e-6, *known]))))
         handles = sorted(new.get_legend_handles_labels()[0], key=lambda drawn: drawn.get_gid() != _CURVE)
-        new.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.2), ncols=2)
+        new.legend(handles=handles, loc="upper center", bbox_to_anchor=(0.5, -0.23), ncols=2)
     return new
 
 
@@ -374,11 +374,12 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
     lower = np.array([1.0, *(level.interval_68.lower for level in levels)])
     upper = np.array([1.0, *(level.interval_68.upper for level in levels)])
     with drawing(ax) as new:
-        (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, **line)
+        latest = max([time[-1], *(drawn.get_xdata()[-1] for drawn in new.lines if drawn.get_gid() == _CURVE)])
+        (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, gid=_CURVE, **line)
         bounds = np.append(lower, lower[-1]), np.append(upper, upper[-1])
         new.fill_between(time, *bounds, step="post", color=drawn.get_color(), alpha=0.25, linewidth=0)
         new.set(xlabel="time, $t$", ylabel="runs without a transition, $S(t)$", ylim=(0.0, 1.05))
-        new.set_xlim(left=0.0)
+        new.set_xlim(0.0, latest)
         if label is not None:
             new.legend()
     return new

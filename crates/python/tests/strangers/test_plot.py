@@ -12,7 +12,7 @@ import pytest
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.image import imread
 
-from peristalsis import Simulation, plot
+from peristalsis import Simulation, analysis, plot
 
 nbformat = pytest.importorskip("nbformat")
 nbclient = pytest.importorskip("nbclient")
@@ -21,7 +21,7 @@ nbclient = pytest.importorskip("nbclient")
 CELLS = (
     """\
 import matplotlib, matplotlib.pyplot as plt
-from peristalsis import Simulation, plot
+from peristalsis import Simulation, analysis, plot
 sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1, waves=2)
 sim.run(periods=2)
 plot.flow(sim);""",
@@ -149,3 +149,9 @@ def test_a_loop_is_drawn_with_both_ways_and_their_errors() -> None:
     legend = axes.get_legend()
     assert legend is not None
     assert {text.get_text() for text in legend.get_texts()} == {"there, upwards", "back, downwards", "Newtonian fluid"}
+
+
+def test_survival_curves_of_different_lengths_are_all_shown() -> None:
+    axes = plot.survival(analysis.Survival([100.0, 200.0]), label="short")
+    plot.survival(analysis.Survival([100.0, 800.0]), axes, label="long")
+    assert axes.get_xlim() == (0.0, 800.0)
