@@ -37,8 +37,8 @@ pub enum Error {
         /// The value.
         value: f64,
     },
-    /// A threshold outside the open interval from 0 (rest) to 1 (jammed).
-    #[error("a threshold of {threshold} does not lie between 0 and 1")]
+    /// A threshold that is infinite or not a number.
+    #[error("a threshold of {threshold} is not a finite number")]
     Threshold {
         /// The threshold given, J/Jmax.
         threshold: f64,

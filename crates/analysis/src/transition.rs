@@ -10,9 +10,9 @@ const CONFIRMATION_PERIODS: u32 = 3;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Direction {
-    /// From unjammed to jammed flow, in runs started from `rest`.
+    /// From below to above: from unjammed to jammed flow, in runs started from `rest`.
     Upward,
-    /// From jammed to unjammed flow, in runs started from `jammed`.
+    /// From above to below: from jammed to unjammed flow, in runs started from `jammed`, or from rest to back flow.
     Downward,
 }
 
@@ -93,7 +93,8 @@ struct Crossing {
 /// tau = t_(k-1) + (t_k - t_(k-1)) (theta - m_(k-1))/(m_k - m_(k-1)),   t_k = (k + 1/2) T
 ///
 /// the straight line between the middles of the two periods. Before the first period stands the initial state, m = 0
-/// at rest or 1 jammed, at t = 0, so that a run that is beyond the threshold in its first period has 0 < tau < T/2.
+/// at rest or 1 jammed, at t = 0, so that a run that is beyond the threshold in its first period has 0 <= tau < T/2:
+/// 0 where the initial state is not short of the threshold either.
 /// Until a crossing is confirmed the run counts as censored at the end of its last period, though the crossing, once
 /// confirmed, lies up to three periods before that time: see [`candidate`](Self::candidate).
 ///
@@ -119,19 +120,17 @@ pub struct TransitionDetector {
 }
 
 impl TransitionDetector {
-    /// A detector at the start of a run.
+    /// A detector at the start of a run, of which J/Jmax is 0 for [`Direction::Upward`] and 1 for
+    /// [`Direction::Downward`] unless [`starting_at`](Self::starting_at) says otherwise.
     ///
-    /// `threshold` of J/Jmax, 0 < threshold < 1; `period_duration` T = lambda/c in the unit of the times to report (1
-    /// for times in periods).
+    /// `threshold` of J/Jmax, any finite number: below 0 for back flow; `period_duration` T = lambda/c in the unit of the
+    /// times to report (1 for times in periods).
     ///
     /// # Errors
     /// [`Error::Threshold`], [`Error::PeriodDuration`].
     pub fn new(direction: Direction, threshold: f64, period_duration: f64) -> Result<Self, Error> {
         let duration = period_duration;
-        ensure(
-            threshold > 0.0 && threshold < 1.0,
-            Error::Threshold { threshold },
-        )?;
+        ensure(threshold.is_finite(), Error::Threshold { threshold })?;
         ensure(
             duration > 0.0 && duration.is_finite(),
             Error::PeriodDuration { duration },
@@ -144,6 +143,15 @@ impl TransitionDetector {
             last_average: direction.initial_ratio(),
             crossing: None,
         })
+    }
+
+    /// The detector of a run whose J/Jmax is `ratio` at t = 0.
+    #[must_use]
+    pub fn starting_at(self, ratio: f64) -> Self {
+        Self {
+            last_average: ratio,
+            ..self
+        }
     }
 
     /// Takes the average of J/Jmax over the next period and returns the outcome so far.
@@ -199,6 +207,9 @@ impl TransitionDetector {
         let middle = self.periods as f64 + 0.5;
         let previous = if self.periods == 0 { 0.0 } else { middle - 1.0 };
         let fraction = (self.threshold - self.last_average) / (average - self.last_average);
+        // It is elsewhere, or no number, only where the initial state is beyond the threshold.
+        let is_between = (0.0..=1.0).contains(&fraction);
+        let fraction = if is_between { fraction } else { 0.0 };
         (previous + (middle - previous) * fraction) * self.period_duration
     }
 }
@@ -312,7 +323,7 @@ mod tests {
         let before = detector.clone();
         assert_refused!(detector.push(f64::NAN) => NonFinite { index: 1, .. });
         assert_eq!(detector, before);
-        for threshold in [0.0, 1.0, f64::NAN] {
+        for threshold in [f64::INFINITY, f64::NAN] {
             let refused = TransitionDetector::new(Direction::Upward, threshold, 2.0);
             assert!(matches!(refused, Err(Error::Threshold { .. })));
         }
@@ -340,7 +351,7 @@ mod tests {
         fn the_detector_agrees_with_the_definition_and_survives_serialisation(
             means in prop::collection::vec(-0.2..1.2_f64, 0..40),
             direction in direction(),
-            threshold in 0.05..0.95_f64,
+            threshold in -0.3..1.3_f64,
             interruption in 0_usize..40,
         ) {
             let mut detector = TransitionDetector::new(direction, threshold, 3.0).unwrap();

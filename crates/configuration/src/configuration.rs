@@ -305,7 +305,9 @@ pub struct Observe {
     /// Part of the run, at its end, that late means and profiles are taken over.
     #[schemars(extend("x-unit" = "1", "exclusiveMinimum" = 0, "maximum" = 1))]
     pub late_fraction: f64,
-    /// J/Jmax that the period average crosses at a transition, upward from rest and downward from jammed.
+    /// J/Jmax that the period average crosses at a transition, on its way from the initial state, 0 from rest and 1
+    /// jammed: from rest upward, or downward to back flow where the threshold is below 0; from jammed downward, or upward
+    /// where it is above 1.
     #[schemars(extend("x-unit" = "1", "minimum" = -2, "maximum" = 2))]
     pub transition_threshold: f64,
 }

@@ -28,6 +28,17 @@ pub(crate) const LENGTHS: &[&str] = &["run.periods", "run.duration"];
 pub(crate) const ALTERNATIVES: [&[&str]; 4] =
     [NUMBERS, &["drive.width", "drive.amplitude"], RATES, LENGTHS];
 
+/// Keys of which at most one is given: the damping of each law, first, and what stands for it.
+pub(crate) const DAMPINGS: [&[&str]; 2] = [
+    &["contact.normal_damping", "contact.restitution"],
+    &["contact.dissipation_time", "contact.restitution"],
+];
+
+/// All groups of keys that exclude one another.
+pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]> {
+    ALTERNATIVES.into_iter().chain(DAMPINGS)
+}
+
 /// Configuration of one simulation of grains in a peristaltic tube.
 #[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
 pub(crate) struct Keys {
@@ -69,6 +80,16 @@ pub(crate) struct ContactKeys {
     pub(crate) normal: Normal,
     #[serde(flatten)]
     pub(crate) friction: CundallStrack,
+    /// Restitution e of two grains of the mean diameter that meet head-on at restitution_speed, instead of normal_damping
+    /// (linear law) or dissipation_time (Hertz law), which are resolved from it. Linear law: e = exp(-pi
+    /// beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of the impact; e falls with
+    /// the speed.
+    #[schemars(extend("x-unit" = "1", "minimum" = 1e-3, "maximum" = 1))]
+    pub(crate) restitution: Option<f64>,
+    /// Relative speed at which restitution holds. Missing: the speed of the wave, so that in a study of several strain rates
+    /// each has its own material; a static wave needs it.
+    #[schemars(extend("x-unit" = "d t^-1", "exclusiveMinimum" = 0, "maximum" = 1e6))]
+    pub(crate) restitution_speed: Option<f64>,
 }
 
 /// The travelling wave that drives the grains. Exactly one of strain_rate, wave_speed and units.wave_frequency is given;

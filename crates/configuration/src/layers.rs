@@ -8,7 +8,7 @@ use peristalsis_physics::wall::ElasticNetwork;
 
 use crate::document::{self, Entry, Node, Table};
 use crate::error::{Problem, ProblemKind, Problems};
-use crate::keys::ALTERNATIVES;
+use crate::keys::{DAMPINGS, exclusive_groups};
 use crate::schema::{self, Choice};
 use crate::units;
 
@@ -66,7 +66,7 @@ fn switch_of(choice: &Choice) -> Switch {
     for value in &choice.values {
         for name in value.keys.keys() {
             let key = format!("{}.{name}", choice.table);
-            let mut groups = ALTERNATIVES.iter();
+            let mut groups = exclusive_groups();
             match groups.find(|group| group.contains(&key.as_str())) {
                 Some(group) => group.iter().for_each(|key| switch.owns(&value.name, *key)),
                 None => switch.owns(&value.name, key),
@@ -104,7 +104,7 @@ pub(crate) fn has_meaning(table: &Table, key: &str) -> bool {
 
 /// Lays `layer` over `base`.
 pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) {
-    for group in ALTERNATIVES {
+    for group in exclusive_groups() {
         let given = group.iter().copied();
         let given = given.filter_map(|key| Some((key, document::entry(&layer, key)?)));
         let given: Vec<(&str, &Entry)> = given.collect();
@@ -117,6 +117,13 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
         for key in group {
             document::remove(base, key);
         }
+    }
+    // A damping takes the place of a restitution with its speed.
+    if DAMPINGS
+        .iter()
+        .any(|group| document::entry(&layer, group[0]).is_some())
+    {
+        document::remove(base, "contact.restitution_speed");
     }
     for switch in &*SWITCHES {
         drop_meaningless(base, &layer, switch);
@@ -132,7 +139,7 @@ pub(crate) fn lay_over(base: &mut Table, layer: Table, problems: &mut Problems) 
 fn conflict(given: &[(&str, &Entry)], group: &[&str]) -> Problem {
     let names: Vec<&str> = given.iter().map(|(key, _)| *key).collect();
     let names = list(&names, "and");
-    let message = format!("{names} exclude one another; exactly one is given");
+    let message = format!("{names} exclude one another; only one of them can be given");
     let mut given = given.to_vec();
     given.sort_by_key(|(_, entry)| entry.key.span.start);
     let mut problem = Problem::new(ProblemKind::Conflict, message)

@@ -8,7 +8,7 @@ use schemars::generate::SchemaSettings;
 use serde_json::{Map, Value, json};
 
 use crate::configuration::Control;
-use crate::keys::{ALTERNATIVES, Keys};
+use crate::keys::{Keys, exclusive_groups};
 use crate::presets::PRESETS;
 
 /// JSON schema (draft 2020-12) of a configuration file.
@@ -129,7 +129,7 @@ fn build() -> Value {
         "type": "object",
         "description": "Values derived from the keys, as a run's record states them. Read and ignored.",
     });
-    for group in ALTERNATIVES {
+    for group in exclusive_groups() {
         exclude_one_another(&mut schema, group);
     }
     schema

@@ -4,7 +4,7 @@ mod common;
 
 use common::{Collision, LINEAR, hertz, normals, smooth};
 use peristalsis_physics::contact::{
-    DissipationForm, LinearSpringDashpot, Normal, NormalLaw, ViscoelasticHertz,
+    DissipationForm, Impact, LinearSpringDashpot, Normal, NormalLaw, ViscoelasticHertz,
 };
 
 /// Head-on restitution of two spheres of mass 1 in three dimensions.
@@ -197,5 +197,38 @@ fn restitution_is_the_same_for_either_sphere_and_any_observer() {
         other.run(1e-3);
         let seen = (other.velocity[1].x - other.velocity[0].x) / 0.1;
         assert!((plain - seen).abs() < 1e-12, "{name}: {plain} {seen}");
+    }
+}
+
+/// COMMAND-LINE, wanted: restitution as an input. The damping that a restitution asks for gives it, at its own speed.
+#[test]
+fn the_damping_of_a_restitution_gives_that_restitution() {
+    let laws = [
+        Normal::Linear(LINEAR),
+        Normal::Hertz(hertz(DissipationForm::Printed)),
+        Normal::Hertz(hertz(DissipationForm::Viscoelastic)),
+    ];
+    for (law, diameter, speed, wanted) in laws.iter().flat_map(|law| {
+        let impacts = [(1.0, 0.1), (0.8, 0.004), (2.5, 3.0)];
+        let wanted = [0.01, 0.3, 0.9, 0.988, 1.0];
+        impacts
+            .map(|(diameter, speed)| wanted.map(|e| (*law, diameter, speed, e)))
+            .concat()
+    }) {
+        let impact = Impact::of_twins(diameter, speed);
+        let damped = law.with_restitution(wanted, impact);
+        let rebound = damped.rebound(impact);
+        let measured = restitution_on_a_line(
+            |overlap, v_n| damped.force(overlap, v_n, impact.reduced_radius).force,
+            impact.reduced_mass,
+            speed,
+            1e-4 * rebound.duration,
+        );
+        let case = format!("{law:?} d = {diameter} v = {speed} e = {wanted}");
+        assert!(
+            (rebound.restitution - wanted).abs() < 1e-8,
+            "{case}: {rebound:?}"
+        );
+        assert!((measured - wanted).abs() < 1e-3, "{case}: {measured}");
     }
 }

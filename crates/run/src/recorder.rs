@@ -34,17 +34,15 @@ pub struct Recorder {
 impl Recorder {
     /// Begins with a simulation at time 0.
     pub(crate) fn new(configuration: &Configuration, simulation: &Simulation) -> Self {
-        let direction = match configuration.initial.state {
-            InitialState::Rest => Direction::Upward,
-            InitialState::Jammed => Direction::Downward,
-        };
         let samples_per_period = u64::from(configuration.observe.samples_per_period);
         let has_grains = configuration.grains.number > 0;
         let period = configuration.drive.period().filter(|_| has_grains);
         let detector_at = |threshold: f64| {
-            let period = period?;
-            let detector = TransitionDetector::new(direction, threshold, period);
-            Some(detector.expect("a validated configuration has a threshold and a period in range"))
+            let (start, direction) = start_and_direction(configuration.initial.state, threshold);
+            let detector = TransitionDetector::new(direction, threshold, period?);
+            let detector =
+                detector.expect("a validated configuration has a finite threshold and period");
+            Some(detector.starting_at(start))
         };
         let bins = configuration.observe.profile_bins as usize;
         let observer = Observer::new(simulation);
@@ -166,6 +164,17 @@ impl Recorder {
         let number = self.samples.len();
         let taken = ((number as f64 * fraction).round() as usize).clamp(1.min(number), number);
         &self.samples[number - taken..]
+    }
+}
+
+/// J/Jmax at the start, and the way from there to a threshold: upward from rest, downward from jammed flow, but downward
+/// to back flow from either, and upward to more than jammed flow.
+fn start_and_direction(state: InitialState, threshold: f64) -> (f64, Direction) {
+    match state {
+        InitialState::Rest if threshold < 0.0 => (0.0, Direction::Downward),
+        InitialState::Rest => (0.0, Direction::Upward),
+        InitialState::Jammed if threshold > 1.0 => (1.0, Direction::Upward),
+        InitialState::Jammed => (1.0, Direction::Downward),
     }
 }
 

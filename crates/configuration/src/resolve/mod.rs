@@ -1,5 +1,6 @@
 //! From layers of keys to one resolved configuration.
 
+mod damping;
 mod drive;
 mod grains;
 mod run;
@@ -332,6 +333,12 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     let drive = drive::drive(&keys, units.flatten().as_ref(), context);
     let run = match (&drive, &grains) {
         (Some(drive), Some(grains)) => run::run(keys.run, drive, grains, &keys.observe, context),
+        _ => None,
+    };
+    let contact = match (contact, &drive, &grains) {
+        (Some(contact), Some(drive), Some(grains)) => {
+            damping::damped(contact, &keys, grains, drive, context)
+        }
         _ => None,
     };
     let mut configuration = Configuration {

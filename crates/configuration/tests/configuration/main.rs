@@ -3,6 +3,7 @@
 mod errors;
 mod layers;
 mod pumping;
+mod restitution;
 mod round_trip;
 
 use peristalsis_configuration::{

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Elasticity, NormalForce, NormalLaw};
+use super::{Elasticity, Impact, NormalForce, NormalLaw, Rebound};
 use crate::real::Real;
 
 /// How the dissipation time enters the viscoelastic force: f_n is proportional to xi^(3/2) - B sqrt(xi) v_n.
@@ -69,6 +69,81 @@ impl ViscoelasticHertz {
             DissipationForm::Viscoelastic => 1.5 * self.dissipation_time,
         }
     }
+
+    /// l = (m_ij v^2/K)^(2/5), K = 2 Y R_ij^(1/2)/(3 (1 - nu^2)): with l as unit of length and l/v as unit of time an
+    /// impact depends on s = B v/l alone.
+    fn impact_length(&self, impact: Impact) -> f64 {
+        let stiffness = self.modulus() * impact.reduced_radius.sqrt();
+        let energy = impact.reduced_mass * impact.speed * impact.speed;
+        libm::pow(energy / stiffness, 0.4)
+    }
+}
+
+/// Step of time in [`scaled_rebound`], of a contact that lasts 3.2 without damping.
+const SCALED_STEP: f64 = 1e-3;
+/// s above which e, which falls as 1/s^5, is below 1e-5 and taken for 0.
+const OVERDAMPED: f64 = 10.0;
+
+/// The impact x'' = -max(x^(3/2) + s x^(1/2) x', 0), x(0) = 0, x'(0) = 1 of viscoelastic spheres, by the fourth-order
+/// Runge-Kutta method. From where the force vanishes the spheres part freely.
+fn scaled_rebound(damping: f64) -> Rebound {
+    if damping > OVERDAMPED {
+        return Rebound {
+            restitution: 0.0,
+            duration: f64::INFINITY,
+        };
+    }
+    let acceleration = |x: f64, rate: f64| {
+        let x = x.max(0.0);
+        -(x.sqrt() * (x + damping * rate)).max(0.0)
+    };
+    let (step, half) = (SCALED_STEP, 0.5 * SCALED_STEP);
+    let (mut x, mut rate, mut time) = (0.0, 1.0, 0.0);
+    while rate > 0.0 || x + damping * rate > 0.0 {
+        let a1 = acceleration(x, rate);
+        let (r2, a2) = (
+            rate + half * a1,
+            acceleration(x + half * rate, rate + half * a1),
+        );
+        let (r3, a3) = (
+            rate + half * a2,
+            acceleration(x + half * r2, rate + half * a2),
+        );
+        let (r4, a4) = (
+            rate + step * a3,
+            acceleration(x + step * r3, rate + step * a3),
+        );
+        x += step * (rate + 2.0 * (r2 + r3) + r4) / 6.0;
+        rate += step * (a1 + 2.0 * (a2 + a3) + a4) / 6.0;
+        time += step;
+        // Without damping the force vanishes where the spheres part.
+        if x <= 0.0 {
+            break;
+        }
+    }
+    Rebound {
+        restitution: (-rate).min(1.0),
+        duration: time + x / -rate,
+    }
+}
+
+/// s of an impact that ends with this restitution, by bisection.
+fn scaled_damping(restitution: f64) -> f64 {
+    let is_enough = |damping: f64| scaled_rebound(damping).restitution <= restitution;
+    let mut enough = 1.0;
+    while !is_enough(enough) {
+        enough *= 2.0;
+    }
+    let (mut least, mut most) = (0.0, enough);
+    // To the accuracy of the integration.
+    while most - least > 1e-12 * enough {
+        let middle = 0.5 * (least + most);
+        match is_enough(middle) {
+            true => most = middle,
+            false => least = middle,
+        }
+    }
+    0.5 * (least + most)
 }
 
 impl NormalLaw for ViscoelasticHertz {
@@ -104,6 +179,42 @@ impl NormalLaw for ViscoelasticHertz {
         let stiffness = 2.0 * self.young_modulus * reduced_radius.sqrt()
             / (3.0 * (1.0 - self.poisson_ratio * self.poisson_ratio));
         libm::pow(1.25 * reduced_mass * speed * speed / stiffness, 0.4)
+    }
+
+    /// By integration of the impact, which depends on s = B v/l alone, l = (m_ij v^2/K)^(2/5); at rest the limit of slow
+    /// impacts, e = 1.
+    fn rebound(&self, impact: Impact) -> Rebound {
+        let length = self.impact_length(impact);
+        let damping = self.relaxation_time() * impact.speed / length;
+        // Nor a number where the impact is out of the range of numbers.
+        if length == 0.0 || damping.is_nan() {
+            return Rebound {
+                restitution: 1.0,
+                duration: f64::INFINITY,
+            };
+        }
+        let scaled = scaled_rebound(damping);
+        Rebound {
+            duration: scaled.duration * length / impact.speed,
+            ..scaled
+        }
+    }
+
+    /// A from B = s l/v, where s is that of the restitution.
+    fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {
+        if restitution >= 1.0 {
+            return self.undamped();
+        }
+        let relaxation_time =
+            scaled_damping(restitution) * self.impact_length(impact) / impact.speed;
+        let dissipation_time = match self.dissipation_form {
+            DissipationForm::Printed => relaxation_time,
+            DissipationForm::Viscoelastic => relaxation_time / 1.5,
+        };
+        Self {
+            dissipation_time,
+            ..*self
+        }
     }
 }
 

@@ -1,9 +1,11 @@
 //! Linear spring and dashpot: the contact law of the frictionless model.
 
+use core::f64::consts::PI;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Elasticity, NormalForce, NormalLaw};
+use super::{Elasticity, Impact, NormalForce, NormalLaw, Rebound};
 use crate::real::Real;
 
 /// Normal contact force of two spheres, a spring and a dashpot in parallel.
@@ -50,7 +52,7 @@ impl LinearSpringDashpot {
         if frequency_squared <= 0.0 {
             return 0.0;
         }
-        libm::exp(-core::f64::consts::PI * damping_rate / frequency_squared.sqrt())
+        libm::exp(-PI * damping_rate / frequency_squared.sqrt())
     }
 
     /// Duration of a normal impact, pi/sqrt(omega_0^2 - beta^2) \[t\], for reduced mass m_ij; infinite where the contact
@@ -60,7 +62,7 @@ impl LinearSpringDashpot {
         if frequency_squared <= 0.0 {
             return f64::INFINITY;
         }
-        core::f64::consts::PI / frequency_squared.sqrt()
+        PI / frequency_squared.sqrt()
     }
 
     /// beta, and omega_0^2 - beta^2.
@@ -100,6 +102,25 @@ impl NormalLaw for LinearSpringDashpot {
     /// xi = v (m_ij/k)^(1/2)
     fn impact_overlap(&self, reduced_mass: f64, speed: f64, _reduced_radius: f64) -> f64 {
         speed * (reduced_mass / self.normal_stiffness).sqrt()
+    }
+
+    /// At any speed: e = exp(-pi beta/sqrt(omega_0^2 - beta^2)), see [`LinearSpringDashpot::restitution`].
+    fn rebound(&self, impact: Impact) -> Rebound {
+        Rebound {
+            restitution: self.restitution(impact.reduced_mass),
+            duration: self.contact_time(impact.reduced_mass),
+        }
+    }
+
+    /// eta = 2 (m_ij k)^(1/2) L/(pi^2 + L^2)^(1/2), L = -ln e
+    fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {
+        // One zero, not two.
+        let logarithm = 0.0 - libm::log(restitution);
+        let part = logarithm / (PI * PI + logarithm * logarithm).sqrt();
+        Self {
+            normal_damping: 2.0 * (impact.reduced_mass * self.normal_stiffness).sqrt() * part,
+            ..*self
+        }
     }
 }
 

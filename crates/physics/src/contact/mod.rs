@@ -127,6 +127,44 @@ pub trait NormalLaw: Copy + Sync {
 
     /// Largest overlap of an impact along the normal at relative speed `speed`, without dissipation \[d\].
     fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64;
+
+    /// What comes of an impact along the normal.
+    fn rebound(&self, impact: Impact) -> Rebound;
+
+    /// The same law with the damping that makes an impact end with the restitution e, 0 < e <= 1.
+    #[must_use]
+    fn with_restitution(&self, restitution: f64, impact: Impact) -> Self;
+}
+
+/// An impact of two spheres along the normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Impact {
+    /// m_ij = m_i m_j/(m_i + m_j) \[m\].
+    pub reduced_mass: f64,
+    /// R_ij \[d\], see [`reduced_radius`].
+    pub reduced_radius: f64,
+    /// Relative speed at first touch v \[d/t\].
+    pub speed: f64,
+}
+
+impl Impact {
+    /// Two grains of a diameter, and of the mass that is its cube.
+    pub fn of_twins(diameter: f64, speed: f64) -> Self {
+        Self {
+            reduced_mass: 0.5 * diameter * diameter * diameter,
+            reduced_radius: reduced_radius(diameter, diameter),
+            speed,
+        }
+    }
+}
+
+/// What comes of an [`Impact`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rebound {
+    /// e, the speed of parting over that of meeting.
+    pub restitution: f64,
+    /// Time from touch to parting \[t\].
+    pub duration: f64,
 }
 
 /// The parameter that scales the elastic force of a normal law: the units of time and pressure follow from it.
@@ -292,6 +330,14 @@ impl NormalLaw for Normal {
 
     fn impact_overlap(&self, reduced_mass: f64, speed: f64, reduced_radius: f64) -> f64 {
         with_normal_law!(self, law => law.impact_overlap(reduced_mass, speed, reduced_radius))
+    }
+
+    fn rebound(&self, impact: Impact) -> Rebound {
+        with_normal_law!(self, law => law.rebound(impact))
+    }
+
+    fn with_restitution(&self, restitution: f64, impact: Impact) -> Self {
+        with_normal_law!(self, law => law.with_restitution(restitution, impact).into())
     }
 }
 

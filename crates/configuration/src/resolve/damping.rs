@@ -1,0 +1,60 @@
+//! The damping of the contacts: as given, or from the restitution of an impact.
+
+use peristalsis_physics::contact::{ContactModel, Impact, Normal, NormalLaw};
+
+use super::{Context, schema_of};
+use crate::configuration::{Drive, Grains};
+use crate::error::ProblemKind;
+use crate::keys::{DAMPINGS, Keys};
+
+const RESTITUTION: &str = "contact.restitution";
+const SPEED: &str = "contact.restitution_speed";
+
+/// Contacts with the damping of contact.restitution, where that is given.
+pub(super) fn damped(
+    contact: ContactModel,
+    keys: &Keys,
+    grains: &Grains,
+    drive: &Drive,
+    context: &mut Context<'_>,
+) -> Option<ContactModel> {
+    let Some(restitution) = keys.contact.restitution else {
+        if context.given(SPEED) {
+            let message = format!("{SPEED} is given without {RESTITUTION}");
+            let help = format!("give {RESTITUTION} as well, or leave {SPEED} out");
+            return context.refuse(ProblemKind::Inconsistent, &[SPEED], message, help);
+        }
+        return Some(contact);
+    };
+    let wave_speed = drive.strain_rate * keys.tube.wavelength;
+    let speed = keys.contact.restitution_speed.unwrap_or(wave_speed);
+    let diameter = 0.5 * (grains.diameter_min + grains.diameter_max);
+    let normal = contact
+        .normal
+        .with_restitution(restitution, Impact::of_twins(diameter, speed));
+    let (key, damping) = damping_of(normal);
+    if damping.is_nan() && speed == 0.0 {
+        let message = format!("{RESTITUTION} holds at the speed of the wave, which stands still");
+        let help = format!("give the speed of the impact that is meant as {SPEED}");
+        return context.refuse(ProblemKind::Inconsistent, &[RESTITUTION], message, help);
+    }
+    let most = schema_of(key)["maximum"].as_f64();
+    // Also false where extreme values come to no number.
+    if !most.is_some_and(|most| damping <= most) {
+        let message = format!("{RESTITUTION} = {restitution} asks for {key} = {damping:e}");
+        let help = format!("{key} is at most {:e}", most.unwrap_or(f64::INFINITY));
+        return context.refuse(ProblemKind::OutOfRange, &[RESTITUTION], message, help);
+    }
+    Some(ContactModel { normal, ..contact })
+}
+
+/// The key of a law's damping, with its value.
+fn damping_of(normal: Normal) -> (&'static str, f64) {
+    let law = toml::Table::try_from(normal).expect("a law consists of numbers and names");
+    let keys = DAMPINGS.into_iter().map(|group| group[0]);
+    let mut values = keys.filter_map(|key| {
+        let (_, name) = key.split_once('.')?;
+        Some((key, law.get(name)?.as_float()?))
+    });
+    values.next().expect("every law has a damping")
+}
