@@ -49,15 +49,20 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end
 /// the program later, in the middle of its work.
 fn check_memory(configuration: &Configuration) -> Result<(), RunError> {
-    let of_wall = match configuration.drive.control {
-        Control::Strain { .. } => 0,
-        Control::Stress { .. } => configuration.tube.wall_spheres(),
-    };
-    let spheres = configuration.grains.number.saturating_add(of_wall);
+    let spheres = moving_spheres(configuration);
     let bytes = spheres.saturating_mul(BYTES_PER_SPHERE);
     let mut room: Vec<u8> = Vec::new();
     let given = room.try_reserve_exact(usize::try_from(bytes).unwrap_or(usize::MAX));
     given.map_err(|_| RunError::NoMemory { spheres, bytes })
+}
+
+/// Grains, and spheres of an elastic wall.
+pub(crate) fn moving_spheres(configuration: &Configuration) -> u64 {
+    let of_wall = match configuration.drive.control {
+        Control::Strain { .. } => 0,
+        Control::Stress { .. } => configuration.tube.wall_spheres(),
+    };
+    configuration.grains.number.saturating_add(of_wall)
 }
 
 /// How the engine computes a configuration.

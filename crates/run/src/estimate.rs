@@ -2,14 +2,16 @@
 
 use std::time::{Duration, Instant};
 
-use peristalsis_configuration::Configuration;
+use peristalsis_configuration::{Configuration, Grains};
+use peristalsis_observe::{Sample, WaveFlow};
+use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
-use crate::assemble::newtonian_reference;
+use crate::assemble::{moving_spheres, newtonian_reference};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
-use crate::warnings::{Warning, contact_time, overlap_warning, warnings};
+use crate::warnings::{Warning, contact_time, warnings};
 
 /// Grains of the trial that measures speed.
 const TRIAL_GRAINS: u64 = 20_000;
@@ -17,6 +19,12 @@ const TRIAL_GRAINS: u64 = 20_000;
 const TRIAL: Duration = Duration::from_millis(800);
 /// Time that a piece of the trial should take.
 const PIECE: Duration = Duration::from_millis(20);
+/// Bytes of the program itself with its figures.
+const BYTES_OF_PROGRAM: f64 = 3e7;
+/// Bytes of a smooth grain in a prescribed tube.
+const BYTES_OF_GRAIN: f64 = 400.0;
+/// Bytes of a sphere with friction or in an elastic tube, where contacts are remembered.
+const BYTES_OF_ROUGH_GRAIN: f64 = 2000.0;
 
 /// A run before it runs.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
@@ -43,12 +51,20 @@ pub struct Estimate {
     pub steps: u64,
     /// Duration of a usual contact \[t\].
     pub contact_time: f64,
+    /// Steps in such a contact.
+    pub steps_per_contact: f64,
+    /// e of two grains of the mean diameter that meet at the speed of the wave.
+    pub restitution: f64,
     /// J/Jmax of a Newtonian fluid in this tube, without load.
     pub newtonian_flow_rate_ratio: Option<f64>,
     /// The same in SI, where the units are said.
     pub si: Option<SiEstimate>,
-    /// Expected seconds, from a short trial on this machine.
+    /// Seconds that packing the grains is expected to take, from the packing of a trial on this machine.
+    pub packing_seconds: f64,
+    /// Expected seconds after that, from a short trial on this machine.
     pub expected_seconds: f64,
+    /// Bytes of memory, about.
+    pub memory_bytes: f64,
     /// The size of the trajectory, if one is wanted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trajectory: Option<TrajectoryEstimate>,
@@ -70,21 +86,17 @@ pub fn estimate(
         .map(|request| trajectory::estimate(request, configuration, &trial.run, trial.scale))
         .transpose()?;
     let mut warnings = warnings(configuration);
+    warnings.extend(trial.warnings(configuration));
     // The end of the schedules is tried as well; a tube that cannot be packed in that shape is no fault.
-    let later = if configuration.drive.schedules.is_empty() {
-        None
-    } else {
-        self::trial(&configuration.at_its_hardest()).ok()
-    };
-    let (divergence, overlap) = match later {
-        None => (trial.divergence, overlap_warning(&trial.run)),
-        Some(later) => (
-            trial.divergence.or(later.divergence.map(in_the_end)),
-            overlap_warning(&trial.run).or_else(|| overlap_warning(&later.run).map(in_the_end)),
-        ),
-    };
-    warnings.extend(divergence);
-    warnings.extend(overlap.map(|warning| warning.under("in a short trial")));
+    if !configuration.drive.schedules.is_empty()
+        && let hardest = configuration.at_its_hardest()
+        && let Ok(later) = self::trial(&hardest)
+    {
+        let later = later.warnings(&hardest).into_iter();
+        let is_new = |warning: &Warning| warnings.iter().all(|known| known.key != warning.key);
+        let later: Vec<Warning> = later.filter(is_new).map(in_the_end).collect();
+        warnings.extend(later);
+    }
     let si = configuration.units.as_ref();
     Ok(Estimate {
         grains: configuration.grains.number,
@@ -98,9 +110,13 @@ pub fn estimate(
         time_step: configuration.run.time_step,
         steps: configuration.run.steps(),
         contact_time: contact_time(configuration),
+        steps_per_contact: contact_time(configuration) / configuration.run.time_step,
+        restitution: restitution(configuration),
         newtonian_flow_rate_ratio: newtonian_reference(configuration).map(|reference| reference.0),
         si: si.map(|units| SiEstimate::of(configuration, units)),
+        packing_seconds: trial.packing_seconds,
         expected_seconds: trial.expected_seconds,
+        memory_bytes: memory(configuration),
         trajectory,
         warnings,
     })
@@ -111,8 +127,37 @@ fn in_the_end(warning: Warning) -> Warning {
     warning.under("with the drive at the hardest that drive.schedule comes to,")
 }
 
+/// e of two grains of the mean diameter that meet at the speed of the wave.
+fn restitution(configuration: &Configuration) -> f64 {
+    let Grains {
+        diameter_min,
+        diameter_max,
+        ..
+    } = configuration.grains;
+    let diameter = 0.5 * (diameter_min + diameter_max);
+    let impact = Impact::of_twins(diameter, configuration.wave_speed());
+    configuration.contact.normal.rebound(impact).restitution
+}
+
+/// Bytes that a run takes, about: as measured of runs with many spheres and of runs with many samples.
+fn memory(configuration: &Configuration) -> f64 {
+    let waves = configuration.run.periods.unwrap_or(0.0) * f64::from(configuration.tube.waves);
+    let samples = configuration.run.samples as f64;
+    let is_rough = configuration.contact.friction.is_some() || configuration.wall.elastic.is_some();
+    let of_sphere = if is_rough {
+        BYTES_OF_ROUGH_GRAIN
+    } else {
+        BYTES_OF_GRAIN
+    };
+    BYTES_OF_PROGRAM
+        + of_sphere * moving_spheres(configuration) as f64
+        + (size_of::<Sample>() as f64) * samples
+        + (size_of::<WaveFlow>() as f64) * waves
+}
+
 /// The outcome of a trial.
 struct Trial {
+    packing_seconds: f64,
     expected_seconds: f64,
     /// That it diverged, which the whole run would do as well.
     divergence: Option<Warning>,
@@ -120,6 +165,17 @@ struct Trial {
     run: Run,
     /// How many times more grains the configuration has.
     scale: f64,
+}
+
+impl Trial {
+    /// What was seen in the trial that the configuration does not say by itself.
+    fn warnings(&self, configuration: &Configuration) -> Vec<Warning> {
+        let known = warnings(configuration);
+        let seen = self.run.warnings().into_iter();
+        let seen = seen.filter(|warning| !known.contains(warning));
+        let seen = seen.map(|warning| warning.under("in a short trial"));
+        self.divergence.iter().cloned().chain(seen).collect()
+    }
 }
 
 /// Tries a run for at most [`TRIAL`]; a large tube is tried in a shorter one like it.
@@ -136,7 +192,9 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
         scale = f64::from(waves) / f64::from(kept);
     }
+    let packing = Instant::now();
     let mut run = Run::new(trial)?;
+    let packing_seconds = scale * packing.elapsed().as_secs_f64();
     let mut timed = (0, Duration::ZERO);
     let mut divergence = None;
     // Pieces grow until they last long enough to be timed: a single sample may be a billion steps away.
@@ -168,6 +226,7 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
     };
     let seconds_per_step = time.as_secs_f64() / steps.max(1) as f64;
     Ok(Trial {
+        packing_seconds,
         expected_seconds: scale * seconds_per_step * configuration.run.steps() as f64,
         divergence,
         run,

@@ -46,7 +46,7 @@ pub use trajectory::{
     FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
     TrajectoryRequest, Window,
 };
-pub use warnings::{Warning, overlap_warning, warnings};
+pub use warnings::{Warning, warnings};
 
 /// Version of the physics that runs are computed with: raised whenever the same configuration and seed come to other
 /// results, so that no old run is taken for a new one, and none goes on as another.

@@ -33,6 +33,8 @@ pub struct Run {
     /// How the grains have turned, where a trajectory asks for it.
     orientations: Option<Orientations>,
     stopping: Option<Stopping>,
+    /// Whether [`Run::drive_to`] has led the drive.
+    steered: bool,
     /// Time spent in the engine and its observables, earlier parts of the run included.
     elapsed: Duration,
 }
@@ -91,6 +93,7 @@ impl Run {
             recorder,
             orientations: None,
             stopping: None,
+            steered: false,
             elapsed: Duration::ZERO,
         })
     }
@@ -113,6 +116,7 @@ impl Run {
             recorder: state.recorder,
             orientations: state.orientations,
             stopping: None,
+            steered: false,
             elapsed: state.elapsed,
         })
     }
@@ -256,6 +260,11 @@ impl Run {
     /// Whether all samples have been taken, or the run may end before.
     pub fn is_complete(&self) -> bool {
         self.recorder.samples().len() as u64 >= self.configuration.run.samples || self.is_settled()
+    }
+
+    /// Whether the course of the drive is its user's: led by [`Run::drive_to`], or taken beyond the configured end.
+    pub(crate) fn is_steered(&self) -> bool {
+        self.steered || self.recorder.samples().len() as u64 > self.configuration.run.samples
     }
 
     /// Whether the run may end since its transition has been found and has settled.

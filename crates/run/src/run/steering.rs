@@ -77,6 +77,7 @@ impl Run {
         schedules.sort_by_key(|schedule| schedule.parameter);
         self.simulation.drive_by(walls(&configuration))?;
         self.configuration = configuration;
+        self.steered = true;
         Ok(())
     }
 

@@ -20,7 +20,7 @@ use crate::recorder::THRESHOLDS;
 use crate::run::Run;
 use crate::tables::late_profile;
 use crate::trajectory::TrajectoryReport;
-use crate::warnings::{Warning, overlap_warning, warnings};
+use crate::warnings::Warning;
 
 /// How a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,7 +77,7 @@ pub struct Summary {
     pub seconds: f64,
     /// Faults of an elastic wall: when, where, and the likely cause.
     pub wall_diagnosis: Vec<String>,
-    /// Doubts about the configuration and the overlaps.
+    /// [`Run::warnings`] at the end.
     pub warnings: Vec<Warning>,
     /// The trajectory that was written, if there is one.
     pub trajectory: Option<TrajectoryReport>,
@@ -114,7 +114,6 @@ impl Summary {
         let pressures = || profile.iter().map(|bin| bin.wall_pressure.0);
         let escaped = |sample: &Sample| sample.escaped as u64;
         let faults = recorder.wall_faults().iter();
-        let warnings = warnings(configuration).into_iter();
         Self {
             status,
             message,
@@ -134,7 +133,7 @@ impl Summary {
             periods: simulation.wall().cycles(),
             seconds: run.elapsed().as_secs_f64(),
             wall_diagnosis: faults.map(WallFault::in_words).collect(),
-            warnings: warnings.chain(overlap_warning(run)).collect(),
+            warnings: run.warnings(),
             trajectory: None,
             configuration: configuration.clone(),
             late_averages: averages[averages.len().saturating_sub(late_periods)..].to_vec(),

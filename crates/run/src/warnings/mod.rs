@@ -2,24 +2,49 @@
 
 mod holding;
 mod leaking;
+mod seen;
 mod softness;
+mod threshold;
 mod warning;
 
 use peristalsis_configuration::{Configuration, Control, Schedule, ScheduledParameter};
 use peristalsis_physics::contact::NormalLaw;
 
 pub(crate) use softness::overlap_at_wave_speed;
-pub use softness::overlap_warning;
 pub use warning::Warning;
 
 use crate::assemble::walls;
+use crate::run::Run;
 
 /// Steps that a contact should last.
 const STEPS_PER_CONTACT: f64 = 15.0;
 /// Overlap at which contact stiffness is judged, in units of the least diameter.
 const USUAL_OVERLAP: f64 = 0.1;
-/// The warnings of a configuration.
+
+/// The warnings of a configuration: what can be known before it runs.
 pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
+    let mut warnings = of_constants(configuration);
+    warnings.extend(unfinished_schedule(configuration));
+    warnings
+}
+
+impl Run {
+    /// Every warning of this run: those of its [configuration](warnings), then what has been seen so far (grains that
+    /// overlap or have left the tube, a threshold that cannot tell two kinds of flow apart). The course that the drive took
+    /// since [`Run::drive_to`] led it is no schedule of the configuration's, and is not warned of.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let configuration = self.configuration();
+        let mut warnings = match self.is_steered() {
+            true => of_constants(configuration),
+            false => warnings(configuration),
+        };
+        warnings.extend(seen::warnings(self));
+        warnings
+    }
+}
+
+/// The warnings of all but the length of the schedules.
+fn of_constants(configuration: &Configuration) -> Vec<Warning> {
     let mut warnings = Vec::new();
     let contact_time = contact_time(configuration);
     let step = configuration.run.time_step;
@@ -37,7 +62,7 @@ pub fn warnings(configuration: &Configuration) -> Vec<Warning> {
     }
     warnings.extend(holding::warnings(configuration));
     warnings.extend(prescribed_wall_warnings(configuration));
-    warnings.extend(unfinished_schedule(configuration));
+    warnings.extend(threshold::out_of_reach(configuration));
     warnings
 }
 

@@ -4,10 +4,9 @@ use peristalsis_configuration::{Configuration, Control, Elasticity, ScheduledPar
 use peristalsis_physics::contact::NormalLaw;
 
 use super::warning::Warning;
-use crate::run::Run;
 
 /// Overlap over diameter up to which a soft sphere passes for a solid grain.
-const LARGEST_OVERLAP: f64 = 0.1;
+pub(super) const LARGEST_OVERLAP: f64 = 0.1;
 /// Overlap over diameter below which the flow of hard grains hardly depends on their stiffness.
 const SMALL_OVERLAP: f64 = 0.01;
 /// Steps of a wave period that are beyond what one waits for.
@@ -86,44 +85,19 @@ pub(super) fn warning(configuration: &Configuration, units: &Units) -> Option<Wa
     None
 }
 
-/// That grains overlapped by more, when they were packed or since, than solid ones do, where the units are said in SI.
-pub fn overlap_warning(run: &Run) -> Option<Warning> {
-    let configuration = run.configuration();
-    let units = configuration.units.as_ref()?;
-    let diameter = configuration.grains.diameter_max;
-    let packed = run.packing().largest_overlap / diameter;
-    let overlap = packed.max(run.simulation().ledger().largest_overlap / diameter);
-    if overlap <= LARGEST_OVERLAP {
-        return None;
-    }
-    let Material { key, name, .. } = Material::of(units);
-    let mut from_the_start = String::new();
-    if packed > LARGEST_OVERLAP {
-        from_the_start = format!(", and by {:.0} % as they were packed", 100.0 * packed);
-    }
-    let message = format!(
-        "grains overlapped by up to {:.0} % of a diameter, one another or the wall{from_the_start}, where soft spheres \
-             pass for solid grains up to {:.0} %: take a larger {name} (with units.wave_frequency, or the wave becomes \
-             faster with it), fewer grains, a wider tube or a weaker drive",
-        100.0 * overlap,
-        100.0 * LARGEST_OVERLAP
-    );
-    Some(Warning { key, message })
-}
-
 /// What the units say of the grains' elasticity.
-struct Material {
-    key: &'static str,
+pub(super) struct Material {
+    pub(super) key: &'static str,
     /// In SI.
     value: f64,
-    name: &'static str,
+    pub(super) name: &'static str,
     unit: &'static str,
     /// Power with which the overlap grows with the speed.
     per_speed: f64,
 }
 
 impl Material {
-    fn of(units: &Units) -> Self {
+    pub(super) fn of(units: &Units) -> Self {
         match units.elasticity {
             Elasticity::Stiffness(value) => Self {
                 key: "units.stiffness",

@@ -1,0 +1,92 @@
+//! What a run has seen that solid grains in a tight tube would not show.
+
+use peristalsis_configuration::{Configuration, Control};
+
+use super::softness::{LARGEST_OVERLAP, Material};
+use super::threshold;
+use super::warning::Warning;
+use crate::run::Run;
+
+/// Overlap over diameter above which soft spheres no longer pass for solid grains, where no units say of what material they
+/// are.
+const LARGEST_SOFT_OVERLAP: f64 = 0.2;
+
+/// The warnings of what a run has seen so far.
+pub(super) fn warnings(run: &Run) -> Vec<Warning> {
+    let configuration = run.configuration();
+    let limit = match configuration.units {
+        Some(_) => LARGEST_OVERLAP,
+        None => LARGEST_SOFT_OVERLAP,
+    };
+    let diameter = configuration.grains.diameter_max;
+    let packed = run.packing().largest_overlap / diameter;
+    let mut warnings = Vec::new();
+    if packed > limit {
+        warnings.push(packed_too_densely(configuration, packed, limit));
+    }
+    let overlap = run.simulation().ledger().largest_overlap / diameter;
+    if run.simulation().step() > 0 && overlap > packed.max(limit) {
+        warnings.push(overlapped(configuration, overlap, limit));
+    }
+    warnings.extend(left(run, packed > limit));
+    warnings.extend(threshold::missed(run));
+    warnings
+}
+
+fn packed_too_densely(configuration: &Configuration, packed: f64, limit: f64) -> Warning {
+    let message = format!(
+        "the grains already overlap by up to {:.0} % of a diameter where they are packed, at a volume fraction of {:.3} of the \
+         tube between the centres of its wall; solid grains have no room there, and soft spheres pass for them up to {:.0} \
+         %: take fewer grains or a wider tube",
+        100.0 * packed,
+        configuration.volume_fraction(),
+        100.0 * limit
+    );
+    let key = "grains.volume_fraction";
+    Warning { key, message }
+}
+
+fn overlapped(configuration: &Configuration, overlap: f64, limit: f64) -> Warning {
+    let (key, harder) = match &configuration.units {
+        None => ("drive.strain_rate", "a lower drive.strain_rate".to_owned()),
+        Some(units) => {
+            let Material { key, name, .. } = Material::of(units);
+            let harder = format!(
+                "a larger {name} (with units.wave_frequency, or the wave becomes faster with it)"
+            );
+            (key, harder)
+        }
+    };
+    let message = format!(
+        "grains overlapped by up to {:.0} % of a diameter, one another or the wall, where soft spheres pass for solid \
+         grains up to {:.0} %: take {harder}, fewer grains, a wider tube or a weaker drive",
+        100.0 * overlap,
+        100.0 * limit
+    );
+    Warning { key, message }
+}
+
+/// That grains have left the tube.
+fn left(run: &Run, is_too_dense: bool) -> Option<Warning> {
+    let configuration = run.configuration();
+    let samples = run.recorder().samples().iter();
+    let most = samples.map(|sample| sample.escaped).fold(0.0, f64::max);
+    let (key, advice) = match configuration.drive.control {
+        _ if is_too_dense => ("grains.volume_fraction", "fewer grains"),
+        Control::Strain { .. } => (
+            "tube.rings_per_wave",
+            "more spheres a ring and more rings a wave, or a lower drive.strain_rate",
+        ),
+        Control::Stress { .. } => (
+            "wall.spring_stiffness",
+            "a stiffer wall, more spheres a ring and more rings a wave, or a weaker drive.force_amplitude",
+        ),
+    };
+    let message = format!(
+        "the tube leaks: up to {most} of {} grains were outside ({:.1} %), and flow rates are those of the grains inside: \
+         take {advice}",
+        configuration.grains.number,
+        100.0 * most / configuration.grains.number as f64
+    );
+    (most > 0.0).then_some(Warning { key, message })
+}
