@@ -64,7 +64,7 @@ pub(crate) enum Command {
 /// Where a configuration comes from.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ConfigurationArguments {
-    /// Configuration in TOML.
+    /// Configuration in TOML; `-` reads it from standard input.
     #[arg(value_name = "FILE")]
     pub(crate) file: Option<PathBuf>,
     /// Values to start from; a file's values go over them (see `peristalsis presets`).

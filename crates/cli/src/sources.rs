@@ -1,6 +1,7 @@
 //! Reads a configuration as the command line names it.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use peristalsis_configuration::{Configuration, PRESETS, SourceFile, Sources, preset};
 use peristalsis_engine::EngineError;
@@ -18,19 +19,17 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
     let file = match &arguments.file {
         None => None,
         Some(path) => {
-            let text = std::fs::read_to_string(path).map_err(|error| no_file(path, error))?;
+            let text = text_of(path).map_err(|error| no_file(path, error))?;
+            let name = match is_standard_input(path) {
+                true => "standard input".to_owned(),
+                false => path.display().to_string(),
+            };
             if is_a_study(&text) {
-                let reason = format!(
-                    "{} is a study, not the configuration of one run",
-                    path.display()
-                );
-                let help = format!(
-                    "use: peristalsis study run {0}, or study plan {0}",
-                    path.display()
-                );
+                let reason = format!("{name} is a study, not the configuration of one run");
+                let help = format!("use: peristalsis study run {name}, or study plan {name}");
                 return Err(Failure::usage(reason, help));
             }
-            Some((path.display().to_string(), text))
+            Some((name, text))
         }
     };
     Ok(Configuration::from_sources(&Sources {
@@ -59,6 +58,24 @@ fn is_a_study(text: &str) -> bool {
     text.lines().any(begins)
 }
 
+/// Whether a path is `-`, which stands for standard input.
+fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// The text of a file, or of standard input, which can be read once only and is kept.
+fn text_of(path: &Path) -> std::io::Result<String> {
+    static STANDARD_INPUT: OnceLock<String> = OnceLock::new();
+    if !is_standard_input(path) {
+        return std::fs::read_to_string(path);
+    }
+    if let Some(text) = STANDARD_INPUT.get() {
+        return Ok(text.clone());
+    }
+    let text = std::io::read_to_string(std::io::stdin())?;
+    Ok(STANDARD_INPUT.get_or_init(|| text).clone())
+}
+
 /// The names of all presets, as help.
 pub(crate) fn known_presets() -> String {
     let names: Vec<&str> = PRESETS.iter().map(|preset| preset.name).collect();
@@ -84,7 +101,7 @@ pub(crate) fn locate(error: RunError, arguments: &ConfigurationArguments) -> Fai
     let place = of_override.map(|text| format!("--set {text}"));
     let place = place.or_else(|| {
         let path = arguments.file.as_ref()?;
-        let text = std::fs::read_to_string(path).ok()?;
+        let text = text_of(path).ok()?;
         let (index, line) = text.lines().enumerate().find(|(_, line)| {
             let line = line.trim_start();
             let line = line.strip_prefix("grains.").unwrap_or(line);
@@ -101,7 +118,9 @@ pub(crate) fn locate(error: RunError, arguments: &ConfigurationArguments) -> Fai
 
 /// Short name for a run: its file's stem, or its preset.
 pub(crate) fn name(arguments: &ConfigurationArguments) -> String {
-    let stem = arguments.file.as_ref().and_then(|file| file.file_stem());
+    let file = arguments.file.as_ref();
+    let file = file.filter(|file| !is_standard_input(file));
+    let stem = file.and_then(|file| file.file_stem());
     let stem = stem.map(|stem| stem.to_string_lossy().into_owned());
     let name = stem.or_else(|| arguments.preset.clone());
     name.unwrap_or_else(|| "run".to_owned())

@@ -6,7 +6,7 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{print_report, significant};
+use crate::commands::{print_report, rounded, significant};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
@@ -27,19 +27,29 @@ fn in_words(estimate: &Estimate) -> String {
         ),
         format!(
             "wall              {} spheres along {} d",
-            estimate.wall_spheres, estimate.length
+            estimate.wall_spheres,
+            rounded(estimate.length)
         ),
         match (estimate.period, estimate.periods) {
             (Some(period), Some(periods)) => {
+                let [duration, periods, period] = [duration, periods, period].map(rounded);
                 format!("time              {duration} t: {periods} periods of {period} t")
             }
-            _ => format!("time              {duration} t, the wave stands still"),
+            _ => format!(
+                "time              {} t, the wave stands still",
+                rounded(duration)
+            ),
         },
         format!(
-            "steps             {} of {} t (a contact lasts about {} t)",
+            "steps             {} of {} t; a contact lasts about {} t, {} steps",
             estimate.steps,
             significant(estimate.time_step, 4),
-            significant(estimate.contact_time, 3)
+            significant(estimate.contact_time, 3),
+            significant(estimate.steps_per_contact, 3)
+        ),
+        format!(
+            "restitution       {} of two grains that meet at the speed of the wave",
+            significant(estimate.restitution, 3)
         ),
     ];
     if let Some(ratio) = estimate.newtonian_flow_rate_ratio {
@@ -76,8 +86,14 @@ fn in_words(estimate: &Estimate) -> String {
             ));
         }
     }
-    let expected = seconds(estimate.expected_seconds);
-    lines.push(format!("expected time     {expected}"));
+    let [expected, packing] = [estimate.expected_seconds, estimate.packing_seconds].map(seconds);
+    lines.push(format!(
+        "expected time     {expected}, after {packing} of packing"
+    ));
+    lines.push(format!(
+        "memory            about {}",
+        size(estimate.memory_bytes as u64)
+    ));
     if let Some(trajectory) = &estimate.trajectory {
         for (format, bytes) in &trajectory.bytes {
             let (name, frames, size) = (format.file_name(), trajectory.frames, size(*bytes));

@@ -64,9 +64,12 @@ fn tell(is_quiet: bool, text: &str) {
     }
 }
 
-/// Prints a warning on standard error: no progress, so that it is said in quiet runs as well.
-fn warn(warning: &Warning) {
-    say(&format!("warning: {}: {}", warning.key, warning.message));
+/// Prints warnings on standard error, without those that were said before: no progress, so that they are said in quiet runs
+/// as well.
+fn warn_besides(said: &[Warning], warnings: &[Warning]) {
+    for warning in warnings.iter().filter(|warning| !said.contains(warning)) {
+        say(&format!("warning: {}: {}", warning.key, warning.message));
+    }
 }
 
 /// A number with so many significant digits, plain where that reads well and with a power of ten elsewhere.
@@ -83,9 +86,25 @@ fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// A number with at most four significant digits, and none that are zeros at the end.
+fn rounded(value: f64) -> String {
+    let text = significant(value, 4);
+    match text.contains('.') && !text.contains('e') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::significant;
+    use super::{rounded, significant};
+
+    #[test]
+    fn rounded_numbers_are_as_short_as_they_can_be() {
+        let numbers = [4987.531172069826, 20.0, 0.05, 249.3765586034913, 1e7, 0.0];
+        let texts = ["4988", "20", "0.05", "249.4", "1.000e7", "0"];
+        assert_eq!(numbers.map(rounded), texts);
+    }
 
     #[test]
     fn numbers_keep_their_digits_however_small_they_are() {

@@ -10,12 +10,12 @@ use std::process::ExitCode;
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::Instructions;
 use peristalsis_run::{
-    Run, RunError, RunFolder, TrajectoryPlan, overlap_warning, read_state, warnings,
+    Run, RunError, RunFolder, TrajectoryPlan, read_state, warnings,
 };
 
 use crate::arguments::RunArguments;
 use crate::commands::trajectory::{in_words as in_one_line, request};
-use crate::commands::{print, say, tell, warn};
+use crate::commands::{print, say, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, locate, name};
@@ -39,6 +39,10 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(source) => go_on(arguments, source)?,
         None => begin(arguments)?,
     };
+    let said = match &arguments.resume {
+        Some(_) => Vec::new(),
+        None => run.warnings(),
+    };
     compute_with(arguments, &mut run)?;
     stop.keep_results();
     let work = Work::begin(arguments, folder, run)?;
@@ -50,7 +54,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         true => summary.to_json(),
         false => in_words(run, summary),
     })?;
-    overlap_warning(run).iter().for_each(warn);
+    warn_besides(&said, &summary.warnings);
     let tell = |text: String| tell(arguments.quiet, &text);
     if let Some(report) = &summary.trajectory {
         tell(format!("trajectory: {}", in_one_line(report)));
@@ -106,7 +110,7 @@ fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> 
 /// Reads the configuration, packs the grains, makes the folder.
 fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
     let configuration = checked(arguments, configuration(&arguments.configuration)?)?;
-    warnings(&configuration).iter().for_each(warn);
+    warn_besides(&[], &warnings(&configuration));
     if let Some(path) = &arguments.out {
         // Before the work of packing, and again when the folder is made.
         RunFolder::check(path)?;
@@ -134,7 +138,7 @@ fn packed(arguments: &RunArguments, configuration: Configuration) -> Result<Run,
         tell(arguments.quiet, &format!("packing {grains} grains"));
     }
     let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
-    overlap_warning(&run).iter().for_each(warn);
+    warn_besides(&warnings(run.configuration()), &run.warnings());
     Ok(run)
 }
 

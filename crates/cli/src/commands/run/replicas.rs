@@ -14,7 +14,7 @@ use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, packed};
 use crate::arguments::{RunArguments, Seeds};
 use crate::commands::study::processors;
-use crate::commands::{code_of, print, print_json, tell, warn};
+use crate::commands::{code_of, print, print_json, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
@@ -70,7 +70,7 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
     let configurations = seeds.0.iter().map(of_seed);
     let configurations = configurations.collect::<Result<Vec<_>, _>>()?;
     if let Some((_, one)) = configurations.first() {
-        warnings(one).iter().for_each(warn);
+        warn_besides(&[], &warnings(one));
     }
     let folder = match &arguments.out {
         Some(folder) => {

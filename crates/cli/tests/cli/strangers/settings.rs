@@ -1,1 +1,181 @@
 //! Settings, warnings and what `check` says.
+
+use std::io::Write;
+
+use serde_json::Value;
+
+use crate::{Outcome, Place, read_json, words};
+
+/// The keys of warnings in a report.
+fn keys(report: &Value) -> Vec<&str> {
+    let warnings = report["warnings"].as_array().unwrap().iter();
+    warnings
+        .map(|warning| warning["key"].as_str().unwrap())
+        .collect()
+}
+
+/// COMMAND-LINE, high 2.
+#[test]
+fn thresholds_of_the_whole_range_that_the_schema_allows_run_from_either_start() {
+    let place = Place::new();
+    for (number, threshold) in [-2.0, -0.5, 0.0, 1.0, 1.5, 2.0].into_iter().enumerate() {
+        for start in ["rest", "jammed"] {
+            let settings =
+                format!("observe.transition_threshold={threshold} initial.state={start}");
+            let run = place.does(&format!(
+                "run SMALL {settings} --out {start}-{number} --json"
+            ));
+            let at = run.json()["transition_threshold"].as_f64();
+            assert!(at.is_none_or(|at| at == threshold), "{at:?}");
+        }
+    }
+    place.does("check SMALL observe.transition_threshold=-1");
+    place.refuses(
+        "check SMALL observe.transition_threshold=2.5",
+        &["at most 2", "-2 or more"],
+    );
+}
+
+/// COMMAND-LINE, high 2: back flow crosses a threshold below 0 on the way down.
+#[test]
+fn a_threshold_below_zero_is_crossed_by_back_flow() {
+    let place = Place::new();
+    let pushed = "drive.body_force=-0.01 observe.transition_threshold=-0.1 run.periods=6";
+    for start in ["rest", "jammed"] {
+        let run = place.does(&format!(
+            "run SMALL {pushed} initial.state={start} --out {start} --json"
+        ));
+        let time = run.json()["transition_time"].as_f64();
+        assert!(time.is_some_and(|time| time > 0.0), "{start}: {time:?}");
+    }
+}
+
+/// COMMAND-LINE, medium 6.
+#[test]
+fn leaks_and_overlaps_are_the_same_warnings_in_run_and_summary_and_check_foretells_them() {
+    let place = Place::new();
+    let dense = "--preset frictionless grains.volume_fraction=0.99 tube.waves=2 run.periods=4";
+    let checked = place.does(&format!("check {dense} --json")).json();
+    assert!(
+        keys(&checked).contains(&"grains.volume_fraction"),
+        "{checked:#}"
+    );
+    let run = place.does(&format!("run {dense} --out dense"));
+    let summary = read_json(&place.path("dense/summary.json"));
+    assert!(summary["escaped_most"].as_u64().unwrap() > 0);
+    let found = keys(&summary);
+    for key in ["grains.volume_fraction", "drive.strain_rate"] {
+        assert!(found.contains(&key), "{found:?}");
+    }
+    let warnings = summary["warnings"].as_array().unwrap();
+    assert!(
+        warnings
+            .iter()
+            .any(|it| it["message"].as_str().unwrap().contains("the tube leaks"))
+    );
+    // Each is said once, with the same words.
+    for warning in warnings {
+        let said = format!(
+            "warning: {}: {}\n",
+            warning["key"].as_str().unwrap(),
+            warning["message"].as_str().unwrap()
+        );
+        assert_eq!(run.stderr.matches(&said).count(), 1, "{said}{}", run.stderr);
+    }
+}
+
+/// COMMAND-LINE, medium 6: the README's first run.
+#[test]
+fn overlaps_without_units_are_warned_of() {
+    let place = Place::new();
+    let summary = place
+        .does("run --preset frictionless tube.waves=2 run.periods=10 drive.width=2.4 --json")
+        .json();
+    assert!(summary["largest_overlap"].as_f64().unwrap() > 0.2);
+    assert!(keys(&summary).contains(&"drive.strain_rate"), "{summary:#}");
+}
+
+#[test]
+fn a_threshold_where_the_run_starts_or_beyond_all_flow_is_warned_of() {
+    let place = Place::new();
+    for settings in [
+        "observe.transition_threshold=0",
+        "observe.transition_threshold=1 initial.state=jammed",
+        "observe.transition_threshold=1.2",
+    ] {
+        let found = place.does(&format!("check SMALL {settings} --json")).json();
+        assert!(
+            keys(&found).contains(&"observe.transition_threshold"),
+            "{settings}: {found:#}"
+        );
+    }
+}
+
+/// COMMAND-LINE, wanted: e, contact time, steps per contact, memory and packing time in `check`; low: rounded numbers.
+#[test]
+fn check_tells_restitution_contacts_memory_and_packing_in_rounded_numbers() {
+    let place = Place::new();
+    let check = "check --preset frictional tube.waves=2 grains.number=50";
+    place.does(check).shows(&[
+        "4988 t: 20 periods of 249.4 t",
+        "restitution       0.",
+        "steps\n",
+        "memory            about",
+        "of packing",
+    ]);
+    let report = place.does(&format!("{check} --json")).json();
+    for key in [
+        "contact_time",
+        "steps_per_contact",
+        "memory_bytes",
+        "packing_seconds",
+    ] {
+        assert!(report[key].as_f64().unwrap() > 0.0, "{key}");
+    }
+    let asked = place
+        .does(&format!("{check} contact.restitution=0.8 --json"))
+        .json();
+    assert!((asked["restitution"].as_f64().unwrap() - 0.8).abs() < 1e-6);
+}
+
+/// COMMAND-LINE, wanted: restitution as an input, with a record that repeats the run to the same bits.
+#[test]
+fn a_run_by_restitution_is_repeated_from_its_record() {
+    let place = Place::new();
+    place.does("run SMALL contact.restitution=0.7 --out first");
+    place.does("run first/config.toml --out second");
+    place.assert_same(["first", "second"], &["config.toml", "timeseries.parquet"]);
+    place.refuses(
+        "check SMALL contact.restitution=0.7 contact.normal_damping=0.1",
+        &["contact.normal_damping and contact.restitution exclude one another"],
+    );
+}
+
+/// COMMAND-LINE, wanted: `check -` from standard input.
+#[test]
+fn a_configuration_is_read_from_standard_input() {
+    let place = Place::new();
+    let piped = |line: &str, text: &str| {
+        let mut command = place.command(words(line));
+        let piped = std::process::Stdio::piped;
+        let command = command.stdin(piped()).stdout(piped()).stderr(piped());
+        let mut child = command.spawn().unwrap();
+        child
+            .stdin
+            .take()
+            .unwrap()
+            .write_all(text.as_bytes())
+            .unwrap();
+        Outcome::of(child.wait_with_output().unwrap())
+    };
+    let small = "preset = \"frictionless\"\ngrains.number = 20\ntube.waves = 2\nrun.periods = 1\n";
+    piped("check -", small)
+        .expect_code(0)
+        .shows(&["grains            20"]);
+    piped("run - --quiet", small).expect_code(0);
+    assert!(place.path("runs/run-1/summary.json").exists());
+    let wrong = piped("check -", "preset = \"frictionless\"\n[drive]\nwidht = 2\n");
+    wrong
+        .expect_code(2)
+        .says(&["standard input:3:1", "drive.width"]);
+}
