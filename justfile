@@ -28,6 +28,11 @@ reproducible-build *profile:
 fuzz seconds="600":
     bash scripts/fuzz.sh {{seconds}}
 
+# Random configurations and damaged files given to the release program: no panic, no loss (see scripts/abuse.py).
+abuse *options:
+    cargo build --release -p peristalsis
+    python3 scripts/abuse.py {{options}}
+
 # Trajectories as gsd, PyVista and OVITO from PyPI read them.
 clients:
     bash scripts/check_clients.sh

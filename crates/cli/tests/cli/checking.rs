@@ -14,15 +14,16 @@ fn check(words: &str) -> Value {
     outcome.json()
 }
 
+/// The keys of the warnings besides those of soft overlaps, which the speed of the machine leads a trial to or not.
 fn warned(estimate: &Value) -> Vec<&str> {
-    let warnings = estimate["warnings"].as_array().unwrap();
-    warnings
-        .iter()
-        .map(|warning| {
-            assert!(!warning["message"].as_str().unwrap().is_empty());
-            warning["key"].as_str().unwrap()
-        })
-        .collect()
+    let warnings = estimate["warnings"].as_array().unwrap().iter();
+    let keys = warnings.filter_map(|warning| {
+        let message = warning["message"].as_str().unwrap();
+        assert!(!message.is_empty());
+        let is_of_trial = message.starts_with("in a short trial grains overlapped");
+        (!is_of_trial).then(|| warning["key"].as_str().unwrap())
+    });
+    keys.collect()
 }
 
 #[track_caller]
@@ -280,11 +281,9 @@ fn small_numbers_in_si_keep_their_digits() {
 fn a_tube_that_is_overfilled_is_warned_of_by_the_overlaps_that_a_trial_shows() {
     let settings = "grains.volume_fraction=0.5 drive.strain_rate=0.001 tube.waves=2";
     let found = warnings(&format!("--preset frictionless {settings} {BEADS}"));
-    let (key, message) = &found[0];
-    assert_eq!(key, "units.stiffness");
-    assert!(
-        message.starts_with("in a short trial grains overlapped by up to")
-            && message.contains("as they were packed"),
-        "{message}"
-    );
+    let is_packed = |(key, message): &(String, String)| {
+        key == "grains.volume_fraction"
+            && message.starts_with("in a short trial the grains already overlap by up to")
+    };
+    assert!(found.iter().any(is_packed), "{found:?}");
 }
