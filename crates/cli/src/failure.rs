@@ -141,9 +141,11 @@ impl Failure {
             Self::Configuration(error)
             | Self::Run(RunError::Configuration(error))
             | Self::Study(StudyError::Configuration(error)) => {
-                for problem in error.problems() {
+                let (problems, more) = error.shown();
+                for problem in problems {
                     say(&format!("{}\n", renderer.render(&[of_problem(problem)])));
                 }
+                more.iter().for_each(|more| say(more));
             }
             other => {
                 let message = other.to_string();
@@ -282,11 +284,9 @@ fn of_state(path: &Path, source: &RunError) -> String {
 
 /// A problem of a configuration with its places marked in the text.
 fn of_problem(problem: &Problem) -> Group<'_> {
-    let main = problem.labels.first();
-    let place = main.map_or_else(String::new, |label| format!("{label}: "));
-    let mut group =
-        Group::with_title(Level::ERROR.primary_title(format!("{place}{}", problem.message)));
-    if let Some(main) = main {
+    // The snippet names the place.
+    let mut group = Group::with_title(Level::ERROR.primary_title(&problem.message));
+    if let Some(main) = problem.labels.first() {
         // A snippet shows one text; places in others are in the message already.
         let labels = problem.labels.iter();
         let marked = labels.filter(|label| label.source_name == main.source_name);

@@ -28,6 +28,9 @@ pub fn check_against(schema: &Value, table: &Table, problems: &mut Problems) {
     .table(table, schema, "");
 }
 
+/// Unknown keys for which the nearest known one is looked up.
+const MOST_SUGGESTIONS: usize = 100;
+
 /// What a check needs besides the value and its schema.
 struct Contract<'a> {
     /// Full names of all keys, to guess from.
@@ -47,7 +50,10 @@ impl Contract<'_> {
                 self.item(&entry.item, inner, &full);
                 continue;
             }
-            let help = match suggestion::nearest(&full, self.known.iter().map(String::as_str)) {
+            let known = self.known.iter().map(String::as_str);
+            let is_to_be_shown = self.problems.number() < MOST_SUGGESTIONS;
+            let nearest = is_to_be_shown.then(|| suggestion::nearest(&full, known));
+            let help = match nearest.flatten() {
                 Some(near) => format!("did you mean {near}?"),
                 None => format!("known here: {}", names_of(properties)),
             };
@@ -58,7 +64,10 @@ impl Contract<'_> {
         let required = texts(&schema["required"]);
         for name in required.filter(|name| !table.contains_key(*name)) {
             let full = joined(path, name);
-            let message = format!("{full} is missing in this table");
+            let message = match path {
+                "" => format!("{full} is missing"),
+                _ => format!("{full} is missing in this table"),
+            };
             let help = allowed(&schema["properties"][name]);
             let mut problem = Problem::new(ProblemKind::Missing, message)
                 .key(full)
@@ -94,7 +103,13 @@ impl Contract<'_> {
     fn wrong_type(&mut self, item: &Item, schema: &Value, path: &str) {
         let found = item.node.description();
         let place = (&item.origin, &*format!("this is {found}"));
-        let message = format!("{path} is {found}, which it cannot be");
+        let message = match (kind_alone(schema), &item.node) {
+            (Some(wanted), Node::Float(_) | Node::Integer(_) | Node::Boolean(_)) => {
+                format!("{path} = {} is not {wanted}", item.origin.text())
+            }
+            (Some(wanted), _) => format!("{path} is {found}, not {wanted}"),
+            (None, _) => format!("{path} cannot be {found}"),
+        };
         let kind = ProblemKind::WrongType;
         self.refuse(kind, path, place, message, allowed(schema));
     }
@@ -228,6 +243,20 @@ fn kind_in_words(schema: &Value) -> String {
             None => "a table".into(),
         },
         _ => String::new(),
+    }
+}
+
+/// The one kind of value that a key takes; `None` where there are several.
+fn kind_alone(schema: &Value) -> Option<&'static str> {
+    match schema["type"].as_str() {
+        _ if !names(schema).is_empty() => Some("one of its names"),
+        Some("number") => Some("a number"),
+        Some("integer") => Some("a whole number"),
+        Some("boolean") => Some("true or false"),
+        Some("string") => Some("a text"),
+        Some("array") => Some("a list"),
+        Some("object") => Some("a table"),
+        _ => None,
     }
 }
 

@@ -4,13 +4,16 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::source::{Origin, Source, SourceKind, line_and_column};
+use crate::source::{Origin, Source, SourceFile, SourceKind, line_and_column};
+
+/// Problems that are shown: who has more has one fault that makes them all.
+const MOST_SHOWN: usize = 20;
 
 /// Everything that was found wrong with a configuration, in the order of the texts.
 ///
 /// `Display` is complete in itself: one paragraph a problem, with source, line, column, message and help.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{}", paragraphs(problems))]
+#[error("{}", paragraphs(self))]
 pub struct ConfigurationError {
     problems: Vec<Problem>,
 }
@@ -31,6 +34,16 @@ impl ConfigurationError {
     pub fn problems(&self) -> &[Problem] {
         &self.problems
     }
+
+    /// The problems to show, of many only the first, and words for how many more there are.
+    pub fn shown(&self) -> (&[Problem], Option<String>) {
+        let shown = &self.problems[..self.problems.len().min(MOST_SHOWN)];
+        let more = self.problems.len() - shown.len();
+        (
+            shown,
+            (more > 0).then(|| format!("and {more} more problems")),
+        )
+    }
 }
 
 impl From<Problem> for ConfigurationError {
@@ -40,9 +53,10 @@ impl From<Problem> for ConfigurationError {
     }
 }
 
-fn paragraphs(problems: &[Problem]) -> String {
-    let paragraphs: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    paragraphs.join("\n")
+fn paragraphs(error: &ConfigurationError) -> String {
+    let (problems, more) = error.shown();
+    let paragraphs = problems.iter().map(ToString::to_string).chain(more);
+    paragraphs.collect::<Vec<_>>().join("\n")
 }
 
 /// The kind of a [`Problem`].
@@ -181,6 +195,22 @@ impl Problems {
     /// Adds a problem.
     pub fn push(&mut self, problem: Problem) {
         self.found.push(problem);
+    }
+
+    /// Problems found so far.
+    pub(crate) fn number(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Gives problems that have no place, such as a missing key, the beginning of a file.
+    pub fn place_in(&mut self, file: SourceFile<'_>) {
+        let source = Source::new(SourceKind::File, file.name, file.text);
+        let start = Origin::new(&source, 0..0);
+        for problem in &mut self.found {
+            if problem.labels.is_empty() {
+                *problem = problem.clone().at(&start, "in this file");
+            }
+        }
     }
 
     /// `Ok` without problems, else all of them as one error.

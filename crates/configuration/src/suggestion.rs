@@ -29,7 +29,8 @@ fn tolerance(word: &str) -> usize {
 /// A word no user meant: longer than any name by far. Distances to it would only cost time.
 const LONGEST_WORD: usize = 64;
 
-/// The known key nearest to an unknown one, if one is near: by its last name, in its own table before others.
+/// The known key nearest to an unknown one, if one is near: by its last name, or by words of it, in its own table before
+/// others.
 ///
 /// `path` is the unknown key's full path, `known` the full paths of all keys; or a word and the words that there are.
 pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -38,10 +39,17 @@ pub(crate) fn nearest<'a>(path: &str, known: impl IntoIterator<Item = &'a str>) 
     if name.len() > LONGEST_WORD {
         return None;
     }
+    // A key such as contact.stiffness is taken for contact.normal_stiffness.
+    let (part, beginning) = (format!("_{name}"), format!("{name}_"));
     let distances = known.into_iter().map(|candidate| {
         let (other_table, other_name) = split(candidate);
         let is_elsewhere = table != other_table;
-        (edit_distance(name, other_name), is_elsewhere, candidate)
+        let is_part = other_name.ends_with(&part) || other_name.starts_with(&beginning);
+        let distance = match is_part && !is_elsewhere {
+            true => 0,
+            false => edit_distance(name, other_name),
+        };
+        (distance, is_elsewhere, candidate)
     });
     let near = distances.filter(|(distance, ..)| *distance <= tolerance(name));
     let nearest = near.min_by_key(|(distance, is_elsewhere, _)| (*distance, *is_elsewhere));
@@ -72,6 +80,7 @@ mod tests {
             ("drive.widht", Some("drive.width")),
             ("width", Some("drive.width")),
             ("tube.strain_rat", Some("drive.strain_rate")),
+            ("drive.rate", Some("drive.strain_rate")),
             ("tube.colour", None),
         ] {
             assert_eq!(nearest(path, known), expected, "{path}");

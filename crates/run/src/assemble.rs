@@ -23,14 +23,7 @@ const BYTES_PER_SPHERE: u64 = 1000;
 /// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit, [`RunError::NoMemory`] where there is
 /// no room for them.
 pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
-    let volume_fraction = configuration.volume_fraction();
-    if volume_fraction > LARGEST_VOLUME_FRACTION {
-        return Err(RunError::TooManyGrains {
-            grains: configuration.grains.number,
-            volume_fraction,
-            limit: LARGEST_VOLUME_FRACTION,
-        });
-    }
+    check_number(configuration)?;
     check_memory(configuration)?;
     let wall = walls(configuration);
     let packing = Packing {
@@ -44,6 +37,19 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
     let (bodies, report) = pack(&packing, &wall, configuration.contact.normal)?;
     let simulation = Simulation::new(bodies, wall, parameters(configuration));
     Ok((simulation, report))
+}
+
+/// Refuses so many grains that packing them is not tried.
+pub(crate) fn check_number(configuration: &Configuration) -> Result<(), RunError> {
+    let volume_fraction = configuration.volume_fraction();
+    if volume_fraction > LARGEST_VOLUME_FRACTION {
+        return Err(RunError::TooManyGrains {
+            grains: configuration.grains.number,
+            volume_fraction,
+            limit: LARGEST_VOLUME_FRACTION,
+        });
+    }
+    Ok(())
 }
 
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end

@@ -7,7 +7,7 @@ use peristalsis_observe::{Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
 use crate::RunError;
-use crate::assemble::{moving_spheres, newtonian_reference};
+use crate::assemble::{check_number, moving_spheres, newtonian_reference};
 use crate::run::Run;
 use crate::si::SiEstimate;
 use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
@@ -80,6 +80,7 @@ pub fn estimate(
     configuration: &Configuration,
     trajectory: Option<&TrajectoryRequest>,
 ) -> Result<Estimate, RunError> {
+    check_number(configuration)?;
     let mut trial = trial(configuration)?;
     trial.run.follow_orientations();
     let trajectory = trajectory

@@ -14,13 +14,13 @@ fn check(words: &str) -> Value {
     outcome.json()
 }
 
-/// The keys of the warnings besides those of soft overlaps, which the speed of the machine leads a trial to or not.
+/// The keys of the warnings besides what a trial saw, to which the speed of the machine leads it or not.
 fn warned(estimate: &Value) -> Vec<&str> {
     let warnings = estimate["warnings"].as_array().unwrap().iter();
     let keys = warnings.filter_map(|warning| {
         let message = warning["message"].as_str().unwrap();
         assert!(!message.is_empty());
-        let is_of_trial = message.starts_with("in a short trial grains overlapped");
+        let is_of_trial = message.starts_with("in a short trial");
         (!is_of_trial).then(|| warning["key"].as_str().unwrap())
     });
     keys.collect()

@@ -1,6 +1,6 @@
 //! The drive: alternatives resolved to width and strain rate.
 
-use super::{Context, schedules};
+use super::{Context, plain, schedules};
 use crate::configuration::{Control, Drive, Tube};
 use crate::error::ProblemKind;
 use crate::keys::Keys;
@@ -39,6 +39,7 @@ fn width(
     let diameter = 2.0 * tube.radius;
     let Some(amplitude) = amplitude else {
         if width > diameter {
+            let [width, diameter] = [width, diameter].map(plain);
             return context.refuse(
                 ProblemKind::Inconsistent,
                 &["drive.width", "tube.radius"],
@@ -52,6 +53,7 @@ fn width(
     };
     let radius = tube.radius;
     if amplitude > radius {
+        let [amplitude, radius] = [amplitude, radius].map(plain);
         return context.refuse(
             ProblemKind::Inconsistent,
             &["drive.amplitude", "tube.radius"],

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use super::Context;
+use super::{Context, plain};
 use crate::configuration::{Grains, Tube};
 use crate::error::ProblemKind;
 use crate::keys::{GrainsKeys, NUMBERS};
@@ -18,7 +18,11 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
         return context.refuse(
             ProblemKind::Inconsistent,
             &["grains.diameter_min", "grains.diameter_max"],
-            format!("grains.diameter_min = {least} is above grains.diameter_max = {most}"),
+            format!(
+                "grains.diameter_min = {} is above grains.diameter_max = {}",
+                plain(least),
+                plain(most)
+            ),
             "diameters are uniform between diameter_min and diameter_max; give both (each is 1 if missing)"
                 .into(),
         );
@@ -39,7 +43,10 @@ pub(super) fn grains(keys: &GrainsKeys, tube: &Tube, context: &mut Context<'_>) 
         return context.refuse(
             ProblemKind::OutOfRange,
             &[key],
-            format!("{key} makes {number} grains in this tube, which is beyond reach"),
+            format!(
+                "{key} makes {} grains in this tube, which is beyond reach",
+                plain(number)
+            ),
             format!("at most {} grains", limits::MOST_GRAINS),
         );
     }

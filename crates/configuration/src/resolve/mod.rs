@@ -311,6 +311,14 @@ impl Context<'_> {
     }
 }
 
+/// A number for a message, without the zeros of one that is very large or very small.
+fn plain(value: f64) -> String {
+    match value.abs() {
+        1e-4..1e9 | 0.0 => value.to_string(),
+        _ => format!("{value:e}"),
+    }
+}
+
 /// A value as it was written, shortened where it is a long table.
 fn shown(origin: &Origin) -> String {
     let text = origin.text();

@@ -1,5 +1,7 @@
 //! An axis of a study: keys of the configuration and the values that they take.
 
+use std::collections::HashMap;
+
 use peristalsis_configuration::document::{self, Entry, Item, Node, Table};
 use peristalsis_configuration::{Origin, Problem, ProblemKind, Problems};
 
@@ -138,6 +140,28 @@ impl Axis {
             }
         }
         Some(Self { keys, rows })
+    }
+
+    /// Refuses a row that stands in the axis twice.
+    pub(super) fn check_distinct(&self, problems: &mut Problems) {
+        let mut seen: HashMap<Vec<String>, &Item> = HashMap::new();
+        for row in self.rows.iter().filter(|row| !row.is_empty()) {
+            let values = row.iter().map(|item| match item.node {
+                Node::Integer(_) | Node::Float(_) => number(&item.node).to_string(),
+                _ => item.origin.text().to_owned(),
+            });
+            let values: Vec<String> = values.collect();
+            let message = format!("the axis has {} twice", values.join(", "));
+            if let Some(first) = seen.insert(values, &row[0]) {
+                let problem = Problem::new(ProblemKind::Conflict, message)
+                    .key("axes")
+                    .at(&row[0].origin, "here")
+                    .at(&first.origin, "and here")
+                    .help("an axis names a value once; `replicates` are runs of the same point");
+                problems.push(problem);
+                return;
+            }
+        }
     }
 
     /// Whether this axis varies one key through numbers.

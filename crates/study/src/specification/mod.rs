@@ -114,6 +114,7 @@ impl Specification {
         problems.check()?;
         check_against(keys::cached(), &table, &mut problems);
         check_keys(&table, &mut problems);
+        problems.place_in(SourceFile { name, text });
         problems.check()?;
         let keys = Keys::deserialize(document::to_toml(&table))
             .expect("a file that follows the schema can be read");
@@ -338,6 +339,9 @@ fn axes(table: &Table, problems: &mut Problems) -> Vec<Axis> {
             problems.push(problem);
         }
         seen.push((key, origin));
+    }
+    for axis in &axes {
+        axis.check_distinct(problems);
     }
     axes
 }

@@ -179,3 +179,59 @@ fn a_configuration_is_read_from_standard_input() {
         .expect_code(2)
         .says(&["standard input:3:1", "drive.width"]);
 }
+
+/// COMMAND-LINE, low: messages.
+#[test]
+fn messages_say_one_thing_once_and_in_few_digits() {
+    let place = Place::new();
+    let refused = |line: &str, parts: &[&str]| place.refuses(line, parts).message();
+    let wide = refused(
+        "check SMALL drive.width=1e300",
+        &["drive.width = 1e300 is wider"],
+    );
+    assert!(!wide.contains("000000"), "{wide}");
+    refused(
+        "check SMALL grains.number=1.5",
+        &["grains.number = 1.5 is not a whole number"],
+    );
+    refused("check SMALL --set drive=3", &["drive = 3 is not a table"]);
+    refused(
+        "check SMALL contact.stiffness=2",
+        &["did you mean contact.normal_stiffness?"],
+    );
+    let many = "check --preset frictionless grains.number=100000000";
+    refused(many, &["100000000 grains do not fit"]);
+    place.write("wrong.toml", "preset = \"frictionless\"\ndrive.widht = 3\n");
+    let wrong = refused("check wrong.toml", &["wrong.toml:2:7"]);
+    assert_eq!(wrong.matches("wrong.toml").count(), 1, "{wrong}");
+}
+
+/// COMMAND-LINE, low: 200,000 unknown keys.
+#[test]
+fn of_very_many_problems_the_first_are_shown() {
+    let place = Place::new();
+    let keys: String = (0..5000).map(|number| format!("k{number} = 1\n")).collect();
+    place.write(
+        "many.toml",
+        format!("preset = \"frictionless\"\n[drive]\n{keys}"),
+    );
+    let refused = place.refuses("check many.toml", &["drive.k0", "and 4980 more problems"]);
+    assert!(refused.stderr.len() < 20_000);
+}
+
+/// COMMAND-LINE, low: an empty study file and duplicate values name no line.
+#[test]
+fn faults_of_a_study_file_name_their_lines() {
+    let place = Place::new();
+    place.write("empty.toml", "");
+    place.refuses(
+        "study plan empty.toml",
+        &["empty.toml:1:1", "name is missing"],
+    );
+    let axis = "name = \"s\"\npreset = \"frictionless\"\n[[axes]]\nkey = \"drive.width\"\nvalues = [2.5, 2.6,\n2.50]\n";
+    place.write("twice.toml", axis);
+    place.refuses(
+        "study plan twice.toml",
+        &["twice.toml:6:1", "the axis has 2.5 twice"],
+    );
+}
