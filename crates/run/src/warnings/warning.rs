@@ -11,7 +11,8 @@ pub struct Warning {
 
 impl Warning {
     /// The same under a circumstance.
-    pub(crate) fn under(self, circumstance: &str) -> Self {
+    #[must_use]
+    pub fn under(self, circumstance: &str) -> Self {
         Self {
             message: format!("{circumstance} {}", self.message),
             ..self

@@ -9,9 +9,7 @@ use std::process::ExitCode;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::Instructions;
-use peristalsis_run::{
-    Run, RunError, RunFolder, TrajectoryPlan, read_state, warnings,
-};
+use peristalsis_run::{Run, RunError, RunFolder, TrajectoryPlan, read_state, warnings};
 
 use crate::arguments::RunArguments;
 use crate::commands::trajectory::{in_words as in_one_line, request};
@@ -116,6 +114,7 @@ fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
         RunFolder::check(path)?;
     }
     let run = packed(arguments, configuration)?;
+    warn_besides(&warnings(run.configuration()), &run.warnings());
     let folder = new_folder(arguments, &name(&arguments.configuration), &run)?;
     Ok((folder, run))
 }
@@ -137,9 +136,7 @@ fn packed(arguments: &RunArguments, configuration: Configuration) -> Result<Run,
     if grains > SLOW_PACKING {
         tell(arguments.quiet, &format!("packing {grains} grains"));
     }
-    let run = Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))?;
-    warn_besides(&warnings(run.configuration()), &run.warnings());
-    Ok(run)
+    Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))
 }
 
 /// The folder asked for, or else the first free one runs/NAME-K.

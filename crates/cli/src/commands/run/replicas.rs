@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Instant;
 
-use peristalsis_run::{RunFolder, next_folder, warnings};
+use peristalsis_run::{RunFolder, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
 use super::words::known;
@@ -27,6 +27,8 @@ const STEM: &str = "seed-";
 pub(super) struct Replicas {
     folder: PathBuf,
     each: Vec<(u64, RunFolder)>,
+    /// The warnings that were said already.
+    said: Vec<Warning>,
 }
 
 /// A replica that was worked on: its seed, its folder, and what it came to.
@@ -56,7 +58,8 @@ pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Fai
     let mut each: Vec<_> = below.filter_map(|entry| replica(entry.path())).collect();
     each.sort_by_key(|(seed, _)| *seed);
     let folder = folder.clone();
-    Ok((!each.is_empty()).then_some(Replicas { folder, each }))
+    let said = Vec::new();
+    Ok((!each.is_empty()).then_some(Replicas { folder, each, said }))
 }
 
 /// Makes a folder for each seed; where one cannot be made, none is.
@@ -69,9 +72,9 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
     };
     let configurations = seeds.0.iter().map(of_seed);
     let configurations = configurations.collect::<Result<Vec<_>, _>>()?;
-    if let Some((_, one)) = configurations.first() {
-        warn_besides(&[], &warnings(one));
-    }
+    let one = configurations.first();
+    let said = one.map_or(Vec::new(), |(_, one)| warnings(one));
+    warn_besides(&[], &said);
     let folder = match &arguments.out {
         Some(folder) => {
             RunFolder::check(folder)?;
@@ -89,7 +92,7 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
             }
         }
     }
-    Ok(Replicas { folder, each })
+    Ok(Replicas { folder, each, said })
 }
 
 /// Runs as many replicas at a time as there are processors for, and says what they came to.
@@ -130,6 +133,7 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     locked(&display).0.finish();
     let mut worked = worked.into_inner().unwrap_or_default();
     worked.sort_by_key(|(seed, ..)| *seed);
+    warn_besides(&[], &seen(&worked, &replicas.said));
     conclude(arguments, &replicas.folder, worked, &stop)
 }
 
@@ -182,6 +186,20 @@ fn line(seed: u64, outcome: &Outcome) -> String {
         Ending::Failed(_) => "; diverged",
     };
     format!("seed {seed}: {flow}; {transition}{ending}")
+}
+
+/// What the replicas warn of besides what was said: of each key the first warning, with its seed.
+fn seen(worked: &[Worked], said: &[Warning]) -> Vec<Warning> {
+    let mut seen: Vec<Warning> = Vec::new();
+    for (seed, _, outcome) in worked {
+        let warnings = outcome.iter().flat_map(|outcome| &outcome.summary.warnings);
+        for warning in warnings.filter(|warning| !said.contains(warning)) {
+            if seen.iter().all(|known| known.key != warning.key) {
+                seen.push(warning.clone().under(&format!("with seed {seed}")));
+            }
+        }
+    }
+    seen
 }
 
 /// Prints what the replicas came to, and answers the exit code.
