@@ -36,11 +36,11 @@ step "types"
 "$environment/bin/stubtest" peristalsis --mypy-config-file crates/python/pyproject.toml
 PATH="$environment/bin:$PATH" pyright --verifytypes peristalsis --ignoreexternal
 
-step "the wheel in an empty environment, with the snippets of the README and the tutorial"
+step "the wheel in an environment of its own, with the snippets of the README and the book"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
 python3 -m venv "$scratch/venv"
-"$scratch/venv/bin/pip" install --quiet "$wheel"
-"$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md docs/python/collapse.md
+"$scratch/venv/bin/pip" install --quiet "$wheel[plot]"
+"$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md docs/python/collapse.md docs/book/src/python.md
 
 step "the Python package is well"

@@ -31,7 +31,7 @@ PARSED = {
 }
 #: Commands that are not run at all.
 LEFT_OUT = {r"cargo test\b": "a check of its own", r"cargo install\b": "builds the program anew", r"just\b": "a recipe of its own"}
-#: Pictures of a page and the file that one of its commands leaves: the same bytes.
+#: Pictures of a page and the file that the block that makes it leaves: the same bytes.
 PICTURES = {"README.md": {"docs/images/flow.png": "runs/frictionless-1/flow.png"}}
 
 
@@ -81,7 +81,7 @@ def run_python(page: str, text: str, names: dict[str, object]) -> str:
 
 def run(page: str, folder: pathlib.Path, only: str | None, programs: pathlib.Path, draw: bool) -> None:
     names: dict[str, object] = {"__name__": "__main__"}
-    number = 0
+    number, pictures = 0, dict(PICTURES.get(pathlib.Path(page).name, {}))
     blocks = BLOCK.findall(pathlib.Path(page).read_text(encoding="utf-8"))
     os.chdir(folder)
     for kind, text, expected in blocks:
@@ -94,13 +94,16 @@ def run(page: str, folder: pathlib.Path, only: str | None, programs: pathlib.Pat
             number += 1
             if expected:
                 compare(page, text, expected, output)
+            for picture, left in [each for each in pictures.items() if (folder / each[1]).exists()]:
+                if draw:
+                    shutil.copyfile(folder / left, ROOT / picture)
+                if (folder / left).read_bytes() == (ROOT / picture).read_bytes():
+                    del pictures[picture]
+                draw = False
     if not number:
         sys.exit(f"{page} has no block to run")
-    for picture, left in PICTURES.get(pathlib.Path(page).name, {}).items() if only != "python" else ():
-        if draw:
-            shutil.copyfile(folder / left, ROOT / picture)
-        elif (folder / left).read_bytes() != (ROOT / picture).read_bytes():
-            sys.exit(f"{picture} is not what {page} says: scripts/run_snippets.py --only sh --draw {page}")
+    if pictures and only != "python":
+        sys.exit(f"{', '.join(pictures)}: not as {page} draws it; scripts/run_snippets.py --only sh --draw {page}")
     print(f"{page}: {number} blocks")
 
 
