@@ -106,7 +106,11 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     let display = Mutex::new((Display::new(arguments.quiet, 1000), vec![0.0; number]));
     let waiting: Mutex<VecDeque<_>> = Mutex::new(replicas.each.into_iter().enumerate().collect());
     let worked: Mutex<Vec<Worked>> = Mutex::default();
-    let next = || locked(&waiting).pop_front();
+    // What has not begun when a signal comes begins when the replicas are gone on with.
+    let next = || match stop.requested() {
+        None => locked(&waiting).pop_front(),
+        Some(_) => None,
+    };
     let work = || {
         while let Some((index, (seed, folder))) = next() {
             let path = folder.path().to_owned();
@@ -261,7 +265,7 @@ fn conclude(
         }
         print(&text)?;
     }
-    let place = folder.display();
+    let (place, complete) = (folder.display(), complete.len());
     let mut is_well = true;
     for (seed, _, outcome) in worked {
         let failure = match outcome {
@@ -281,7 +285,9 @@ fn conclude(
         is_well = false;
     }
     if let Some(code) = stop.requested() {
-        let again = format!("stopped; go on with: peristalsis run --resume {place}");
+        let again = format!(
+            "stopped with {complete} seeds complete; what there is is in {place}\ngo on with: peristalsis run --resume {place}"
+        );
         tell(arguments.quiet, &again);
         return Ok(ExitCode::from(code));
     }

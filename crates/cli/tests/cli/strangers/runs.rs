@@ -387,6 +387,30 @@ fn seeds_run_side_by_side_and_their_scatter_is_shown() {
     assert_same_run(&place, ["longer", "many/seed-3"]);
 }
 
+/// COMMAND-LINE, wanted: replicas that are stopped go on, those that had not begun included.
+#[cfg(unix)]
+#[test]
+fn seeds_that_were_stopped_go_on_to_the_same_runs() {
+    let place = Place::new();
+    let run = "run SMALL run.periods=500";
+    let child = place.start(&format!("{run} --seeds 1..5 --out many"));
+    let (code, said) = crate::signals::stopped_by(child, &["TERM", "TERM"]);
+    assert_eq!(code, Some(143), "{said}");
+    assert!(
+        said.contains("go on with: peristalsis run --resume many"),
+        "{said}"
+    );
+    place.does("runs many").shows(&["unfinished"]);
+    place.does("run --resume many").shows(&["mean of 5 seeds"]);
+    for seed in [1, 5] {
+        place.does(&format!("{run} --out one-{seed} run.seed={seed}"));
+        assert_same_run(
+            &place,
+            [&format!("one-{seed}"), &format!("many/seed-{seed}")],
+        );
+    }
+}
+
 /// COMMAND-LINE, medium 5.
 #[test]
 fn the_error_says_what_it_is_an_error_of_and_rounding_is_none() {
