@@ -53,11 +53,13 @@ check-viewer *options:
 viewer-bundle:
     bash scripts/viewer_bundle.sh
 
-# The Python package as a wheel for this machine, below target/wheels.
-wheel:
+# The Python package as a wheel, below target/wheels: for this machine, or `just wheel --zig --compatibility manylinux_2_17`
+# for any Linux of the last ten years.
+wheel *options:
     [ -x target/python/bin/python ] || python3 -m venv target/python
-    target/python/bin/pip install --quiet maturin
-    target/python/bin/maturin build --release --locked --manifest-path crates/python/Cargo.toml --out target/wheels
+    target/python/bin/pip install --quiet 'maturin[zig]'
+    rm -f target/wheels/peristalsis-*.whl
+    target/python/bin/maturin build --release --locked --out target/wheels {{options}}
 
 # Tests, types and wheel of the Python package, in environments below target/.
 python:

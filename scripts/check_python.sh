@@ -12,14 +12,15 @@ environment=$PWD/target/python
 step "the wheel"
 wheels=target/wheels
 rm -f "$wheels"/peristalsis-*.whl
-"$environment/bin/maturin" build --release --locked --manifest-path crates/python/Cargo.toml --out "$wheels"
+"$environment/bin/maturin" build --release --locked --out "$wheels"
 wheel=$(ls "$wheels"/peristalsis-*.whl)
+python3 -m zipfile --list "$wheel" | grep LICENSE-MIT > /dev/null || { echo "the wheel lacks its licence"; exit 1; }
 "$environment/bin/pip" install --quiet --force-reinstall --no-deps "$wheel"
 
 step "tests"
 cargo build --locked --package peristalsis
 PERISTALSIS_PROGRAM=$PWD/target/debug/peristalsis "$environment/bin/python" -m pytest crates/python
-"$environment/bin/python" -m pytest -c crates/python/pyproject.toml --doctest-modules --pyargs peristalsis
+"$environment/bin/python" -m pytest -c crates/python/pytest.ini --doctest-modules --pyargs peristalsis
 
 step "the same replicas through four pools"
 for pool in futures joblib dask ray; do
@@ -32,8 +33,8 @@ step "the notebooks"
 "$environment/bin/python" scripts/run_notebooks.py examples/notebooks/*.ipynb
 
 step "types"
-"$environment/bin/mypy" --config-file crates/python/pyproject.toml crates/python/python
-"$environment/bin/stubtest" peristalsis --mypy-config-file crates/python/pyproject.toml
+"$environment/bin/mypy"
+"$environment/bin/stubtest" peristalsis --mypy-config-file pyproject.toml
 PATH="$environment/bin:$PATH" pyright --verifytypes peristalsis --ignoreexternal
 
 step "the wheel in an environment of its own, with the snippets of the README and the book"

@@ -11,37 +11,88 @@ create_exception!(
     peristalsis,
     ConfigurationError,
     PyValueError,
-    "A configuration that cannot be: the key, where it was given, and what is allowed."
+    r#"A configuration that cannot be: the key, where it was given, and what is allowed.
+
+Examples
+--------
+>>> import peristalsis
+>>> try:
+...     peristalsis.Configuration("frictionless", width=-1)
+... except peristalsis.ConfigurationError as error:
+...     print("drive.width" in str(error))
+True"#
 );
 create_exception!(
     peristalsis,
     DoesNotFitError,
     PyValueError,
-    "More grains than the tube holds."
+    r#"More grains than the tube holds.
+
+Examples
+--------
+>>> import peristalsis
+>>> try:
+...     peristalsis.Simulation.preset("frictionless", number=20_000)
+... except peristalsis.DoesNotFitError as error:
+...     print("do not fit" in str(error))
+True"#
 );
 create_exception!(
     peristalsis,
     DivergedError,
     PyRuntimeError,
-    "A sphere moved by more than half a diameter in one step; the state is that of the step that failed."
+    r#"A sphere moved by more than half a diameter in one step; the state is that of the step that failed.
+
+Examples
+--------
+>>> import peristalsis
+>>> issubclass(peristalsis.DivergedError, RuntimeError)
+True"#
 );
 create_exception!(
     peristalsis,
     SnapshotError,
     PyValueError,
-    "Bytes that are no snapshot, or a damaged one."
+    r#"Bytes that are no snapshot, or a damaged one.
+
+Examples
+--------
+>>> import peristalsis
+>>> try:
+...     peristalsis.Simulation.from_bytes(b"nothing")
+... except peristalsis.SnapshotError:
+...     print("no snapshot")
+no snapshot"#
 );
 create_exception!(
     peristalsis,
     StudyFailure,
     PyRuntimeError,
-    "A study or its store cannot do what was asked."
+    r#"A study or its store cannot do what was asked.
+
+Examples
+--------
+>>> import peristalsis
+>>> try:
+...     peristalsis.Study.open("no/such/store")
+... except (peristalsis.StudyFailure, OSError):
+...     print("no store")
+no store"#
 );
 create_exception!(
     peristalsis,
     AnalysisError,
     PyValueError,
-    "Data that an estimator can say nothing about."
+    r#"Data that an estimator can say nothing about.
+
+Examples
+--------
+>>> import peristalsis
+>>> try:
+...     peristalsis.analysis.mean_with_error([1.0])
+... except peristalsis.AnalysisError:
+...     print("too few samples")
+too few samples"#
 );
 
 /// A configuration that cannot be; an override stands in the message as ``key=value``, without the command line's flag.

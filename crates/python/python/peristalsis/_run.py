@@ -36,6 +36,7 @@ def run(config: Mapping[str, Any]) -> RunSummary:
 
     Examples
     --------
+    >>> from peristalsis import run
     >>> summary = run({"preset": "frictionless", "waves": 2, "periods": 2, "seed": 3})
     >>> summary["seed"], summary["config"]["waves"]
     (3, 2)

@@ -56,6 +56,23 @@ def study(
 
     store : path, optional
         Folder that keeps the runs; ``stores/NAME`` by default. The command line works on the same store.
+
+    Returns
+    -------
+    Study
+        Planned and checked; nothing is computed yet.
+
+    Raises
+    ------
+    ConfigurationError, StudyFailure
+        Where a key or value cannot be.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+    >>> peristalsis.study(content).name
+    'example'
     """
     if isinstance(source, Mapping):
         name, text = "study", _toml(source)
@@ -69,30 +86,103 @@ class Study:
     """A study with the store that keeps its runs.
 
     Work on it as often as you like, in several processes at once: what is done is not done again, and the rows come out
-    the same bit for bit.
+    the same bit for bit. Made by `study` and `Study.open`.
+
+    Attributes
+    ----------
+    store : pathlib.Path
+        Folder that keeps the runs.
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+    >>> import tempfile
+    >>> folder = tempfile.mkdtemp()
+    >>> study = peristalsis.study(content, store=f"{folder}/store")
+    >>> study.run(workers=1)
+    'complete'
+    >>> study.rows().to_pandas()["seed"].nunique()
+    2
     """
 
     def __init__(self, study: _core.Study, store: Path) -> None:
         self._study = study
-        self.store = store
+        self.store: Path = store
 
     @classmethod
     def open(cls, store: str | os.PathLike[str]) -> Study:
-        """The study of a store that there is."""
+        """The study of a store that there is.
+
+        Parameters
+        ----------
+        store : path
+            Folder of the store.
+
+        Returns
+        -------
+        Study
+            As its file was when the store was made.
+
+        Raises
+        ------
+        StudyFailure, OSError
+            Where there is no store.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> peristalsis.study(content, store=f"{folder}/store").run(workers=1)
+        'complete'
+        >>> peristalsis.Study.open(f"{folder}/store").counts()
+        {'done': 2}
+        """
         return cls(_core.Study.of_store(os.fspath(store)), Path(store))
 
     @property
     def name(self) -> str:
-        """Short name."""
+        """Short name.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "title": "An example", "replicates": 2}
+        >>> peristalsis.study(content).name
+        'example'
+        """
         return self._study.name
 
     @property
     def title(self) -> str:
-        """What it is about."""
+        """What it is about.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "title": "An example", "replicates": 2}
+        >>> peristalsis.study(content).title
+        'An example'
+        """
         return self._study.title
 
     def plan(self) -> list[PlannedRun]:
-        """The runs, in the order of the axes; those that refinement will add are not among them."""
+        """The runs, in the order of the axes; those that refinement will add are not among them.
+
+        Returns
+        -------
+        list of PlannedRun
+            Each with its identity, its settings and its configuration.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> len(peristalsis.study(content).plan())
+        2
+        """
         return [PlannedRun(*run) for run in self._study.plan()]
 
     def run(
@@ -117,6 +207,20 @@ class Study:
         -------
         {"complete", "time_up"}
             Ctrl-C raises `KeyboardInterrupt` once every run is saved; call again to go on.
+
+        Raises
+        ------
+        StudyFailure
+            Where the store belongs to another study, or cannot be written.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> peristalsis.study(content, store=f"{folder}/store").run(workers=1)
+        'complete'
         """
 
         def watch(done: int, failed: int, total: int, part: float, left: float | None) -> None:
@@ -131,15 +235,87 @@ class Study:
         return ending
 
     def rows(self) -> Table:
-        """The finished runs, one a row: an Arrow table, which pandas, polars and pyarrow take without a copy."""
+        """The finished runs, one a row, with the units of the columns.
+
+        Returns
+        -------
+        Table
+            `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` give frames; pyarrow takes it as it is.
+
+        Raises
+        ------
+        StudyFailure, OSError
+            Where there is no store yet.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> study = peristalsis.study(content, store=f"{folder}/store")
+        >>> study.run(workers=1)
+        'complete'
+        >>> rows = study.rows()
+        >>> len(rows), rows.units["strain_rate"]
+        (2, '1/t')
+        """
         return _core.store_rows(os.fspath(self.store))
 
     def counts(self) -> dict[str, int]:
-        """How many runs are in which state."""
+        """How many runs are in which state.
+
+        Returns
+        -------
+        dict of str to int
+            States such as ``done`` and ``failed``.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> study = peristalsis.study(content, store=f"{folder}/store")
+        >>> study.run(workers=1)
+        'complete'
+        >>> study.counts()
+        {'done': 2}
+        """
         return _core.store_counts(os.fspath(self.store))
 
     def export(self, folder: str | os.PathLike[str], series: bool = False) -> list[str]:
-        """Write the tables as Parquet and CSV; answers the files."""
+        """Write the tables as Parquet and CSV.
+
+        Parameters
+        ----------
+        folder : path
+            Where to write them.
+        series : bool
+            Also the time series of all runs.
+
+        Returns
+        -------
+        list of str
+            The files.
+
+        Raises
+        ------
+        FileNotFoundError
+            Where there is no store yet.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> content = {"name": "example", "preset": "frictionless", "replicates": 2, "base": {"tube.waves": 2, "run.periods": 1}}
+        >>> import tempfile
+        >>> folder = tempfile.mkdtemp()
+        >>> study = peristalsis.study(content, store=f"{folder}/store")
+        >>> study.run(workers=1)
+        'complete'
+        >>> any(file.endswith(".csv") for file in study.export(f"{folder}/tables"))
+        True
+        """
         files = _core.store_export(os.fspath(self.store), os.fspath(folder), series)
         return [os.fspath(file) for file in files]
 

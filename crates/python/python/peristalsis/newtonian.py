@@ -36,8 +36,14 @@ def flow_rate_ratio(
     ndarray
         Of the shape of `width`.
 
+    Raises
+    ------
+    ValueError
+        For a width outside of its range, or a pressure that is not finite.
+
     Examples
     --------
+    >>> from peristalsis.newtonian import flow_rate_ratio
     >>> float(flow_rate_ratio(0.0))
     1.0
     """
@@ -49,9 +55,26 @@ def flow_rate_ratio(
 def field(
     flow: Newtonian, radius: npt.ArrayLike, phase: npt.ArrayLike
 ) -> tuple[Array, Array, Array]:
-    """Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2] in the laboratory.
+    """Axial velocity, radial velocity and stream function in the laboratory.
 
-    `radius` [a] and `phase` are broadcast against each other; the answers have their common shape.
+    Parameters
+    ----------
+    flow : Newtonian
+        The flow.
+    radius, phase : array_like
+        r [a] and x = (z - c t)/lambda, broadcast against each other.
+
+    Returns
+    -------
+    tuple of ndarray
+        Axial velocity [c], radial velocity [c a/lambda] and stream function [c a^2], of the common shape.
+
+    Examples
+    --------
+    >>> from peristalsis import newtonian
+    >>> axial, radial, stream = newtonian.field(newtonian.Newtonian(0.5), [[0.0], [0.5]], [0.25, 0.75])
+    >>> axial.shape
+    (2, 2)
     """
     r, x = np.broadcast_arrays(
         np.asarray(radius, dtype=np.float64), np.asarray(phase, dtype=np.float64)
