@@ -108,6 +108,11 @@ def axes(width: float = SINGLE_COLUMN, height: float = 60.0) -> Axes:
     width, height : float
         Size of the figure [mm].
 
+    Returns
+    -------
+    matplotlib.axes.Axes
+        The axes; ``axes.figure`` is their figure.
+
     Examples
     --------
     >>> from peristalsis import plot

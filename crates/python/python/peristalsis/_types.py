@@ -49,6 +49,8 @@ class Keywords(TypedDict, total=False):
     contact_range: float
     """wall.contact_range. Wall spheres whose places in the straight tube are farther apart than this repel on
     contact, so that opposite sides of a throat do not pass through each other; stress control. (Unit: d.)"""
+    contact_restitution: float
+    contact_restitution_speed: float
     contact_sliding: Literal["spring", "balance", "literal"]
     contact_static_friction: float
     contact_tangential_damping: float
@@ -151,6 +153,14 @@ class Keywords(TypedDict, total=False):
     """tube.radius. Mean radius a, to the centres of the wall spheres. (Unit: d.)"""
     ramp_periods: float
     """drive.ramp_periods. Length of the ramp of schedule = "ramp", in wave periods. (Unit: periods.)"""
+    restitution: float
+    """contact.restitution. Restitution e of two grains of the mean diameter that meet head-on at restitution_speed,
+    instead of normal_damping (linear law) or dissipation_time (Hertz law), which are resolved from it. Linear law:
+    e = exp(-pi beta/sqrt(k/m_ij - beta^2)), beta = eta/(2 m_ij), at any speed. Hertz law: by integration of the
+    impact; e falls with the speed. (A pure number.)"""
+    restitution_speed: float
+    """contact.restitution_speed. Relative speed at which restitution holds. Missing: the speed of the wave, so that
+    in a study of several strain rates each has its own material; a static wave needs it. (Unit: d t^-1.)"""
     rings_per_wave: int
     """tube.rings_per_wave. Rings in a wavelength, alternate rings turned by half a spacing: even under strain
     control; under stress control an odd number needs an even number of waves. (A pure number.)"""
@@ -208,8 +218,9 @@ class Keywords(TypedDict, total=False):
     time_step: float
     """run.time_step. Longest time step allowed; the step taken divides the time between two samples. (Unit: t.)"""
     transition_threshold: float
-    """observe.transition_threshold. J/Jmax that the period average crosses at a transition, upward from rest and
-    downward from jammed. (A pure number.)"""
+    """observe.transition_threshold. J/Jmax that the period average crosses at a transition, on its way from the
+    initial state, 0 from rest and 1 jammed: from rest upward, or downward to back flow where the threshold is below
+    0; from jammed downward, or upward where it is above 1. (A pure number.)"""
     tube_radius: float
     tube_rings_per_wave: int
     tube_spheres_per_ring: int

@@ -365,8 +365,8 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
     Examples
     --------
     >>> from peristalsis import analysis, plot
-    >>> plot.survival(analysis.Survival([120.0, 340.0, 800.0], [True, True, False])).get_ylim()[0] == 0
-    True
+    >>> float(plot.survival(analysis.Survival([120.0, 340.0, 800.0], [True, True, False])).get_ylim()[0])
+    0.0
     """
     time = np.array([0.0, *(step.time for step in curve.steps), curve.watched])
     levels = [step.survival for step in curve.steps]
@@ -408,6 +408,15 @@ def collapse(
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from peristalsis import analysis, plot
+    >>> x = np.linspace(-0.5, 0.5, 21)
+    >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0)]
+    >>> len(plot.collapse(analysis.Collapse(curves, "finite_size"), [0.5, 1.0, 0.0]).containers)
+    2
     """
     chosen = parameters.parameters if isinstance(parameters, CollapseResult) else parameters
     labels = list(names) if names is not None else [f"{curve[0]:g}" for curve in what.curves]
