@@ -107,7 +107,7 @@ def flow(simulation: Simulation, ax: Axes | None = None, *, label: str | None = 
         raise ValueError("there is no flow rate to draw: run the simulation first, with a wave that moves")
     is_alone = ax is None and label is None
     with drawing(ax) as new:
-        known = [drawn.get_xdata()[-1] for drawn in new.lines if drawn.get_gid() == _CURVE]
+        known = [np.asarray(drawn.get_xdata())[-1] for drawn in new.lines if drawn.get_gid() == _CURVE]
         colour = line.pop("color", COLOURS[len(known) % len(COLOURS)])
         faint = {"color": SKY, "label": "samples"} if is_alone else {"color": colour, "alpha": 0.4}
         new.plot(np.convolve(np.r_[0.0, period], [0.5, 0.5], "valid"), ratio, linewidth=0.6, **faint)
@@ -374,7 +374,7 @@ def survival(curve: Survival, ax: Axes | None = None, *, label: str | None = Non
     lower = np.array([1.0, *(level.interval_68.lower for level in levels)])
     upper = np.array([1.0, *(level.interval_68.upper for level in levels)])
     with drawing(ax) as new:
-        latest = max([time[-1], *(drawn.get_xdata()[-1] for drawn in new.lines if drawn.get_gid() == _CURVE)])
+        latest = max([time[-1], *(np.asarray(drawn.get_xdata())[-1] for drawn in new.lines if drawn.get_gid() == _CURVE)])
         (drawn,) = new.step(time, np.append(value, value[-1]), where="post", label=label, gid=_CURVE, **line)
         bounds = np.append(lower, lower[-1]), np.append(upper, upper[-1])
         new.fill_between(time, *bounds, step="post", color=drawn.get_color(), alpha=0.25, linewidth=0)
