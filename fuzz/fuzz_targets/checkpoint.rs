@@ -15,7 +15,7 @@ use peristalsis_fuzz::{damaged, scratch, tubes};
 use peristalsis_run::{Run, Summary, profile_table, timeseries_table, waves_table};
 
 /// Bytes of the header of a checkpoint.
-const HEADER: usize = 80;
+const HEADER: usize = 84;
 
 /// A tube, the checkpoint of a run of it that has begun, and the state within.
 struct Known {
@@ -56,6 +56,7 @@ fn sealed(header: &[u8], state: &[u8]) -> Vec<u8> {
     bytes.extend((payload.len() as u64).to_le_bytes());
     bytes.extend((state.len() as u64).to_le_bytes());
     bytes.extend(crc32fast::hash(&payload).to_le_bytes());
+    bytes.extend(&header[76..80]);
     bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
     bytes.extend(payload);
     bytes
@@ -71,8 +72,8 @@ fuzz_target!(|input: &[u8]| {
     } else {
         damaged(&known.file, rest)
     };
-    let mut run = match Run::from_snapshot(&bytes)
-        .and_then(|run| run.under(known.configuration.clone())) {
+    let read = Run::from_snapshot(&bytes);
+    let mut run = match read.and_then(|run| run.under(known.configuration.clone())) {
         Ok(run) => run,
         Err(error) => {
             assert!(!error.to_string().is_empty());
