@@ -193,12 +193,13 @@ impl RunFolder {
         }
     }
 
-    /// Writes the configuration of a run whose length has changed.
+    /// Writes configuration and state of a run whose length has changed.
     ///
     /// # Errors
-    /// [`RunError::Format`] where the file cannot be written; the older one stays.
-    pub fn save_configuration(&self, run: &Run) -> Result<(), RunError> {
+    /// [`RunError::Format`] where a file cannot be written; the older one stays.
+    pub fn change_length(&self, run: &Run) -> Result<(), RunError> {
         let text = run.configuration().to_toml();
+        self.save_state(run)?;
         Ok(atomic::write(&self.file(CONFIGURATION), text.as_bytes())?)
     }
 

@@ -6,6 +6,7 @@ mod work;
 
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Once;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
 use peristalsis_engine::Instructions;
@@ -98,9 +99,14 @@ fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> 
         }
     };
     if arguments.threads > 1 && !run.simulation().takes_threads() {
-        say(
-            "--threads changes nothing here: only equal smooth grains in a prescribed tube are computed by several threads",
-        );
+        // Once, however many replicas there are.
+        static SAID: Once = Once::new();
+        SAID.call_once(|| {
+            say(
+                "--threads changes nothing here: only equal smooth grains in a prescribed tube are computed by several \
+                 threads",
+            );
+        });
     }
     Ok(run.compute_with(instructions, usize::from(arguments.threads))?)
 }
@@ -168,7 +174,7 @@ fn go_on_in(arguments: &RunArguments, path: &Path) -> Result<(RunFolder, Run), F
     let length = run.configuration().run.samples;
     let run = lasting(arguments, run, path)?;
     if run.configuration().run.samples != length || arguments.duration.is_some() {
-        folder.save_configuration(&run)?;
+        folder.change_length(&run)?;
     }
     Ok((folder, run))
 }

@@ -162,7 +162,7 @@ fn replica(
     };
     if arguments.periods.is_some() || arguments.duration.is_some() {
         run = lasting(arguments, run, folder.path())?;
-        folder.save_configuration(&run)?;
+        folder.change_length(&run)?;
     }
     compute_with(arguments, &mut run)?;
     let work = Work::begin(arguments, folder, run)?;
