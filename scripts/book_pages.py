@@ -51,7 +51,9 @@ def link(match: re.Match[str], pages: set[str]) -> str:
 def prepared(text: str, pages: set[str]) -> str:
     pieces = CODE.split(text)
     for number in range(0, len(pieces), 2):
-        piece = FORMULA.sub(formula, pieces[number])
+        # A mean, no element of HTML.
+        piece = re.sub(r"<([a-z])>(?!.*</\1>)", r"&lt;\1&gt;", pieces[number])
+        piece = FORMULA.sub(formula, piece)
         pieces[number] = LINK.sub(lambda match: link(match, pages), piece)
     return "".join(pieces)
 
