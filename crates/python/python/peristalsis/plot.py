@@ -305,6 +305,8 @@ def _newtonian_curve(ax: Axes, radius: float) -> None:
 def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = None) -> Axes:
     """J/Jmax as a parameter of the drive is ramped there and back, with errors: a loop where the way matters.
 
+    A dotted line stands where a branch crosses the loop's threshold.
+
     Parameters
     ----------
     loop
@@ -329,6 +331,8 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
                 way = f"{name}, {'upwards' if x[-1] >= x[0] else 'downwards'}"
                 new.errorbar(x, y, yerr=error[here], color=colour, marker=mark, markerfacecolor=face, label=way)
                 _arrow(new, x, y, colour)
+            if (crossing := getattr(getattr(loop, "thresholds", None), name, None)) is not None:
+                new.axvline(crossing.value, color=colour, linestyle=":", linewidth=0.8)
         if radius is not None and loop.parameter == "width":
             _newtonian_curve(new, radius)
         new.set(xlabel=_PARAMETERS.get(loop.parameter, loop.parameter), ylabel=_RATIO)
