@@ -11,7 +11,7 @@ use peristalsis_run::TrajectoryFormat::{Gsd, Lammps, Vtp};
 use peristalsis_run::{Eye, Field, FilmFormat, Paper, TrajectoryFormat, WallLook};
 
 /// A value of an option: its name, the value itself, and its meaning in a few words.
-type Choice<T> = (&'static str, T, &'static str);
+pub type Choice<T> = (&'static str, T, &'static str);
 
 /// What is made of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub(crate) const FORMATS: &[Choice<Format>] = &[
 const ANIMATED: &str = "film as animated PNG, in every colour";
 
 /// What the grains are coloured by.
-pub(crate) const FIELDS: &[Choice<Field>] = &[
+pub const FIELDS: &[Choice<Field>] = &[
     ("axial-velocity", AxialVelocity, BY_VELOCITY),
     ("speed", Speed, "|v|/c"),
     ("diameter", Diameter, "d_i"),
@@ -70,7 +70,7 @@ const BY_ROTATION: &str = "speed of the surface by rotation, in c";
 const BY_PRESSURE: &str = "mean normal stress by the forces of contacts; not from a trajectory";
 
 /// How the wall looks from the side.
-pub(crate) const WALLS: &[Choice<WallLook>] = &[
+pub const WALLS: &[Choice<WallLook>] = &[
     ("cut", WallLook::Cut, "cut open"),
     ("glass", WallLook::Glass, "its front of glass"),
     ("none", WallLook::Hidden, "not drawn"),
@@ -82,7 +82,8 @@ pub(crate) const EYES: &[Choice<Eye>] = &[
     ("wave", Eye::Wave, "the wave"),
 ];
 
-pub(crate) const PAPERS: &[Choice<Paper>] = &[
+/// The page.
+pub const PAPERS: &[Choice<Paper>] = &[
     ("light", Paper::Light, "white"),
     ("dark", Paper::Dark, "nearly black"),
 ];
@@ -103,7 +104,8 @@ pub(crate) const INSTRUCTIONS: &[Choice<Instructions>] = &[
 ];
 const EVERYWHERE: &str = "what every processor of the kind has";
 
-fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {
+/// The value of a name, if it is one.
+pub fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {
     let known = choices.iter().find(|(known, ..)| *known == name);
     known.map(|(_, value, _)| *value)
 }

@@ -6,7 +6,7 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
-mod choice;
+pub mod choice;
 mod commands;
 mod failure;
 mod progress;

@@ -229,8 +229,8 @@ impl Default for Wall {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(default)]
 pub struct Initial {
-    /// How the grains stand at t = 0: spread over the tube at rest, or gathered in the bellies and moving with the
-    /// wave.
+    /// How the grains stand at t = 0: spread over the tube at rest, gathered in the bellies and moving with the wave, or
+    /// placed by a program, which no file repeats.
     pub state: InitialState,
     /// Velocity of every grain along the wave at t = 0. Missing: 0 from rest, the wave's speed when jammed.
     #[schemars(extend("x-unit" = "d t^-1", "minimum" = -1e9, "maximum" = 1e9, "default" = null))]
@@ -392,7 +392,7 @@ impl Configuration {
     /// Velocity along the wave that the initial state has of itself \[d t^-1\].
     pub(crate) fn natural_axial_velocity(&self) -> f64 {
         match self.initial.state {
-            InitialState::Rest => 0.0,
+            InitialState::Rest | InitialState::Placed => 0.0,
             InitialState::Jammed => self.wave_speed(),
         }
     }

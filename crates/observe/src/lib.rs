@@ -4,13 +4,14 @@
 //! holds, from which files and documentation follow. [`WaveFrameProfile`] averages density, velocity and temperature in
 //! the frame of the wave, [`WaveByWave`] the flow of each wave over each period,
 //! [`AxialDispersion`] how grains drift apart; [`TubeShape`] is the wall's radius as it is; [`Orientations`] follow
-//! how grains turn.
+//! how grains turn; [`Load`] is what they bear.
 
 #![forbid(unsafe_code)]
 
 pub mod columns;
 mod diagnosis;
 mod dispersion;
+mod load;
 mod orientation;
 mod profile;
 mod quantity;
@@ -22,6 +23,7 @@ mod waves;
 pub use columns::{COLUMNS, Column, PROFILE, WAVES};
 pub use diagnosis::{FaultKind, WallFault, note_wall_faults};
 pub use dispersion::AxialDispersion;
+pub use load::{GrainContact, Load, clear_volume, grain_contacts};
 pub use orientation::Orientations;
 pub use profile::{PartOfWave, ProfileBin, WaveFrameProfile, WavePart};
 pub use quantity::{Quantity, Reading, Value};

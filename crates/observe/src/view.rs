@@ -26,6 +26,11 @@ impl<'a> View<'a> {
         }
     }
 
+    /// Grains outside the tube: their centre is farther from the axis than R + d/2.
+    pub fn escaped(&self) -> usize {
+        self.inside.iter().filter(|&&inside| !inside).count()
+    }
+
     /// J from the velocities of the grains inside the tube, along the wave \[1/t\].
     pub fn instantaneous_flow_rate(&self) -> f64 {
         let (bodies, wall) = (self.simulation.bodies(), self.simulation.wall());

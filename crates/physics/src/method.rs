@@ -12,6 +12,8 @@ pub enum InitialState {
     Rest,
     /// Gathered in the bellies and moving with the wave: J = Jmax.
     Jammed,
+    /// Where a caller of the library has put them: no file says where, and a checkpoint alone repeats such a run.
+    Placed,
 }
 
 /// How the equations of motion are stepped; each is of order 2.

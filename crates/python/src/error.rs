@@ -1,10 +1,11 @@
 //! Errors as Python exceptions, in the words of the command line.
 
 use peristalsis_engine::EngineError;
+use peristalsis_formats::FormatError;
 use peristalsis_run::RunError;
 use peristalsis_study::StudyError;
 use pyo3::create_exception;
-use pyo3::exceptions::{PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 create_exception!(
@@ -106,6 +107,7 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
     match error {
         RunError::Configuration(_)
         | RunError::Steering { .. }
+        | RunError::Placement { .. }
         | RunError::Engine(EngineError::InvalidParameter { .. }) => {
             ConfigurationError::new_err(text)
         }
@@ -113,10 +115,19 @@ pub(crate) fn of_run(error: RunError) -> PyErr {
             DoesNotFitError::new_err(text)
         }
         RunError::Engine(EngineError::Diverged { .. }) => DivergedError::new_err(text),
+        RunError::Format(FormatError::Io { source, .. }) => {
+            std::io::Error::new(source.kind(), text).into()
+        }
         RunError::Engine(EngineError::SnapshotMismatch { .. }) | RunError::Format(_) => {
             SnapshotError::new_err(text)
         }
+        RunError::State { .. } => SnapshotError::new_err(text),
+        RunError::NothingToResume { .. } => PyFileNotFoundError::new_err(text),
         RunError::Folder { .. } => PyOSError::new_err(text),
+        RunError::Trajectory { help, .. } => {
+            PyValueError::new_err(format!("{text}\n  help: {help}"))
+        }
+        RunError::Picture { help, .. } => PyValueError::new_err(format!("{text}\n  help: {help}")),
         _ => PyRuntimeError::new_err(text),
     }
 }

@@ -5,8 +5,11 @@
 //! for the other.
 
 mod analysis;
+mod command;
 mod configuration;
 mod error;
+mod frames;
+mod load;
 mod newtonian;
 mod run;
 mod study;
@@ -38,12 +41,18 @@ mod _core {
         survival, survival_median, transition_time, two_peaks,
     };
     #[pymodule_export]
+    use crate::command::command;
+    #[pymodule_export]
     use crate::configuration::{Configuration, presets, schema, summary_keys};
     #[pymodule_export]
     use crate::error::{
         AnalysisError, ConfigurationError, DivergedError, DoesNotFitError, SnapshotError,
         StudyFailure,
     };
+    #[pymodule_export]
+    use crate::frames::{Frames, check_frame_format, render, write_frame};
+    #[pymodule_export]
+    use crate::load::{contacts, load, volume, wall_radius};
     #[pymodule_export]
     use crate::newtonian::{Newtonian, trapping_threshold_at};
     #[pymodule_export]

@@ -1,12 +1,17 @@
 //! One run, shared by the threads of Python.
 
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
-use numpy::{PyArray1, PyArray2, PyArrayMethods};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use parking_lot::Mutex;
 use peristalsis_engine::{Bodies, Instructions};
-use peristalsis_run::{Status, Summary, profile_table, timeseries_table, waves_table};
+use peristalsis_observe::View;
+use peristalsis_run::{
+    PlacedGrains, RunFolder, Status, Summary, profile_table, read_state, timeseries_table,
+    waves_table,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use pythonize::pythonize;
@@ -29,7 +34,7 @@ impl Run {
     }
 
     /// Looks at the run, without the interpreter.
-    fn look<T: Send>(
+    pub(crate) fn look<T: Send>(
         &self,
         py: Python<'_>,
         look: impl FnOnce(&mut peristalsis_run::Run) -> T + Send,
@@ -51,7 +56,7 @@ impl Run {
 }
 
 /// Vectors as an array of shape (N, 3).
-fn vectors<'py>(
+pub(crate) fn vectors<'py>(
     py: Python<'py>,
     vectors: impl IntoIterator<Item = DVec3>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
@@ -62,6 +67,13 @@ fn vectors<'py>(
     Ok(array)
 }
 
+/// The rows of an array of shape (N, 3).
+fn rows(array: &PyReadonlyArray2<'_, f64>) -> Vec<DVec3> {
+    let rows = array.as_array();
+    let rows = rows.outer_iter();
+    rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect()
+}
+
 #[pymethods]
 impl Run {
     /// Packs the grains.
@@ -69,6 +81,35 @@ impl Run {
     fn new(py: Python<'_>, configuration: &Configuration) -> PyResult<Self> {
         let configuration = configuration.inner.clone();
         let run = py.detach(|| peristalsis_run::Run::new(configuration));
+        run.map(Self::of).map_err(of_run)
+    }
+
+    /// Puts grains where the caller wants them.
+    #[staticmethod]
+    fn placed(
+        py: Python<'_>,
+        configuration: &Configuration,
+        positions: PyReadonlyArray2<'_, f64>,
+        velocities: PyReadonlyArray2<'_, f64>,
+        diameters: PyReadonlyArray1<'_, f64>,
+    ) -> PyResult<Self> {
+        let configuration = configuration.inner.clone();
+        let grains = PlacedGrains {
+            positions: rows(&positions),
+            velocities: rows(&velocities),
+            diameters: diameters.as_array().to_vec(),
+        };
+        let run = py.detach(|| peristalsis_run::Run::placed(configuration, grains));
+        run.map(Self::of).map_err(of_run)
+    }
+
+    /// Goes on from the folder of a run, or from the file of a state.
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        let run = py.detach(|| match path.is_dir() {
+            true => RunFolder::open(&path).map(|(_, run)| run),
+            false => read_state(&path),
+        });
         run.map(Self::of).map_err(of_run)
     }
 
@@ -126,6 +167,24 @@ impl Run {
     fn compute_with(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
         self.look(py, |run| run.compute_with(Instructions::widest(), threads))
             .map_err(of_run)
+    }
+
+    /// What looks doubtful about the configuration and what was seen, as (key, message).
+    fn warnings(&self, py: Python<'_>) -> Vec<(&'static str, String)> {
+        let warnings = self.look(py, |run| run.warnings()).into_iter();
+        warnings.map(|it| (it.key, it.message)).collect()
+    }
+
+    /// Grains outside the tube.
+    #[getter]
+    fn escaped(&self, py: Python<'_>) -> usize {
+        self.look(py, |run| View::of(run.simulation()).escaped())
+    }
+
+    /// Largest overlap of a grain's contact at any step.
+    #[getter]
+    fn largest_overlap(&self, py: Python<'_>) -> f64 {
+        self.look(py, |run| run.simulation().ledger().largest_overlap)
     }
 
     /// The configuration, changes of the drive included.
@@ -269,6 +328,12 @@ impl Run {
             };
             Summary::of(run, status, None)
         });
-        Ok(pythonize(py, &summary)?)
+        let is_going_on = summary.status == Status::Interrupted;
+        let summary = pythonize(py, &summary)?;
+        if is_going_on {
+            // In Python a run that may go on has not been interrupted.
+            summary.set_item("status", "running")?;
+        }
+        Ok(summary)
     }
 }

@@ -1,11 +1,13 @@
 //! From a configuration to the parts of a simulation.
 
+use glam::DVec3;
 use peristalsis_configuration::{
-    Configuration, Control, ScheduledParameter, WaveDirection, Waveform,
+    Configuration, Control, InitialState, ScheduledParameter, WaveDirection, Waveform,
 };
 use peristalsis_engine::initial::{Packing, PackingReport, pack};
 use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall};
-use peristalsis_engine::{Parameters, Simulation, Wall};
+use peristalsis_engine::{Bodies, Parameters, Simulation, Touching, Wall};
+use peristalsis_observe::TubeShape;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_physics::wall::{Lattice, Schedule};
 
@@ -23,6 +25,13 @@ const BYTES_PER_SPHERE: u64 = 1000;
 /// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit, [`RunError::NoMemory`] where there is
 /// no room for them.
 pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
+    if configuration.initial.state == InitialState::Placed {
+        let reason = "initial.state is \"placed\": a caller of the library has put the grains somewhere, which a \
+                      configuration does not say; go on from a checkpoint of that run, or take \"rest\" or \"jammed\"";
+        return Err(RunError::Placement {
+            reason: reason.to_owned(),
+        });
+    }
     check_number(configuration)?;
     check_memory(configuration)?;
     let wall = walls(configuration);
@@ -50,6 +59,115 @@ pub(crate) fn check_number(configuration: &Configuration) -> Result<(), RunError
         });
     }
     Ok(())
+}
+
+/// Grains where a caller puts them, one entry each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct PlacedGrains {
+    /// Centres; z is taken into \[0, L) \[d\].
+    pub positions: Vec<DVec3>,
+    /// \[d/t\]
+    pub velocities: Vec<DVec3>,
+    /// \[d\]
+    pub diameters: Vec<f64>,
+}
+
+/// The simulation of a configuration with grains where they are put, in their order, at time 0.
+///
+/// # Errors
+/// [`RunError::Placement`] for a grain that is not a sphere in the tube, or that overlaps another or the wall by more than
+/// half of the smaller diameter.
+pub(crate) fn place(
+    configuration: &Configuration,
+    grains: PlacedGrains,
+) -> Result<Simulation, RunError> {
+    let refused = |reason: String| Err(RunError::Placement { reason });
+    let PlacedGrains {
+        positions,
+        velocities,
+        diameters,
+    } = grains;
+    let number = configuration.grains.number as usize;
+    if [positions.len(), velocities.len(), diameters.len()] != [number; 3] {
+        return refused(format!(
+            "grains.number is {number}, and there are {} positions, {} velocities and {} diameters",
+            positions.len(),
+            velocities.len(),
+            diameters.len()
+        ));
+    }
+    let is_sphere = |grain: &usize| {
+        let (position, velocity) = (positions[*grain], velocities[*grain]);
+        position.is_finite() && velocity.is_finite() && diameters[*grain] > 0.0
+    };
+    if let Some(grain) = (0..number).find(|grain| !is_sphere(grain)) {
+        return refused(format!(
+            "grain {grain} has position {}, velocity {} and diameter {}, not all of them possible",
+            positions[grain], velocities[grain], diameters[grain]
+        ));
+    }
+    check_memory(configuration)?;
+    let wall = walls(configuration);
+    let mut bodies = Bodies::grains_at_rest(positions, diameters);
+    bodies.velocity = velocities;
+    wall.append_spheres(&mut bodies);
+    let simulation = Simulation::new(bodies, wall, parameters(configuration));
+    check_places(&simulation)?;
+    Ok(simulation)
+}
+
+/// Refuses grains outside the tube, and those that share most of their place with another sphere.
+fn check_places(simulation: &Simulation) -> Result<(), RunError> {
+    let refused = |reason: String| Err(RunError::Placement { reason });
+    let (bodies, shape) = (simulation.bodies(), TubeShape::of(simulation));
+    for (grain, position) in bodies.position[..bodies.grains].iter().enumerate() {
+        let (radius, from_axis) = (shape.radius(position.z), position.x.hypot(position.y));
+        if from_axis > radius {
+            return refused(format!(
+                "grain {grain} at {position} is outside the tube: it is {from_axis:.4} d from the axis, where the radius is \
+                 {radius:.4} d"
+            ));
+        }
+    }
+    for Touching {
+        first,
+        second,
+        overlap,
+        ..
+    } in simulation.touching()
+    {
+        let diameter = |sphere: usize| bodies.diameter.get(sphere).copied();
+        let of_wall = simulation.wall().sphere_diameter();
+        let [one, other] = [first, second].map(|sphere| diameter(sphere).unwrap_or(of_wall));
+        if first < bodies.grains && overlap > 0.5 * one.min(other) {
+            let partner = match second < bodies.grains {
+                true => format!("grain {second}"),
+                false => "the wall".to_owned(),
+            };
+            return refused(format!(
+                "grain {first} and {partner} overlap by {overlap:.4} d, more than half of a diameter"
+            ));
+        }
+    }
+    let same = |pair: &[(usize, DVec3)]| pair[0].1 == pair[1].1;
+    let mut places: Vec<(usize, DVec3)> = bodies.position[..bodies.grains]
+        .iter()
+        .copied()
+        .enumerate()
+        .collect();
+    places.sort_by(|one, other| {
+        let key = |it: &(usize, DVec3)| it.1.to_array();
+        key(one)
+            .partial_cmp(&key(other))
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    match places.windows(2).find(|pair| same(pair)) {
+        Some(pair) => refused(format!(
+            "grains {} and {} are at the same place",
+            pair[0].0, pair[1].0
+        )),
+        None => Ok(()),
+    }
 }
 
 /// Asks for the memory of the whole run at once, and gives it back: what the system will not give in one piece would end

@@ -59,6 +59,12 @@ pub enum RunError {
         /// What to ask for instead.
         help: &'static str,
     },
+    /// Grains cannot stand so.
+    #[error("the grains cannot be placed so: {reason}")]
+    Placement {
+        /// Why.
+        reason: String,
+    },
     /// A run cannot be driven like that.
     #[error("cannot drive the run so: {reason}")]
     Steering {

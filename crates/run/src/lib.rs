@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod assemble;
+mod contacts;
 mod error;
 mod estimate;
 mod folder;
@@ -23,7 +24,7 @@ mod tables;
 mod trajectory;
 mod warnings;
 
-pub use assemble::{assemble, walls};
+pub use assemble::{PlacedGrains, assemble, walls};
 pub use error::RunError;
 pub use estimate::{Estimate, estimate};
 pub use folder::{RunFolder, Written, next_folder, read_state};
@@ -41,10 +42,13 @@ pub use stopping::Stopping;
 pub use summary::{
     Pumping, RowColumn, Status, Summary, SummaryKey, label, row_columns, set_by, summary_keys,
 };
-pub use tables::{gathered, profile_table, snapshot_table, timeseries_table, waves_table};
+pub use tables::{
+    contacts_table, gathered, grains_table, profile_table, snapshot_table, timeseries_table,
+    waves_table,
+};
 pub use trajectory::{
-    FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan, TrajectoryReport,
-    TrajectoryRequest, Window,
+    FrameFile, FrameFormat, FrameSource, Span, Trajectory, TrajectoryEstimate, TrajectoryPlan,
+    TrajectoryReport, TrajectoryRequest, Window,
 };
 pub use warnings::{Warning, warnings};
 

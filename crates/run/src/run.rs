@@ -12,7 +12,7 @@ use peristalsis_formats::FormatError;
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_observe::Orientations;
 
-use crate::assemble::{assemble, parameters, walls};
+use crate::assemble::{PlacedGrains, assemble, parameters, place, walls};
 use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 use crate::stopwatch::Stopwatch;
@@ -85,8 +85,29 @@ impl Run {
     /// [`RunError::Engine`] where they do not fit.
     pub fn new(configuration: Configuration) -> Result<Self, RunError> {
         let (simulation, packing) = assemble(&configuration)?;
+        Ok(Self::beginning(configuration, simulation, packing))
+    }
+
+    /// A run of grains that stand where they are put.
+    ///
+    /// # Errors
+    /// [`RunError::Placement`] where they cannot stand so.
+    pub fn placed(configuration: Configuration, grains: PlacedGrains) -> Result<Self, RunError> {
+        let simulation = place(&configuration, grains)?;
+        Ok(Self::beginning(
+            configuration,
+            simulation,
+            PackingReport::default(),
+        ))
+    }
+
+    fn beginning(
+        configuration: Configuration,
+        simulation: Simulation,
+        packing: PackingReport,
+    ) -> Self {
         let recorder = Recorder::new(&configuration, &simulation);
-        Ok(Self {
+        Self {
             configuration,
             simulation,
             packing,
@@ -95,7 +116,7 @@ impl Run {
             stopping: None,
             steered: false,
             elapsed: Duration::ZERO,
-        })
+        }
     }
 
     /// Goes on from a state of the same configuration.
@@ -232,6 +253,7 @@ impl Run {
     /// As [`Run::advance`].
     pub fn advance_at_most(&mut self, most: u64) -> Result<(), RunError> {
         let start = Stopwatch::begin();
+        self.last_to_next_sample();
         // A run that was stopped between two samples, where a trajectory has a frame, goes on to the next.
         let each = self.configuration.run.steps_per_sample;
         let to_sample = each - self.simulation.step() % each;

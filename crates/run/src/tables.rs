@@ -3,8 +3,11 @@
 use peristalsis_configuration::{Configuration, Control};
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values};
 use peristalsis_observe::columns::Scope;
-use peristalsis_observe::{COLUMNS, PROFILE, ProfileBin, Quantity, Reading, Value, WAVES};
+use peristalsis_observe::{
+    COLUMNS, PROFILE, ProfileBin, Quantity, Reading, Value, WAVES, grain_contacts,
+};
 
+use crate::contacts::{CONTACT, GRAIN, grains};
 use crate::run::Run;
 use crate::spheres::{SPHERE, seen_spheres};
 use crate::{REVISION, VERSION};
@@ -44,6 +47,22 @@ pub fn waves_table(run: &Run) -> Result<Table, FormatError> {
 /// None that a caller can mend: the columns are of equal length.
 pub fn snapshot_table(run: &Run) -> Result<Table, FormatError> {
     table(run, SPHERE, &seen_spheres(run))
+}
+
+/// The contacts of the grains as they stand: one row each, grain by grain.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn contacts_table(run: &Run) -> Result<Table, FormatError> {
+    table(run, CONTACT, &grain_contacts(run.simulation()))
+}
+
+/// The grains as they stand, in the frame of the tube: one row each, with the step and the time.
+///
+/// # Errors
+/// None that a caller can mend: the columns are of equal length.
+pub fn grains_table(run: &Run) -> Result<Table, FormatError> {
+    table(run, GRAIN, &grains(run.simulation()))
 }
 
 /// The bins of the late profile.

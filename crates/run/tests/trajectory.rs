@@ -58,20 +58,16 @@ fn contents(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     found
 }
 
-/// The frames of a LAMMPS dump: time, step, and the numbers of each sphere.
-fn read_lammps(folder: &Path) -> Vec<(f64, u64, Vec<Vec<f64>>)> {
+/// The frames of a LAMMPS dump: step, and the numbers of each sphere.
+fn read_lammps(folder: &Path) -> Vec<(u64, Vec<Vec<f64>>)> {
     let text = fs::read_to_string(folder.join("trajectory.lammpstrj")).unwrap();
-    let frames = text.split("ITEM: TIME\n").skip(1);
+    let frames = text.split("ITEM: TIMESTEP\n").skip(1);
     frames
         .map(|frame| {
             let lines: Vec<&str> = frame.lines().collect();
-            let spheres = lines[10..].iter();
+            let spheres = lines[8..].iter();
             let numbers = |line: &&str| line.split(' ').map(|word| word.parse().unwrap()).collect();
-            (
-                lines[0].parse().unwrap(),
-                lines[2].parse().unwrap(),
-                spheres.map(numbers).collect(),
-            )
+            (lines[0].parse().unwrap(), spheres.map(numbers).collect())
         })
         .collect()
 }
@@ -94,10 +90,9 @@ fn frames_show_the_simulation_as_it_is_and_change_nothing_of_it() {
         assert_eq!(frames.len() as u64, plan.frames());
         assert!(frames.len() > 10);
         let mut simulation = plain.simulation().clone();
-        for (time, step, spheres) in frames {
+        for (step, spheres) in frames {
             simulation.advance(step - simulation.step()).unwrap();
             let bodies = simulation.bodies();
-            assert_eq!(time, simulation.time());
             let moving = (0..bodies.number()).map(|body| bodies.sphere(body));
             let expected = moving.chain(simulation.wall().prescribed_spheres());
             for (index, (numbers, sphere)) in spheres.iter().zip(expected).enumerate() {

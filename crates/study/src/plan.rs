@@ -117,6 +117,7 @@ pub(crate) fn state_name(state: InitialState) -> &'static str {
     match state {
         InitialState::Rest => "rest",
         InitialState::Jammed => "jammed",
+        InitialState::Placed => "placed",
     }
 }
 

@@ -1,4 +1,7 @@
-//! Frames as the text that LAMMPS dumps, in `lj` units: lengths in d, times in t.
+//! Frames as the text that LAMMPS dumps: lengths in d, times in t.
+//!
+//! A frame begins with its step; the time, which is the step times `run.time_step`, and the units are not said, for some
+//! readers (MDAnalysis) take no frame that says more.
 //!
 //! Types are 1 for grains and 2 for the wall. Numbers are the shortest that read back to the same 64 bits. See
 //! <https://docs.lammps.org/dump.html>.
@@ -14,7 +17,7 @@ use crate::error::FormatError;
 /// Name of the file in a run's folder.
 pub(super) const FILE: &str = "trajectory.lammpstrj";
 
-const UNITS: &str = "ITEM: UNITS\nlj\n";
+const BEGINNING: &str = "ITEM: TIMESTEP\n";
 
 /// A trajectory as LAMMPS text that is being written.
 #[derive(Debug)]
@@ -41,7 +44,7 @@ impl LammpsTrajectory {
         let mut reader = BufReader::new(inner);
         let (mut frames, mut end) = (0, 0);
         loop {
-            match next_frame(&mut reader, frames == 0) {
+            match next_frame(&mut reader) {
                 Ok((found, bytes)) if found <= step => (frames, end) = (frames + 1, end + bytes),
                 Err(error) if error.kind() != ErrorKind::InvalidData => return Err(failed(error)),
                 _ => break,
@@ -49,7 +52,7 @@ impl LammpsTrajectory {
         }
         drop(reader);
         if frames == 0 && file.end() > 0 && !begins_as_ours(&mut file).map_err(failed)? {
-            let reason = "it does not begin like a LAMMPS dump with units";
+            let reason = "it does not begin like a LAMMPS dump";
             return Err(FormatError::not_a_trajectory(path, reason));
         }
         file.set_end(end)?;
@@ -59,7 +62,7 @@ impl LammpsTrajectory {
 
 impl TrajectoryFile for LammpsTrajectory {
     fn append(&mut self, frame: &Frame) -> Result<(), FormatError> {
-        let text = encode(frame, self.frames == 0);
+        let text = encode(frame);
         self.file.append(text.as_bytes())?;
         self.frames += 1;
         Ok(())
@@ -78,20 +81,16 @@ impl TrajectoryFile for LammpsTrajectory {
     }
 }
 
-/// One frame; the first one names the units.
-pub(super) fn encode(frame: &Frame, first: bool) -> String {
+/// One frame.
+pub(super) fn encode(frame: &Frame) -> String {
     let mut text = String::with_capacity(160 * frame.spheres() + 300);
     let mut line = |values: std::fmt::Arguments<'_>| {
         text.write_fmt(values)
             .expect("writing to a String cannot fail");
     };
     let half = 0.5 * frame.width;
-    if first {
-        line(format_args!("{UNITS}"));
-    }
     line(format_args!(
-        "ITEM: TIME\n{:?}\nITEM: TIMESTEP\n{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS ff ff pp\n",
-        frame.time,
+        "{BEGINNING}{}\nITEM: NUMBER OF ATOMS\n{}\nITEM: BOX BOUNDS ff ff pp\n",
         frame.step,
         frame.spheres()
     ));
@@ -123,19 +122,13 @@ pub(super) fn encode(frame: &Frame, first: bool) -> String {
 }
 
 /// Step and bytes of the next frame; what is no whole frame is an error of kind `InvalidData`.
-fn next_frame(reader: &mut impl BufRead, first: bool) -> io::Result<(u64, u64)> {
+fn next_frame(reader: &mut impl BufRead) -> io::Result<(u64, u64)> {
     let mut lines = Lines {
         reader,
         line: String::new(),
         bytes: 0,
     };
-    if first {
-        lines.expect("ITEM: UNITS")?;
-        lines.expect("lj")?;
-    }
-    lines.expect("ITEM: TIME")?;
-    lines.advance()?;
-    lines.expect("ITEM: TIMESTEP")?;
+    lines.expect(BEGINNING.trim_end())?;
     let step = lines.number()?;
     lines.expect("ITEM: NUMBER OF ATOMS")?;
     let spheres = lines.number()?;
@@ -152,7 +145,7 @@ fn begins_as_ours(file: &mut Growing) -> io::Result<bool> {
     inner.seek(SeekFrom::Start(0))?;
     let mut first = String::new();
     BufReader::new(inner).read_line(&mut first)?;
-    Ok(UNITS.starts_with(first.as_str()))
+    Ok(BEGINNING.starts_with(first.as_str()))
 }
 
 /// Whole lines of a file.

@@ -18,6 +18,7 @@ mod vtp;
 use std::borrow::Cow;
 use std::path::Path;
 
+use crate::atomic;
 use crate::error::FormatError;
 
 /// Spheres at one instant, grains first and then the wall, with what was logged of it.
@@ -133,7 +134,7 @@ impl TrajectoryFormat {
         self == Self::Vtp
     }
 
-    /// Begins a trajectory of at most `frames` frames in a folder, over an older one.
+    /// Begins a trajectory of about so many frames in a folder, over an older one.
     ///
     /// # Errors
     /// [`FormatError::Io`].
@@ -142,12 +143,53 @@ impl TrajectoryFormat {
         folder: &Path,
         frames: u64,
     ) -> Result<Box<dyn TrajectoryFile>, FormatError> {
-        let path = folder.join(self.file_name());
+        let path = match self {
+            Self::Vtp => folder.to_owned(),
+            Self::Gsd | Self::Lammps => folder.join(self.file_name()),
+        };
+        self.create_at(&path, frames)
+    }
+
+    /// Begins a trajectory of about so many frames in a file of any name, over an older one; in VTP in a folder.
+    ///
+    /// # Errors
+    /// [`FormatError::Io`].
+    pub fn create_at(
+        self,
+        path: &Path,
+        frames: u64,
+    ) -> Result<Box<dyn TrajectoryFile>, FormatError> {
         Ok(match self {
-            Self::Gsd => Box::new(gsd::create(&path, frames)?),
-            Self::Vtp => Box::new(vtp::VtpTrajectory::create(folder)?),
-            Self::Lammps => Box::new(lammps::LammpsTrajectory::create(&path)?),
+            Self::Gsd => Box::new(gsd::create(path, frames)?),
+            Self::Vtp => Box::new(vtp::VtpTrajectory::create(path)?),
+            Self::Lammps => Box::new(lammps::LammpsTrajectory::create(path)?),
         })
+    }
+
+    /// Writes one frame to a file of its own, whole or not at all; in VTP the spheres without their contacts.
+    ///
+    /// # Errors
+    /// [`FormatError::Io`]; an older file stays.
+    pub fn write(self, path: &Path, frame: &Frame) -> Result<(), FormatError> {
+        match self {
+            Self::Vtp => atomic::write(path, &vtp::spheres(frame)),
+            Self::Lammps => atomic::write(path, lammps::encode(frame).as_bytes()),
+            Self::Gsd => {
+                let pending = atomic::Pending::create(path)?;
+                gsd::create(pending.partial_path(), 1)?.append(frame)?;
+                pending.commit()
+            }
+        }
+    }
+
+    /// The format of files whose names end so.
+    pub fn by_ending(ending: &str) -> Option<Self> {
+        match ending {
+            "gsd" => Some(Self::Gsd),
+            "vtp" => Some(Self::Vtp),
+            "lammpstrj" | "lammpsdump" | "dump" => Some(Self::Lammps),
+            _ => None,
+        }
     }
 
     /// Opens the trajectory in a folder to go on with it, without its frames after `step`.
@@ -180,13 +222,13 @@ impl TrajectoryFormat {
         match self {
             Self::Gsd => gsd::frame_bytes(frame),
             Self::Vtp => vtp::frame_bytes(frame),
-            Self::Lammps => lammps::encode(frame, false).len() as u64,
+            Self::Lammps => lammps::encode(frame).len() as u64,
         }
     }
 }
 
 /// A trajectory that is being written.
-pub trait TrajectoryFile: std::fmt::Debug {
+pub trait TrajectoryFile: std::fmt::Debug + Send {
     /// Writes one frame more.
     ///
     /// # Errors

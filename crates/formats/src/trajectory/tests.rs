@@ -255,15 +255,15 @@ fn lammps_text_reads_back_to_the_same_bits() {
     let place = tempfile::tempdir().unwrap();
     filled(TrajectoryFormat::Lammps, place.path(), 0..3);
     let text = fs::read_to_string(place.path().join(lammps::FILE)).unwrap();
-    assert!(text.starts_with("ITEM: UNITS\nlj\nITEM: TIME\n0.0\nITEM: TIMESTEP\n0\n"));
-    let frames: Vec<&str> = text.split("ITEM: TIME\n").skip(1).collect();
+    assert!(text.starts_with("ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n"));
+    let frames: Vec<&str> = text.split("ITEM: TIMESTEP\n").skip(1).collect();
     assert_eq!(frames.len(), 3);
     for (number, text) in frames.iter().enumerate() {
         let written = frame(number as u64, true);
         let lines: Vec<&str> = text.lines().collect();
-        assert_eq!(lines[0].parse::<f64>().unwrap(), written.time);
+        assert_eq!(lines[0].parse::<u64>().unwrap(), written.step);
         assert_eq!(
-            lines[5..9],
+            lines[3..7],
             [
                 "ITEM: BOX BOUNDS ff ff pp",
                 "-4.0 4.0",
@@ -272,12 +272,12 @@ fn lammps_text_reads_back_to_the_same_bits() {
             ]
         );
         assert_eq!(
-            lines[9],
+            lines[7],
             "ITEM: ATOMS id type diameter x y z vx vy vz omegax omegay omegaz"
         );
-        assert_eq!(lines.len(), 15);
+        assert_eq!(lines.len(), 13);
         for sphere in 0..5 {
-            let numbers: Vec<f64> = lines[10 + sphere]
+            let numbers: Vec<f64> = lines[8 + sphere]
                 .split(' ')
                 .map(|word| word.parse().unwrap())
                 .collect();
@@ -377,7 +377,7 @@ fn what_a_kill_leaves_of_a_frame_is_cut_off() {
         // Arrays without an entry, or lines without their end.
         fs::write(
             &path,
-            [&whole[..], b"ITEM: TIME\n7.0\nITEM: TIMES"].concat(),
+            [&whole[..], b"ITEM: TIMESTEP\n7\nITEM: NUMB"].concat(),
         )
         .unwrap();
         if format == TrajectoryFormat::Gsd {
@@ -467,12 +467,33 @@ fn a_full_disk_is_told() {
 }
 
 #[test]
-fn a_gsd_file_takes_no_more_frames_than_it_has_room_for() {
+fn a_trajectory_may_become_longer_than_it_was_meant_to_be() {
     let place = tempfile::tempdir().unwrap();
-    let mut file = TrajectoryFormat::Gsd.create(place.path(), 1).unwrap();
-    file.append(&frame(0, true)).unwrap();
-    let before = fs::read(place.path().join(gsd::FILE)).unwrap();
-    let refused = file.append(&frame(1, true)).unwrap_err();
-    assert!(refused.to_string().contains("room"), "{refused}");
-    assert!(fs::read(place.path().join(gsd::FILE)).unwrap() == before);
+    let path = place.path().join("long.gsd");
+    let mut file = TrajectoryFormat::Gsd.create_at(&path, 1).unwrap();
+    for number in 0..50 {
+        file.append(&frame(number, true)).unwrap();
+    }
+    drop(file);
+    let mut reader = gsd::GsdReader::open(&path).unwrap();
+    assert_eq!((reader.frames(), reader.lost_frames()), (50, 0));
+    for number in [0, 1, 17, 49] {
+        let found = reader.frame(number).unwrap();
+        assert_eq!(found.time, frame(number as u64, true).time);
+    }
+}
+
+#[test]
+fn one_frame_is_a_file_of_any_name() {
+    let place = tempfile::tempdir().unwrap();
+    for ending in ["gsd", "vtp", "lammpstrj"] {
+        let path = place.path().join(format!("now.{ending}"));
+        let format = TrajectoryFormat::by_ending(ending).unwrap();
+        for _ in 0..2 {
+            format.write(&path, &frame(3, true)).unwrap();
+        }
+        assert!(fs::metadata(&path).unwrap().len() > 500, "{ending}");
+    }
+    let mut reader = gsd::GsdReader::open(&place.path().join("now.gsd")).unwrap();
+    assert_eq!(reader.frame(0).unwrap().step, frame(3, true).step);
 }

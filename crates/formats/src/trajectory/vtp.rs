@@ -212,7 +212,8 @@ fn step_of(name: &str) -> Option<u64> {
     number.parse().ok()
 }
 
-fn spheres(frame: &Frame) -> Vec<u8> {
+/// The spheres of a frame.
+pub(super) fn spheres(frame: &Frame) -> Vec<u8> {
     let number = frame.spheres();
     let mut file = Polydata::new(frame);
     file.begin_piece([("Points", number), ("Verts", number), ("Lines", 0)]);

@@ -1,7 +1,7 @@
 """Grains in a peristaltic tube: simulation, studies, analysis and figures.
 
 >>> import peristalsis
->>> sim = peristalsis.Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1)
+>>> sim = peristalsis.Simulation.preset("frictionless-fine", width=2.6, strain_rate=0.05, seed=1)
 >>> sim.run(periods=50)                                             # doctest: +SKIP
 >>> sim.flow_rate_ratio                                             # doctest: +SKIP
 
@@ -27,11 +27,14 @@ from ._core import (
     __version__,
     presets,
 )
+from ._loop import Loop, Threshold, Thresholds
+from ._picture import Picture
 from ._run import run
 from ._simulation import Simulation
 from ._study import PlannedRun, Study, study
 from ._types import Keywords, RunSummary, Summary
-from ._warnings import KeyedWarning
+from ._warnings import KeyedWarning, PeristalsisWarning
+from ._writers import Writer
 
 Mapping.register(Configuration)
 
@@ -55,6 +58,9 @@ __all__ = [
     "DoesNotFitError",
     "KeyedWarning",
     "Keywords",
+    "Loop",
+    "PeristalsisWarning",
+    "Picture",
     "PlannedRun",
     "RunSummary",
     "Simulation",
@@ -63,6 +69,9 @@ __all__ = [
     "StudyFailure",
     "Summary",
     "Table",
+    "Threshold",
+    "Thresholds",
+    "Writer",
     "__version__",
     "analysis",
     "newtonian",

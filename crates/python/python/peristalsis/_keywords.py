@@ -7,8 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping
 from difflib import get_close_matches
 from typing import Any
 
+import numpy as np
+
 from . import _core
 from ._core import ConfigurationError
+
+#: Largest whole number in a configuration.
+_MOST = 2**63 - 1
 
 
 #: What `keywords` answers, once it has been asked.
@@ -68,7 +73,16 @@ def overrides(settings: Mapping[str, Any] | None, given: Mapping[str, Any]) -> d
                 f"  help: write {' or '.join(key.replace('.', '_') for key in keys)}"
             )
         joined[keys[0]] = value
-    return joined
+    return {key: _plain(key, value) for key, value in joined.items()}
+
+
+def _plain(key: str, value: Any) -> Any:
+    """A value that TOML can hold: of NumPy's random numbers a seed that is drawn, so that the configuration has it."""
+    if key == "run.seed" and isinstance(value, np.random.Generator):
+        return int(value.integers(_MOST, endpoint=True))
+    if isinstance(value, int) and not isinstance(value, bool) and not -_MOST <= value <= _MOST:
+        raise ConfigurationError(f"{key} = {value} is beyond reach\n  help: whole numbers go up to 2**63 - 1 = {_MOST}")
+    return value
 
 
 def missing(key: str, keys: Iterable[str]) -> str:

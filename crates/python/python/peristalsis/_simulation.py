@@ -2,79 +2,86 @@
 
 from __future__ import annotations
 
-import html
 import os
-import sys
 import threading
-import time as clock
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._core import Configuration, ConfigurationError, Table
+from ._core import Configuration, ConfigurationError
 from ._keywords import overrides as joined
+from ._loop import Loop, ramp
+from ._output import Output
+from ._progress import Progress, Shown
+from ._warnings import kind, tell
+from ._writers import Trigger, Writer, triggers, whole
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
-    from ._types import Keywords, Summary, _Preset
+    from ._loop import _Parameter
+    from ._types import Keywords, _Preset
+    from ._writers import _Callbacks
 
 #: Seconds from one look of the interpreter at a running simulation to the next: how long Ctrl-C may take.
 _PATIENCE = 0.05
 
-_CHANGEABLE = ("width", "force_amplitude", "strain_rate")
-
-Array = npt.NDArray[np.float64]
-Callback = Callable[["Simulation"], object]
 
 
-class Simulation:
+class Simulation(Output):
     """Grains in a peristaltic tube, advanced in time.
 
-    Made by `preset`, `from_toml`, `from_file`, `from_configuration`, or from a snapshot. Keyword arguments name keys of
+    Made by `preset`, `from_toml`, `from_file`, `from_configuration`, `from_positions`, or from a snapshot. Keyword arguments name keys of
     the configuration by their last word (``width`` is ``drive.width``), or whole with ``_`` for the dots
     (``initial_state`` is ``initial.state``); `overrides` is a dictionary of dotted keys. The same configuration and seed
     give the same bits as the command line ``peristalsis run``.
 
-    A simulation may be read by other threads while one runs it: they see whole steps.
+    A simulation may be read by other threads while one runs it: they see whole steps. It can be copied and pickled, but
+    for its writers.
 
     Attributes
     ----------
     width, force_amplitude, strain_rate : float
         Parameters of the drive. Setting one between two calls of `run` changes it from the next step on, and adds the
         change to the configuration's schedule, so that `configuration` always says how to repeat the run from its start.
-        A ramp of w is a loop::
-
-            for width in np.linspace(2.9, 2.5, 9):
-                sim.width = width
-                sim.run(periods=20)
+        `ramp` leads one there and back.
 
     Examples
     --------
-    >>> sim = Simulation.preset("frictionless", width=2.6, strain_rate=0.1, seed=1, waves=2)
+    >>> from peristalsis import Simulation
+    >>> sim = Simulation.preset("frictionless-fine", width=2.6, strain_rate=0.05, seed=1, waves=2)
     >>> sim.run(periods=2)
     >>> sim.positions.shape
     (41, 3)
     """
 
-    __slots__ = ("_run", "_running", "__weakref__")
+    __slots__ = ("_running", "_told", "__weakref__")
 
     def __init__(self, configuration: Configuration) -> None:
         self._begin(_core.Run(configuration))
+        tell(self.warnings, self._told)
 
     def _begin(self, run: _core.Run) -> None:
         self._run = run
         self._running = threading.Lock()
+        self._told: set[str] = set()
+        self._writers: list[Writer] = []
 
     @classmethod
     def _of(cls, run: _core.Run) -> Simulation:
         simulation = cls.__new__(cls)
         simulation._begin(run)
+        return simulation
+
+    @classmethod
+    def _going_on(cls, run: _core.Run) -> Simulation:
+        """Of which nothing is told that the one that it goes on from has told."""
+        simulation = cls._of(run)
+        simulation._told.update(map(kind, simulation.warnings))
         return simulation
 
     @classmethod
@@ -125,6 +132,67 @@ class Simulation:
         """A configuration that has been resolved."""
         return cls(configuration)
 
+    @classmethod
+    def from_positions(
+        cls,
+        configuration: Configuration,
+        positions: npt.ArrayLike,
+        velocities: npt.ArrayLike | None = None,
+        diameters: npt.ArrayLike | None = None,
+    ) -> Simulation:
+        """Grains put where the caller wants them, in this order.
+
+        Parameters
+        ----------
+        configuration : Configuration
+            All else. Its number of grains and their least and largest diameter become those of the arrays.
+        positions : array_like
+            Centres [d], shape (N, 3), the axis of the tube along z; z is taken into [0, L).
+        velocities : array_like, optional
+            Velocities in the frame of the tube [d/t], shape (N, 3); at rest by default.
+        diameters : array_like, optional
+            Diameters [d], shape (N,), or one for all; that of the configuration by default.
+
+        Raises
+        ------
+        ConfigurationError
+            For a grain outside the tube, two grains or a grain and the wall that overlap by more than half a diameter,
+            and arrays of other shapes.
+
+        Notes
+        -----
+        No file can repeat such a run from its start: `configuration` says ``initial.state = "placed"``, which only a
+        snapshot goes on from.
+
+        Examples
+        --------
+        >>> from peristalsis import Configuration, Simulation
+        >>> tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05)
+        >>> sim = Simulation.from_positions(tube, [[0, 0, 5.0], [0, 0, 5.9]])
+        >>> contacts = sim.contacts()
+        >>> contacts["i"].tolist(), contacts["j"].tolist(), contacts["overlap"].round(6).tolist()
+        ([0], [1], [0.1])
+        """
+        places = np.array(positions, dtype=float)
+        speeds = np.zeros_like(places) if velocities is None else np.array(velocities, dtype=float)
+        if places.ndim != 2 or places.shape[1] != 3 or speeds.shape != places.shape:
+            raise ConfigurationError(
+                f"positions and velocities are arrays of shape (N, 3), not {places.shape} and {speeds.shape}"
+            )
+        least, most = configuration["grains.diameter_min"], configuration["grains.diameter_max"]
+        if diameters is None and least != most:
+            raise ConfigurationError(f"grains of diameters from {least} to {most}: give diameters, one for each grain")
+        sizes = np.asarray(least if diameters is None else diameters, dtype=float)
+        if sizes.shape not in ((), (len(places),)):
+            raise ConfigurationError(f"diameters is one number, or an array of shape ({len(places)},), not {sizes.shape}")
+        sizes = np.array(np.broadcast_to(sizes, len(places)))
+        keys: dict[str, Any] = {"grains.number": len(places), "initial.state": "placed"}
+        if len(sizes):
+            keys |= {"grains.diameter_min": float(sizes.min()), "grains.diameter_max": float(sizes.max())}
+        simulation = cls._of(_core.Run.placed(configuration.replace(keys), places, speeds, sizes))
+        tell(simulation.warnings, simulation._told)
+        return simulation
+
     # Advancing
 
     def run(
@@ -132,9 +200,10 @@ class Simulation:
         periods: float | None = None,
         *,
         duration: float | None = None,
-        progress: bool = False,
-        callback: Callback | None = None,
+        progress: Shown = False,
+        callback: _Callbacks | None = None,
         every: int | None = None,
+        writers: Iterable[Writer] = (),
         threads: int | None = None,
     ) -> None:
         """Advance by so many periods of the wave; without a length, to the end that the configuration names.
@@ -148,13 +217,16 @@ class Simulation:
             Periods of the wave as it is driven now, T = 1/strain_rate.
         duration : float, optional
             Time [t] instead of periods.
-        progress : bool
-            Show how far it is, on standard error.
-        callback : callable, optional
-            Called with this simulation every `every` steps. It may read everything and change the drive; it cannot
-            advance. What it raises ends the run.
+        progress : bool or "logging"
+            Show how far it is: by tqdm where that is installed, otherwise on standard error; or tell the logger
+            ``peristalsis`` every ten seconds.
+        callback : callable, or iterable of callables and (callable, every) pairs, optional
+            Called with this simulation every `every` steps, in this order. It may read everything and change the drive;
+            it cannot advance. What it raises ends the run.
         every : int, optional
             Steps from one call to the next; by default those from sample to sample.
+        writers : iterable of Writer, optional
+            Files that get frames during this run; those of `add_writer` get theirs as well.
         threads : int, optional
             Threads of the engine from now on; they change no bit.
 
@@ -162,8 +234,20 @@ class Simulation:
         ------
         DivergedError
             Where a grain moves too far in one step; the state is that of the step that failed.
+        ConfigurationError
+            For a length shorter than half a step.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> seen = []
+        >>> sim.run(periods=2, callback=[lambda sim: seen.append(sim.period)])
+        >>> len(seen)
+        40
         """
-        self.step(self._steps_of(periods, duration), progress=progress, callback=callback, every=every, threads=threads)
+        steps = self._steps_of(periods, duration)
+        self.step(steps, progress=progress, callback=callback, every=every, writers=writers, threads=threads)
 
     def _steps_of(self, periods: float | None, duration: float | None) -> int:
         configuration = self._run.configuration
@@ -177,44 +261,65 @@ class Simulation:
             return max(0, configuration.steps - self.steps)
         if not 0 <= duration < float("inf"):
             raise ValueError("a simulation advances by a time from 0 on")
-        return round(duration / configuration.time_step)
+        steps = round(duration / configuration.time_step)
+        if duration > 0 and steps == 0:
+            raise ConfigurationError(
+                f"a run of {duration:.4g} t is shorter than half a step of {configuration.time_step:.4g} t\n"
+                "  help: take a shorter run.time_step, or a longer run"
+            )
+        return steps
 
     def step(
         self,
         steps: int = 1,
         *,
-        progress: bool = False,
-        callback: Callback | None = None,
+        progress: Shown = False,
+        callback: _Callbacks | None = None,
         every: int | None = None,
+        writers: Iterable[Writer] = (),
         threads: int | None = None,
     ) -> None:
-        """Advance by so many steps; the rest is as in `run`."""
-        steps = int(steps)
-        if steps < 0:
-            raise ValueError("a simulation cannot go back: steps is 0 or more")
-        if every is not None and every < 1:
-            raise ValueError("every is 1 or more steps")
+        """Advance by so many steps; the rest is as in `run`.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.03)
+        >>> sim.step(3)
+        >>> sim.steps
+        3
+        """
+        steps = whole("steps", steps, 0)
+        each = self._run.steps_per_sample if every is None else whole("every", every, 1)
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
         try:
             if threads is not None:
                 self._run.compute_with(int(threads))
-            with _Progress(self, steps, progress) as display:
-                self._advance(steps, callback, every or self._run.steps_per_sample, display)
+            files = list(dict.fromkeys([*self._writers, *writers]))
+            called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
+            for writer in files:
+                writer.begin(self)
+            with Progress(self, steps, progress) as display:
+                try:
+                    self._advance(steps, called, display)
+                finally:
+                    for writer in files:
+                        writer.synchronize()
         finally:
             self._running.release()
+        tell(self.warnings, self._told)
 
-    def _advance(
-        self, steps: int, callback: Callback | None, every: int, display: _Progress
-    ) -> None:
-        left, due = steps, every
-        while left > 0:
-            done = self._run.advance(left if callback is None else min(left, due), _PATIENCE)
-            left, due = left - done, due - done
-            if callback is not None and due == 0:
-                callback(self)
-                due = every
-            display.update(steps - left)
+    def _advance(self, steps: int, called: list[Trigger | Writer], display: Progress) -> None:
+        first = now = self.steps
+        while now < first + steps:
+            coming = [(it, due) for it in called if (due := it.due) is not None]
+            end = min([first + steps, *(due for _, due in coming)])
+            now += self._run.advance(end - now, _PATIENCE)
+            for it, due in coming:
+                if due == now:
+                    it.fire(self)
+            display.update(now - first)
 
     # The drive
 
@@ -251,111 +356,71 @@ class Simulation:
     def strain_rate(self, value: float) -> None:
         self._run.drive_to("strain_rate", float(value), 0.0)
 
-    # The state
+    def ramp(
+        self,
+        parameter: _Parameter,
+        start: float,
+        stop: float,
+        periods: float,
+        *,
+        levels: int = 13,
+        back: bool = True,
+        settle: float = 0.5,
+        threshold: float = 0.5,
+        progress: Shown = False,
+    ) -> Loop:
+        """Lead a parameter of the drive from one value to another level by level, and back, and measure J/Jmax at each.
 
-    @property
-    def configuration(self) -> Configuration:
-        """Every resolved value, changes of the drive included."""
-        return self._run.configuration
+        Parameters
+        ----------
+        parameter : {"width", "force_amplitude", "strain_rate"}
+            What is led.
+        start, stop : float
+            First and last level, in the unit of the parameter; it jumps to `start` at once.
+        periods : float
+            Periods of one way, shared equally by its levels; of the wave as it is driven at each. At least two a level.
+        levels : int
+            Values from `start` to `stop`, both included, evenly spaced.
+        back : bool
+            Whether it is led back over the same levels.
+        settle : float
+            Part of each level, from 0 to below 1, that is not measured.
+        threshold : float
+            J/Jmax whose crossing counts as a transition.
+        progress : bool or "logging"
+            As in `run`, level by level.
 
-    @property
-    def positions(self) -> Array:
-        """Centres of the grains [d], shape (N, 3), z in [0, L).
+        Returns
+        -------
+        Loop
+            Both branches with standard errors, their `Loop.table` and `Loop.thresholds`; `peristalsis.plot.hysteresis`
+            draws it.
 
-        As all arrays of a simulation: a copy of this instant, which later steps do not touch and which outlives the
-        simulation. It cannot be written to, for that would not move a grain; ``.copy()`` gives one that can.
+        Notes
+        -----
+        `configuration` has the whole course, so that it repeats the ramp. Where the flow changes its kind by chance, the
+        place of the jump depends on how fast the ramp is and on the seed: ramp several replicas.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> loop = sim.ramp("width", 2.4, 2.8, periods=4, levels=2, back=False)
+        >>> loop.flow_rate_ratio.shape, loop.thresholds.back
+        ((2,), None)
         """
-        return self._run.positions
-
-    @property
-    def velocities(self) -> Array:
-        """Velocities of the grains [d/t], shape (N, 3); a copy, as `positions`."""
-        return self._run.velocities
-
-    @property
-    def angular_velocities(self) -> Array:
-        """Angular velocities of the grains [1/t], shape (N, 3), 0 without friction; a copy, as `positions`."""
-        return self._run.angular_velocities
-
-    @property
-    def diameters(self) -> Array:
-        """Diameters of the grains [d], shape (N,); a copy, as `positions`."""
-        return self._run.diameters
-
-    @property
-    def turns(self) -> npt.NDArray[np.int32]:
-        """How often each grain went round the tube towards +z, shape (N,): z + turns L is unfolded."""
-        return self._run.turns
-
-    @property
-    def wall_positions(self) -> Array:
-        """Centres of the wall's spheres [d], shape (M, 3); a copy, as `positions`."""
-        return self._run.wall_positions
-
-    @property
-    def steps(self) -> int:
-        """Steps done since the start."""
-        return self._run.steps
-
-    @property
-    def time(self) -> float:
-        """Time since the start [t]."""
-        return self._run.time
-
-    @property
-    def period(self) -> float:
-        """Wavelengths that the wave has run since the start."""
-        return self._run.period
-
-    @property
-    def length(self) -> float:
-        """L [d], length of the tube."""
-        return self._run.configuration.length
-
-    @property
-    def heading(self) -> float:
-        """+1 where the wave runs towards +z, -1 where towards -z."""
-        return self._run.heading
-
-    @property
-    def flow_rate_ratio(self) -> float:
-        """J/Jmax over the last whole period, or of the last sample before there is one; NaN before that."""
-        return self._run.flow_rate_ratio
-
-    @property
-    def transition_time(self) -> float | None:
-        """tau [t], where the flow has changed its kind."""
-        return self._run.transition_time
-
-    @property
-    def energy_ledger(self) -> dict[str, float]:
-        """Where energy is, where it came from and where it went since the start [m d^2/t^2].
-
-        energy = initial_energy + wall_work + drive_work + keep_work + body_work - normal_dissipated -
-        tangential_dissipated - sliding_dissipated - drag_dissipated - network_dissipated - history_reset, up to
-        `energy_residual` of what entered.
-        """
-        return self._run.energy_ledger
-
-    def timeseries(self) -> Table:
-        """What was measured so far, one row a sample.
-
-        ``t["flow_rate_ratio"]`` is a column as an array; `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` are
-        frames with units, and ``pyarrow.table(t)`` takes it without a copy.
-        """
-        return self._run.timeseries()
-
-    def profile(self) -> Table:
-        """Profile in the wave's frame over the late part of what was measured, one row a bin."""
-        return self._run.profile()
-
-    def waves(self) -> Table:
-        """Flow of each wave over each whole period."""
-        return self._run.waves()
-
-    def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it."""
-        return self._run.summary()
+        if parameter not in ("width", "force_amplitude", "strain_rate"):
+            raise ConfigurationError(f"{parameter} cannot be led; width, force_amplitude and strain_rate can")
+        self._drive(parameter)
+        levels = whole("levels", levels, 1)
+        if not 0 <= settle < 1:
+            raise ValueError(f"settle = {settle} is no part of a level: from 0 to below 1")
+        if not periods >= 2 * levels:
+            raise ValueError(f"{periods} periods are fewer than two for each of {levels} levels")
+        values = np.linspace(start, stop, levels)
+        if not np.isfinite(values).all() or (parameter == "strain_rate" and not (values > 0).all()):
+            raise ValueError(f"{parameter} cannot be led from {start} to {stop}")
+        return ramp(self, parameter, values, periods / levels, settle, threshold, back, progress)
 
     # Snapshots
 
@@ -372,7 +437,7 @@ class Simulation:
         SnapshotError
             Where it is damaged, or no snapshot of this version.
         """
-        return cls._of(_core.Run.from_bytes(bytes(snapshot)))
+        return cls._going_on(_core.Run.from_bytes(bytes(snapshot)))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a snapshot to a file, whole or not at all."""
@@ -389,12 +454,39 @@ class Simulation:
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Simulation:
-        """Go on from a file that `save` wrote."""
-        return cls.from_bytes(Path(path).read_bytes())
+        """Go on from what `save` or the command line left, with the same bits.
+
+        Parameters
+        ----------
+        path : path
+            A file of `save`, the ``state.checkpoint`` of a run, or the folder of a run.
+
+        Raises
+        ------
+        FileNotFoundError
+            Where there is no such file.
+        SnapshotError
+            Where it is damaged, or no snapshot of this version.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.03)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     sim.save(Path(folder) / "now.checkpoint")
+        ...     again = peristalsis.Simulation.load(Path(folder) / "now.checkpoint")
+        >>> bool((sim.positions == again.positions).all())
+        True
+        """
+        simulation = cls._of(_core.Run.open(Path(path)))
+        tell(simulation.warnings, simulation._told)
+        return simulation
 
     def copy(self) -> Simulation:
         """A simulation that goes on by itself from here."""
-        return type(self)._of(self._run.copy())
+        return type(self)._going_on(self._run.copy())
 
     def __copy__(self) -> Simulation:
         return self.copy()
@@ -404,70 +496,3 @@ class Simulation:
 
     def __reduce__(self) -> tuple[Callable[[bytes], Simulation], tuple[bytes]]:
         return type(self).from_bytes, (self.to_bytes(),)
-
-    # In words
-
-    def _facts(self) -> dict[str, str]:
-        configuration = self.configuration
-        drive = [
-            f"{name} {value:g}"
-            for name in _CHANGEABLE
-            if (value := self._run.driven(name)) is not None
-        ]
-        transition = self.transition_time
-        return {
-            "grains": f"{configuration.grains} in {configuration.waves} waves, volume fraction {configuration.volume_fraction:.3g}",
-            "drive": ", ".join(drive),
-            "time": f"{self.time:.6g} ({self.period:.4g} periods, {self.steps} steps)",
-            "J/Jmax": f"{self.flow_rate_ratio:.4g}",
-            "transition": "none yet" if transition is None else f"at {transition:.5g}",
-            "seed": str(configuration.seed),
-        }
-
-    def __repr__(self) -> str:
-        facts = "; ".join(f"{name} {fact}" for name, fact in self._facts().items())
-        return f"<peristalsis.Simulation: {facts}>"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
-            f"<td style='text-align:left'>{html.escape(fact)}</td></tr>"
-            for name, fact in self._facts().items()
-        )
-        return f"<table><caption>peristalsis.Simulation</caption>{rows}</table>"
-
-
-class _Progress:
-    """One line on standard error, or nothing."""
-
-    def __init__(self, simulation: Simulation, steps: int, shown: bool) -> None:
-        self._simulation = simulation
-        self._steps = steps
-        self._shown = shown
-        self._begin = self._last = clock.monotonic()
-
-    def __enter__(self) -> _Progress:
-        return self
-
-    def update(self, done: int) -> None:
-        now = clock.monotonic()
-        if not self._shown or now - self._last < 0.2 and done < self._steps:
-            return
-        self._last = now
-        left = (now - self._begin) * (self._steps - done) / max(done, 1)
-        print(
-            f"\r{done / max(self._steps, 1):4.0%}  period {self._simulation.period:.1f}  "
-            f"J/Jmax {self._simulation.flow_rate_ratio:.3f}  {left:.0f} s left   ",
-            end="",
-            file=sys.stderr,
-            flush=True,
-        )
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        if self._shown:
-            print(file=sys.stderr)

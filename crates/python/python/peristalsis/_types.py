@@ -106,7 +106,7 @@ class Keywords(TypedDict, total=False):
     grains_number_density: float
     grains_volume_fraction: float
     initial_axial_velocity: float
-    initial_state: Literal["rest", "jammed"]
+    initial_state: Literal["rest", "jammed", "placed"]
     integrator: Literal["verlet", "adams_bashforth"]
     """run.integrator. How the equations of motion are stepped."""
     kernel: Literal["fast", "reference"]
@@ -196,9 +196,9 @@ class Keywords(TypedDict, total=False):
     spring_stiffness: float
     """wall.spring_stiffness. Stiffness k_w of the spring between lattice neighbours; stress control. (Unit: m
     t^-2.)"""
-    state: Literal["rest", "jammed"]
-    """initial.state. How the grains stand at t = 0: spread over the tube at rest, or gathered in the bellies and
-    moving with the wave."""
+    state: Literal["rest", "jammed", "placed"]
+    """initial.state. How the grains stand at t = 0: spread over the tube at rest, gathered in the bellies and
+    moving with the wave, or placed by a program, which no file repeats."""
     static_friction: float
     """contact.static_friction. Static friction mu_s: a contact sticks while |f_t| < mu_s f_n. If only
     kinetic_friction is given, equal to it; with both 0 grains are frictionless and do not rotate. (A pure

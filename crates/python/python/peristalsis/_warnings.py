@@ -2,7 +2,14 @@
 
 from __future__ import annotations
 
+import re
+import sys
+import warnings
+from collections.abc import Iterable
 from typing import NamedTuple
+
+#: A number in a message.
+_NUMBER = re.compile(r"[-+.\de]*\d[-+.\de]*")
 
 
 class KeyedWarning(NamedTuple):
@@ -28,3 +35,42 @@ class KeyedWarning(NamedTuple):
 
     def __str__(self) -> str:
         return f"{self.key}: {self.message}"
+
+
+class PeristalsisWarning(UserWarning):
+    """A doubt about a simulation: its settings, or what was seen of it, such as a leak or overlaps of no solid grain.
+
+    `Simulation.warnings` has the same list. ``warnings.simplefilter("ignore", peristalsis.PeristalsisWarning)`` silences
+    it.
+
+    Examples
+    --------
+    >>> import warnings
+    >>> import peristalsis
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     sim = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.1)
+    >>> caught[0].category.__name__, sim.warnings[0].key
+    ('PeristalsisWarning', 'tube.rings_per_wave')
+    """
+
+
+def kind(doubt: KeyedWarning) -> str:
+    """What a doubt is about, whatever its numbers are."""
+    return f"{doubt.key} {_NUMBER.sub('', doubt.message)}"
+
+
+def tell(doubts: Iterable[KeyedWarning], told: set[str]) -> None:
+    """Warns of each doubt that has not been told."""
+    for doubt in doubts:
+        if kind(doubt) not in told:
+            told.add(kind(doubt))
+            warnings.warn(str(doubt), PeristalsisWarning, stacklevel=_outside())
+
+
+def _outside() -> int:
+    """How many calls above `warnings.warn` the caller of the package is."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__package__") == __package__:
+        level, frame = level + 1, frame.f_back
+    return level

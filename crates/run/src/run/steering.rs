@@ -1,6 +1,6 @@
 //! Driving a run while it goes on.
 
-use peristalsis_configuration::{Schedule, ScheduledParameter};
+use peristalsis_configuration::{Configuration, Schedule, ScheduledParameter};
 
 use super::Run;
 use crate::assemble::walls;
@@ -78,7 +78,26 @@ impl Run {
         self.simulation.drive_by(walls(&configuration))?;
         self.configuration = configuration;
         self.steered = true;
+        self.last_to_next_sample();
         Ok(())
+    }
+
+    /// Makes the configured length that of a run to the next sample, where it is less: what goes on past its end is a longer
+    /// run, and its configuration repeats it. (A static wave has a number of samples whatever its length, and keeps it.)
+    pub(super) fn last_to_next_sample(&mut self) {
+        let Configuration {
+            run,
+            observe,
+            drive,
+            ..
+        } = &mut self.configuration;
+        let samples = self.simulation.step() / run.steps_per_sample + 1;
+        let (Some(period), true) = (drive.period(), samples > run.samples) else {
+            return;
+        };
+        let periods = samples as f64 / f64::from(observe.samples_per_period);
+        run.samples = samples;
+        (run.periods, run.duration) = (Some(periods), periods * period);
     }
 
     /// Gives contacts this coefficient of kinetic friction from the next step on, and a static one in the proportion that

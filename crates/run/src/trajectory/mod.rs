@@ -2,6 +2,7 @@
 
 mod frame;
 mod plan;
+mod single;
 mod source;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ use crate::run::Run;
 
 use self::frame::frame;
 pub use self::plan::{Span, TrajectoryPlan, TrajectoryRequest, Window};
+pub use self::single::{FrameFile, FrameFormat};
 pub use self::source::FrameSource;
 
 /// The plan, in a run's folder.

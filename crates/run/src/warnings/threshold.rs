@@ -16,7 +16,7 @@ const PERIODS: f64 = 10.0;
 pub(super) fn out_of_reach(configuration: &Configuration) -> Option<Warning> {
     let threshold = configuration.observe.transition_threshold;
     let (start, state) = match configuration.initial.state {
-        InitialState::Rest => (0.0, "at rest"),
+        InitialState::Rest | InitialState::Placed => (0.0, "at rest"),
         InitialState::Jammed => (1.0, "jammed"),
     };
     let message = if threshold == start {
@@ -52,7 +52,7 @@ pub(super) fn missed(run: &Run) -> Option<Warning> {
         (None, Some(time)) if time < period => {
             let ladder = THRESHOLDS.into_iter().zip(recorder.transition_times());
             let is_beyond = |value: f64| match configuration.initial.state {
-                InitialState::Rest => value > threshold && threshold >= 0.0,
+                InitialState::Rest | InitialState::Placed => value > threshold && threshold >= 0.0,
                 InitialState::Jammed => value < threshold,
             };
             let soon = |time: Option<f64>| time.is_some_and(|time| time < PERIODS * period);

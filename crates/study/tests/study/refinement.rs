@@ -27,7 +27,7 @@ tolerance = 0.01
 fn critical(strain_rate: f64, state: InitialState) -> f64 {
     match state {
         InitialState::Rest => 2.95 - 2.0 * strain_rate,
-        InitialState::Jammed => 2.88,
+        InitialState::Jammed | InitialState::Placed => 2.88,
     }
 }
 

@@ -303,6 +303,7 @@ fn title_of(plan: &Plan, run: &PlannedRun) -> String {
     let start = match point.state {
         InitialState::Rest => "from rest",
         InitialState::Jammed => "from jammed",
+        InitialState::Placed => "from placed grains",
     };
     words.push(start.to_owned());
     words.join(", ")

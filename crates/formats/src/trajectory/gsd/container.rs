@@ -9,8 +9,8 @@
 //! | names | 1024 | names of the arrays, each ended by a zero byte |
 //! | arrays | | |
 //!
-//! The index has room for the whole trajectory from the start, so that nothing is ever moved, and a trajectory that was
-//! cut back and goes on has the same bytes as one in one go.
+//! The index has room for the planned trajectory from the start, so that a trajectory that was cut back and goes on has the
+//! same bytes as one in one go. Only one that becomes longer than planned moves its index to its end.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom, Write};
@@ -143,8 +143,12 @@ impl Entry {
 #[derive(Debug)]
 pub(in crate::trajectory) struct Container {
     pub(super) file: Growing,
+    /// Where the index begins.
+    index_at: u64,
     /// Entries that the index has room for.
     capacity: u64,
+    /// Where the names begin.
+    names_at: u64,
     /// Entries in it.
     entries: u64,
     names: Vec<String>,
@@ -160,7 +164,9 @@ impl Container {
         file.set_end(first_array(capacity))?;
         Ok(Self {
             file,
+            index_at: HEADER_BYTES,
             capacity,
+            names_at: first_array(capacity) - NAMES_BYTES,
             entries: 0,
             names: Vec::new(),
             frames: 0,
@@ -247,7 +253,9 @@ impl Container {
         file.set_end(end)?;
         Ok(Self {
             file,
+            index_at: HEADER_BYTES,
             capacity,
+            names_at: first_array - NAMES_BYTES,
             entries,
             names,
             frames,
@@ -257,8 +265,7 @@ impl Container {
     /// Writes the arrays of one frame more: arrays, names, and last the entries by which they are found.
     pub(super) fn append_arrays(&mut self, chunks: &[Chunk]) -> Result<(), FormatError> {
         if self.entries + chunks.len() as u64 > self.capacity {
-            let reason = format!("it has room for {} arrays only", self.capacity);
-            return Err(FormatError::not_a_trajectory(self.file.path(), reason));
+            self.move_index(chunks.len() as u64)?;
         }
         let mut names = self.names.clone();
         let mut data = Vec::with_capacity(chunks.iter().map(|chunk| chunk.bytes.len()).sum());
@@ -308,8 +315,7 @@ impl Container {
             let reason = "its list of names is damaged";
             return Err(FormatError::not_a_trajectory(self.file.path(), reason));
         }
-        let at = HEADER_BYTES + self.capacity * ENTRY_BYTES;
-        self.file.write_at(at, &text)
+        self.file.write_at(self.names_at, &text)
     }
 
     fn write_entries(&mut self, entries: &[Entry]) -> Result<(), FormatError> {
@@ -318,7 +324,22 @@ impl Container {
     }
 
     fn next_entry(&self) -> u64 {
-        HEADER_BYTES + self.entries * ENTRY_BYTES
+        self.index_at + self.entries * ENTRY_BYTES
+    }
+
+    /// Moves the index to the end of the file, twice as long and with room for `more` arrays; the old one counts until the
+    /// new one is there.
+    fn move_index(&mut self, more: u64) -> Result<(), FormatError> {
+        let path = self.file.path().to_owned();
+        let bytes = self.entries * ENTRY_BYTES;
+        let index = read(self.file.file(), &path, self.index_at, bytes)?;
+        let (index_at, capacity) = (self.file.end(), 2 * self.capacity + more);
+        self.file.append(&index)?;
+        self.file.set_end(index_at + capacity * ENTRY_BYTES)?;
+        let place = [index_at.to_le_bytes(), capacity.to_le_bytes()].concat();
+        self.file.write_at(8, &place)?;
+        (self.index_at, self.capacity) = (index_at, capacity);
+        Ok(())
     }
 }
 

@@ -1,0 +1,155 @@
+//! What the grains bear: the forces on them, and the stress that follows from them.
+
+use glam::{DMat3, DVec3};
+use peristalsis_engine::{Bodies, Simulation, Touching};
+
+use crate::shape::TubeShape;
+
+/// Places along the tube at which its cross-section is taken, a wavelength.
+const PLACES_A_WAVE: f64 = 256.0;
+
+/// A contact of a grain, with where it is and the lever arms of its spheres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainContact {
+    /// The contact; its first sphere is a grain.
+    pub touching: Touching,
+    /// Whether the second sphere is one of the wall.
+    pub is_with_wall: bool,
+    /// n, from the second sphere to the first.
+    pub normal: DVec3,
+    /// Where they touch, on the line of centres; z may lie a little outside \[0, L) \[d\].
+    pub point: DVec3,
+    /// l = (d - xi)/2 of the first and of the second sphere \[d\].
+    arms: [f64; 2],
+}
+
+impl GrainContact {
+    fn of(touching: Touching, bodies: &Bodies, wall_diameter: f64) -> Self {
+        let diameter = |sphere: usize| bodies.diameter.get(sphere).copied();
+        let diameters = [touching.first, touching.second].map(diameter);
+        let arms = diameters.map(|it| 0.5 * (it.unwrap_or(wall_diameter) - touching.overlap));
+        let normal = touching.separation.normalize();
+        Self {
+            touching,
+            is_with_wall: touching.second >= bodies.grains,
+            normal,
+            point: bodies.position[touching.first] - arms[0] * normal,
+            arms,
+        }
+    }
+
+    /// f_t, the part of the force on the first sphere that lies in the plane of contact \[m d/t^2\].
+    pub fn tangential_force(&self) -> DVec3 {
+        if self.touching.tangential_force == 0.0 {
+            return DVec3::ZERO;
+        }
+        self.touching.force - self.touching.normal_force * self.normal
+    }
+
+    /// Torque on the first and on the second sphere, -l n x f_t \[m d^2/t^2\].
+    fn torques(&self) -> [DVec3; 2] {
+        let per_arm = -self.normal.cross(self.tangential_force());
+        self.arms.map(|arm| arm * per_arm)
+    }
+
+    /// Branch vector: from the second grain to the first, or to it from where it touches the wall \[d\].
+    fn branch(&self) -> DVec3 {
+        match self.is_with_wall {
+            true => self.arms[0] * self.normal,
+            false => self.touching.separation,
+        }
+    }
+}
+
+/// The contacts of the grains as they stand, grain by grain; those of the wall with itself are left out.
+pub fn grain_contacts(simulation: &Simulation) -> Vec<GrainContact> {
+    let bodies = simulation.bodies();
+    let wall_diameter = simulation.wall().sphere_diameter();
+    let touching = simulation.touching().into_iter();
+    let of_grains = touching.filter(|touching| touching.first < bodies.grains);
+    of_grains
+        .map(|touching| GrainContact::of(touching, bodies, wall_diameter))
+        .collect()
+}
+
+/// Forces and torques on the grains at the present positions and velocities, and the stress in them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Load {
+    /// Of each grain the sum over its contacts, and the body force \[m d/t^2\].
+    pub forces: Vec<DVec3>,
+    /// Of each grain the sum over its contacts; 0 without friction \[m d^2/t^2\].
+    pub torques: Vec<DVec3>,
+    /// sigma_ab = (sum over contacts of l_a f_b + sum over grains of m dv_a dv_b)/V \[m/(d t^2)\].
+    ///
+    /// l is the branch vector: from the partner's centre to the grain's or, of a contact with the wall, from the point of
+    /// contact; f is the force on the grain; dv its velocity less the mean of all; V the [`clear_volume`]. Positive in
+    /// compression; a third of the trace is the pressure. Rows are a.
+    pub stress: DMat3,
+}
+
+impl Load {
+    /// The load now.
+    pub fn of(simulation: &Simulation) -> Self {
+        let bodies = simulation.bodies();
+        let body_force = simulation.parameters().body_force;
+        let masses = &bodies.mass[..bodies.grains];
+        let weight = |mass: &f64| DVec3::new(0.0, 0.0, mass * body_force);
+        let mut forces: Vec<DVec3> = masses.iter().map(weight).collect();
+        let mut torques = vec![DVec3::ZERO; bodies.grains];
+        let mut virial = kinetic_part(bodies);
+        for contact in grain_contacts(simulation) {
+            let Touching {
+                first,
+                second,
+                force,
+                ..
+            } = contact.touching;
+            let [on_first, on_second] = contact.torques();
+            forces[first] += force;
+            torques[first] += on_first;
+            if !contact.is_with_wall {
+                forces[second] -= force;
+                torques[second] += on_second;
+            }
+            virial += dyad(contact.branch(), force);
+        }
+        Self {
+            forces,
+            torques,
+            stress: virial * (1.0 / clear_volume(simulation)),
+        }
+    }
+}
+
+/// sum m dv dv of the grains, dv counted from their mean velocity.
+fn kinetic_part(bodies: &Bodies) -> DMat3 {
+    let grains = || bodies.mass[..bodies.grains].iter().zip(&bodies.velocity);
+    let mass: f64 = grains().map(|(mass, _)| mass).sum();
+    if mass == 0.0 {
+        return DMat3::ZERO;
+    }
+    let momentum: DVec3 = grains().map(|(mass, velocity)| *mass * *velocity).sum();
+    let mean = momentum / mass;
+    let parts = grains().map(|(mass, velocity)| dyad(*mass * (*velocity - mean), *velocity - mean));
+    parts.fold(DMat3::ZERO, |sum, part| sum + part)
+}
+
+/// a b^T
+fn dyad(a: DVec3, b: DVec3) -> DMat3 {
+    DMat3::from_cols(a * b.x, a * b.y, a * b.z)
+}
+
+/// Volume that the wall's spheres leave clear, the integral of pi (R - d_w/2)^2 along the tube, R to their centres and d_w
+/// their diameter \[d^3\].
+pub fn clear_volume(simulation: &Simulation) -> f64 {
+    let wall = simulation.wall();
+    let shape = TubeShape::of(simulation);
+    let half = 0.5 * wall.sphere_diameter();
+    let places = (PLACES_A_WAVE * f64::from(wall.waves())).max(1.0);
+    let spacing = wall.length() / places;
+    let area = |place: u32| {
+        let clear = (shape.radius((f64::from(place) + 0.5) * spacing) - half).max(0.0);
+        core::f64::consts::PI * clear * clear
+    };
+    (0..places as u32).map(area).sum::<f64>() * spacing
+}

@@ -1,0 +1,154 @@
+"""What a simulation writes and draws."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from . import _core
+from ._picture import Picture
+from ._state import State
+from ._writers import Writer
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
+
+
+class Output(State):
+    """What a simulation writes and draws; `Simulation` is the public class."""
+
+    __slots__ = ("_writers",)
+
+    _writers: list[Writer]
+
+    def add_writer(
+        self,
+        path: str | os.PathLike[str],
+        every: float | str | None = None,
+        at: float | str | Sequence[float | str] | None = None,
+        *,
+        overwrite: bool = False,
+    ) -> Writer:
+        """Write frames to a file in all runs from now on, the first at once where it is due; as `Writer`.
+
+        Returns
+        -------
+        Writer
+            Which `remove_writer` takes away again.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     writer = sim.add_writer(Path(folder) / "run.lammpstrj", at=[0, 1, "30t"])
+        ...     for _ in range(2):
+        ...         sim.run(periods=1)
+        ...     writer.frames
+        3
+        """
+        writer = Writer(path, every, at, overwrite=overwrite)
+        writer.begin(cast("Simulation", self))
+        self._writers.append(writer)
+        return writer
+
+    def remove_writer(self, writer: Writer) -> None:
+        """Write no more frames to a file of `add_writer`; what is in it stays."""
+        self._writers.remove(writer)
+
+    def write(self, path: str | os.PathLike[str]) -> None:
+        """Write the spheres as they stand to a file, whole or not at all, over an older one.
+
+        Parameters
+        ----------
+        path : path
+            ``.gsd``, ``.vtp``, ``.lammpstrj`` as of `Writer`, or ``.parquet``, a table of the grains.
+
+        Raises
+        ------
+        ValueError
+            For another ending.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     sim.write(Path(folder) / "now.vtp")
+        ...     (Path(folder) / "now.vtp").exists()
+        True
+        """
+        _core.write_frame(self._run, Path(path))
+
+    def render(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        view: str = "side",
+        colour: str = "axial-velocity",
+        range: tuple[float, float] | None = None,
+        wall: str = "cut",
+        place: float | None = None,
+        phase: float | None = None,
+        waves: float = 2.0,
+        width: int | None = None,
+        paper: str = "light",
+        bare: bool = False,
+    ) -> Picture:
+        """A picture of the tube as it stands, as ``peristalsis render`` makes it.
+
+        Parameters
+        ----------
+        path : path, optional
+            Write it to a file as well: ``.png``, or ``.svg`` with its writing as vectors.
+        view : {"side", "section", "space-time"}
+            From the side; cut across; or the flow rate of each wave against time.
+        colour : str
+            What colours the grains: ``"axial-velocity"``, ``"speed"``, ``"diameter"``, ``"axial-displacement"``,
+            ``"angular-velocity"``, ``"phase"``, ``"coordination"``, ``"pressure"``.
+        range : (float, float), optional
+            Values of the first and the last colour.
+        wall : {"cut", "glass", "none"}
+            How the wall looks from the side.
+        place, phase : float, optional
+            Where a section is: z [d], or (z - c t)/lambda; the middle of the tube by default.
+        waves : float
+            Wavelengths that a side view shows at most.
+        width : int, optional
+            Pixels across, 16 to 16384: 2400, and 1200 for a section, by default.
+        paper : {"light", "dark"}
+            The page.
+        bare : bool
+            No writing around the picture.
+
+        Returns
+        -------
+        Picture
+            A notebook shows it.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2)
+        >>> sim.render(view="section", colour="diameter", width=300, bare=True)
+        <peristalsis.Picture: 300 x 300 pixels>
+        """
+        endings = (".png", ".svg")
+        if path is not None and Path(path).suffix.lower() not in endings:
+            raise ValueError(f"{path}: a picture is {' or '.join(endings)}")
+        options: dict[str, Any] = {
+            "view": view, "colour": colour, "range": range, "wall": wall, "place": place, "phase": phase,
+            "waves": waves, "width": width, "paper": paper, "bare": bare,
+        }
+        picture = Picture(_core.render(self._run, **options, vector=False))
+        if path is not None and Path(path).suffix.lower() == ".svg":
+            Path(path).write_bytes(_core.render(self._run, **options, vector=True))
+        elif path is not None:
+            picture.save(path)
+        return picture

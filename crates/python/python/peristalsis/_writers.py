@@ -1,0 +1,186 @@
+"""Frames of a simulation in files, and what is done at certain steps of it."""
+
+from __future__ import annotations
+
+import math
+import operator
+import os
+from collections.abc import Callable, Iterable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from . import _core
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
+
+    _Callback: TypeAlias = Callable[[Simulation], object]
+    _Callbacks: TypeAlias = _Callback | Iterable[_Callback | tuple[_Callback, int]]
+
+
+class Trigger:
+    """Something that is done at certain steps."""
+
+    __slots__ = ("act", "due", "every")
+
+    def __init__(self, act: Callable[[Simulation], object], now: int, every: int) -> None:
+        self.act: Callable[[Simulation], object] = act
+        self.every: int = every
+        self.due: int | None = now + every
+
+    def fire(self, simulation: Simulation) -> None:
+        """Does it, and waits for the next step."""
+        self.act(simulation)
+        self.due = (self.due or 0) + self.every
+
+
+def triggers(callback: _Callbacks | None, every: int, now: int) -> list[Trigger]:
+    """Those of one callback, or of several, each with steps of its own where it has any."""
+    if callback is None:
+        return []
+    if callable(callback):
+        return [Trigger(callback, now, every)]
+    found = []
+    for item in callback:
+        function, steps = item if isinstance(item, tuple) else (item, every)
+        if not callable(function):
+            raise TypeError("a callback is a function, or a pair of a function and its every")
+        found.append(Trigger(function, now, whole("every", steps, 1)))
+    return found
+
+
+def whole(name: str, value: Any, least: int) -> int:
+    """A whole number from `least` on."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} is a whole number of steps, not {value!r}") from None
+    if number < least:
+        raise ValueError(f"{name} is {least} or more steps, not {number}")
+    return number
+
+
+class Writer:
+    """Frames of a simulation in a file, written while it runs.
+
+    After each frame the file is whole: it can be opened while the run goes on, after Ctrl-C and after a crash.
+
+    Parameters
+    ----------
+    path : path
+        The file, in the format that its ending names: ``.gsd`` (OVITO, freud, MDAnalysis), ``.lammpstrj`` (LAMMPS text:
+        OVITO, VMD, MDAnalysis); ``.vtp``, a folder with ``trajectory.pvd`` and ``contacts.pvd`` for ParaView and
+        PyVista; ``.parquet``, a folder with a table of the grains for each frame, which pandas, polars and DuckDB read as
+        one.
+    every : float or str, optional
+        Time from one frame to the next, the first at once: in periods 1/strain_rate of the wave as it is driven when
+        writing begins, or as text in time, ``"2.5t"``. A tenth of a period unless `every` or `at` is given.
+    at : float, str, or sequence of them, optional
+        Instants of single frames, counted from the start of the simulation, in the same units.
+    overwrite : bool
+        Whether an older file of that name may be lost; otherwise it is an error.
+
+    Raises
+    ------
+    ValueError
+        For an ending of no known format, or an interval shorter than a step.
+    FileExistsError
+        Where there is such a file already, when the first frame is due.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> import peristalsis
+    >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     writer = peristalsis.Writer(Path(folder) / "run.gsd", every=0.5)
+    ...     sim.run(periods=2, writers=[writer])
+    ...     writer.frames
+    5
+    """
+
+    def __init__(
+        self,
+        path: str | os.PathLike[str],
+        every: float | str | None = None,
+        at: float | str | Sequence[float | str] | None = None,
+        *,
+        overwrite: bool = False,
+    ) -> None:
+        self.path: Path = Path(path)
+        _core.check_frame_format(self.path)
+        self._every = 0.1 if every is None and at is None else every
+        self._at = [] if at is None else [at] if isinstance(at, str) or not isinstance(at, Iterable) else list(at)
+        self._overwrite = overwrite
+        self._simulation: Simulation | None = None
+        self._frames: _core.Frames | None = None
+        self._first = self._interval = 0
+        self._instants: list[int] = []
+
+    @property
+    def frames(self) -> int:
+        """Frames written so far."""
+        return 0 if self._frames is None else self._frames.number
+
+    @property
+    def due(self) -> int | None:
+        """Step of the next frame; `None` where no more are to come."""
+        if self._simulation is None:
+            return None
+        now = self._simulation.steps
+        coming = [step for step in self._instants if step > now]
+        if self._interval:
+            coming.append(now + self._interval - (now - self._first) % self._interval)
+        return min(coming, default=None)
+
+    def begin(self, simulation: Simulation) -> None:
+        """Make ready for a simulation that is about to run; writes the present state where it is one of the frames."""
+        if self._simulation is simulation:
+            return
+        if self._simulation is not None:
+            raise ValueError(f"{self.path} holds frames of another simulation already")
+        now = simulation.steps
+        interval = 0 if self._every is None else steps_in(simulation, "every", self._every)
+        instants = sorted(steps_in(simulation, "at", instant) for instant in self._at)
+        if self._every is not None and interval < 1:
+            raise ValueError(f"every = {self._every!r} is shorter than a step of {simulation.configuration.time_step:.4g} t")
+        over = [instant for instant in instants if instant < now]
+        if over:
+            raise ValueError(f"at: step {over[0]} is over, and the simulation stands at step {now}")
+        if self.path.exists() and not self._overwrite:
+            raise FileExistsError(f"{self.path} is there already: take another name, or overwrite=True")
+        self._frames = _core.Frames(simulation._run, self.path)
+        self._simulation = simulation
+        self._first, self._interval, self._instants = now, interval, instants
+        if interval or now in instants:
+            self.fire(simulation)
+
+    def fire(self, simulation: Simulation) -> None:
+        """Write the present state as a frame."""
+        if self._frames is not None:
+            self._frames.append(simulation._run)
+
+    def synchronize(self) -> None:
+        """Bring all frames to the disk."""
+        if self._frames is not None:
+            self._frames.synchronize()
+
+    def __repr__(self) -> str:
+        return f"<peristalsis.Writer: {self.path}, {self.frames} frames>"
+
+
+def steps_in(simulation: Simulation, name: str, span: float | str) -> int:
+    """The steps of a span of time: periods of the wave as it is driven now, or as text with a ``t`` in time."""
+    try:
+        is_time = isinstance(span, str) and span.strip().endswith("t")
+        number = float(span.strip().removesuffix("t") if isinstance(span, str) else span)
+    except (TypeError, ValueError):
+        number = math.nan
+    if not 0 <= number < math.inf:
+        raise ValueError(f'{name} = {span!r} is no span of time: a number of periods, such as 0.1, or "2.5t" in time')
+    if not is_time:
+        if not simulation.strain_rate:
+            raise ValueError(f'{name} = {span!r}: a static wave has no period; give a time, such as "2.5t"')
+        number /= simulation.strain_rate
+    return round(number / simulation.configuration.time_step)

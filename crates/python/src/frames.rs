@@ -1,0 +1,164 @@
+//! Frames of a run in files, and pictures of it.
+
+use std::path::PathBuf;
+
+use parking_lot::Mutex;
+use peristalsis_command::choice::{self, value_of};
+use peristalsis_run::{
+    Aspect, Drawing, Field, FrameFile, FrameFormat, FrameSource, Look, PictureScene, Place,
+    RunError, Writing, space_time,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+
+use crate::error::of_run;
+use crate::run::Run;
+
+/// Whether a format is known by the ending of a file's name; refuses it where none is.
+#[pyfunction]
+pub(crate) fn check_frame_format(path: PathBuf) -> PyResult<()> {
+    FrameFormat::of(&path).map(drop).map_err(of_run)
+}
+
+/// Writes the present state of a run to a file.
+#[pyfunction]
+pub(crate) fn write_frame(py: Python<'_>, run: &Run, path: PathBuf) -> PyResult<()> {
+    let format = FrameFormat::of(&path).map_err(of_run)?;
+    run.look(py, |run| format.write(&path, run)).map_err(of_run)
+}
+
+/// Frames that are being written to a file.
+#[pyclass(frozen, module = "peristalsis._core")]
+pub(crate) struct Frames {
+    file: Mutex<FrameFile>,
+}
+
+#[pymethods]
+impl Frames {
+    /// Begins without a frame, over an older file.
+    #[new]
+    fn new(py: Python<'_>, run: &Run, path: PathBuf) -> PyResult<Self> {
+        let format = FrameFormat::of(&path).map_err(of_run)?;
+        let file = run
+            .look(py, |run| FrameFile::create(&path, format, run))
+            .map_err(of_run)?;
+        let file = Mutex::new(file);
+        Ok(Self { file })
+    }
+
+    /// Writes the present state.
+    fn append(&self, py: Python<'_>, run: &Run) -> PyResult<()> {
+        run.look(py, |run| self.file.lock().append(run))
+            .map_err(of_run)
+    }
+
+    /// Brings all frames to the disk.
+    fn synchronize(&self, py: Python<'_>) -> PyResult<()> {
+        py.detach(|| self.file.lock().synchronize()).map_err(of_run)
+    }
+
+    /// Frames written.
+    #[getter]
+    fn number(&self, py: Python<'_>) -> u64 {
+        py.detach(|| self.file.lock().frames())
+    }
+}
+
+/// The value of an option by its name.
+fn chosen<T: Copy>(option: &str, choices: &[choice::Choice<T>], name: &str) -> PyResult<T> {
+    value_of(choices, &name.replace('_', "-")).ok_or_else(|| {
+        let known: Vec<&str> = choices.iter().map(|(known, ..)| *known).collect();
+        PyValueError::new_err(format!(
+            "{option} = {name:?} is not possible; there are {}",
+            known.join(", ")
+        ))
+    })
+}
+
+/// A picture of a run as it stands: PNG, or SVG where `vector` is true.
+#[pyfunction]
+#[pyo3(signature = (run, *, view, colour, range, wall, place, phase, waves, width, paper, bare, vector))]
+#[allow(
+    clippy::too_many_arguments,
+    reason = "the options of `peristalsis render`"
+)]
+pub(crate) fn render<'py>(
+    py: Python<'py>,
+    run: &Run,
+    view: &str,
+    colour: &str,
+    range: Option<(f64, f64)>,
+    wall: &str,
+    place: Option<f64>,
+    phase: Option<f64>,
+    waves: f64,
+    width: Option<u32>,
+    paper: &str,
+    bare: bool,
+    vector: bool,
+) -> PyResult<Bound<'py, PyBytes>> {
+    let (field, wall) = (
+        chosen("colour", choice::FIELDS, colour)?,
+        chosen("wall", choice::WALLS, wall)?,
+    );
+    let paper = chosen("paper", choice::PAPERS, paper)?;
+    let writing = match bare {
+        true => Writing::None,
+        false => Writing::Full,
+    };
+    let kinds = ["side", "section", "space-time"];
+    let view = view.replace('_', "-");
+    if !kinds.contains(&view.as_str()) {
+        let known = kinds.join(", ");
+        return Err(PyValueError::new_err(format!(
+            "view = {view:?} is not possible; there are {known}"
+        )));
+    }
+    if (place.is_some() || phase.is_some()) && view != "section" {
+        return Err(PyValueError::new_err(
+            "place and phase are those of view = \"section\"",
+        ));
+    }
+    let look = |middle: f64| {
+        let aspect = match (view.as_str(), phase) {
+            ("section", Some(phase)) => Aspect::Section(Place::Phase(phase)),
+            ("section", None) => Aspect::Section(Place::At(place.unwrap_or(middle))),
+            _ => Aspect::Side,
+        };
+        let usual = if aspect == Aspect::Side { 2400 } else { 1200 };
+        let width = width.unwrap_or(usual);
+        Look {
+            aspect,
+            field,
+            range,
+            wall,
+            waves,
+            width,
+            paper,
+            writing,
+            ..Look::default()
+        }
+    };
+    let bytes = run.look(py, |run| {
+        let drawing = match view.as_str() {
+            "space-time" => space_time(run)?,
+            _ => still(run, look(0.5 * run.simulation().wall().length()))?,
+        };
+        encoded(&drawing, vector)
+    });
+    Ok(PyBytes::new(py, &bytes.map_err(of_run)?))
+}
+
+fn still(run: &peristalsis_run::Run, look: Look) -> Result<Drawing, RunError> {
+    let frame = FrameSource::now(run, look.field == Field::Pressure);
+    let samples = [frame];
+    PictureScene::new(run, look, &samples)?.draw(&samples[0])
+}
+
+fn encoded(drawing: &Drawing, vector: bool) -> Result<Vec<u8>, RunError> {
+    match vector {
+        true => Ok(drawing.svg().into_bytes()),
+        false => drawing.png().map_err(RunError::of_figure("the picture")),
+    }
+}

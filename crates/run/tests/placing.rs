@@ -1,0 +1,125 @@
+//! Runs of grains that a caller puts where it wants them, and runs that go on past their end.
+
+mod common;
+
+use common::configuration;
+use glam::DVec3;
+use peristalsis_configuration::ScheduledParameter;
+use peristalsis_observe::{Load, clear_volume, grain_contacts};
+use peristalsis_physics::contact::NormalLaw;
+use peristalsis_run::{PlacedGrains, Run, contacts_table, warnings};
+
+const TUBE: &str = "tube.waves=2 initial.state=placed";
+
+fn placed(settings: &str, positions: &[DVec3]) -> Result<Run, String> {
+    let number = positions.len();
+    let words = format!("{TUBE} grains.number={number} {settings}");
+    let grains = PlacedGrains {
+        positions: positions.to_vec(),
+        velocities: vec![DVec3::ZERO; number],
+        diameters: vec![1.0; number],
+    };
+    Run::placed(configuration("frictionless", &words), grains).map_err(|error| error.to_string())
+}
+
+#[test]
+fn two_grains_by_hand() {
+    let (one, tilted) = (DVec3::new(0.0, -0.2, 5.0), DVec3::new(0.0, 0.2, 5.7));
+    let run = placed("", &[one, tilted]).unwrap();
+    let simulation = run.simulation();
+    let distance = (tilted - one).length();
+    let stiffness = match run.configuration().contact.normal.elasticity() {
+        peristalsis_configuration::Elasticity::Stiffness(stiffness) => stiffness,
+        other => panic!("{other:?}"),
+    };
+    let contacts: Vec<_> = grain_contacts(simulation)
+        .into_iter()
+        .filter(|contact| !contact.is_with_wall)
+        .collect();
+    let [contact] = contacts[..] else {
+        panic!("{contacts:?}")
+    };
+    let normal = (one - tilted) / distance;
+    let force = stiffness * (1.0 - distance) * normal;
+    assert!((contact.touching.force - force).length() < 1e-14);
+    assert!((contact.point - 0.5 * (one + tilted)).length() < 1e-14);
+    let load = Load::of(simulation);
+    assert!((load.forces[0] - force).length() < 1e-14 && (load.forces[1] + force).length() < 1e-14);
+    // sigma V = l f^T, at rest.
+    let expected = (one - tilted).y * force.z / clear_volume(simulation);
+    assert!((load.stress.row(1).z - expected).abs() < 1e-15);
+    let pressure = load.stress.to_cols_array_2d();
+    let trace: f64 = (0..3).map(|it| pressure[it][it]).sum();
+    let by_hand = distance * force.length() / clear_volume(simulation);
+    assert!((trace - by_hand).abs() < 1e-15 && trace > 0.0);
+    assert_eq!(contacts_table(&run).unwrap().rows(), 1);
+}
+
+#[test]
+fn grains_that_cannot_stand_so_are_refused() {
+    let axis = |z: f64| DVec3::new(0.0, 0.0, z);
+    for (positions, words) in [
+        (vec![axis(1.0), axis(1.2)], "overlap by 0.8"),
+        (
+            vec![axis(1.0), axis(5.0), axis(1.0)],
+            "grains 0 and 2 are at the same place",
+        ),
+        (
+            vec![DVec3::new(2.5, 0.0, 1.0)],
+            "grain 0 at [2.5, 0, 1] is outside the tube",
+        ),
+        (vec![axis(f64::NAN)], "not all of them possible"),
+    ] {
+        let refused = placed("", &positions).unwrap_err();
+        assert!(refused.contains(words), "{refused}");
+    }
+    let refused = Run::new(configuration("frictionless", TUBE)).unwrap_err();
+    assert!(
+        refused.to_string().contains("go on from a checkpoint"),
+        "{refused}"
+    );
+}
+
+#[test]
+fn placed_grains_go_on_from_a_checkpoint_with_the_same_bits() {
+    let mut run = placed("", &[DVec3::new(0.0, 0.0, 5.0), DVec3::new(0.2, 0.6, 5.8)]).unwrap();
+    run.advance().unwrap();
+    let mut again = Run::from_snapshot(&run.to_snapshot().unwrap()).unwrap();
+    for run in [&mut run, &mut again] {
+        run.advance().unwrap();
+    }
+    assert_eq!(run.simulation().bodies(), again.simulation().bodies());
+    assert!(run.configuration().to_toml().contains("state = \"placed\""));
+}
+
+/// PYTHON, medium 7.
+#[test]
+fn a_run_that_is_led_past_its_end_has_a_configuration_that_repeats_it() {
+    let mut run = Run::new(configuration(
+        "frictionless",
+        "tube.waves=2 run.periods=2 drive.strain_rate=0.03",
+    ))
+    .unwrap();
+    for width in [2.7, 2.8, 2.9] {
+        for _ in 0..20 {
+            run.advance().unwrap();
+        }
+        run.drive_to(ScheduledParameter::Width, width, 0.0).unwrap();
+        let found = warnings(run.configuration());
+        assert!(
+            found.iter().all(|it| it.key != "drive.schedule"),
+            "{found:?}"
+        );
+    }
+    run.advance().unwrap();
+    let told = run.configuration();
+    assert_eq!(told.run.steps(), run.simulation().step());
+    let text = told.to_toml();
+    let read = peristalsis_run::Configuration::from_toml("told", &text).unwrap();
+    assert_eq!(&read, told);
+    let mut again = Run::new(read).unwrap();
+    while !again.is_complete() {
+        again.advance().unwrap();
+    }
+    assert_eq!(run.simulation().bodies(), again.simulation().bodies());
+}
