@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, cast
 
 from . import _core
+from ._drive import Drive
 from ._picture import Picture
-from ._state import State
 from ._writers import Writer
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
 
 
-class Output(State):
+class Output(Drive):
     """What a simulation writes and draws; `Simulation` is the public class."""
 
     __slots__ = ("_writers",)
@@ -152,3 +153,28 @@ class Output(State):
         elif path is not None:
             picture.save(path)
         return picture
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.03)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     sim.save(Path(folder) / "now.checkpoint")
+        ...     peristalsis.Simulation.load(Path(folder) / "now.checkpoint").steps
+        0
+        """
+        path = Path(path)
+        unfinished = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
+        try:
+            with unfinished.open("wb") as file:
+                file.write(self._run.to_bytes())
+                file.flush()
+                os.fsync(file.fileno())
+            unfinished.replace(path)
+        finally:
+            unfinished.unlink(missing_ok=True)

@@ -105,6 +105,13 @@ class Simulation(Output):
             Where a key or value cannot be: in the words of the command line.
         DoesNotFitError
             Where the tube does not hold the grains.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05)
+        >>> sim.length
+        20.0
         """
         return cls(Configuration(preset=name, overrides=joined(overrides, keywords)))
 
@@ -112,7 +119,15 @@ class Simulation(Output):
     def from_toml(
         cls, text: str, overrides: Mapping[str, Any] | None = None, **keywords: Unpack[Keywords]
     ) -> Simulation:
-        """A configuration in TOML, as in a file of the command line."""
+        """A configuration in TOML, as in a file of the command line.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> text = "preset = 'frictionless-fine'\\n[drive]\\nstrain_rate = 0.05"
+        >>> peristalsis.Simulation.from_toml(text, waves=2).strain_rate
+        0.05
+        """
         return cls(Configuration(text=text, overrides=joined(overrides, keywords)))
 
     @classmethod
@@ -129,7 +144,15 @@ class Simulation(Output):
 
     @classmethod
     def from_configuration(cls, configuration: Configuration) -> Simulation:
-        """A configuration that has been resolved."""
+        """A configuration that has been resolved.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> tube = peristalsis.Configuration("frictionless-fine", waves=2, strain_rate=0.05)
+        >>> peristalsis.Simulation.from_configuration(tube).steps
+        0
+        """
         return cls(configuration)
 
     @classmethod
@@ -321,41 +344,6 @@ class Simulation(Output):
                     it.fire(self)
             display.update(now - first)
 
-    # The drive
-
-    def _drive(self, name: str) -> float:
-        value = self._run.driven(name)
-        if value is None:
-            raise AttributeError(f"drive.{name} is no parameter of this drive")
-        return value
-
-    @property
-    def width(self) -> float:
-        """w = 2 (a - b) [d], the bottleneck between centres of wall spheres; strain control."""
-        return self._drive("width")
-
-    @width.setter
-    def width(self, value: float) -> None:
-        self._run.drive_to("width", float(value), 0.0)
-
-    @property
-    def force_amplitude(self) -> float:
-        """f^P [m d t^-2], the amplitude of the force on a wall sphere; stress control."""
-        return self._drive("force_amplitude")
-
-    @force_amplitude.setter
-    def force_amplitude(self, value: float) -> None:
-        self._run.drive_to("force_amplitude", float(value), 0.0)
-
-    @property
-    def strain_rate(self) -> float:
-        """c/lambda [1/t]. Samples keep their distance in time when it changes."""
-        return self._drive("strain_rate")
-
-    @strain_rate.setter
-    def strain_rate(self, value: float) -> None:
-        self._run.drive_to("strain_rate", float(value), 0.0)
-
     def ramp(
         self,
         parameter: _Parameter,
@@ -425,7 +413,16 @@ class Simulation(Output):
     # Snapshots
 
     def to_bytes(self) -> bytes:
-        """A snapshot: configuration, state and what was measured; `from_bytes` goes on with the same bits."""
+        """A snapshot: configuration, state and what was measured; `from_bytes` goes on with the same bits.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> again = peristalsis.Simulation.from_bytes(sim.to_bytes())
+        >>> bool((sim.positions == again.positions).all())
+        True
+        """
         return self._run.to_bytes()
 
     @classmethod
@@ -436,21 +433,15 @@ class Simulation(Output):
         ------
         SnapshotError
             Where it is damaged, or no snapshot of this version.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> peristalsis.Simulation.from_bytes(sim.to_bytes()).steps
+        0
         """
         return cls._going_on(_core.Run.from_bytes(bytes(snapshot)))
-
-    def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a snapshot to a file, whole or not at all."""
-        path = Path(path)
-        unfinished = path.with_name(f"{path.name}.{os.getpid()}-{threading.get_ident()}.tmp")
-        try:
-            with unfinished.open("wb") as file:
-                file.write(self.to_bytes())
-                file.flush()
-                os.fsync(file.fileno())
-            unfinished.replace(path)
-        finally:
-            unfinished.unlink(missing_ok=True)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Simulation:
@@ -485,7 +476,17 @@ class Simulation(Output):
         return simulation
 
     def copy(self) -> Simulation:
-        """A simulation that goes on by itself from here."""
+        """A simulation that goes on by itself from here.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> other = sim.copy()
+        >>> other.step(3)
+        >>> sim.steps, other.steps
+        (0, 3)
+        """
         return type(self)._going_on(self._run.copy())
 
     def __copy__(self) -> Simulation:

@@ -33,7 +33,15 @@ class State:
 
     @property
     def configuration(self) -> Configuration:
-        """Every resolved value, changes of the drive included."""
+        """Every resolved value, changes of the drive included.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.configuration["drive.strain_rate"]
+        0.05
+        """
         return self._run.configuration
 
     @property
@@ -42,67 +50,175 @@ class State:
 
         As all arrays of a simulation: a copy of this instant, which later steps do not touch and which outlives the
         simulation. It cannot be written to, for that would not move a grain; ``.copy()`` gives one that can.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.positions.shape
+        (41, 3)
         """
         return self._run.positions
 
     @property
     def velocities(self) -> Array:
-        """Velocities of the grains [d/t], shape (N, 3); a copy, as `positions`."""
+        """Velocities of the grains [d/t], shape (N, 3); a copy, as `positions`.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.velocities.shape
+        (41, 3)
+        """
         return self._run.velocities
 
     @property
     def angular_velocities(self) -> Array:
-        """Angular velocities of the grains [1/t], shape (N, 3), 0 without friction; a copy, as `positions`."""
+        """Angular velocities of the grains [1/t], shape (N, 3), 0 without friction; a copy, as `positions`.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> float(abs(sim.angular_velocities).max())
+        0.0
+        """
         return self._run.angular_velocities
 
     @property
     def diameters(self) -> Array:
-        """Diameters of the grains [d], shape (N,); a copy, as `positions`."""
+        """Diameters of the grains [d], shape (N,); a copy, as `positions`.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> float(sim.diameters.mean())
+        1.0
+        """
         return self._run.diameters
 
     @property
     def turns(self) -> npt.NDArray[np.int32]:
-        """How often each grain went round the tube towards +z, shape (N,): z + turns L is unfolded."""
+        """How often each grain went round the tube towards +z, shape (N,): z + turns L is unfolded.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> int(sim.turns.sum())
+        0
+        """
         return self._run.turns
 
     @property
     def wall_positions(self) -> Array:
-        """Centres of the wall's spheres [d], shape (M, 3); a copy, as `positions`."""
+        """Centres of the wall's spheres [d], shape (M, 3); a copy, as `positions`.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.wall_positions.shape
+        (1248, 3)
+        """
         return self._run.wall_positions
 
     @property
     def steps(self) -> int:
-        """Steps done since the start."""
+        """Steps done since the start.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> sim.steps
+        400
+        """
         return self._run.steps
 
     @property
     def time(self) -> float:
-        """Time since the start [t]."""
+        """Time since the start [t].
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> round(sim.time, 9)
+        20.0
+        """
         return self._run.time
 
     @property
     def period(self) -> float:
-        """Wavelengths that the wave has run since the start."""
+        """Wavelengths that the wave has run since the start.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> round(sim.period, 9)
+        1.0
+        """
         return self._run.period
 
     @property
     def length(self) -> float:
-        """L [d], length of the tube."""
+        """L [d], length of the tube.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.length
+        20.0
+        """
         return self._run.configuration.length
 
     @property
     def heading(self) -> float:
-        """+1 where the wave runs towards +z, -1 where towards -z."""
+        """+1 where the wave runs towards +z, -1 where towards -z.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.heading
+        -1.0
+        """
         return self._run.heading
 
     @property
     def flow_rate_ratio(self) -> float:
-        """J/Jmax over the last whole period, or of the last sample before there is one; NaN before that."""
+        """J/Jmax over the last whole period, or of the last sample before there is one; NaN before that.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> bool(sim.flow_rate_ratio < 0.5)
+        True
+        """
         return self._run.flow_rate_ratio
 
     @property
     def transition_time(self) -> float | None:
-        """tau [t], where the flow has changed its kind."""
+        """tau [t], where the flow has changed its kind.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> sim.transition_time is None
+        True
+        """
         return self._run.transition_time
 
     @property
@@ -112,6 +228,13 @@ class State:
         energy = initial_energy + wall_work + drive_work + keep_work + body_work - normal_dissipated -
         tangential_dissipated - sliding_dissipated - drag_dissipated - network_dissipated - history_reset, up to
         `energy_residual` of what entered.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.energy_ledger["initial_energy"] >= 0
+        True
         """
         return self._run.energy_ledger
 
@@ -290,19 +413,54 @@ class State:
 
         ``t["flow_rate_ratio"]`` is a column as an array; `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` are
         frames with units, and ``pyarrow.table(t)`` takes it without a copy.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> sim.timeseries()["period"].shape
+        (20,)
         """
         return self._run.timeseries()
 
     def profile(self) -> Table:
-        """Profile in the wave's frame over the late part of what was measured, one row a bin."""
+        """Profile in the wave's frame over the late part of what was measured, one row a bin.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> "wall_pressure" in sim.profile()
+        True
+        """
         return self._run.profile()
 
     def waves(self) -> Table:
-        """Flow of each wave over each whole period."""
+        """Flow of each wave over each whole period.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> len(sim.waves())
+        2
+        """
         return self._run.waves()
 
     def summary(self) -> Summary:
-        """The outcome so far, as ``summary.json`` of the command line has it."""
+        """The outcome so far, as ``summary.json`` of the command line has it.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> sim.run(periods=1)
+        >>> sim.summary()["status"]
+        'running'
+        """
         return self._run.summary()
 
     # In words
