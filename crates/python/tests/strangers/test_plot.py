@@ -155,3 +155,10 @@ def test_survival_curves_of_different_lengths_are_all_shown() -> None:
     axes = plot.survival(analysis.Survival([100.0, 200.0]), label="short")
     plot.survival(analysis.Survival([100.0, 800.0]), axes, label="long")
     assert axes.get_xlim() == (0.0, 800.0)
+
+
+def test_a_ramp_is_drawn_as_it_is() -> None:
+    """Wanted: sim.ramp, plot.hysteresis."""
+    sim = Simulation.preset("frictionless-fine", width=2.9, strain_rate=0.05, waves=2, seed=1)
+    axes = plot.hysteresis(sim.ramp("width", 2.9, 2.5, periods=12, levels=3))
+    assert {text.get_text() for text in axes.legend_.get_texts()} == {"there, downwards", "back, upwards"}
