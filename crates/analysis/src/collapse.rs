@@ -66,7 +66,11 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
     enough(curves.len(), 2)?;
     let total: usize = curves.iter().map(Vec::len).sum();
     let sorted = |curve: &Vec<CurvePoint>| {
-        let mut points: Vec<CurvePoint> = curve.iter().copied().filter(is_usable).collect();
+        let mut points: Vec<CurvePoint> = curve
+            .iter()
+            .copied()
+            .filter(CurvePoint::is_usable)
+            .collect();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         points
     };
@@ -101,9 +105,11 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
     })
 }
 
-fn is_usable(point: &CurvePoint) -> bool {
-    let finite = point.x.is_finite() && point.y.is_finite() && point.error.is_finite();
-    finite && point.error > 0.0
+impl CurvePoint {
+    pub(crate) fn is_usable(&self) -> bool {
+        let finite = self.x.is_finite() && self.y.is_finite() && self.error.is_finite();
+        finite && self.error > 0.0
+    }
 }
 
 /// Neighbouring points of a sorted curve with a place between them.

@@ -3,14 +3,12 @@
 use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
 use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
 use crate::error::{Error, checked, checked_positive, enough, ensure, same_length};
-use crate::numerics::minimum::crossing;
 use crate::numerics::simplex::{Lowest, nelder_mead};
-use crate::uncertain::Interval;
 use serde::{Deserialize, Serialize};
 
 /// Value of the objective where the overlap falls short; it grows with the missing overlap, so that a search finds its way
 /// back.
-const SHORT: f64 = 1e6;
+pub(crate) const SHORT: f64 = 1e6;
 /// Tolerance of the search, relative to its first steps.
 const TOLERANCE: f64 = 1e-3;
 /// Most fresh beginnings of a search, the number without gain that ends it, and what counts as gain.
@@ -81,16 +79,31 @@ impl Collapse<'_> {
     /// # Errors
     /// Those of [`collapse_quality`].
     pub fn quality(&self, parameters: &[f64]) -> Result<CollapseQuality, Error> {
+        collapse_quality(&self.scaled(parameters))
+    }
+
+    /// The scaled points of every curve.
+    pub(crate) fn scaled(&self, parameters: &[f64]) -> Vec<Vec<CurvePoint>> {
         let scaled = |(index, curve): (usize, &Curve)| {
             let scale = |&point| (self.transform)(parameters, index, curve.parameter, point);
             curve.points.iter().map(scale).collect()
         };
-        let scaled: Vec<Vec<CurvePoint>> = self.curves.iter().enumerate().map(scaled).collect();
-        collapse_quality(&scaled)
+        self.curves.iter().enumerate().map(scaled).collect()
+    }
+
+    /// Why no search began to find enough overlap, from where one has ended.
+    pub(crate) fn no_overlap(&self, ended: &[f64]) -> Error {
+        match self.quality(ended) {
+            Err(too_few @ Error::TooFew { .. }) => too_few,
+            other => Error::NoOverlap {
+                needed: self.least_overlap,
+                found: other.map_or(0.0, |quality| quality.overlap),
+            },
+        }
     }
 
     /// S where enough points overlap; else a wall that leans toward more overlap.
-    fn objective(&self, parameters: &[f64]) -> f64 {
+    pub(crate) fn objective(&self, parameters: &[f64]) -> f64 {
         match self.quality(parameters) {
             Err(_) => 3.0 * SHORT,
             Ok(found) if found.overlap < self.least_overlap || !found.is_connected => {
@@ -145,24 +158,8 @@ impl Collapse<'_> {
         starts: usize,
         seed: u64,
     ) -> Result<CollapseFit, Error> {
-        same_length(start.len(), steps.len())?;
-        checked(start, 1)?;
-        checked_positive(steps)?;
-        let needed = self.least_overlap;
-        ensure(
-            (0.0..=1.0).contains(&needed),
-            Error::Fraction { value: needed },
-        )?;
-        enough(starts, 1)?;
-        let search = |number: u64| {
-            let mut randomness = Randomness::new(seed, number);
-            let place = |(&start, &step): (&f64, &f64)| match number {
-                0 => start,
-                _ => start + step * (4.0 * randomness.uniform() - 2.0),
-            };
-            let place: Vec<f64> = start.iter().zip(steps).map(place).collect();
-            self.search(&place, steps)
-        };
+        self.check(start, steps, starts)?;
+        let search = |number: u64| self.search(&place_of_start(start, steps, seed, number), steps);
         let mut found: Vec<Lowest> = (0..starts as u64).map(search).collect();
         // Stable: of equal ones the first search comes first.
         found.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -171,19 +168,10 @@ impl Collapse<'_> {
             value,
             converged,
         } = found[0].clone();
-        let quality = self.quality(&parameters);
-        if value >= SHORT {
-            return Err(match quality {
-                Err(too_few @ Error::TooFew { .. }) => too_few,
-                other => {
-                    let found = other.map_or(0.0, |quality| quality.overlap);
-                    Error::NoOverlap { needed, found }
-                }
-            });
-        }
+        ensure(value < SHORT, self.no_overlap(&parameters))?;
         Ok(CollapseFit {
+            quality: self.quality(&parameters)?,
             parameters,
-            quality: quality?,
             agreeing: found.partition_point(|other| other.value <= value * 1.01),
             starts,
             converged,
@@ -220,49 +208,6 @@ impl Collapse<'_> {
         summarise(&fit.parameters, estimates)
     }
 
-    /// Range of each parameter in which S, minimal over the others, stays within 1 of its minimum.
-    ///
-    /// The customary error of a collapse. With N points compared N S is a chi^2, so that this is some sqrt(N) standard
-    /// errors where S is near 1: a safe outer bound, no 68 per cent interval. Ends not found within 50 steps are
-    /// infinite; where the overlap falls short counts as an end.
-    ///
-    /// # Errors
-    /// [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
-    pub fn contour(&self, fit: &CollapseFit, steps: &[f64]) -> Result<Vec<Interval>, Error> {
-        same_length(fit.parameters.len(), steps.len())?;
-        checked_positive(steps)?;
-        let best = fit.quality.quality;
-        let without = |column: &[f64], left_out: usize| -> Vec<f64> {
-            let mut rest = column.to_vec();
-            rest.remove(left_out);
-            rest
-        };
-        let end = |axis: usize, side: f64| {
-            let rest_steps = without(steps, axis);
-            // Each search begins where the one before has ended.
-            let mut rest = without(&fit.parameters, axis);
-            let excess = |value: f64| {
-                let all = |rest: &[f64]| {
-                    let mut parameters = rest.to_vec();
-                    parameters.insert(axis, value);
-                    self.objective(&parameters)
-                };
-                let smaller: Vec<f64> = rest_steps.iter().map(|step| 0.3 * step).collect();
-                let evaluations = EVALUATIONS * rest.len().max(1);
-                let found = nelder_mead(all, &rest, &smaller, TOLERANCE, evaluations);
-                if found.value < SHORT {
-                    rest = found.place;
-                }
-                found.value - best - 1.0
-            };
-            let centre = fit.parameters[axis];
-            let limit = centre + side * 50.0 * steps[axis];
-            crossing(excess, centre, 0.25 * steps[axis], limit).unwrap_or(side * f64::INFINITY)
-        };
-        let ends = |axis| Interval::new(end(axis, -1.0), end(axis, 1.0));
-        Ok((0..steps.len()).map(ends).collect())
-    }
-
     /// Fits with one curve left out in turn, in the order of the curves: exponents that hang on one curve move.
     ///
     /// Arguments as for [`fit`](Self::fit). A parameter that belongs to the curve left out keeps whatever value the
@@ -277,25 +222,55 @@ impl Collapse<'_> {
         starts: usize,
         seed: u64,
     ) -> Result<Vec<CollapseFit>, Error> {
-        enough(self.curves.len(), 3)?;
-        (0..self.curves.len())
-            .map(|left_out| {
-                let mut curves = self.curves.to_vec();
-                curves.remove(left_out);
-                let transform = |parameters: &[f64], curve: usize, parameter, point| {
-                    // The place of the curve among all.
-                    let curve = curve + usize::from(curve >= left_out);
-                    (self.transform)(parameters, curve, parameter, point)
-                };
-                let rest = Collapse {
-                    curves: &curves,
-                    transform: &transform,
-                    ..*self
-                };
-                rest.fit(start, steps, starts, seed)
-            })
-            .collect()
+        self.without_each(|rest| rest.fit(start, steps, starts, seed))
     }
+
+    /// An answer for the curves without each in turn.
+    pub(crate) fn without_each<T>(
+        &self,
+        answer: impl Fn(&Collapse<'_>) -> Result<T, Error>,
+    ) -> Result<Vec<T>, Error> {
+        enough(self.curves.len(), 3)?;
+        let without = |left_out: usize| {
+            let mut curves = self.curves.to_vec();
+            curves.remove(left_out);
+            let transform = |parameters: &[f64], curve: usize, parameter, point| {
+                // The place of the curve among all.
+                let curve = curve + usize::from(curve >= left_out);
+                (self.transform)(parameters, curve, parameter, point)
+            };
+            answer(&Collapse {
+                curves: &curves,
+                transform: &transform,
+                ..*self
+            })
+        };
+        (0..self.curves.len()).map(without).collect()
+    }
+
+    /// Refuses what no search can begin with.
+    pub(crate) fn check(&self, start: &[f64], steps: &[f64], starts: usize) -> Result<(), Error> {
+        same_length(start.len(), steps.len())?;
+        checked(start, 1)?;
+        checked_positive(steps)?;
+        let needed = self.least_overlap;
+        ensure(
+            (0.0..=1.0).contains(&needed),
+            Error::Fraction { value: needed },
+        )?;
+        enough(self.curves.len(), 2)?;
+        enough(starts, 1)
+    }
+}
+
+/// Where a search begins: the first at the start, the others within two steps of it.
+pub(crate) fn place_of_start(start: &[f64], steps: &[f64], seed: u64, number: u64) -> Vec<f64> {
+    let mut randomness = Randomness::new(seed, number);
+    let place = |(&start, &step): (&f64, &f64)| match number {
+        0 => start,
+        _ => start + step * (4.0 * randomness.uniform() - 2.0),
+    };
+    start.iter().zip(steps).map(place).collect()
 }
 
 #[cfg(test)]

@@ -376,11 +376,11 @@ pub(crate) struct Search {
     starts: usize,
     seed: u64,
     least_overlap: f64,
-    resamples: usize,
+    correction: Option<f64>,
     leave_one_out: bool,
 }
 
-/// Best parameters with errors: (fit, resampled or None, contour, fits with one curve left out).
+/// Best parameters with errors: (estimate, parameters with one curve left out in turn).
 #[pyfunction]
 pub(crate) fn fit_collapse<'py>(
     py: Python<'py>,
@@ -400,18 +400,16 @@ pub(crate) fn fit_collapse<'py>(
     };
     let work = || {
         let (start, steps) = (&search.start, &search.steps);
-        let fit = collapse.fit(start, steps, search.starts, search.seed)?;
-        let bootstrap = Bootstrap::new(search.resamples, search.seed);
-        let resampled = (search.resamples > 0)
-            .then(|| collapse.bootstrap(&fit, steps, bootstrap))
-            .transpose()?;
-        let contour = collapse.contour(&fit, steps)?;
+        let (starts, seed, correction) = (search.starts, search.seed, search.correction);
+        let found = collapse.estimate(start, steps, starts, seed, correction)?;
+        let values = found.parameters.iter().map(|parameter| parameter.value);
         let left_out = if search.leave_one_out {
-            collapse.leave_one_out(&fit.parameters, steps, search.starts, search.seed)?
+            let best: Vec<f64> = values.collect();
+            collapse.estimates_without_each(&best, steps, starts, seed, correction)?
         } else {
             Vec::new()
         };
-        Ok((fit, resampled, contour, left_out))
+        Ok((found, left_out))
     };
     let outcome = work();
     let found = scheme.outcome(outcome)?;

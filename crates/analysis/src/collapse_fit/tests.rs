@@ -85,12 +85,6 @@ fn exponents_and_the_line_of_critical_widths_are_found_together() {
     for (found, truth) in fit.parameters.iter().zip([3.5, 1.5, -3.75, 3.02]) {
         assert!((found - truth).abs() < 0.08 * truth.abs(), "{fit:?}");
     }
-    let contour = collapse.contour(&fit, &steps).unwrap();
-    for (ends, truth) in contour.iter().zip([3.5, 1.5, -3.75, 3.02]) {
-        assert!(ends.contains(truth), "{contour:?}");
-    }
-    // The critical widths are sharp; the exponents hang together and are less so.
-    assert!(contour[3].length() < 0.01 && contour[0].length() > 0.5);
 }
 
 #[test]

@@ -6,4 +6,5 @@
 pub(crate) mod gamma;
 pub(crate) mod linear;
 pub(crate) mod minimum;
+pub(crate) mod quasi_newton;
 pub(crate) mod simplex;

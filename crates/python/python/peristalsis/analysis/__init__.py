@@ -19,7 +19,7 @@ The quality S of Houdayer & Hartmann, Phys. Rev. B 70, 014418 (2004): near 1 whe
 A collapse must keep curves overlapping, so that a search cannot win by pulling them apart.
 """
 
-from ._collapse import Collapse, CollapseFit, CollapseQuality, CollapseResult, Resampled
+from ._collapse import Collapse, CollapseEstimate, CollapseQuality, CollapseResult
 from ._columns import Interval, Uncertain
 from ._laws import (
     LawEvidence,
@@ -79,7 +79,7 @@ from ._transitions import (
 __all__ = [
     "AutocorrelationTime",
     "Collapse",
-    "CollapseFit",
+    "CollapseEstimate",
     "CollapseQuality",
     "CollapseResult",
     "CurveFit",
@@ -97,7 +97,6 @@ __all__ = [
     "MomentPeak",
     "Moments",
     "Peak",
-    "Resampled",
     "RestrictedMoments",
     "ScatterLawFit",
     "SecondMoment",

@@ -52,22 +52,28 @@ class CollapseQuality:
 
 
 @dataclass(frozen=True)
-class CollapseFit:
-    """Best parameters of a scaling.
+class CollapseEstimate:
+    """Parameters of a scaling with intervals, and whether they can be trusted.
 
     Attributes
     ----------
-    parameters : tuple[float, ...]
-        Parameters, in the order of the scaling.
+    parameters : tuple[Uncertain, ...]
+        Parameters, in the order of the scaling; intervals from the profile of the likelihood, infinite to a side that the
+        points leave open.
+    correction : float or None
+        Power of the curves' parameter in the correction to scaling that was allowed for, if one was.
     quality : CollapseQuality
-        Quality and overlap of the collapse.
+        Quality S and overlap of the collapse there; S knows no correction.
+    stretch : float
+        Factor by which the errors are stretched, 1 at least: how much more the points scatter than their errors say.
     agreeing : int
-        Starts whose search ended at this minimum to within 1 per cent of S, of all starts: few say that there are
-        others.
+        Searches that ended here, of all.
     starts : int
         Searches made.
-    converged : bool
-        Whether the best search converged.
+    trusted : bool
+        Whether there is no doubt.
+    doubts : tuple[str, ...]
+        Reasons not to trust the parameters or their errors, in words.
 
     Examples
     --------
@@ -76,47 +82,19 @@ class CollapseFit:
     >>> x = np.linspace(-0.5, 0.5, 21)
     >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
     >>> collapse = analysis.Collapse(curves, "finite_size")
-    >>> fit = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2, resamples=0).fit
-    >>> [round(value, 1) for value in fit.parameters], fit.starts
+    >>> estimate = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2).estimate
+    >>> [round(parameter.value, 1) for parameter in estimate.parameters], estimate.starts
     ([0.5, 1.0, 0.0], 2)
     """
 
-    parameters: tuple[float, ...]
+    parameters: tuple[Uncertain, ...]
+    correction: float | None
     quality: CollapseQuality
+    stretch: float
     agreeing: int
     starts: int
-    converged: bool
-
-
-@dataclass(frozen=True)
-class Resampled:
-    """Estimates from resampled data.
-
-    Attributes
-    ----------
-    estimates : tuple[Uncertain, ...]
-        The estimates with their bootstrap errors and percentile intervals.
-    succeeded : int
-        Resamples that gave estimates.
-    failed : int
-        Resamples that did not, such as those left without a transition. Where these are more than a few, the
-        intervals are too short.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> from peristalsis import analysis
-    >>> x = np.linspace(-0.5, 0.5, 21)
-    >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
-    >>> collapse = analysis.Collapse(curves, "finite_size")
-    >>> resampled = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=1, resamples=20).resampled
-    >>> len(resampled.estimates), resampled.succeeded + resampled.failed
-    (3, 20)
-    """
-
-    estimates: tuple[Uncertain, ...]
-    succeeded: int
-    failed: int
+    trusted: bool
+    doubts: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -128,20 +106,22 @@ class CollapseResult:
     parameters : tuple of float
         The best.
     errors : tuple of float
-        Standard errors from resampled ordinates; NaN where none were resampled. Right where `quality` is near 1.
+        Standard errors: half the intervals of 68 per cent; infinite where the points leave a parameter open.
+    intervals : tuple of Interval
+        Intervals that cover the truth in 95 per cent of repetitions.
+    trusted : bool
+        Whether parameters and errors can be trusted.
+    doubts : tuple of str
+        If not, why.
     quality : float
         S: mean squared deviation from the common curve over its variance; near 1 where the curves agree.
     overlap : float
         Part of the points that were compared with other curves.
-    contour : tuple of Interval
-        Range of each parameter in which S stays within 1 of its minimum, the others free: a safe outer bound.
     leave_one_out : ndarray
         Parameters with each curve left out in turn, shape (curves, parameters); empty unless asked for. Exponents that
         hang on one curve move.
-    fit : CollapseFit
-        The whole of what the search answered.
-    resampled : Resampled or None
-        The whole of what the resampling answered.
+    estimate : CollapseEstimate
+        The whole of what was found.
 
     Examples
     --------
@@ -150,19 +130,20 @@ class CollapseResult:
     >>> x = np.linspace(-0.5, 0.5, 21)
     >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
     >>> collapse = analysis.Collapse(curves, "finite_size")
-    >>> found = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2, resamples=20)
+    >>> found = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2)
     >>> [round(value, 1) for value in found.parameters], found.overlap > 0.5
     ([0.5, 1.0, 0.0], True)
     """
 
     parameters: tuple[float, ...]
     errors: tuple[float, ...]
+    intervals: tuple[Interval, ...]
+    trusted: bool
+    doubts: tuple[str, ...]
     quality: float
     overlap: float
-    contour: tuple[Interval, ...]
     leave_one_out: Array
-    fit: CollapseFit
-    resampled: Resampled | None
+    estimate: CollapseEstimate
 
 
 class Collapse:
@@ -191,7 +172,7 @@ class Collapse:
     >>> x = np.arange(9.0)
     >>> curves = [(p, x, p * x, np.full(9, 0.1)) for p in (1.0, 2.0)]
     >>> collapse = Collapse(curves, lambda a, p, x, y, e: (x, y * p ** -a[0], e))
-    >>> round(collapse.fit([0.5], [0.2], starts=1, resamples=0).parameters[0], 2)
+    >>> round(collapse.fit([0.5], [0.2], starts=1).parameters[0], 2)
     1.0
     """
 
@@ -216,10 +197,14 @@ class Collapse:
         *,
         starts: int = 8,
         seed: int = 0,
-        resamples: int = 100,
+        correction: float | Literal["usual"] | None = "usual",
         leave_one_out: bool = False,
     ) -> CollapseResult:
-        """Search for the best parameters.
+        """Parameters under which all points lie best on one smooth curve, with intervals that cover.
+
+        Y = f(X) + p^c g(X) + noise for the scaled points (X, Y): f and g are any smooth curves, integrated out, so that
+        what the common curve does between the points is part of the error. Intervals are those of the profile of the
+        likelihood; errors that are smaller than the scatter of the points are stretched.
 
         Parameters
         ----------
@@ -228,16 +213,18 @@ class Collapse:
         starts : int
             Searches, the others from random places within two steps of `start`.
         seed : int
-            Of these and of the resamples.
-        resamples : int
-            Resampled sets of ordinates for the errors, 20 at least; 0 for none.
+            Of these places.
+        correction : float, "usual" or None
+            Power c of p in the correction to scaling p^c g(X) that is allowed for: -1 for sizes, 1 for strain rates is
+            usual (``"finite_size"`` and functions, the critical scalings). None says that there is none: errors are then
+            several times smaller, and wrong if there is one, which no test can rule out.
         leave_one_out : bool
             Whether to repeat the search without each curve in turn.
 
         Returns
         -------
         CollapseResult
-            Parameters with errors, and what to judge them by.
+            Parameters with errors, what to judge them by, and whether to trust them.
 
         Raises
         ------
@@ -252,36 +239,33 @@ class Collapse:
         >>> x = np.linspace(-0.5, 0.5, 21)
         >>> curves = [(size, x, size**-0.5 / (1 + np.exp(x * size)), np.full(21, 0.003)) for size in (4.0, 8.0, 16.0)]
         >>> collapse = analysis.Collapse(curves, "finite_size")
-        >>> found = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2, resamples=0)
+        >>> found = collapse.fit([0.4, 0.9, 0.0], [0.1, 0.1, 0.02], starts=2)
         >>> [round(value, 1) for value in found.parameters]
         [0.5, 1.0, 0.0]
         """
+        if correction == "usual":
+            correction = -1.0 if callable(self.scaling) or self.scaling == "finite_size" else 1.0
         search = {
             "start": [float(value) for value in start],
             "steps": [float(value) for value in steps],
             "starts": int(starts),
             "seed": int(seed),
             "least_overlap": self.least_overlap,
-            "resamples": int(resamples),
+            "correction": None if correction is None else float(correction),
             "leave_one_out": bool(leave_one_out),
         }
-        found, scatter, contour, left_out = _core.fit_collapse(self.curves, self.scaling, search)
-        fit = result(CollapseFit, found)
-        resampled = None if scatter is None else result(Resampled, scatter)
-        errors = (
-            (float("nan"),) * len(fit.parameters)
-            if resampled is None
-            else tuple(estimate.error for estimate in resampled.estimates)
-        )
+        found, left_out = _core.fit_collapse(self.curves, self.scaling, search)
+        estimate = result(CollapseEstimate, found)
         return CollapseResult(
-            parameters=fit.parameters,
-            errors=errors,
-            quality=fit.quality.quality,
-            overlap=fit.quality.overlap,
-            contour=tuple(result(Interval, interval) for interval in contour),
-            leave_one_out=np.array([other["parameters"] for other in left_out], dtype=np.float64),
-            fit=fit,
-            resampled=resampled,
+            parameters=tuple(parameter.value for parameter in estimate.parameters),
+            errors=tuple(parameter.error for parameter in estimate.parameters),
+            intervals=tuple(parameter.interval_95 for parameter in estimate.parameters),
+            trusted=estimate.trusted,
+            doubts=estimate.doubts,
+            quality=estimate.quality.quality,
+            overlap=estimate.quality.overlap,
+            leave_one_out=np.array(left_out, dtype=np.float64),
+            estimate=estimate,
         )
 
     def quality(self, parameters: Sequence[float]) -> CollapseQuality:

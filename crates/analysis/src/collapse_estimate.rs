@@ -1,0 +1,511 @@
+//! The parameters of a scaling with errors that hold, or with the reasons not to trust them.
+
+use crate::collapse::CollapseQuality;
+use crate::collapse_fit::{Collapse, SHORT, place_of_start};
+use crate::error::{Error, checked_positive, enough};
+use crate::master_curve::{Scaled, Smooth};
+use crate::number::plain;
+use crate::numerics::gamma::chi_squared_tail;
+use crate::numerics::quasi_newton::{Smallest, quasi_newton};
+use crate::numerics::simplex::nelder_mead;
+use crate::uncertain::{Interval, NARROW, Uncertain, WIDE};
+use serde::{Deserialize, Serialize};
+use std::cell::RefCell;
+
+/// Distance, in errors, that a point counts with which the scaling sends to infinity.
+const LOST: f64 = 5.0;
+/// ln of the stiffness of the common curve: where its search begins, its step and its bounds.
+const STIFFNESS: (f64, f64) = (2.0, 2.0);
+const STIFFNESSES: std::ops::RangeInclusive<f64> = -20.0..=16.0;
+/// Evaluations of the coarse search from one start, for each parameter.
+const EVALUATIONS: usize = 80;
+/// Steps from the best value within which an end of an interval is sought.
+const REACH: f64 = 50.0;
+/// Most places at which an end is sought once it is enclosed.
+const MOST_CUTS: u32 = 12;
+/// Most times that a better place is followed up.
+const MOST_ROUNDS: u32 = 8;
+/// Factor of the errors from which on one curve does not describe the points.
+const MOST_STRETCH: f64 = 3.0;
+/// Probability below which the curves count as different from one another.
+const UNLIKELY: f64 = 0.02;
+
+/// Parameters of a scaling by the likelihood of one common curve, with intervals, and whether they can be trusted.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CollapseEstimate {
+    /// Parameters, in the order of the scaling.
+    pub parameters: Vec<Uncertain>,
+    /// Power of the curves' parameter in the correction that was allowed for, if one was.
+    pub correction: Option<f64>,
+    /// Quality S and overlap of the collapse there; S knows no correction.
+    pub quality: CollapseQuality,
+    /// Factor by which the errors are stretched, 1 at least: how much more the points scatter than their errors say.
+    pub stretch: f64,
+    /// Searches that ended here, of all.
+    pub agreeing: usize,
+    /// Searches made.
+    pub starts: usize,
+    /// Whether there is no doubt.
+    pub trusted: bool,
+    /// Reasons not to trust the parameters or their errors, in words.
+    pub doubts: Vec<String>,
+}
+
+/// The likelihood of a scaling: of points with normal errors about one smooth curve. The parameters are those of the
+/// scaling and, last, ln of the stiffness.
+#[derive(Clone, Copy)]
+struct Likelihood<'a> {
+    collapse: &'a Collapse<'a>,
+    steps: &'a [f64],
+    correction: Option<f64>,
+}
+
+impl<'a> Likelihood<'a> {
+    fn new(
+        collapse: &'a Collapse<'a>,
+        steps: &'a [f64],
+        correction: Option<f64>,
+    ) -> Result<Self, Error> {
+        if correction.is_some() {
+            let parameters = collapse.curves.iter().map(|curve| curve.parameter);
+            checked_positive(&parameters.collect::<Vec<_>>())?;
+        }
+        let new = Self {
+            collapse,
+            steps,
+            correction,
+        };
+        enough(new.points(), Smooth::free(correction) + steps.len() + 4)?;
+        Ok(new)
+    }
+
+    /// The smooth curve at some parameters and the points that the scaling sends to infinity; `None` where too few
+    /// overlap.
+    fn curve(&self, parameters: &[f64]) -> Option<(Smooth, usize)> {
+        let (&ln_stiffness, parameters) = parameters.split_last()?;
+        if self.collapse.objective(parameters) >= SHORT || !STIFFNESSES.contains(&ln_stiffness) {
+            return None;
+        }
+        let curves = self.collapse.curves.iter();
+        let curves = curves.zip(self.collapse.scaled(parameters));
+        let points = curves.flat_map(|(curve, points)| {
+            let parameter = curve.parameter;
+            let of_curve = move |point| Scaled { parameter, point };
+            points.into_iter().map(of_curve)
+        });
+        let (usable, lost): (Vec<Scaled>, Vec<Scaled>) =
+            points.partition(|scaled| scaled.point.is_usable());
+        let curve = Smooth::of(&usable, ln_stiffness, self.correction)?;
+        Some((curve, lost.len()))
+    }
+
+    fn points(&self) -> usize {
+        self.collapse
+            .curves
+            .iter()
+            .map(|curve| curve.points.len())
+            .sum()
+    }
+
+    /// Points less the coefficients of the curve that smoothness leaves free.
+    fn degrees_of_freedom(&self) -> f64 {
+        (self.points() - Smooth::free(self.correction)) as f64
+    }
+
+    /// Squares of the distances over their degrees of freedom.
+    fn variance(&self, curve: &Smooth, lost: usize) -> f64 {
+        (curve.squares + LOST * LOST * lost as f64) / self.degrees_of_freedom()
+    }
+
+    /// -2 ln likelihood, with errors stretched by the best factor of 1 or more; infinite where too few points overlap.
+    fn value(&self, parameters: &[f64]) -> f64 {
+        let Some((curve, lost)) = self.curve(parameters) else {
+            return f64::INFINITY;
+        };
+        let variance = self.variance(&curve, lost);
+        let misfit = match variance > 1.0 {
+            true => 1.0 + libm::log(variance),
+            false => variance,
+        };
+        self.degrees_of_freedom() * misfit + curve.ln_volume
+    }
+
+    /// The same for a coarse search, that finds its way back to where enough points overlap.
+    fn value_or_wall(&self, parameters: &[f64]) -> f64 {
+        let value = self.value(parameters);
+        match value.is_finite() {
+            true => value,
+            false => self
+                .collapse
+                .objective(&parameters[..parameters.len() - 1])
+                .max(SHORT),
+        }
+    }
+
+    fn settle(&self, start: &[f64]) -> Option<Smallest> {
+        polished(|parameters| self.value(parameters), start, self.steps)
+    }
+
+    /// The smallest value with one parameter held, from the others' values.
+    fn settle_beside(&self, axis: usize, held: f64, rest: &[f64]) -> Option<Smallest> {
+        let mut steps = self.steps.to_vec();
+        steps.remove(axis);
+        let all = |rest: &[f64]| {
+            let mut parameters = rest.to_vec();
+            parameters.insert(axis, held);
+            self.value(&parameters)
+        };
+        polished(all, rest, &steps)
+    }
+}
+
+/// A minimum from which a fresh search leads no further.
+fn polished(function: impl Fn(&[f64]) -> f64, start: &[f64], steps: &[f64]) -> Option<Smallest> {
+    let mut best = quasi_newton(&function, start, steps)?;
+    for _ in 0..MOST_ROUNDS {
+        let again = quasi_newton(&function, &best.place, steps)?;
+        let gain = best.value - again.value;
+        best = again;
+        if gain < 1e-3 {
+            break;
+        }
+    }
+    Some(best)
+}
+
+/// A place found, with what its intervals are made of.
+struct Found<'a> {
+    likelihood: Likelihood<'a>,
+    best: Smallest,
+    others: Vec<Smallest>,
+}
+
+impl<'a> Found<'a> {
+    /// The best place by searches from several starts.
+    fn search(
+        likelihood: Likelihood<'a>,
+        start: &[f64],
+        starts: usize,
+        seed: u64,
+    ) -> Result<Self, Error> {
+        let start = [start, &[STIFFNESS.0]].concat();
+        let steps = likelihood.steps;
+        let places = (0..starts as u64).map(|number| {
+            let place = place_of_start(&start, steps, seed, number);
+            let evaluations = EVALUATIONS * start.len();
+            nelder_mead(
+                |p| likelihood.value_or_wall(p),
+                &place,
+                steps,
+                1e-2,
+                evaluations,
+            )
+            .place
+        });
+        let places: Vec<Vec<f64>> = places.collect();
+        let settled = places.iter().filter_map(|place| likelihood.settle(place));
+        let mut others: Vec<Smallest> = settled.collect();
+        // Stable: of equal ones the first search comes first.
+        others.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let best = others.first().cloned();
+        let ended = &places[0][..start.len() - 1];
+        let best = best.ok_or_else(|| likelihood.collapse.no_overlap(ended))?;
+        Ok(Self {
+            likelihood,
+            best,
+            others,
+        })
+    }
+
+    /// End of an interval of a parameter, so many standard deviations to a side, by the profile of the likelihood;
+    /// infinite where the points leave it open. A better place that is met on the way goes to `better`.
+    fn end(&self, axis: usize, deviations: f64, better: &RefCell<Option<Smallest>>) -> f64 {
+        let mut rest = self.best.place.clone();
+        let centre = rest.remove(axis);
+        // Standard deviations from the best value: about linear in the distance.
+        let mut deviations_at = |distance: f64| {
+            let value = centre + distance * deviations.signum();
+            let Some(found) = self.likelihood.settle_beside(axis, value, &rest) else {
+                return f64::INFINITY;
+            };
+            rest.clone_from(&found.place);
+            if found.value < self.best.value - 0.02 && better.borrow().is_none() {
+                let mut place = found.place;
+                place.insert(axis, value);
+                better.replace(self.likelihood.settle(&place));
+            }
+            (found.value - self.best.value).max(0.0).sqrt()
+        };
+        let wanted = deviations.abs();
+        let step = self.likelihood.steps[axis];
+        let error = (2.0 * self.best.inverse[axis][axis]).max(0.0).sqrt();
+        let (mut near, mut at_near) = (0.0, 0.0);
+        let mut far = wanted * error.clamp(1e-3 * step, 5.0 * step);
+        let mut at_far = deviations_at(far);
+        while at_far < wanted {
+            if far > REACH * step {
+                return deviations.signum() * f64::INFINITY;
+            }
+            (near, at_near) = (far, at_far);
+            far *= 1.6;
+            at_far = deviations_at(far);
+        }
+        for _ in 0..MOST_CUTS {
+            let share = match at_far.is_finite() {
+                true => ((wanted - at_near) / (at_far - at_near)).clamp(0.05, 0.95),
+                false => 0.5,
+            };
+            let between = near + share * (far - near);
+            let found = deviations_at(between);
+            if found < wanted {
+                (near, at_near) = (between, found);
+            } else {
+                (far, at_far) = (between, found);
+            }
+            if (found - wanted).abs() < 0.01 * wanted {
+                return centre + between * deviations.signum();
+            }
+        }
+        // Where the curves stop overlapping the likelihood ends, but the points have not said so.
+        match at_far.is_finite() {
+            true => centre + far * deviations.signum(),
+            false => deviations.signum() * f64::INFINITY,
+        }
+    }
+
+    /// Value and intervals of every parameter, or a better place.
+    fn intervals(&self) -> Result<Vec<Uncertain>, Smallest> {
+        let better = RefCell::new(None);
+        let mut found = Vec::new();
+        for axis in 0..self.best.place.len() - 1 {
+            let interval = |deviations: f64| {
+                let [lower, upper] =
+                    [-deviations, deviations].map(|end| self.end(axis, end, &better));
+                Interval::new(lower, upper)
+            };
+            let intervals = [interval(NARROW), interval(WIDE)];
+            if let Some(better) = better.take() {
+                return Err(better);
+            }
+            found.push(Uncertain::between(self.best.place[axis], intervals));
+        }
+        Ok(found)
+    }
+
+    /// Probability that the curves, but for chance, differ as much as they do from one of this form. Their distances
+    /// shrink where a correction that fades for large or for small parameters is allowed for: by how much is judged.
+    fn chance_of_differences(&self) -> f64 {
+        let Some((&ln_stiffness, place)) = self.best.place.split_last() else {
+            return 1.0;
+        };
+        let steps = &self.likelihood.steps[..place.len()];
+        let squares = |correction| {
+            let wider = Likelihood {
+                correction,
+                ..self.likelihood
+            };
+            let of = |place: &[f64]| {
+                let all = [place, &[ln_stiffness]].concat();
+                wider.curve(&all).map_or(f64::INFINITY, |(curve, lost)| {
+                    wider.variance(&curve, lost) * wider.degrees_of_freedom()
+                })
+            };
+            Some((
+                polished(of, place, steps)?.value,
+                wider.degrees_of_freedom(),
+            ))
+        };
+        let chance = |power| -> Option<f64> {
+            let (now, free) = squares(self.likelihood.correction)?;
+            let (then, left) = squares(Some(power))?;
+            let unknown = place.len() as f64;
+            // Height and slope of the correction, and about as much again of its further course.
+            let more = 2 * (free - left) as usize;
+            let ratio = libm::log((now / then).max(1.0));
+            (more > 0 && left > unknown).then(|| chi_squared_tail((left - unknown) * ratio, more))
+        };
+        let chances = [-1.0, 1.0].map(|power| chance(power).unwrap_or(1.0));
+        2.0 * chances[0].min(chances[1])
+    }
+
+    /// Why not to trust the parameters.
+    fn doubts(&self, parameters: &[Uncertain]) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let curves = self.likelihood.collapse.curves.len();
+        if curves < 3 {
+            doubts.push(
+                "two curves can be made to agree in many ways: take three or more".to_owned(),
+            );
+        }
+        for (place, parameter) in parameters.iter().enumerate() {
+            let Interval { lower, upper } = parameter.interval_95;
+            if !lower.is_finite() || !upper.is_finite() {
+                let number = place + 1;
+                doubts.push(format!(
+                    "the points leave parameter {number} open: the curves collapse as well at other values, with the other parameters changed to suit"
+                ));
+            }
+        }
+        let is_far = |other: &Smallest| {
+            let mut pairs = other.place.iter().zip(parameters);
+            pairs.any(|(&value, parameter)| !parameter.interval_95.contains(value))
+        };
+        let as_good = |other: &&Smallest| other.value < self.best.value + WIDE * WIDE;
+        if let Some(other) = self
+            .others
+            .iter()
+            .filter(as_good)
+            .find(|other| is_far(other))
+        {
+            let place: Vec<String> = other.place[..parameters.len()]
+                .iter()
+                .map(|&one| plain(one))
+                .collect();
+            doubts.push(format!(
+                "the curves collapse nearly as well elsewhere, at {}",
+                place.join(", ")
+            ));
+        }
+        if self.others.len() > 3 && self.agreeing() < 2 {
+            doubts.push(
+                "only one of the searches ended here: begin closer to it, or with more starts"
+                    .to_owned(),
+            );
+        }
+        let Some((curve, lost)) = self.likelihood.curve(&self.best.place) else {
+            return doubts;
+        };
+        if lost > 0 {
+            doubts.push(format!(
+                "{lost} points lie beyond the critical value, or have no scaled value"
+            ));
+        }
+        let stretch = self.likelihood.variance(&curve, lost).sqrt();
+        if stretch > MOST_STRETCH {
+            doubts.push(format!(
+                "the points lie {stretch:.1} times as far from one curve as their errors say: the scaling does not hold, or the errors are wrong"
+            ));
+        }
+        if self.likelihood.correction.is_none() && self.chance_of_differences() < UNLIKELY {
+            doubts.push(
+                "the curves differ from one another by more than chance: allow for a correction to scaling, or leave out small systems"
+                    .to_owned(),
+            );
+        }
+        doubts
+    }
+
+    /// Searches that ended at the best place.
+    fn agreeing(&self) -> usize {
+        let is_near = |other: &&Smallest| other.value <= self.best.value + 0.1;
+        self.others.iter().filter(is_near).count()
+    }
+}
+
+impl<'a> Collapse<'a> {
+    /// Parameters under which all points lie best on one smooth curve, with intervals from the profile of the likelihood.
+    ///
+    /// `Y = f(X) + p^c g(X) + noise`
+    ///
+    /// for the scaled points (X, Y), with smooth curves f and g: cubic splines whose bends are normal random numbers,
+    /// integrated out, of a variance that is fitted too. What the curve does between and beyond the points is
+    /// thus part of the error, and curves that are pulled apart gain nothing. The term in g, a correction to scaling of
+    /// the power c = `correction` of the curves' parameter p, is there if asked for: below 0 it fades for large p
+    /// (sizes), above 0 for small p (strain rates). An interval ends where -2 ln likelihood, minimal over all else, has
+    /// risen by 1 or by 1.96^2; the noise is the error of each point, stretched by a common factor of 1 or more, fitted too.
+    /// A side that the points leave open is infinite.
+    ///
+    /// `start`, `steps`, `starts` and `seed` as for [`fit`](Self::fit), which minimises S instead. Without a correction
+    /// the errors hold only where there is none: a small one hides in the exponents, and no test finds it. Look at
+    /// [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704 (2011).
+    ///
+    /// # Errors
+    /// Those of [`fit`](Self::fit); [`Error::TooFew`] with fewer points than curve and parameters need,
+    /// [`Error::NotPositive`] for a parameter of a curve with a correction, [`Error::Undetermined`] where the search
+    /// does not settle.
+    ///
+    /// ```
+    /// use peristalsis_analysis::{Collapse, Curve, CurvePoint};
+    /// // y = p x^2: curves of p = 1, 2 and 4 collapse as y/p^a with a = 1.
+    /// let point = |p: f64, x: f64| CurvePoint { x, y: p * x * x, error: 0.1 };
+    /// let curve = |p: f64| Curve {
+    ///     parameter: p,
+    ///     points: (0..9).map(|k| point(p, f64::from(k))).collect(),
+    /// };
+    /// let curves = [curve(1.0), curve(2.0), curve(4.0)];
+    /// let collapse = Collapse {
+    ///     curves: &curves,
+    ///     transform: &|parameters, _, p, point| {
+    ///         let factor = libm::pow(p, -parameters[0]);
+    ///         CurvePoint { x: point.x, y: point.y * factor, error: point.error * factor }
+    ///     },
+    ///     least_overlap: 0.5,
+    /// };
+    /// let found = collapse.estimate(&[0.8], &[0.2], 4, 0, None)?;
+    /// assert!((found.parameters[0].value - 1.0).abs() < 1e-3);
+    /// assert!(found.trusted, "{:?}", found.doubts);
+    /// # Ok::<(), peristalsis_analysis::Error>(())
+    /// ```
+    pub fn estimate(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        starts: usize,
+        seed: u64,
+        correction: Option<f64>,
+    ) -> Result<CollapseEstimate, Error> {
+        self.check(start, steps, starts)?;
+        let all_steps = [steps, &[STIFFNESS.1]].concat();
+        let likelihood = Likelihood::new(self, &all_steps, correction)?;
+        let mut found = Found::search(likelihood, start, starts, seed)?;
+        let mut rounds = 0;
+        let parameters = loop {
+            match found.intervals() {
+                Ok(parameters) => break parameters,
+                Err(better) if rounds < MOST_ROUNDS => found.best = better,
+                Err(_) => return Err(Error::undetermined(likelihood.points(), steps.len())),
+            }
+            rounds += 1;
+        };
+        let doubts = found.doubts(&parameters);
+        let stretch = likelihood.curve(&found.best.place);
+        let stretch = stretch.map_or(1.0, |(curve, lost)| likelihood.variance(&curve, lost));
+        Ok(CollapseEstimate {
+            quality: self.quality(&found.best.place[..steps.len()])?,
+            parameters,
+            correction,
+            stretch: stretch.max(1.0).sqrt(),
+            agreeing: found.agreeing(),
+            starts,
+            trusted: doubts.is_empty(),
+            doubts,
+        })
+    }
+
+    /// The best parameters of [`estimate`](Self::estimate) with one curve left out in turn, in the order of the curves:
+    /// exponents that hang on one curve move. Two curves that are left are taken without a correction.
+    ///
+    /// # Errors
+    /// [`Error::TooFew`] below 3 curves; those of [`estimate`](Self::estimate) for any of the fits.
+    pub fn estimates_without_each(
+        &self,
+        start: &[f64],
+        steps: &[f64],
+        starts: usize,
+        seed: u64,
+        correction: Option<f64>,
+    ) -> Result<Vec<Vec<f64>>, Error> {
+        self.check(start, steps, starts)?;
+        let all_steps = [steps, &[STIFFNESS.1]].concat();
+        self.without_each(|rest| {
+            let correction = correction.filter(|_| rest.curves.len() > 2);
+            let likelihood = Likelihood::new(rest, &all_steps, correction)?;
+            let mut place = Found::search(likelihood, start, starts, seed)?.best.place;
+            place.truncate(start.len());
+            Ok(place)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

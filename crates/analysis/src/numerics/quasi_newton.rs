@@ -1,0 +1,177 @@
+//! Minimum of a smooth function of several variables, by its slopes.
+
+/// Place of a minimum, with the inverse of the matrix of second derivatives there.
+#[derive(Clone, Debug)]
+pub(crate) struct Smallest {
+    pub(crate) place: Vec<f64>,
+    pub(crate) value: f64,
+    pub(crate) inverse: Vec<Vec<f64>>,
+}
+
+/// Most steps of a search.
+const MOST_STEPS: u32 = 80;
+/// Gain in value, of a step and of what the slope promises, that ends a search.
+const GAIN: f64 = 1e-5;
+/// Part of a step over which a slope is taken.
+const DIFFERENCE: f64 = 1e-4;
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Local minimum by the method of Broyden, Fletcher, Goldfarb & Shanno (Nocedal & Wright, Numerical Optimization
+/// (2006), chapter 6), with slopes from central differences.
+///
+/// `steps` scale the variables. Where the function is not a number or infinite the search does not go; `None` where it
+/// begins there.
+pub(crate) fn quasi_newton(
+    function: impl Fn(&[f64]) -> f64,
+    start: &[f64],
+    steps: &[f64],
+) -> Option<Smallest> {
+    let dimensions = start.len();
+    let at = |scaled: &[f64]| {
+        let place = scaled.iter().zip(start).zip(steps);
+        let place: Vec<f64> = place
+            .map(|((offset, start), step)| start + offset * step)
+            .collect();
+        function(&place)
+    };
+    let slope_at = |offset: &[f64], here: f64| -> Vec<f64> {
+        let slope = |axis: usize| {
+            let mut offset = offset.to_vec();
+            let mut moved = |by: f64| {
+                let kept = offset[axis];
+                offset[axis] += by;
+                let value = at(&offset);
+                offset[axis] = kept;
+                value
+            };
+            let [up, down] = [moved(DIFFERENCE), moved(-DIFFERENCE)];
+            match [up.is_finite(), down.is_finite()] {
+                [true, true] => (up - down) / (2.0 * DIFFERENCE),
+                [true, false] => (up - here) / DIFFERENCE,
+                [false, true] => (here - down) / DIFFERENCE,
+                [false, false] => 0.0,
+            }
+        };
+        (0..dimensions).map(slope).collect()
+    };
+    let identity = |scale: f64| -> Vec<Vec<f64>> {
+        let row = |row| {
+            (0..dimensions)
+                .map(|k| if k == row { scale } else { 0.0 })
+                .collect()
+        };
+        (0..dimensions).map(row).collect()
+    };
+    let mut offset = vec![0.0; dimensions];
+    let mut value = Some(at(&offset)).filter(|value| value.is_finite())?;
+    let mut slope = slope_at(&offset, value);
+    let mut inverse = identity(1.0 / dot(&slope, &slope).sqrt().max(10.0));
+    let mut is_fresh = true;
+    for _ in 0..MOST_STEPS {
+        let mut step: Vec<f64> = inverse.iter().map(|row| -dot(row, &slope)).collect();
+        let longest = step
+            .iter()
+            .fold(0.0, |longest: f64, one| longest.max(one.abs()));
+        if longest > 3.0 {
+            step.iter_mut().for_each(|one| *one *= 3.0 / longest);
+        }
+        let promised = dot(&step, &slope);
+        let mut fraction = 1.0;
+        let accepted = loop {
+            let moved = offset
+                .iter()
+                .zip(&step)
+                .map(|(offset, step)| offset + fraction * step);
+            let moved: Vec<f64> = moved.collect();
+            let there = at(&moved);
+            if there.is_finite() && there <= value + 1e-4 * fraction * promised {
+                break Some((moved, there));
+            }
+            fraction *= 0.3;
+            if fraction < 1e-6 {
+                break None;
+            }
+        };
+        let Some((moved, there)) = accepted else {
+            if is_fresh {
+                break;
+            }
+            inverse = identity(1.0 / dot(&slope, &slope).sqrt().max(10.0));
+            is_fresh = true;
+            continue;
+        };
+        let gain = value - there;
+        let next = slope_at(&moved, there);
+        let change: Vec<f64> = next
+            .iter()
+            .zip(&slope)
+            .map(|(next, slope)| next - slope)
+            .collect();
+        let way: Vec<f64> = moved
+            .iter()
+            .zip(&offset)
+            .map(|(to, from)| to - from)
+            .collect();
+        let bend = dot(&change, &way);
+        if bend > 1e-12 {
+            if is_fresh {
+                inverse = identity(bend / dot(&change, &change));
+            }
+            is_fresh = false;
+            let turned: Vec<f64> = inverse.iter().map(|row| dot(row, &change)).collect();
+            let scale = 1.0 + dot(&change, &turned) / bend;
+            for (row, entries) in inverse.iter_mut().enumerate() {
+                for (column, entry) in entries.iter_mut().enumerate() {
+                    let mixed = turned[row] * way[column] + way[row] * turned[column];
+                    *entry += (scale * way[row] * way[column] - mixed) / bend;
+                }
+            }
+        }
+        (offset, value, slope) = (moved, there, next);
+        if gain <= GAIN && promised.abs() <= 10.0 * GAIN {
+            break;
+        }
+    }
+    let place = offset.iter().zip(start).zip(steps);
+    let place = place
+        .map(|((offset, start), step)| start + offset * step)
+        .collect();
+    for (row, entries) in inverse.iter_mut().enumerate() {
+        for (column, entry) in entries.iter_mut().enumerate() {
+            *entry *= steps[row] * steps[column];
+        }
+    }
+    Some(Smallest {
+        place,
+        value,
+        inverse,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bent_valley_of_rosenbrock_and_its_curvature() {
+        let valley = |p: &[f64]| {
+            let (across, along) = (p[1] - p[0] * p[0], 1.0 - p[0]);
+            100.0 * across * across + along * along
+        };
+        let found = quasi_newton(valley, &[-1.2, 1.0], &[0.5, 0.5]).unwrap();
+        assert!(
+            (found.place[0] - 1.0).abs() < 1e-2 && (found.place[1] - 1.0).abs() < 2e-2,
+            "{found:?}"
+        );
+        // The inverse of (802 -400; -400 200) is (0.5 1; 1 2.005).
+        assert!(
+            (found.inverse[0][0] - 0.5).abs() < 0.1 && (found.inverse[1][1] - 2.0).abs() < 0.4,
+            "{found:?}"
+        );
+        assert!(quasi_newton(|_| f64::NAN, &[0.0], &[1.0]).is_none());
+        assert_eq!(quasi_newton(|_| 2.0, &[], &[]).unwrap().value, 2.0);
+    }
+}
