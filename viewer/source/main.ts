@@ -297,6 +297,7 @@ class Page {
     this.sliders.show((this.newest() ?? frame).driven);
     const facts = factsOfSample(frame);
     fill(element("numbers"), this.film instanceof Recording ? [...factsOfDrive(frame.driven), ...facts] : facts);
+    fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
     this.showGrain(frame, tube, scene.picked);
   }
 

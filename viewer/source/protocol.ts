@@ -98,6 +98,8 @@ export interface Head {
     wall_power: number;
     energy_residual: number | null;
   } | null;
+  /** What is doubtful of the run so far, each with the key to change. */
+  warnings: { key: string; message: string }[];
 }
 
 /** The spheres at one time; vectors as x y z x y z ... in the frame of the tube. */

@@ -16,7 +16,7 @@ use peristalsis_engine::Bodies;
 #[cfg(feature = "server")]
 use peristalsis_formats::Frame;
 use peristalsis_observe::Sample;
-use peristalsis_run::Run;
+use peristalsis_run::{Run, Warning};
 use serde::Serialize;
 
 use crate::timeline::{Driven, Row};
@@ -51,6 +51,8 @@ pub(crate) struct Head {
     pub(crate) rows: Vec<Row>,
     /// The last sample.
     pub(crate) sample: Option<Shown>,
+    /// What is doubtful of the run so far; of a recording nothing is said.
+    pub(crate) warnings: Vec<Warning>,
 }
 
 /// Numbers of a sample that are shown.

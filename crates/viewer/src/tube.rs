@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
-use peristalsis_run::{Run, RunError, RunFolder};
+use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
 use crate::frame::{Head, of_run};
 use crate::message::{self, Command, Notice, Steered};
@@ -77,6 +77,8 @@ pub(crate) struct Tube {
     marks: Vec<Run>,
     /// Steps at which the run was steered.
     steered: Vec<u64>,
+    /// The warnings of the run as they were after so many periods, jumps and changes of the drive.
+    warned: ((usize, u64, usize), Vec<Warning>),
 }
 
 impl Tube {
@@ -95,6 +97,7 @@ impl Tube {
         use Steered::{ForceAmplitude, Friction, StrainRate, Width};
         Self {
             marks: vec![run.clone()],
+            warned: ((0, 0, 0), run.warnings()),
             run,
             labels,
             clock,
@@ -237,6 +240,11 @@ impl Tube {
         }
         let step = self.run.simulation().step();
         self.seeking = self.seeking.filter(|target| step < *target);
+        let periods = self.run.recorder().averages().len();
+        let now = (periods, self.epoch, self.steered.len());
+        if self.warned.0 != now {
+            self.warned = (now, self.run.warnings());
+        }
     }
 
     fn steps_of_a_frame(&mut self) -> u64 {
@@ -399,6 +407,7 @@ impl Tube {
             driven: Driven::of(&self.run),
             rows: self.rows(samples.len().saturating_sub(ROWS)).collect(),
             sample: samples.last().map(Into::into),
+            warnings: self.warned.1.clone(),
         };
         of_run(&head, &self.run)
     }

@@ -6,14 +6,20 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{print_report, rounded, significant};
+use crate::commands::{print_report, rounded, significant, with_words};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
 
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
     let configuration = configuration(&arguments.configuration)?;
-    let estimate = estimate(&configuration, request(&arguments.frames).as_ref())
+    let words = format!(
+        "packing grains for a short trial: it takes long for {} grains among {} spheres of the wall; Ctrl-C ends it",
+        configuration.grains.number,
+        configuration.tube.wall_spheres()
+    );
+    let request = request(&arguments.frames);
+    let estimate = with_words(&words, || estimate(&configuration, request.as_ref()))
         .map_err(|error| locate(error, &arguments.configuration))?;
     print_report(arguments.json, &estimate, || in_words(&estimate))
 }

@@ -17,6 +17,8 @@ pub(crate) mod view;
 
 use std::io::Write;
 use std::process::ExitCode;
+use std::sync::mpsc;
+use std::time::Duration;
 
 use peristalsis_run::Warning;
 use serde::Serialize;
@@ -70,6 +72,24 @@ fn warn_besides(said: &[Warning], warnings: &[Warning]) {
     for warning in warnings.iter().filter(|warning| !said.contains(warning)) {
         say(&format!("warning: {}: {}", warning.key, warning.message));
     }
+}
+
+/// How long work may take before something is said of it.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Does work, and says something on standard error where it takes longer than one waits for in silence.
+fn with_words<T>(words: &str, work: impl FnOnce() -> T) -> T {
+    let (working, ended) = mpsc::channel::<()>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            if ended.recv_timeout(PATIENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+                say(words);
+            }
+        });
+        let outcome = work();
+        drop(working);
+        outcome
+    })
 }
 
 /// A number with so many significant digits, plain where that reads well and with a power of ten elsewhere.

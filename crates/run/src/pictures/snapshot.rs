@@ -14,6 +14,8 @@ use crate::spheres::{SeenSphere, seen_spheres};
 const WAVES: u32 = 4;
 /// How far from the axis a snapshot shows spheres, in radii of the tube.
 const RADII: f64 = 2.5;
+/// How far at most, in lengths of what is shown: a picture of a wider tube would be all height.
+const LENGTHS: f64 = 2.0;
 /// Places at which a snapshot knows the radius of a prescribed wall.
 const OUTLINE_POINTS: u32 = 400;
 
@@ -86,11 +88,12 @@ impl SideView {
         // Drawn with the wave running to the right.
         let along = |z: f64| if heading > 0.0 { z } else { tube - z };
         let length = configuration.tube.wavelength * f64::from(configuration.tube.waves.min(WAVES));
+        let farthest = (RADII * configuration.tube.radius).min(LENGTHS * length);
         // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
         let shows = |seen: &SeenSphere| {
             let sphere = seen.sphere;
             let (place, margin) = (sphere.along, sphere.diameter);
-            sphere.across.hypot(sphere.depth) < RADII * configuration.tube.radius
+            sphere.across.hypot(sphere.depth) < farthest
                 && (place < length + margin || place > tube - margin)
         };
         let (grains, wall): (Vec<SeenSphere>, Vec<SeenSphere>) = seen_spheres(run)
@@ -113,7 +116,8 @@ impl SideView {
         let outline: (Vec<f64>, Vec<f64>) = (0..=OUTLINE_POINTS)
             .map(|point| {
                 let place = length * f64::from(point) / f64::from(OUTLINE_POINTS);
-                (place, shape.radius(along(place).rem_euclid(tube)))
+                let radius = shape.radius(along(place).rem_euclid(tube));
+                (place, radius.min(farthest))
             })
             .unzip();
         Self {

@@ -126,6 +126,7 @@ impl Recording {
             driven: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
+            warnings: Vec::new(),
         };
         let spheres_per_ring = lattice.map_or(0, |lattice| lattice.spheres_per_ring as usize);
         Ok(of_recording(&head, &frame, spheres_per_ring))

@@ -140,7 +140,8 @@ fn checked(
 fn packed(arguments: &RunArguments, configuration: Configuration) -> Result<Run, Failure> {
     let grains = configuration.grains.number;
     if grains > SLOW_PACKING {
-        tell(arguments.quiet, &format!("packing {grains} grains"));
+        let words = format!("packing {grains} grains; Ctrl-C ends at once until they are packed");
+        tell(arguments.quiet, &words);
     }
     Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))
 }
