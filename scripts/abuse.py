@@ -207,7 +207,7 @@ def call(program: Path, case: Case, folder: Path, seconds: float) -> tuple[int |
     except subprocess.TimeoutExpired:
         process.send_signal(signal.SIGTERM)
         try:
-            out, err = process.communicate(timeout=6 * seconds)
+            out, err = process.communicate(timeout=max(60, seconds))
         except subprocess.TimeoutExpired:
             process.kill()
             out, err = process.communicate()

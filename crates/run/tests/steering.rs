@@ -183,3 +183,23 @@ fn a_snapshot_goes_on_with_the_same_bits_after_a_change() {
     let damaged = &bytes[..bytes.len() - 1];
     assert!(Run::from_snapshot(damaged).is_err());
 }
+
+/// PYTHON, medium 12: a period shorter than a step would advance by no steps, without a word.
+#[test]
+fn a_wave_whose_period_is_shorter_than_a_step_is_refused_and_a_few_steps_are_warned_of() {
+    let configuration = configuration("frictionless", "grains.number=5 tube.waves=2");
+    let mut run = Run::new(configuration).unwrap();
+    let refused = run.drive_to(ScheduledParameter::StrainRate, 50.0, 0.0);
+    let said = refused.unwrap_err().to_string();
+    assert!(
+        said.contains("shorter than a step") && said.contains("run.time_step"),
+        "{said}"
+    );
+    run.drive_to(ScheduledParameter::StrainRate, 2.0, 0.0)
+        .unwrap();
+    let is_warned = |run: &Run| run.warnings().iter().any(|it| it.key == "run.time_step");
+    assert!(is_warned(&run));
+    // Its own course is no schedule that the run must reach the end of.
+    run.drive_to(ScheduledParameter::Width, 2.5, 100.0).unwrap();
+    assert!(run.warnings().iter().all(|it| it.key != "drive.schedule"));
+}

@@ -32,7 +32,7 @@ impl Run {
     /// parameter has already changes nothing, not by a bit.
     ///
     /// # Errors
-    /// [`RunError::Steering`] for a value out of range, where the wave stands still (its periods never pass), and while
+    /// [`RunError::Steering`] for a value out of range, for a wave of which a period is shorter than a step, where the wave stands still (its periods never pass), and while
     /// the parameter is still under way; nothing is changed then.
     pub fn drive_to(
         &mut self,
@@ -57,6 +57,13 @@ impl Run {
         }
         if value.is_nan() || value < 0.0 {
             return refused(format!("{name} = {value} is not a number from 0 on"));
+        }
+        let (period, step) = (1.0 / value, self.configuration.run.time_step);
+        if parameter == ScheduledParameter::StrainRate && period < step {
+            return refused(format!(
+                "drive.strain_rate = {value} makes a period of {period:.3e}, shorter than a step of {step:.3e}: begin with a \
+                 shorter run.time_step"
+            ));
         }
         if value == now && self.is_at_rest(parameter) {
             return Ok(());

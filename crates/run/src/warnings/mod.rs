@@ -18,6 +18,8 @@ use crate::run::Run;
 
 /// Steps that a contact should last.
 const STEPS_PER_CONTACT: f64 = 15.0;
+/// Steps that a period of the wave should last.
+const STEPS_PER_PERIOD: f64 = 20.0;
 /// Overlap at which contact stiffness is judged, in units of the least diameter.
 const USUAL_OVERLAP: f64 = 0.1;
 
@@ -57,6 +59,7 @@ fn of_constants(configuration: &Configuration) -> Vec<Warning> {
         let key = "run.time_step";
         warnings.push(Warning { key, message });
     }
+    warnings.extend(few_steps_a_period(configuration));
     if let Some(units) = &configuration.units {
         warnings.extend(softness::warning(configuration, units));
     }
@@ -64,6 +67,20 @@ fn of_constants(configuration: &Configuration) -> Vec<Warning> {
     warnings.extend(prescribed_wall_warnings(configuration));
     warnings.extend(threshold::out_of_reach(configuration));
     warnings
+}
+
+/// That the fastest wave passes in a few steps.
+fn few_steps_a_period(configuration: &Configuration) -> Option<Warning> {
+    let period = configuration.at_its_hardest().drive.period()?;
+    let steps = period / configuration.run.time_step;
+    let message = format!(
+        "a period of the wave, {}, lasts {steps:.1} steps only: take steps of {} or less, or a lower drive.strain_rate",
+        span(period),
+        span(period / STEPS_PER_PERIOD)
+    );
+    let key = "run.time_step";
+    // Whole steps fit into a period up to rounding.
+    (steps < STEPS_PER_PERIOD - 0.5).then_some(Warning { key, message })
 }
 
 /// The warnings of a prescribed wall where its drive is at its hardest.
