@@ -29,7 +29,7 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
 SECONDS = 10
-CODES = {0, 1, 2, 130, 138, 143}
+CODES = {0, 1, 2, 129, 130, 138, 143}
 PRESETS = ("frictionless", "frictionless-fine", "frictional")
 SMALL = ("grains.number=12", "tube.waves=2", "run.periods=1")
 STUDY = """name = "abused"
