@@ -29,7 +29,7 @@ def public() -> Iterator[tuple[str, object]]:
                         yield f"{module.__name__}.{name}.{member}", value
 
 
-NAMES = {name: found for name, found in public() if not name.startswith(("peristalsis.Simulation", "peristalsis.plot.hysteresis"))}
+NAMES = dict(public())
 
 
 def section(text: str, title: str) -> str | None:
