@@ -44,10 +44,11 @@ impl FrameFormat {
     /// # Errors
     /// [`RunError::Format`] where it cannot be written; an older file stays.
     pub fn write(self, path: &Path, run: &Run) -> Result<(), RunError> {
-        Ok(match self {
+        match self {
             Self::Trajectory(format) => format.write(path, &frame(run, false))?,
             Self::Parquet => parquet::write(path, &grains_table(run)?)?,
-        })
+        }
+        Ok(())
     }
 }
 
