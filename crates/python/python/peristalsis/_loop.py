@@ -95,7 +95,16 @@ class Loop:
 
     @property
     def thresholds(self) -> Thresholds:
-        """Where J/Jmax first crosses `threshold` on each branch."""
+        """Where J/Jmax first crosses `threshold` on each branch.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import peristalsis
+        >>> ratio = np.array([0.9, 0.1])
+        >>> peristalsis.Loop("width", ("there", "there"), np.array([2.6, 2.8]), ratio, ratio, 0.5).thresholds.there.lower
+        2.6
+        """
         return Thresholds(self._crossing("there"), self._crossing("back"))
 
     def _crossing(self, branch: str) -> Threshold | None:
@@ -108,7 +117,21 @@ class Loop:
         return None
 
     def table(self) -> Table:
-        """The loop as a table, one row a level: ``branch``, ``value``, ``flow_rate_ratio``, ``flow_rate_ratio_error``."""
+        """The loop as a table, one row a level: ``branch``, ``value``, ``flow_rate_ratio``, ``flow_rate_ratio_error``.
+
+        Returns
+        -------
+        Table
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import peristalsis
+        >>> ratio = np.array([0.9, 0.1])
+        >>> loop = peristalsis.Loop("width", ("there", "there"), np.array([2.6, 2.8]), ratio, ratio, 0.5)
+        >>> loop.table().units["value"]
+        'd'
+        """
         return Table(
             [
                 ("branch", "", "there or back", list(self.branch)),

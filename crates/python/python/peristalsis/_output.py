@@ -53,7 +53,7 @@ class Output(Drive):
         3
         """
         writer = Writer(path, every, at, overwrite=overwrite)
-        writer.begin(cast("Simulation", self))
+        writer._begin(cast("Simulation", self))
         self._writers.append(writer)
         return writer
 

@@ -28,7 +28,22 @@ class Picture:
         self.png: bytes = png
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the PNG to a file."""
+        """Write the PNG to a file.
+
+        Parameters
+        ----------
+        path : path
+            The file, over an older one.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> picture = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.03).render(width=200)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     picture.save(Path(folder) / "tube.png")
+        """
         Path(path).write_bytes(self.png)
 
     def __bytes__(self) -> bytes:

@@ -322,13 +322,13 @@ class Simulation(Output):
             files = list(dict.fromkeys([*self._writers, *writers]))
             called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
             for writer in files:
-                writer.begin(self)
+                writer._begin(self)
             with Progress(self, steps, progress) as display:
                 try:
                     self._advance(steps, called, display)
                 finally:
                     for writer in files:
-                        writer.synchronize()
+                        writer._synchronize()
         finally:
             self._running.release()
         tell(self.warnings, self._told)
@@ -336,12 +336,12 @@ class Simulation(Output):
     def _advance(self, steps: int, called: list[Trigger | Writer], display: Progress) -> None:
         first = now = self.steps
         while now < first + steps:
-            coming = [(it, due) for it in called if (due := it.due) is not None]
+            coming = [(it, due) for it in called if (due := it._due) is not None]
             end = min([first + steps, *(due for _, due in coming)])
             now += self._run.advance(end - now, _PATIENCE)
             for it, due in coming:
                 if due == now:
-                    it.fire(self)
+                    it._fire(self)
             display.update(now - first)
 
     def ramp(

@@ -21,17 +21,17 @@ if TYPE_CHECKING:
 class Trigger:
     """Something that is done at certain steps."""
 
-    __slots__ = ("act", "due", "every")
+    __slots__ = ("_due", "act", "every")
 
     def __init__(self, act: Callable[[Simulation], object], now: int, every: int) -> None:
         self.act: Callable[[Simulation], object] = act
         self.every: int = every
-        self.due: int | None = now + every
+        self._due: int | None = now + every
 
-    def fire(self, simulation: Simulation) -> None:
+    def _fire(self, simulation: Simulation) -> None:
         """Does it, and waits for the next step."""
         self.act(simulation)
-        self.due = (self.due or 0) + self.every
+        self._due = (self._due or 0) + self.every
 
 
 def triggers(callback: _Callbacks | None, every: int, now: int) -> list[Trigger]:
@@ -120,11 +120,18 @@ class Writer:
 
     @property
     def frames(self) -> int:
-        """Frames written so far."""
+        """Frames written so far.
+
+        Examples
+        --------
+        >>> import peristalsis
+        >>> peristalsis.Writer("run.gsd", every=0.5).frames
+        0
+        """
         return 0 if self._frames is None else self._frames.number
 
     @property
-    def due(self) -> int | None:
+    def _due(self) -> int | None:
         """Step of the next frame; `None` where no more are to come."""
         if self._simulation is None:
             return None
@@ -134,7 +141,7 @@ class Writer:
             coming.append(now + self._interval - (now - self._first) % self._interval)
         return min(coming, default=None)
 
-    def begin(self, simulation: Simulation) -> None:
+    def _begin(self, simulation: Simulation) -> None:
         """Make ready for a simulation that is about to run; writes the present state where it is one of the frames."""
         if self._simulation is simulation:
             return
@@ -154,14 +161,14 @@ class Writer:
         self._simulation = simulation
         self._first, self._interval, self._instants = now, interval, instants
         if interval or now in instants:
-            self.fire(simulation)
+            self._fire(simulation)
 
-    def fire(self, simulation: Simulation) -> None:
+    def _fire(self, simulation: Simulation) -> None:
         """Write the present state as a frame."""
         if self._frames is not None:
             self._frames.append(simulation._run)
 
-    def synchronize(self) -> None:
+    def _synchronize(self) -> None:
         """Bring all frames to the disk."""
         if self._frames is not None:
             self._frames.synchronize()

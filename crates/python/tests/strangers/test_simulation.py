@@ -19,6 +19,9 @@ from peristalsis import Configuration, ConfigurationError, PeristalsisWarning, S
 #: A tube that does not leak.
 TIGHT = {"waves": 2, "strain_rate": 0.05, "width": 2.6, "seed": 1}
 
+#: One so slow that overlaps stay small.
+CALM = TIGHT | {"strain_rate": 0.005}
+
 
 @pytest.fixture
 def tight() -> Simulation:
@@ -44,10 +47,10 @@ def test_a_leaking_tube_is_warned_of_where_it_is_made() -> None:
     assert [Path(it.filename).name for it in caught] == [Path(__file__).name]
     assert [it.key for it in sim.warnings] == ["tube.rings_per_wave"] and "leave the tube" in sim.warnings[0].message
     with warnings.catch_warnings():
-        # Once is enough.
+        # Once is enough; what a run sees is another doubt.
         warnings.simplefilter("error")
-        sim.run(periods=1)
-        sim.copy().run(periods=1)
+        sim.step(0)
+        sim.copy().step(0)
 
 
 def test_what_a_run_has_seen_is_told_once_and_stands_in_the_repr() -> None:
@@ -66,8 +69,9 @@ def test_what_a_run_has_seen_is_told_once_and_stands_in_the_repr() -> None:
         sim.step(1)
 
 
-def test_a_simulation_without_doubts_says_nothing(tight: Simulation) -> None:
+def test_a_simulation_without_doubts_says_nothing() -> None:
     """PYTHON, high 3."""
+    tight = Simulation.preset("frictionless-fine", **CALM)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         tight.run(periods=5)
@@ -76,12 +80,11 @@ def test_a_simulation_without_doubts_says_nothing(tight: Simulation) -> None:
 
 def test_a_ramp_gets_no_warning_of_its_schedule_and_can_be_repeated() -> None:
     """PYTHON, medium 7."""
-    sim = Simulation.preset("frictionless-fine", **TIGHT, periods=2)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        for width in (2.5, 2.7, 2.8):
-            sim.width = width
-            sim.run(periods=1.5)
+    sim = Simulation.preset("frictionless-fine", **CALM, periods=2)
+    for width in (2.5, 2.7, 2.8):
+        sim.width = width
+        sim.run(periods=1.5)
+        assert all(it.key != "drive.schedule" for it in sim.warnings)
     assert sim.configuration.steps == sim.steps and sim.configuration["run.periods"] == 4.5
     again = Simulation.from_toml(sim.configuration.to_toml())
     again.run()
