@@ -319,6 +319,13 @@ def hysteresis(loop: Loop, ax: Axes | None = None, *, radius: float | None = Non
     Returns
     -------
     matplotlib.axes.Axes
+
+    Examples
+    --------
+    >>> import peristalsis
+    >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+    >>> len(peristalsis.plot.hysteresis(sim.ramp("width", 2.4, 2.8, periods=6, levels=3)).containers)
+    2
     """
     table = loop.table()
     branch = np.asarray(table["branch"])

@@ -31,7 +31,7 @@ def public() -> Iterator[tuple[str, object]]:
 
 #: Names whose docstrings still lack a section or an example.
 LACKING = {
-    *("Loop.thresholds", "Loop.table", "Picture.save", "plot.hysteresis"),
+    "Picture.save",
     *(f"Simulation.{name}" for name in ("preset", "from_toml", "from_file", "from_configuration", "from_positions")),
     *(f"Simulation.{name}" for name in ("step", "to_bytes", "from_bytes", "load", "copy")),
     *(f"Writer.{name}" for name in ("frames", "due", "begin", "fire", "synchronize")),
