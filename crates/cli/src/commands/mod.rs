@@ -66,6 +66,14 @@ fn tell(is_quiet: bool, text: &str) {
     }
 }
 
+/// Says that a file which is about to be written replaces one. Every command that writes a file which its user names does
+/// so, and says so.
+fn say_if_replaced(path: &std::path::Path) {
+    if path.exists() {
+        say(&format!("replaces {}", path.display()));
+    }
+}
+
 /// Prints warnings on standard error, without those that were said before: no progress, so that they are said in quiet runs
 /// as well.
 fn warn_besides(said: &[Warning], warnings: &[Warning]) {

@@ -11,7 +11,7 @@ use peristalsis_study::Ending;
 
 use super::study::progress::{StudyDisplay, overall};
 use crate::arguments::ReproduceArguments;
-use crate::commands::{code_of, print, tell};
+use crate::commands::{code_of, print, say_if_replaced, tell};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -59,6 +59,9 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     let ending = outcome.ending;
     let is_well = is_well(&outcome);
     let report = Report::of(size, outcome);
+    if !arguments.quiet {
+        say_if_replaced(&arguments.out.join("report.html"));
+    }
     let page = report.write(&arguments.out)?;
     if arguments.json {
         print(&report.json())?;

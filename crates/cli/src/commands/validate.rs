@@ -7,7 +7,7 @@ use peristalsis_reproduce::textbook::{CASES, Case, Validation, chosen};
 use peristalsis_reproduce::{Examination, ReproduceError, Size};
 
 use crate::arguments::ValidateArguments;
-use crate::commands::{code_of, print, tell};
+use crate::commands::{code_of, print, say_if_replaced, tell};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::stop::Stop;
@@ -51,6 +51,9 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
         }
         outcome => outcome?,
     };
+    if !arguments.quiet {
+        say_if_replaced(&arguments.out.join("validation.json"));
+    }
     validation.write(&arguments.out)?;
     if let Some(document) = &arguments.write {
         validation.write_into(document, CASES)?;

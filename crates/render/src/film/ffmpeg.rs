@@ -1,5 +1,6 @@
 //! Films through ffmpeg, if it is there.
 
+use std::ffi::{OsStr, OsString};
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -11,6 +12,27 @@ use crate::picture::Picture;
 /// The variable that names another ffmpeg than the one on the path.
 const PROGRAM: &str = "FFMPEG";
 
+fn program() -> OsString {
+    std::env::var_os(PROGRAM).unwrap_or_else(|| "ffmpeg".into())
+}
+
+fn missing(program: &OsStr) -> impl FnOnce(std::io::Error) -> RenderError {
+    let program = program.to_string_lossy().into_owned();
+    move |source| RenderError::NoFfmpeg { program, source }
+}
+
+/// Whether ffmpeg begins at all.
+pub(super) fn available() -> Result<(), RenderError> {
+    let program = program();
+    let mut command = Command::new(&program);
+    let silent = command
+        .arg("-version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null());
+    silent.status().map(drop).map_err(missing(&program))
+}
+
 /// ffmpeg at work on a film.
 pub(super) struct Ffmpeg(Child);
 
@@ -21,7 +43,7 @@ impl Ffmpeg {
         plan: FilmPlan,
         (width, height): Size,
     ) -> Result<Self, RenderError> {
-        let program = std::env::var_os(PROGRAM).unwrap_or_else(|| "ffmpeg".into());
+        let program = program();
         let [red, green, blue] = plan.paper;
         let speed = plan.frames_per_second.to_string();
         let mut command = Command::new(&program);
@@ -45,10 +67,7 @@ impl Ffmpeg {
             .stdout(Stdio::null())
             .stderr(Stdio::piped())
             .spawn()
-            .map_err(|source| RenderError::NoFfmpeg {
-                program: program.to_string_lossy().into_owned(),
-                source,
-            })?;
+            .map_err(missing(&program))?;
         Ok(Self(child))
     }
 }

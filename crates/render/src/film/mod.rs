@@ -35,6 +35,17 @@ impl FilmFormat {
         }
     }
 
+    /// Whether films of this kind can be made here.
+    ///
+    /// # Errors
+    /// [`RenderError::NoFfmpeg`] where ffmpeg is needed and not there.
+    pub fn available(self) -> Result<(), RenderError> {
+        match self {
+            Self::Gif | Self::Apng => Ok(()),
+            Self::Mp4 | Self::Webm => ffmpeg::available(),
+        }
+    }
+
     /// A film in a file, which is overwritten with the first picture. All pictures must have one size.
     ///
     /// # Errors

@@ -55,7 +55,10 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             let quantities = &mut draft.finding.quantities;
             quantities.extend(of_line(&line, &one.name, how, rate.len()));
             if let Ok(curve) = fit_parabola(&rate, &width, &error) {
-                let probability = number(curve.linearity, 3);
+                let probability = match curve.linearity < 5e-4 {
+                    true => "below 0.001".to_owned(),
+                    false => number(curve.linearity, 3),
+                };
                 let (lattice, ours) = (&one.name, curve.quadratic);
                 let curvature =
                     PROSE.quantity("curvature", values!(lattice, how, probability), ours);

@@ -126,13 +126,24 @@ impl FrameSource {
                 Span::Periods(periods) => ("period", periods),
                 Span::Time(time) => ("time", time),
             };
+            let (mut first, mut last) = (f64::INFINITY, f64::NEG_INFINITY);
             for number in 0..reader.frames() {
-                let away = reader
-                    .value(number, name)?
-                    .map_or(f64::INFINITY, |it| (it - at).abs());
+                let Some(instant) = reader.value(number, name)? else {
+                    continue;
+                };
+                (first, last) = (first.min(instant), last.max(instant));
+                let away = (instant - at).abs();
                 if away < found.1 {
                     found = (number, away);
                 }
+            }
+            let between = (last - first) / (reader.frames().max(2) - 1) as f64;
+            if !(first - between..=last + between).contains(&at) && found.1.is_finite() {
+                let (path, frames, help) = (path.display(), reader.frames(), WINDOW_HELP);
+                let reason = format!(
+                    "no frame of {path} is of {name} {at}: its {frames} frames are from {first:.2} to {last:.2}"
+                );
+                return Err(RunError::Trajectory { reason, help });
             }
         }
         Ok([reader.frame(0)?, reader.frame(found.0)?])

@@ -58,7 +58,10 @@ impl Store {
             path: path.to_owned(),
             reason,
         };
-        let file = File::open(path).map_err(StudyError::io("read", path))?;
+        let file = File::open(path).map_err(|source| StudyError::Read {
+            path: path.to_owned(),
+            source,
+        })?;
         let scratch = tempfile::Builder::new()
             .prefix(".import-")
             .tempdir_in(self.path())

@@ -19,6 +19,8 @@ use crate::store::entry::{Entry, State};
 pub struct Exported {
     /// The files.
     pub files: Vec<PathBuf>,
+    /// Those that took the place of a file of the same name.
+    pub replaced: Vec<PathBuf>,
     /// Finished runs in the table.
     pub rows: usize,
     /// Runs of the plan that are not finished.
@@ -97,12 +99,16 @@ impl Store {
         let name = &survey.study.name;
         let mut exported = Exported {
             files: Vec::new(),
+            replaced: Vec::new(),
             rows: finished.len(),
             missing: survey.plan.runs().len() - finished.len(),
             quarantined,
         };
         let mut note = |file: String| {
             let path = folder.join(file);
+            if path.exists() {
+                exported.replaced.push(path.clone());
+            }
             exported.files.push(path.clone());
             path
         };

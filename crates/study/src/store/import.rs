@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use peristalsis_formats::{atomic, csv, hexadecimal, read_table};
+use peristalsis_formats::{FormatError, atomic, csv, hexadecimal, read_table};
 use sha2::{Digest, Sha256};
 
 use super::{Entry, IMPORTED, State, Store, done, set_aside};
@@ -90,7 +90,16 @@ impl Store {
 
 /// The rows in a table of a file, whose ending says how it is written.
 fn rows_of(path: &Path) -> Result<Vec<Row>> {
-    let table = read_table(path)?;
+    let table = read_table(path).map_err(|error| match error {
+        FormatError::Io { source, .. } => StudyError::Read {
+            path: path.to_owned(),
+            source,
+        },
+        other => StudyError::NotRows {
+            path: path.to_owned(),
+            reason: other.to_string(),
+        },
+    })?;
     if table.rows() == 0 {
         return Ok(Vec::new());
     }

@@ -17,7 +17,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{print, say};
+use crate::commands::{print, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -74,6 +74,18 @@ fn format(arguments: &RenderArguments) -> Result<Format, Failure> {
         (None, None) if arguments.film => Format::Film(FilmFormat::Gif),
         (None, None) => Format::Png,
     };
+    if let (Some(chosen), Some(Ok(named))) = (arguments.format, arguments.out.as_ref().map(by_name))
+        && chosen != named
+    {
+        let (out, chosen, named) = (&arguments.out, chosen.extension(), named.extension());
+        let out = out.as_deref().unwrap_or(Path::new("")).display();
+        return Err(Failure::usage(
+            format!(
+                "--format {chosen} contradicts the ending of --out {out}, which is that of {named}"
+            ),
+            format!("leave --format out, or let the name end in .{chosen}"),
+        ));
+    }
     if arguments.film && format.film().is_none() {
         return Err(Failure::usage(
             format!("{} is no format of films", format.extension()),
@@ -244,6 +256,7 @@ fn make_film(
     stop: &Stop,
 ) -> Result<ExitCode, Failure> {
     let start = Instant::now();
+    format.available().map_err(RunError::from)?;
     let drawn = run.clone();
     let mut source = frames(arguments, run, look.field)?;
     let lost = source.lost_frames();
@@ -252,12 +265,18 @@ fn make_film(
             "the last {lost} of the trajectory's frames were cut short and are left out"
         ));
     }
+    if source.frames() == 1 {
+        say(
+            "the film has one frame: a smaller --every, a wider --window or --from start makes more",
+        );
+    }
     let scene = PictureScene::new(&drawn, look, &source.samples()?)?;
     let plan = FilmPlan {
         frames: source.frames() as u32,
         frames_per_second: arguments.fps,
         paper: look.paper.srgb(),
     };
+    say_if_replaced(out);
     let pending = Pending::create(out).map_err(RunError::from)?;
     let film = format.create(pending.partial_path(), plan);
     let mut film = film.map_err(RunError::from)?;
@@ -305,6 +324,7 @@ fn finish_picture(
         Format::Svg => drawing.svg().into_bytes(),
         _ => drawing.png().map_err(RunError::of_figure("the picture"))?,
     };
+    say_if_replaced(out);
     atomic::write(out, &bytes).map_err(RunError::from)?;
     let [width, height] = drawing.size();
     report(arguments, out, (width, height), 1)

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use peristalsis_study::{Identity, Specification, State, Store, Verification};
 
 use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
-use crate::commands::{code_of, print, say};
+use crate::commands::{code_of, print, say, say_if_replaced};
 use crate::failure::Failure;
 
 pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
@@ -69,6 +69,9 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     for line in moved_aside(&exported.quarantined) {
         say(&line);
     }
+    for file in &exported.replaced {
+        say(&format!("replaces {}", file.display()));
+    }
     let missing = exported.missing;
     if missing > 0 {
         say(&format!("{missing} runs of the study are not finished"));
@@ -86,7 +89,9 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
             "let it end in .tar, by which study import knows archives",
         ));
     }
-    let packed = Store::open(&arguments.store.store)?.pack(&arguments.archive)?;
+    let store = Store::open(&arguments.store.store)?;
+    say_if_replaced(&arguments.archive);
+    let packed = store.pack(&arguments.archive)?;
     let archive = arguments.archive.display();
     print(&format!("{} finished runs in {archive}\n", packed.runs))
 }

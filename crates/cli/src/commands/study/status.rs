@@ -117,11 +117,18 @@ fn in_words(store: &Store, survey: &Survey) -> String {
     text
 }
 
-/// A critical value with its bracket.
+/// Between which values most runs change: no estimate with an error.
 pub(super) fn estimate(bracket: &Bracket) -> String {
-    let (of, key) = (&bracket.of, &bracket.key);
-    let (middle, half) = (bracket.middle(), 0.5 * (bracket.upper - bracket.lower));
-    format!("{of}: transition at {key} = {middle:.6} ± {half:.6}")
+    let Bracket {
+        key,
+        of,
+        lower,
+        upper,
+        ..
+    } = bracket;
+    format!(
+        "{of}: most runs cross observe.transition_threshold on one side of {key} = {lower} to {upper} only"
+    )
 }
 
 pub(crate) fn why(arguments: &WhyArguments) -> Result<ExitCode, Failure> {

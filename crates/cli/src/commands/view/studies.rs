@@ -43,11 +43,15 @@ impl Studies {
             return Ok(Some(found));
         }
         found.figures = Figure::of_report(source)?;
-        for store in inside(&source.join(STORES), |path| path.join(STUDY).is_file()) {
+        let stores = inside(&source.join(STORES), |path| path.join(STUDY).is_file());
+        reading(stores.len(), source);
+        for store in stores {
             found.add(&store, Study::of_store(&store).map_err(failure));
         }
         if found.is_empty() {
-            for table in inside(source, |path| is_table(path) && path.is_file()) {
+            let tables = inside(source, |path| is_table(path) && path.is_file());
+            reading(tables.len(), source);
+            for table in tables {
                 found.add(&table, of_table(&table));
             }
         }
@@ -64,6 +68,16 @@ impl Studies {
 
     fn is_empty(&self) -> bool {
         self.studies.is_empty() && self.figures.is_empty()
+    }
+}
+
+/// Says what takes seconds where there are many.
+fn reading(studies: usize, source: &Path) {
+    if studies > 1 {
+        say(&format!(
+            "reading {studies} studies in {}",
+            source.display()
+        ));
     }
 }
 

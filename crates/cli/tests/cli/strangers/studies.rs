@@ -1,1 +1,112 @@
 //! Studies, figures and reproduction.
+
+use crate::Place;
+use crate::study::quick;
+
+/// A place with a finished study of four runs in the folder `kept`.
+fn finished() -> Place {
+    let place = Place::new();
+    place.write("study.toml", quick());
+    place.does("study run study.toml --store kept --quiet");
+    place
+}
+
+/// COMMAND-LINE, low: a study printed "transition at ... ± 0.025" for the values between which most runs change.
+#[test]
+fn a_bracket_is_told_as_one() {
+    let place = Place::new();
+    let study = quick()
+        .replace("values = [2.4, 2.9]", "values = [1.2, 2.9]")
+        .replace(
+            "run.periods = 4",
+            "run.periods = 4\nobserve.transition_threshold = 0.9",
+        );
+    place.write("study.toml", study);
+    place.does("study run study.toml --store kept --quiet");
+    let said = place.does("study status kept").stdout;
+    assert!(
+        !said.contains('±') && !said.contains("transition at"),
+        "{said}"
+    );
+}
+
+/// COMMAND-LINE, low: a missing or junk file was answered with code 1 and "mend the disk", and not named.
+#[test]
+fn files_that_cannot_be_imported_are_named_as_bad_input() {
+    let place = finished();
+    place.write("junk.csv", "no rows\n1\n");
+    place.write("junk.parquet", "junk");
+    place.write("junk.tar", "junk");
+    for name in [
+        "junk.csv",
+        "junk.parquet",
+        "junk.tar",
+        "none.csv",
+        "none.tar",
+    ] {
+        let said = place.refuses(&format!("study import kept {name}"), &[name]);
+        assert!(!said.message().contains("mend"), "{}", said.message());
+    }
+}
+
+/// COMMAND-LINE, low: archives, tables and pictures were overwritten without a word.
+#[test]
+fn what_is_replaced_is_said() {
+    let place = finished();
+    for line in ["study pack kept all.tar", "study export kept --out tables"] {
+        let said = place.does(line).message();
+        assert!(!said.contains("replaces"), "{said}");
+        place.does(line).says(&["replaces"]);
+    }
+    place.does("run SMALL --out r --quiet");
+    place.does("render r --out r.png --width 200 --quiet");
+    let line = "render r --out r.png --width 200 --quiet";
+    place.does(line).says(&["replaces r.png"]);
+}
+
+/// COMMAND-LINE, low: the last frame was drawn for an instant beyond the end; a film was written under the name of a
+/// picture.
+#[test]
+fn pictures_that_cannot_be_had_are_refused() {
+    let place = Place::new();
+    place.does("run SMALL --out r --trajectory gsd --trajectory-every 1 --quiet");
+    let parts = ["no frame of", "period 300"];
+    place.refuses(
+        "render r --from trajectory --at 300 --width 200 --out p.png",
+        &parts,
+    );
+    place.does("render r --from trajectory --at 4 --width 200 --out p.png --quiet");
+    place.refuses(
+        "render r --format gif --out q.png",
+        &["--format gif contradicts", "q.png"],
+    );
+}
+
+/// COMMAND-LINE, low: a missing ffmpeg was told after the work, by then of 7 s.
+#[test]
+fn a_missing_ffmpeg_is_told_before_any_work() {
+    let place = Place::new();
+    place.does("run SMALL --out r --quiet");
+    let mut command = place.command(crate::words("render r --from start --film --format mp4"));
+    let output = command.env("FFMPEG", "no-such-program").output().unwrap();
+    let said = crate::Outcome::of(output)
+        .expect_code(2)
+        .says(&["no-such-program"]);
+    assert!(!said.message().contains("frame 1"), "{}", said.message());
+}
+
+/// COMMAND-LINE, medium 7: the report named no authors, and its "Again" line left out `--only`.
+#[test]
+fn a_report_names_its_source_and_how_to_make_it_again() {
+    let place = Place::new();
+    place.call("reproduce --only F3 --for 1s --out report --quiet");
+    let page = std::fs::read_to_string(place.path("report/report.html")).unwrap();
+    for part in [
+        "Yoshioka",
+        "Hayakawa",
+        "10.1103/PhysRevE.85.031302",
+        "reproduce --quick --only F3",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+}

@@ -4,7 +4,7 @@ mod claim;
 mod parts;
 mod studies;
 
-use crate::{Examination, Size, Statistics, Verdict};
+use crate::{CLAIMS, Examination, Size, Statistics, Verdict};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::report::Report;
@@ -146,15 +146,35 @@ fn reading(report: &Report) -> Markup {
         lines
             .collect::<String>()
             .replace("{size}", report.size.name())
+            .replace("{only}", &only(report))
             .replace("{strain_rates}", &needed.strain_rates.to_string())
             .replace("{widths}", &needed.widths.to_string())
             .replace("{replicates}", &needed.replicates.to_string()),
     )
 }
 
+/// The option that asks for the claims of this page alone, if they are not all.
+fn only(report: &Report) -> String {
+    let chosen: Vec<&str> = report
+        .examinations
+        .iter()
+        .map(|it| it.experiment.id)
+        .collect();
+    match chosen.len() < CLAIMS.len() {
+        true => format!(" --only {}", chosen.join(",")),
+        false => String::new(),
+    }
+}
+
 fn colophon(report: &Report) -> Markup {
     html! {
         footer {
+            p {
+                "The claims examined are those of N. Yoshioka and H. Hayakawa, “Phase transition in peristaltic transport of frictionless granular particles”, Phys. Rev. E "
+                b { "85" } ", 031302 (2012), "
+                "doi:10.1103/PhysRevE.85.031302"
+                ", and of a talk of theirs on frictional particles. Please cite their work with results of this page."
+            }
             p {
                 "Made by peristalsis " (report.program.version) ", revision " code { (report.program.revision) }
                 ". This file needs no other and sends no request."
