@@ -259,7 +259,7 @@ fn finished_runs_travel_by_table_and_by_archive() {
         .shows(&["4 rows taken"]);
     place.does("study run study.toml --store rows");
     assert!(tables(&place, "rows")[..2] == before[..2]);
-    place.call("study import rows study.toml").expect_code(1);
+    place.call("study import rows study.toml").expect_code(2);
 }
 
 #[test]
