@@ -170,7 +170,7 @@ class Collapse:
     >>> import numpy as np
     >>> from peristalsis.analysis import Collapse
     >>> x = np.arange(9.0)
-    >>> curves = [(p, x, p * x, np.full(9, 0.1)) for p in (1.0, 2.0)]
+    >>> curves = [(p, x, p * x, np.full(9, 0.1)) for p in (1.0, 2.0, 4.0)]
     >>> collapse = Collapse(curves, lambda a, p, x, y, e: (x, y * p ** -a[0], e))
     >>> round(collapse.fit([0.5], [0.2], starts=1).parameters[0], 2)
     1.0
