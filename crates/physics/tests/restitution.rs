@@ -210,7 +210,7 @@ fn the_damping_of_a_restitution_gives_that_restitution() {
     ];
     for (law, diameter, speed, wanted) in laws.iter().flat_map(|law| {
         let impacts = [(1.0, 0.1), (0.8, 0.004), (2.5, 3.0)];
-        let wanted = [0.01, 0.3, 0.9, 0.988, 1.0];
+        let wanted = [0.001, 0.01, 0.3, 0.988, 1.0];
         impacts
             .map(|(diameter, speed)| wanted.map(|e| (*law, diameter, speed, e)))
             .concat()

@@ -3,13 +3,14 @@
 use std::hash::{Hash, Hasher};
 
 use peristalsis_configuration::{PRESETS, ScheduledParameter, SourceFile, Sources};
-use pyo3::exceptions::{PyKeyError, PyTypeError};
+use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyIterator, PyString, PyTuple};
+use pyo3::types::{PyDict, PyIterator, PyTuple};
 use pythonize::pythonize;
 
 use crate::error::of_configuration;
 use crate::helped;
+use crate::value::settings;
 
 /// A configuration that has passed every check; it does not change.
 ///
@@ -431,54 +432,6 @@ impl Configuration {
         let warnings = warnings.map(|it| named.call1((it.key, it.message)));
         PyTuple::new(py, warnings.collect::<PyResult<Vec<_>>>()?)
     }
-}
-
-/// `key=value` texts of a dictionary of dotted keys.
-fn settings(overrides: &Bound<'_, PyDict>) -> PyResult<Vec<String>> {
-    let setting = |(key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
-        let key: String = key.extract()?;
-        let value = value_of(&value).map_err(|error| {
-            PyTypeError::new_err(format!("{key}: {}", error.value(overrides.py())))
-        })?;
-        Ok(format!("{key}={value}"))
-    };
-    overrides.iter().map(setting).collect()
-}
-
-/// A Python value as one of TOML.
-fn value_of(value: &Bound<'_, PyAny>) -> PyResult<toml::Value> {
-    if value.is_instance_of::<PyBool>() {
-        return Ok(toml::Value::Boolean(value.extract()?));
-    }
-    if value.is_instance_of::<PyInt>() {
-        return Ok(toml::Value::Integer(value.extract()?));
-    }
-    if value.is_instance_of::<PyFloat>() {
-        return Ok(toml::Value::Float(value.extract()?));
-    }
-    if value.is_instance_of::<PyString>() {
-        return Ok(toml::Value::String(value.extract()?));
-    }
-    if let Ok(table) = value.cast::<PyDict>() {
-        let entries = table
-            .iter()
-            .map(|(key, value)| Ok((key.extract::<String>()?, value_of(&value)?)));
-        return Ok(toml::Value::Table(entries.collect::<PyResult<_>>()?));
-    }
-    // NumPy's scalars: whole numbers say so by `__index__`.
-    if value.hasattr("__index__")? && !value.hasattr("__len__")? {
-        let number = value.call_method0("__index__")?.extract()?;
-        return Ok(toml::Value::Integer(number));
-    }
-    if let Ok(number) = value.extract::<f64>() {
-        return Ok(toml::Value::Float(number));
-    }
-    let values = value.try_iter().map_err(|_| {
-        let reason = format!("{value} is no number, text, truth value, list or dictionary");
-        PyTypeError::new_err(reason)
-    })?;
-    let values: PyResult<Vec<_>> = values.map(|item| value_of(&item?)).collect();
-    Ok(toml::Value::Array(values?))
 }
 
 /// A parameter of the drive by its name.

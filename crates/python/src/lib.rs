@@ -14,6 +14,7 @@ mod newtonian;
 mod run;
 mod study;
 mod table;
+mod value;
 
 use pyo3::prelude::*;
 

@@ -81,8 +81,8 @@ impl ViscoelasticHertz {
 
 /// Step of time in [`scaled_rebound`], of a contact that lasts 3.2 without damping.
 const SCALED_STEP: f64 = 1e-3;
-/// s above which e, which falls as 1/s^5, is below 1e-5 and taken for 0.
-const OVERDAMPED: f64 = 10.0;
+/// s above which e, which falls about as s^(-5/3), is below 2e-5 and taken for 0.
+const OVERDAMPED: f64 = 1000.0;
 
 /// The impact x'' = -max(x^(3/2) + s x^(1/2) x', 0), x(0) = 0, x'(0) = 1 of viscoelastic spheres, by the fourth-order
 /// Runge-Kutta method. From where the force vanishes the spheres part freely.

@@ -218,7 +218,7 @@ fn what_contradicts_itself_is_refused() {
     );
     refused(
         &axes("key = \"run.periods\"\nvalues = [12, 12.0]"),
-        &["the same run"],
+        &["study.toml:17:15", "12 twice", "study.toml:17:11"],
     );
     refused(
         &format!("{SMALL}[refine]\nkey = \"drive.strain_rate\"\ntolerance = 0.1\n"),
