@@ -38,8 +38,9 @@ impl Smooth {
     /// Likelihood of points about a curve `f(X) + p^power g(X)`.
     ///
     /// f is a cubic spline with even knots whose third differences are normal numbers of variance `1/stiffness` in
-    /// units of the mean error, and so integrated out (Eilers & Marx, Stat. Sci. 11, 89 (1996)); g is another, of second differences. What lies between the points is thus as uncertain as the curve is free to bend there, and
-    /// curves that are pulled apart gain nothing.
+    /// units of the mean error, and so integrated out (Eilers & Marx, Stat. Sci. 11, 89 (1996)); g is another, of second
+    /// differences. What lies between the points is thus as uncertain as the curve is free to bend there, and curves that
+    /// are pulled apart gain nothing.
     pub(crate) fn of(
         points: &[Scaled],
         ln_stiffness: f64,

@@ -24,7 +24,7 @@ const ROUNDING: f64 = 1e-12;
 /// What stands for a number that is not known.
 const MISSING: &str = "–";
 
-/// The number with its error, such as `2.794 ± 0.003`; alone where nothing is known of the error, or where it is 0 or rounding only.
+/// The number with its error, such as `2.794 ± 0.003`; alone where no error [is known](known_error).
 impl fmt::Display for Uncertain {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let layout = Layout::of(self);
@@ -32,7 +32,7 @@ impl fmt::Display for Uncertain {
         let value = digits(self.value);
         let text = match Sides::of(self) {
             _ if !self.value.is_finite() => plain(self.value),
-            Sides::Equal(error) if error > ROUNDING * self.value.abs() => {
+            Sides::Equal(error) if known_error(self.value, error).is_some() => {
                 let error = digits(error);
                 match layout.power {
                     0 => format!("{value} ± {error}"),
@@ -46,6 +46,12 @@ impl fmt::Display for Uncertain {
         };
         f.write_str(&text)
     }
+}
+
+/// The error of a value, where one is known: neither infinite nor rounding only, below 1e-12 of the value.
+pub fn known_error(value: f64, error: f64) -> Option<f64> {
+    let is_known = error.is_finite() && error > ROUNDING * value.abs();
+    is_known.then_some(error)
 }
 
 /// A value with its standard error, such as `2.794 ± 0.003`.

@@ -13,7 +13,7 @@ use crate::summary::Summary;
 use crate::tables::{profile_table, timeseries_table, waves_table};
 use crate::trajectory::Trajectory;
 
-const CONFIGURATION: &str = "config.toml";
+const CONFIGURATION: &str = RunFolder::CONFIGURATION;
 const SUMMARY: &str = "summary.json";
 const TIMESERIES: &str = "timeseries.parquet";
 const TIMESERIES_CSV: &str = "timeseries.csv";
@@ -49,6 +49,9 @@ pub enum Written {
 }
 
 impl RunFolder {
+    /// The file of the configuration.
+    pub const CONFIGURATION: &str = "config.toml";
+
     /// Makes a folder for a new run and writes its configuration there; an empty folder may exist. Of several programs that
     /// make the same folder at once, one gets it.
     ///

@@ -41,7 +41,7 @@ pub(crate) fn runs(arguments: &RunsArguments) -> Result<ExitCode, Failure> {
 
 /// The folders of runs below a folder, itself included, by name.
 fn collect(folder: &Path, found: &mut Vec<PathBuf>) -> std::io::Result<()> {
-    if folder.join("config.toml").is_file() {
+    if folder.join(RunFolder::CONFIGURATION).is_file() {
         found.push(folder.to_owned());
         return Ok(());
     }

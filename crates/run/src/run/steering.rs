@@ -32,8 +32,8 @@ impl Run {
     /// parameter has already changes nothing, not by a bit.
     ///
     /// # Errors
-    /// [`RunError::Steering`] for a value out of range, for a wave of which a period is shorter than a step, where the wave stands still (its periods never pass), and while
-    /// the parameter is still under way; nothing is changed then.
+    /// [`RunError::Steering`] for a value out of range, for a period shorter than a step, where the wave stands still (its
+    /// periods never pass), and while the parameter is still under way; nothing is changed then.
     pub fn drive_to(
         &mut self,
         parameter: ScheduledParameter,

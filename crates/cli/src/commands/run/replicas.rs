@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::Instant;
 
+use peristalsis_analysis::mean_and_error;
 use peristalsis_run::{RunFolder, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
@@ -42,7 +43,7 @@ pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Fai
     let Some(folder) = &arguments.resume else {
         return Ok(None);
     };
-    if arguments.out.is_some() || folder.join("config.toml").exists() {
+    if arguments.out.is_some() || folder.join(RunFolder::CONFIGURATION).exists() {
         return Ok(None);
     }
     let below = std::fs::read_dir(folder).into_iter().flatten().flatten();
@@ -64,16 +65,13 @@ pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Fai
 
 /// Makes a folder for each seed; where one cannot be made, none is.
 fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
-    let of_seed = |seed: &u64| {
-        let mut sources = arguments.configuration.clone();
-        sources.overrides.push(format!("run.seed={seed}"));
-        let configuration = configuration(&sources)?;
-        Ok::<_, Failure>((*seed, checked(arguments, configuration)?))
-    };
-    let configurations = seeds.0.iter().map(of_seed);
-    let configurations = configurations.collect::<Result<Vec<_>, _>>()?;
-    let one = configurations.first();
-    let said = one.map_or(Vec::new(), |(_, one)| warnings(one));
+    let mut sources = arguments.configuration.clone();
+    // The largest: where it can be a seed, all can.
+    let largest = seeds.0.iter().max();
+    let setting = largest.map(|seed| format!("run.seed={seed}"));
+    sources.overrides.extend(setting);
+    let configuration = checked(arguments, configuration(&sources)?)?;
+    let said = warnings(&configuration);
     warn_besides(&[], &said);
     let folder = match &arguments.out {
         Some(folder) => {
@@ -83,8 +81,10 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
         None => next_folder(Path::new(RUNS), &name(&arguments.configuration))?,
     };
     let mut each = Vec::new();
-    for (seed, configuration) in configurations {
-        match RunFolder::create(&folder.join(format!("{STEM}{seed}")), &configuration) {
+    for &seed in &seeds.0 {
+        let mut own = configuration.clone();
+        own.run.seed = seed;
+        match RunFolder::create(&folder.join(format!("{STEM}{seed}")), &own) {
             Ok(made) => each.push((seed, made)),
             Err(error) => {
                 each.into_iter().for_each(|(_, made)| made.abandon());
@@ -298,32 +298,31 @@ fn conclude(
 /// Mean and scatter of a number over the seeds.
 struct Scatter {
     mean: f64,
-    /// Standard deviation between seeds; `None` of one.
-    deviation: Option<f64>,
+    /// Standard error of the mean; `None` of one.
+    error: Option<f64>,
     number: usize,
 }
 
 impl Scatter {
     fn of(values: Vec<f64>) -> Option<Self> {
         let number = values.len();
-        let mean = values.iter().sum::<f64>() / number as f64;
-        let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-        let deviation = (number > 1).then(|| (squares / (number as f64 - 1.0)).sqrt());
+        let (mean, error) = mean_and_error(&values);
+        let error = (number > 1).then_some(error);
         (number > 0).then_some(Self {
             mean,
-            deviation,
+            error,
             number,
         })
     }
 
-    /// Standard error of the mean.
-    fn error(&self) -> Option<f64> {
-        Some(self.deviation? / (self.number as f64).sqrt())
+    /// Standard deviation between seeds.
+    fn deviation(&self) -> Option<f64> {
+        Some(self.error? * (self.number as f64).sqrt())
     }
 
     fn in_words(&self, decimals: usize) -> String {
         let (mean, number) = (self.mean, self.number);
-        let Some((error, deviation)) = self.error().zip(self.deviation) else {
+        let Some((error, deviation)) = self.error.zip(self.deviation()) else {
             return format!("{mean:.decimals$}, of one seed: no scatter is known");
         };
         format!(
@@ -335,8 +334,8 @@ impl Scatter {
     fn report(&self) -> Value {
         json!({
             "mean": self.mean,
-            "error_of_mean": self.error(),
-            "standard_deviation": self.deviation,
+            "error_of_mean": self.error,
+            "standard_deviation": self.deviation(),
             "number": self.number,
         })
     }

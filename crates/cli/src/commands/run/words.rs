@@ -1,13 +1,11 @@
 //! What came out of a run, in words.
 
+use peristalsis_analysis::number::known_error;
 use peristalsis_configuration::Units;
 use peristalsis_run::{Pumping, Run, Summary};
 
 use crate::commands::significant;
 use crate::progress::seconds;
-
-/// Errors below this part of their number are rounding only.
-const ROUNDING: f64 = 1e-12;
 
 /// How far a run came: in periods, or in time where the wave stands still.
 pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
@@ -87,10 +85,9 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
     text
 }
 
-/// A number with its error, if one is known: none that is rounding only.
+/// A number with its error, if one is known.
 pub(crate) fn known((value, error): (f64, f64)) -> (f64, Option<f64>) {
-    let is_known = error.is_finite() && error > ROUNDING * value.abs();
-    (value, is_known.then_some(error))
+    (value, known_error(value, error))
 }
 
 /// Periods to a tenth, fewer than one to two digits.

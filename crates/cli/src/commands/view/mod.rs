@@ -18,7 +18,7 @@ use crate::stop::Stop;
 use studies::Studies;
 
 /// Configuration in the folder of a run.
-const CONFIGURATION: &str = "config.toml";
+const CONFIGURATION: &str = RunFolder::CONFIGURATION;
 
 pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
     let stop = Stop::watch()?;
