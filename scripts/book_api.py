@@ -38,13 +38,25 @@ def heading(node: Named, prefix: str = "") -> str:
     return f"{prefix}{node.name}" + ("" if is_property else f"({'' if arguments in ('self', 'cls') else arguments})") + answer
 
 
-def entry(node: Named, prefix: str = "") -> str:
+def members(node: ast.ClassDef, known: dict[str, Named]) -> dict[str, ast.FunctionDef]:
+    """What a class defines, and what it inherits from classes of the package, by name."""
+    found: dict[str, ast.FunctionDef] = {}
+    for part in node.body:
+        if isinstance(part, ast.FunctionDef) and not part.name.startswith("_") and ast.get_docstring(part):
+            found[part.name] = part
+    for base in node.bases:
+        above = known.get(ast.unparse(base))
+        if isinstance(above, ast.ClassDef):
+            found = members(above, known) | found
+    return found
+
+
+def entry(node: Named, known: dict[str, Named], prefix: str = "") -> str:
     words = inspect.cleandoc(ast.get_docstring(node) or "")
     text = f"```text\n{heading(node, prefix)}\n\n{words}\n```\n" if words else f"```text\n{heading(node, prefix)}\n```\n"
     if isinstance(node, ast.ClassDef):
-        for part in node.body:
-            if isinstance(part, ast.FunctionDef) and not part.name.startswith("_") and ast.get_docstring(part):
-                text += "\n" + entry(part, f"{node.name}.")
+        for part in members(node, known).values():
+            text += "\n" + entry(part, known, f"{node.name}.")
     return text
 
 
@@ -59,7 +71,7 @@ def main() -> None:
         print(inspect.cleandoc(ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").split("\n\n")[0] + "\n")
         for each in public(file):
             if each in known:
-                print(f"### {each}\n\n{entry(known[each])}")
+                print(f"### {each}\n\n{entry(known[each], known)}")
 
 
 if __name__ == "__main__":

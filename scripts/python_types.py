@@ -172,7 +172,7 @@ def summary() -> Iterator[str]:
     for key, unit, text, kind, is_optional in _core.summary_keys():
         group, _, name = key.rpartition(".")
         shown = f"{text} [{unit}]" if unit not in ("", "1") else text
-        kind = 'Literal["complete", "settled", "interrupted", "diverged"]' if key == "status" else KINDS[kind]
+        kind = 'Literal["complete", "settled", "running", "diverged"]' if key == "status" else KINDS[kind]
         line = field(name, f"{kind} | None" if is_optional else kind, shown)
         groups.setdefault(group, []).append(line)
     whole = groups.pop("")

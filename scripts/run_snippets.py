@@ -18,6 +18,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BLOCK = re.compile(r"^```([\w,=.-]+)\n(.*?)^```\n(?:\n*```text\n(.*?)^```$)?", re.MULTILINE | re.DOTALL)
@@ -74,7 +75,9 @@ def run_shell(page: str, text: str, options: list[str], folder: pathlib.Path, pr
 
 def run_python(page: str, text: str, names: dict[str, object]) -> str:
     written = io.StringIO()
-    with contextlib.redirect_stdout(written):
+    with contextlib.redirect_stdout(written), warnings.catch_warnings():
+        # An example shows nothing doubtful.
+        warnings.simplefilter("error", UserWarning)
         exec(compile(text, f"{page}, {text.splitlines()[0]}", "exec"), names)
     return written.getvalue()
 

@@ -2,13 +2,13 @@
 
 use std::hash::{Hash, Hasher};
 
-use peristalsis_configuration::{PRESETS, ScheduledParameter, SourceFile, Sources};
+use peristalsis_configuration::{PRESETS, SourceFile, Sources};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyIterator, PyTuple};
 use pythonize::pythonize;
 
-use crate::error::of_configuration;
+use crate::error::{of_configuration, of_run};
 use crate::helped;
 use crate::value::settings;
 
@@ -416,7 +416,9 @@ impl Configuration {
         self.inner.tube.length()
     }
 
-    /// What looks doubtful, each with the key to change: the list of ``peristalsis check``.
+    /// What looks doubtful, each with the key to change: all that can be known before the grains are packed.
+    ///
+    /// `check` tries the run for a moment and lists what that has seen as well.
     ///
     /// Examples
     /// --------
@@ -432,17 +434,32 @@ impl Configuration {
         let warnings = warnings.map(|it| named.call1((it.key, it.message)));
         PyTuple::new(py, warnings.collect::<PyResult<Vec<_>>>()?)
     }
-}
 
-/// A parameter of the drive by its name.
-pub(crate) fn scheduled(name: &str) -> PyResult<ScheduledParameter> {
-    match name {
-        "width" => Ok(ScheduledParameter::Width),
-        "force_amplitude" => Ok(ScheduledParameter::ForceAmplitude),
-        "strain_rate" => Ok(ScheduledParameter::StrainRate),
-        _ => Err(crate::error::ConfigurationError::new_err(format!(
-            "{name} cannot change during a run; width, force_amplitude and strain_rate can"
-        ))),
+    /// What would run, how long it would take, and what looks doubtful: as ``peristalsis check --json``.
+    ///
+    /// It packs the grains and tries the run for a second.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    ///     Among others ``expected_seconds`` and ``packing_seconds`` on this machine, ``memory_bytes``, ``restitution``,
+    ///     ``contact_time`` [t], and ``warnings``: a list of dictionaries with ``key`` and ``message``, those of `warnings`
+    ///     and those of the trial, such as grains that overlap or leave the tube.
+    ///
+    /// Raises
+    /// ------
+    /// DoesNotFitError
+    ///     Where the tube does not hold the grains.
+    ///
+    /// Examples
+    /// --------
+    /// >>> import peristalsis
+    /// >>> report = peristalsis.Configuration("frictionless", waves=2, width=1.4, strain_rate=0.2).check()
+    /// >>> report["grains"], [warning["key"] for warning in report["warnings"]]
+    /// (41, ['tube.rings_per_wave', 'drive.strain_rate', 'tube.rings_per_wave'])
+    fn check<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let estimate = py.detach(|| peristalsis_run::estimate(&self.inner, None));
+        Ok(pythonize(py, &estimate.map_err(of_run)?)?)
     }
 }
 

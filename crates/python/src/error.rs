@@ -42,7 +42,9 @@ create_exception!(
     peristalsis,
     DivergedError,
     PyRuntimeError,
-    r#"A sphere moved by more than half a diameter in one step; the state is that of the step that failed.
+    r#"A sphere moved by more than half a diameter in one step; the simulation goes no further.
+
+Its state is that of the step that failed, and its summary has the status ``diverged`` and this error as its ``message``.
 
 Examples
 --------
@@ -101,9 +103,16 @@ pub(crate) fn of_configuration(error: peristalsis_configuration::ConfigurationEr
     ConfigurationError::new_err(error.to_string().replace("--set ", ""))
 }
 
+/// A failure of a run, and what to do about one that diverged.
+pub(crate) fn in_words(error: &RunError) -> String {
+    let help = error.against_divergence();
+    let help = help.map_or(String::new(), |help| format!("\n  help: {help}"));
+    format!("{error}{help}")
+}
+
 /// A run that cannot be, or failed.
 pub(crate) fn of_run(error: RunError) -> PyErr {
-    let text = error.to_string();
+    let text = in_words(&error);
     match error {
         RunError::Configuration(_)
         | RunError::Steering { .. }

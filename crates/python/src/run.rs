@@ -1,23 +1,25 @@
 //! One run, shared by the threads of Python.
 
 use std::path::PathBuf;
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
 use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use parking_lot::Mutex;
+use peristalsis_configuration::ScheduledParameter;
 use peristalsis_engine::{Bodies, Instructions};
 use peristalsis_observe::View;
 use peristalsis_run::{
-    PlacedGrains, RunFolder, Status, Summary, profile_table, read_state, timeseries_table,
-    waves_table,
+    PlacedGrains, RunError, RunFolder, Status, Summary, profile_table, read_state,
+    timeseries_table, waves_table,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use pythonize::pythonize;
 
-use crate::configuration::{Configuration, scheduled};
-use crate::error::of_run;
+use crate::configuration::Configuration;
+use crate::error::{ConfigurationError, DivergedError, in_words, of_run};
 use crate::table::{Table, read_only};
 
 /// A simulation with what was measured of it, behind a lock that is fair: who looks at it while another thread advances
@@ -25,12 +27,16 @@ use crate::table::{Table, read_only};
 #[pyclass(frozen, module = "peristalsis._core")]
 pub(crate) struct Run {
     run: Mutex<peristalsis_run::Run>,
+    /// In words, once it has diverged: it goes no further.
+    divergence: OnceLock<String>,
 }
 
 impl Run {
     fn of(run: peristalsis_run::Run) -> Self {
-        let run = Mutex::new(run);
-        Self { run }
+        Self {
+            run: Mutex::new(run),
+            divergence: OnceLock::new(),
+        }
     }
 
     /// Looks at the run, without the interpreter.
@@ -74,6 +80,18 @@ fn rows(array: &PyReadonlyArray2<'_, f64>) -> Vec<DVec3> {
     rows.map(|row| DVec3::new(row[0], row[1], row[2])).collect()
 }
 
+/// A parameter of the drive by its name.
+fn scheduled(name: &str) -> PyResult<ScheduledParameter> {
+    match name {
+        "width" => Ok(ScheduledParameter::Width),
+        "force_amplitude" => Ok(ScheduledParameter::ForceAmplitude),
+        "strain_rate" => Ok(ScheduledParameter::StrainRate),
+        _ => Err(ConfigurationError::new_err(format!(
+            "{name} cannot change during a run; width, force_amplitude and strain_rate can"
+        ))),
+    }
+}
+
 #[pymethods]
 impl Run {
     /// Packs the grains.
@@ -113,11 +131,17 @@ impl Run {
         run.map(Self::of).map_err(of_run)
     }
 
-    /// Goes on from the bytes of a snapshot.
+    /// Goes on from the bytes of a snapshot; of one that has diverged the words of that may be said.
     #[staticmethod]
-    fn from_bytes(py: Python<'_>, bytes: &[u8]) -> PyResult<Self> {
+    #[pyo3(signature = (bytes, divergence=None))]
+    fn from_bytes(py: Python<'_>, bytes: &[u8], divergence: Option<String>) -> PyResult<Self> {
         let run = py.detach(|| peristalsis_run::Run::from_snapshot(bytes));
-        run.map(Self::of).map_err(of_run)
+        let divergence = divergence.map(OnceLock::from).unwrap_or_default();
+        run.map(|run| Self {
+            divergence,
+            ..Self::of(run)
+        })
+        .map_err(of_run)
     }
 
     /// Configuration and state.
@@ -128,11 +152,22 @@ impl Run {
 
     /// A run that goes on by itself from here.
     fn copy(&self, py: Python<'_>) -> Self {
-        Self::of(self.look(py, |run| run.clone()))
+        let divergence = self.divergence.clone();
+        let run = Self::of(self.look(py, |run| run.clone()));
+        Self { divergence, ..run }
+    }
+
+    /// How it diverged, in words, where it has.
+    #[getter]
+    fn divergence(&self) -> Option<String> {
+        self.divergence.get().cloned()
     }
 
     /// Advances by `steps` steps, or until so many seconds are over; answers the steps done.
     fn advance(&self, py: Python<'_>, steps: u64, seconds: f64) -> PyResult<u64> {
+        if let Some(words) = self.divergence.get() {
+            return Err(DivergedError::new_err(words.clone()));
+        }
         let limit = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
         self.look(py, |run| {
             let (begin, first) = (Instant::now(), run.simulation().step());
@@ -147,7 +182,12 @@ impl Run {
                 piece = piece.saturating_mul(2);
             }
         })
-        .map_err(of_run)
+        .map_err(|error: RunError| {
+            if error.against_divergence().is_some() {
+                self.divergence.get_or_init(|| in_words(&error));
+            }
+            of_run(error)
+        })
     }
 
     /// Leads a parameter of the drive to a value within so many periods; within 0 it jumps there with the next step.
@@ -321,12 +361,14 @@ impl Run {
 
     /// The outcome so far.
     fn summary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let divergence = self.divergence();
         let summary = self.look(py, |run| {
-            let status = match run.is_complete() {
-                true => Status::Complete,
-                false => Status::Interrupted,
+            let status = match (&divergence, run.is_complete()) {
+                (Some(_), _) => Status::Diverged,
+                (None, true) => Status::Complete,
+                (None, false) => Status::Interrupted,
             };
-            Summary::of(run, status, None)
+            Summary::of(run, status, divergence)
         });
         let is_going_on = summary.status == Status::Interrupted;
         let summary = pythonize(py, &summary)?;

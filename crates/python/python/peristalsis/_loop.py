@@ -46,6 +46,11 @@ class Threshold(NamedTuple):
 class Thresholds(NamedTuple):
     """The thresholds of both branches of a `Loop`; `None` where a branch crosses nowhere, or was not run.
 
+    Attributes
+    ----------
+    there, back : Threshold or None
+        That of the first way, and that of the way back.
+
     Examples
     --------
     >>> import peristalsis

@@ -34,10 +34,20 @@ class Output(Drive):
     ) -> Writer:
         """Write frames to a file in all runs from now on, the first at once where it is due; as `Writer`.
 
+        Parameters
+        ----------
+        path, every, at, overwrite
+            As of `Writer`.
+
         Returns
         -------
         Writer
-            Which `remove_writer` takes away again.
+            Which `remove_writer` takes away again. A copy or a pickle of the simulation is without it.
+
+        Raises
+        ------
+        ValueError, FileExistsError
+            As of `Writer`.
 
         Examples
         --------
@@ -58,7 +68,34 @@ class Output(Drive):
         return writer
 
     def remove_writer(self, writer: Writer) -> None:
-        """Write no more frames to a file of `add_writer`; what is in it stays."""
+        """Write no more frames to a file of `add_writer`; what is in it stays.
+
+        Parameters
+        ----------
+        writer : Writer
+            What `add_writer` answered.
+
+        Raises
+        ------
+        ValueError
+            Where it is none of this simulation's writers.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> from pathlib import Path
+        >>> import peristalsis
+        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     writer = sim.add_writer(Path(folder) / "run.gsd", every=0.5)
+        ...     sim.run(periods=1)
+        ...     sim.remove_writer(writer)
+        ...     sim.run(periods=1)
+        ...     writer.frames
+        3
+        """
+        if writer not in self._writers:
+            raise ValueError(f"{writer!r} is no writer of this simulation's add_writer")
         self._writers.remove(writer)
 
     def write(self, path: str | os.PathLike[str]) -> None:
@@ -155,7 +192,18 @@ class Output(Drive):
         return picture
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it.
+        """Write a snapshot to a file, whole or not at all, over an older one; `Simulation.load` goes on from it, and so does
+        ``peristalsis run --resume FILE``.
+
+        Parameters
+        ----------
+        path : path
+            The file, in the format of the ``state.checkpoint`` of a run.
+
+        Raises
+        ------
+        OSError
+            Where it cannot be written; an older file stays.
 
         Examples
         --------

@@ -2,46 +2,44 @@
 
 from __future__ import annotations
 
-import os
-import threading
-from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+import html
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 import numpy as np
-import numpy.typing as npt
 
-from . import _core
-from ._core import Configuration, ConfigurationError
-from ._keywords import overrides as joined
+from ._core import ConfigurationError
 from ._loop import Loop, ramp
-from ._output import Output
+from ._made import Made
 from ._progress import Progress, Shown
-from ._warnings import kind, tell
+from ._warnings import tell
 from ._writers import Trigger, Writer, triggers, whole
 
 if TYPE_CHECKING:
-    from typing_extensions import Unpack
-
     from ._loop import _Parameter
-    from ._types import Keywords, _Preset
     from ._writers import _Callbacks
 
 #: Seconds from one look of the interpreter at a running simulation to the next: how long Ctrl-C may take.
 _PATIENCE = 0.05
+#: Parameters of the drive, which may change during a run.
+CHANGEABLE = ("width", "force_amplitude", "strain_rate")
 
 
-
-class Simulation(Output):
+class Simulation(Made):
     """Grains in a peristaltic tube, advanced in time.
 
-    Made by `preset`, `from_toml`, `from_file`, `from_configuration`, `from_positions`, or from a snapshot. Keyword arguments name keys of
-    the configuration by their last word (``width`` is ``drive.width``), or whole with ``_`` for the dots
-    (``initial_state`` is ``initial.state``); `overrides` is a dictionary of dotted keys. The same configuration and seed
-    give the same bits as the command line ``peristalsis run``.
+    Made of a configuration, by `preset`, `from_toml`, `from_file`, `from_positions`, or from a snapshot by `load` and
+    `from_bytes`. Keyword arguments name keys of the configuration by their last word (``width`` is ``drive.width``), or
+    whole with ``_`` for the dots (``initial_state`` is ``initial.state``); `overrides` is a dictionary of dotted keys. The
+    same configuration and seed give the same bits as the command line ``peristalsis run``.
 
     A simulation may be read by other threads while one runs it: they see whole steps. It can be copied and pickled, but
-    for its writers.
+    for its writers, which each simulation needs of its own.
+
+    Parameters
+    ----------
+    configuration : Configuration
+        What to run.
 
     Attributes
     ----------
@@ -59,162 +57,7 @@ class Simulation(Output):
     (41, 3)
     """
 
-    __slots__ = ("_running", "_told", "__weakref__")
-
-    def __init__(self, configuration: Configuration) -> None:
-        self._begin(_core.Run(configuration))
-        tell(self.warnings, self._told)
-
-    def _begin(self, run: _core.Run) -> None:
-        self._run = run
-        self._running = threading.Lock()
-        self._told: set[str] = set()
-        self._writers: list[Writer] = []
-
-    @classmethod
-    def _of(cls, run: _core.Run) -> Simulation:
-        simulation = cls.__new__(cls)
-        simulation._begin(run)
-        return simulation
-
-    @classmethod
-    def _going_on(cls, run: _core.Run) -> Simulation:
-        """Of which nothing is told that the one that it goes on from has told."""
-        simulation = cls._of(run)
-        simulation._told.update(map(kind, simulation.warnings))
-        return simulation
-
-    @classmethod
-    def preset(
-        cls, name: _Preset | str, overrides: Mapping[str, Any] | None = None, **keywords: Unpack[Keywords]
-    ) -> Simulation:
-        """A preset with some of its values replaced.
-
-        Parameters
-        ----------
-        name : str
-            One of `peristalsis.presets()`.
-        overrides : mapping, optional
-            Values of dotted keys, such as ``{"contact.static_friction": 0.5}``.
-        **keywords
-            Values of keys by their last word.
-
-        Raises
-        ------
-        ConfigurationError
-            Where a key or value cannot be: in the words of the command line.
-        DoesNotFitError
-            Where the tube does not hold the grains.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05)
-        >>> sim.length
-        20.0
-        """
-        return cls(Configuration(preset=name, overrides=joined(overrides, keywords)))
-
-    @classmethod
-    def from_toml(
-        cls, text: str, overrides: Mapping[str, Any] | None = None, **keywords: Unpack[Keywords]
-    ) -> Simulation:
-        """A configuration in TOML, as in a file of the command line.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> text = "preset = 'frictionless-fine'\\n[drive]\\nstrain_rate = 0.05"
-        >>> peristalsis.Simulation.from_toml(text, waves=2).strain_rate
-        0.05
-        """
-        return cls(Configuration(text=text, overrides=joined(overrides, keywords)))
-
-    @classmethod
-    def from_file(
-        cls,
-        path: str | os.PathLike[str],
-        overrides: Mapping[str, Any] | None = None,
-        **keywords: Unpack[Keywords],
-    ) -> Simulation:
-        """A configuration file, or the ``config.toml`` that a run left."""
-        text = Path(path).read_text(encoding="utf-8")
-        settings = joined(overrides, keywords)
-        return cls(Configuration(text=text, name=os.fspath(path), overrides=settings))
-
-    @classmethod
-    def from_configuration(cls, configuration: Configuration) -> Simulation:
-        """A configuration that has been resolved.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> tube = peristalsis.Configuration("frictionless-fine", waves=2, strain_rate=0.05)
-        >>> peristalsis.Simulation.from_configuration(tube).steps
-        0
-        """
-        return cls(configuration)
-
-    @classmethod
-    def from_positions(
-        cls,
-        configuration: Configuration,
-        positions: npt.ArrayLike,
-        velocities: npt.ArrayLike | None = None,
-        diameters: npt.ArrayLike | None = None,
-    ) -> Simulation:
-        """Grains put where the caller wants them, in this order.
-
-        Parameters
-        ----------
-        configuration : Configuration
-            All else. Its number of grains and their least and largest diameter become those of the arrays.
-        positions : array_like
-            Centres [d], shape (N, 3), the axis of the tube along z; z is taken into [0, L).
-        velocities : array_like, optional
-            Velocities in the frame of the tube [d/t], shape (N, 3); at rest by default.
-        diameters : array_like, optional
-            Diameters [d], shape (N,), or one for all; that of the configuration by default.
-
-        Raises
-        ------
-        ConfigurationError
-            For a grain outside the tube, two grains or a grain and the wall that overlap by more than half a diameter,
-            and arrays of other shapes.
-
-        Notes
-        -----
-        No file can repeat such a run from its start: `configuration` says ``initial.state = "placed"``, which only a
-        snapshot goes on from.
-
-        Examples
-        --------
-        >>> from peristalsis import Configuration, Simulation
-        >>> tube = Configuration("frictionless-fine", waves=2, strain_rate=0.05)
-        >>> sim = Simulation.from_positions(tube, [[0, 0, 5.0], [0, 0, 5.9]])
-        >>> contacts = sim.contacts()
-        >>> contacts["i"].tolist(), contacts["j"].tolist(), contacts["overlap"].round(6).tolist()
-        ([0], [1], [0.1])
-        """
-        places = np.array(positions, dtype=float)
-        speeds = np.zeros_like(places) if velocities is None else np.array(velocities, dtype=float)
-        if places.ndim != 2 or places.shape[1] != 3 or speeds.shape != places.shape:
-            raise ConfigurationError(
-                f"positions and velocities are arrays of shape (N, 3), not {places.shape} and {speeds.shape}"
-            )
-        least, most = configuration["grains.diameter_min"], configuration["grains.diameter_max"]
-        if diameters is None and least != most:
-            raise ConfigurationError(f"grains of diameters from {least} to {most}: give diameters, one for each grain")
-        sizes = np.asarray(least if diameters is None else diameters, dtype=float)
-        if sizes.shape not in ((), (len(places),)):
-            raise ConfigurationError(f"diameters is one number, or an array of shape ({len(places)},), not {sizes.shape}")
-        sizes = np.array(np.broadcast_to(sizes, len(places)))
-        keys: dict[str, Any] = {"grains.number": len(places), "initial.state": "placed"}
-        if len(sizes):
-            keys |= {"grains.diameter_min": float(sizes.min()), "grains.diameter_max": float(sizes.max())}
-        simulation = cls._of(_core.Run.placed(configuration.replace(keys), places, speeds, sizes))
-        tell(simulation.warnings, simulation._told)
-        return simulation
+    __slots__ = ()
 
     # Advancing
 
@@ -256,7 +99,8 @@ class Simulation(Output):
         Raises
         ------
         DivergedError
-            Where a grain moves too far in one step; the state is that of the step that failed.
+            Where a grain moves too far in one step; the state is that of the step that failed, and the simulation goes no
+            further.
         ConfigurationError
             For a length shorter than half a step.
 
@@ -303,6 +147,18 @@ class Simulation(Output):
         threads: int | None = None,
     ) -> None:
         """Advance by so many steps; the rest is as in `run`.
+
+        Parameters
+        ----------
+        steps : int
+            Steps, from 0 on.
+        progress, callback, every, writers, threads
+            As of `run`.
+
+        Raises
+        ------
+        DivergedError
+            As of `run`.
 
         Examples
         --------
@@ -397,8 +253,8 @@ class Simulation(Output):
         >>> loop.flow_rate_ratio.shape, loop.thresholds.back
         ((2,), None)
         """
-        if parameter not in ("width", "force_amplitude", "strain_rate"):
-            raise ConfigurationError(f"{parameter} cannot be led; width, force_amplitude and strain_rate can")
+        if parameter not in CHANGEABLE:
+            raise ConfigurationError(f"{parameter} cannot be led; {', '.join(CHANGEABLE)} can")
         self._drive(parameter)
         levels = whole("levels", levels, 1)
         if not 0 <= settle < 1:
@@ -410,90 +266,36 @@ class Simulation(Output):
             raise ValueError(f"{parameter} cannot be led from {start} to {stop}")
         return ramp(self, parameter, values, periods / levels, settle, threshold, back, progress)
 
-    # Snapshots
+    # In words
 
-    def to_bytes(self) -> bytes:
-        """A snapshot: configuration, state and what was measured; `from_bytes` goes on with the same bits.
+    def _facts(self) -> dict[str, str]:
+        configuration = self.configuration
+        drive = [f"{name} {value:g}" for name in CHANGEABLE if (value := self._run.driven(name)) is not None]
+        transition = self.transition_time
+        facts = {
+            "grains": f"{configuration.grains} in {configuration.waves} waves, volume fraction {configuration.volume_fraction:.3g}",
+            "drive": ", ".join(drive),
+            "time": f"{self.time:.6g} ({self.period:.4g} periods, {self.steps} steps)",
+            "J/Jmax": f"{self.flow_rate_ratio:.4g}",
+            "transition": "none yet" if transition is None else f"at {transition:.5g}",
+            "seed": str(configuration.seed),
+            "escaped": str(self.escaped),
+            "largest overlap": f"{self.largest_overlap:.3g} d",
+        }
+        if self._run.divergence is not None:
+            facts["status"] = self._run.divergence.splitlines()[0]
+        return facts
 
-        Examples
-        --------
-        >>> import peristalsis
-        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
-        >>> again = peristalsis.Simulation.from_bytes(sim.to_bytes())
-        >>> bool((sim.positions == again.positions).all())
-        True
-        """
-        return self._run.to_bytes()
+    def __repr__(self) -> str:
+        facts = "; ".join(f"{name} {fact}" for name, fact in self._facts().items())
+        doubts = "".join(f"\n  warning: {warning}" for warning in self.warnings)
+        return f"<peristalsis.Simulation: {facts}>{doubts}"
 
-    @classmethod
-    def from_bytes(cls, snapshot: bytes) -> Simulation:
-        """Go on from a snapshot.
-
-        Raises
-        ------
-        SnapshotError
-            Where it is damaged, or no snapshot of this version.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
-        >>> peristalsis.Simulation.from_bytes(sim.to_bytes()).steps
-        0
-        """
-        return cls._going_on(_core.Run.from_bytes(bytes(snapshot)))
-
-    @classmethod
-    def load(cls, path: str | os.PathLike[str]) -> Simulation:
-        """Go on from what `save` or the command line left, with the same bits.
-
-        Parameters
-        ----------
-        path : path
-            A file of `save`, the ``state.checkpoint`` of a run, or the folder of a run.
-
-        Raises
-        ------
-        FileNotFoundError
-            Where there is no such file.
-        SnapshotError
-            Where it is damaged, or no snapshot of this version.
-
-        Examples
-        --------
-        >>> import tempfile
-        >>> from pathlib import Path
-        >>> import peristalsis
-        >>> sim = peristalsis.Simulation.preset("frictionless", waves=2, strain_rate=0.03)
-        >>> with tempfile.TemporaryDirectory() as folder:
-        ...     sim.save(Path(folder) / "now.checkpoint")
-        ...     again = peristalsis.Simulation.load(Path(folder) / "now.checkpoint")
-        >>> bool((sim.positions == again.positions).all())
-        True
-        """
-        simulation = cls._of(_core.Run.open(Path(path)))
-        tell(simulation.warnings, simulation._told)
-        return simulation
-
-    def copy(self) -> Simulation:
-        """A simulation that goes on by itself from here.
-
-        Examples
-        --------
-        >>> import peristalsis
-        >>> sim = peristalsis.Simulation.preset("frictionless-fine", waves=2, strain_rate=0.05, seed=1)
-        >>> other = sim.copy()
-        >>> other.step(3)
-        >>> sim.steps, other.steps
-        (0, 3)
-        """
-        return type(self)._going_on(self._run.copy())
-
-    def __copy__(self) -> Simulation:
-        return self.copy()
-
-    def __deepcopy__(self, memo: dict[int, Any]) -> Simulation:
-        return self.copy()
-
-    def __reduce__(self) -> tuple[Callable[[bytes], Simulation], tuple[bytes]]:
-        return type(self).from_bytes, (self.to_bytes(),)
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
+            f"<td style='text-align:left'>{html.escape(fact)}</td></tr>"
+            for name, fact in self._facts().items()
+        )
+        doubts = "".join(f"<p>warning: {html.escape(str(warning))}</p>" for warning in self.warnings)
+        return f"<table><caption>peristalsis.Simulation</caption>{rows}</table>{doubts}"

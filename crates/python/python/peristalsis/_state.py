@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,10 +14,6 @@ from ._warnings import KeyedWarning
 
 if TYPE_CHECKING:
     from ._types import Summary
-
-
-#: Parameters of the drive, which may change during a run.
-CHANGEABLE = ("width", "force_amplitude", "strain_rate")
 
 #: Places a wave at which `State.wall_radius` answers where none are named.
 _PLACES = 64
@@ -414,6 +409,11 @@ class State:
         ``t["flow_rate_ratio"]`` is a column as an array; `Table.to_pandas`, `Table.to_polars` and `Table.to_xarray` are
         frames with units, and ``pyarrow.table(t)`` takes it without a copy.
 
+        Returns
+        -------
+        Table
+            `Table.units` and `Table.descriptions` say what each column is.
+
         Examples
         --------
         >>> import peristalsis
@@ -426,6 +426,12 @@ class State:
 
     def profile(self) -> Table:
         """Profile in the wave's frame over the late part of what was measured, one row a bin.
+
+        Returns
+        -------
+        Table
+            ``position`` in the wave, and there density, velocity, temperature, radius of the tube, and forces and pressure on the
+            wall, with their errors.
 
         Examples
         --------
@@ -440,6 +446,11 @@ class State:
     def waves(self) -> Table:
         """Flow of each wave over each whole period.
 
+        Returns
+        -------
+        Table
+            One row a wave and period.
+
         Examples
         --------
         >>> import peristalsis
@@ -453,6 +464,12 @@ class State:
     def summary(self) -> Summary:
         """The outcome so far, as ``summary.json`` of the command line has it.
 
+        Returns
+        -------
+        Summary
+            A dictionary. ``status`` is ``"running"`` until the configured end, then ``"complete"``, or ``"diverged"`` with
+            the reason as ``message``.
+
         Examples
         --------
         >>> import peristalsis
@@ -462,38 +479,3 @@ class State:
         'running'
         """
         return self._run.summary()
-
-    # In words
-
-    def _facts(self) -> dict[str, str]:
-        configuration = self.configuration
-        drive = [
-            f"{name} {value:g}"
-            for name in CHANGEABLE
-            if (value := self._run.driven(name)) is not None
-        ]
-        transition = self.transition_time
-        return {
-            "grains": f"{configuration.grains} in {configuration.waves} waves, volume fraction {configuration.volume_fraction:.3g}",
-            "drive": ", ".join(drive),
-            "time": f"{self.time:.6g} ({self.period:.4g} periods, {self.steps} steps)",
-            "J/Jmax": f"{self.flow_rate_ratio:.4g}",
-            "transition": "none yet" if transition is None else f"at {transition:.5g}",
-            "seed": str(configuration.seed),
-            "escaped": str(self.escaped),
-            "largest overlap": f"{self.largest_overlap:.3g} d",
-        }
-
-    def __repr__(self) -> str:
-        facts = "; ".join(f"{name} {fact}" for name, fact in self._facts().items())
-        doubts = "".join(f"\n  warning: {warning}" for warning in self.warnings)
-        return f"<peristalsis.Simulation: {facts}>{doubts}"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><th style='text-align:left'>{html.escape(name)}</th>"
-            f"<td style='text-align:left'>{html.escape(fact)}</td></tr>"
-            for name, fact in self._facts().items()
-        )
-        doubts = "".join(f"<p>warning: {html.escape(str(warning))}</p>" for warning in self.warnings)
-        return f"<table><caption>peristalsis.Simulation</caption>{rows}</table>{doubts}"

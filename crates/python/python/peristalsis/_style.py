@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -28,11 +29,26 @@ SINGLE_COLUMN, DOUBLE_COLUMN = 86.0, 178.0
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#CC79A7", "#56B4E9")
 ALONG, GREY = "#B2182B", "#808080"
 
-for _font in sorted((Path(__file__).parent / "fonts").glob("*.ttf")):
-    # Where it cannot be read, the next family of the list stands in.
-    with suppress(OSError, RuntimeError):
-        font_manager.fontManager.addfont(_font)
-_HAS_FONT = any(font.name == "Arimo" for font in font_manager.fontManager.ttflist)
+#: The fonts of the command line's figures, which the package brings.
+_FONTS = Path(__file__).parent / "fonts"
+
+
+def _add_fonts(folder: Path) -> bool:
+    """Makes the fonts of a folder known to Matplotlib; where it cannot, says so, for figures then look otherwise."""
+    try:
+        for style in ("Regular", "Italic"):
+            font_manager.fontManager.addfont(folder / f"Arimo-{style}-subset.ttf")
+    except (OSError, RuntimeError) as error:
+        warnings.warn(
+            f"figures are set in Matplotlib's own font, for the package is not whole: {error}; install it anew",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return False
+    return True
+
+
+_HAS_FONT = _add_fonts(_FONTS)
 
 #: Settings of symbols: the italic of the same family, as in the figures of the command line.
 _SYMBOLS = {"mathtext.it": "Arimo:italic", "mathtext.bfit": "Arimo:italic"} | {

@@ -374,7 +374,7 @@ class Summary(TypedDict):
 
     seed: int
     """seed of the random numbers"""
-    status: Literal["complete", "settled", "interrupted", "diverged"]
+    status: Literal["complete", "settled", "running", "diverged"]
     """complete, or settled: ended early, after its transition"""
     grains: int
     """N"""

@@ -1,7 +1,10 @@
 """A configuration is a mapping that can be pickled, printed and changed into another."""
 
 import copy
+import json
 import pickle
+import subprocess
+import sys
 from collections.abc import Mapping
 
 import pytest
@@ -83,6 +86,23 @@ def test_warnings_name_the_key(configuration: Configuration) -> None:
     assert warning.key == "run.time_step" and "too long for a contact" in warning.message
     key, message = warning
     assert str(warning) == f"{key}: {message}"
+
+
+def test_a_configuration_is_checked_as_the_command_line_does() -> None:
+    """Warnings are one thing everywhere: the list of `check`, what its trial saw included."""
+    tube = Configuration("frictionless", width=1.4, waves=2, strain_rate=0.2, transition_threshold=1.5)
+    steps = {"form": "steps", "parameter": "width", "at": [0, 90], "values": [1.4, 1.5]}
+    tube = tube.replace(schedule=[steps])
+    line = [sys.executable, "-m", "peristalsis", "check", "--json", "-"]
+    answer = json.loads(subprocess.run(line, input=tube.to_toml(), check=True, capture_output=True, text=True).stdout)
+    report = tube.check()
+    # How far a trial comes depends on the machine, and with it what it saw, but not of what kind that is.
+    keys = [warning["key"] for warning in report["warnings"]]
+    assert keys == [warning["key"] for warning in answer["warnings"]] and set(report) == set(answer)
+    known = [{"key": it.key, "message": it.message} for it in tube.warnings]
+    assert report["warnings"][: len(known)] == known == answer["warnings"][: len(known)]
+    assert {"tube.rings_per_wave", "observe.transition_threshold", "drive.schedule"} <= {it.key for it in tube.warnings}
+    assert "drive.strain_rate" in keys and report["expected_seconds"] > 0
 
 
 def test_errors_speak_of_keywords_and_not_of_flags() -> None:

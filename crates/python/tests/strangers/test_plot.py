@@ -12,7 +12,7 @@ import pytest
 from matplotlib.font_manager import FontProperties, findfont
 from matplotlib.image import imread
 
-from peristalsis import Simulation, analysis, plot
+from peristalsis import Simulation, _style, analysis, plot
 
 nbformat = pytest.importorskip("nbformat")
 nbclient = pytest.importorskip("nbclient")
@@ -74,6 +74,13 @@ def test_the_font_is_that_of_the_command_line(run: Simulation, tmp_path: Path) -
     plot.flow(run).figure.savefig(tmp_path / "flow.svg")
     text = (tmp_path / "flow.svg").read_text()
     assert "Arimo" in text and "DejaVu Sans'" not in text.replace("'Arimo', 'DejaVu Sans'", "")
+
+
+def test_a_package_without_its_fonts_says_so(tmp_path: Path) -> None:
+    """PYTHON, low: DejaVu in silence, where fonts were links that led nowhere."""
+    with pytest.warns(RuntimeWarning, match="Arimo-Regular-subset.ttf.*install it anew"):
+        assert not _style._add_fonts(tmp_path)
+    assert _style._add_fonts(_style._FONTS) and _style._HAS_FONT
 
 
 def test_symbols_are_italic(run: Simulation) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import peristalsis
-from peristalsis import Configuration, ConfigurationError, PeristalsisWarning, Simulation, SnapshotError
+from peristalsis import Configuration, ConfigurationError, DivergedError, PeristalsisWarning, Simulation, SnapshotError
 
 #: A tube that does not leak.
 TIGHT = {"waves": 2, "strain_rate": 0.05, "width": 2.6, "seed": 1}
@@ -219,6 +219,34 @@ def test_the_status_of_a_run_is_in_words_of_python(status: str) -> None:
     assert sim.summary()["status"] == status
 
 
+def test_a_simulation_that_diverged_says_so_and_goes_no_further() -> None:
+    """PYTHON, low: a diverged simulation's status is "running"."""
+    sim = Simulation.preset("frictionless", width=1.2, waves=2, seed=1, time_step=0.3, strain_rate=0.2)
+    with pytest.raises(DivergedError, match="(?s)diverged at step .*help: take a shorter run.time_step"):
+        sim.run(periods=50)
+    steps = sim.steps
+    for one in (sim, sim.copy(), pickle.loads(pickle.dumps(sim))):
+        with pytest.raises(DivergedError, match=f"diverged at step {steps} "):
+            one.step(1)
+        summary = one.summary()
+        assert one.steps == steps and summary["status"] == "diverged"
+        assert f"diverged at step {steps} " in (summary["message"] or "") and f"status diverged at step {steps} " in repr(one)
+
+
+def test_copies_and_pickles_carry_all_but_the_writers(tight: Simulation, tmp_path: Path) -> None:
+    """PYTHON: what a copy carries is said and tested."""
+    writer = tight.add_writer(tmp_path / "run.gsd", every=0.5)
+    tight.width = 2.5
+    tight.run(periods=1)
+    for other in (tight.copy(), pickle.loads(pickle.dumps(tight))):
+        assert other.configuration == tight.configuration and other.timeseries() == tight.timeseries()
+        other.run(periods=1)
+        assert other.width == 2.5 and writer.frames == 3
+        with pytest.raises(ValueError, match="no writer of this simulation"):
+            other.remove_writer(writer)
+    assert "writers" in (Simulation.copy.__doc__ or "")
+
+
 def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
     """PYTHON, low and medium 12."""
     with pytest.raises(TypeError, match="steps is a whole number of steps, not 1.5"):
@@ -227,6 +255,8 @@ def test_steps_and_seeds_that_cannot_be(tight: Simulation) -> None:
         Simulation.preset("frictionless", seed=2**64)
     with pytest.raises(ConfigurationError, match="shorter than half a step"):
         Simulation.preset("frictionless", strain_rate=0.03, waves=2).run(duration=1e-9)
+    with pytest.raises(ConfigurationError, match="a run of 0.0002 t is shorter than half a step"):
+        tight.run(periods=1e-5)
     tight.step(np.int64(2))
     assert tight.steps == 2
 
