@@ -2,10 +2,13 @@
 
 import ast
 import inspect
+import re
 import sys
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "crates" / "python" / "python" / "peristalsis"
+RUST = PACKAGE.parent.parent / "src"
+METHODS = re.compile(r"^#\[pymethods\]\nimpl (\w+) \{\n(.*?)^\}", re.MULTILINE | re.DOTALL)
 #: Modules with public names, by the name under which they are imported.
 MODULES = ("", "analysis", "newtonian", "plot")
 Named = ast.FunctionDef | ast.ClassDef
@@ -19,6 +22,29 @@ def definitions(paths: list[Path]) -> dict[str, Named]:
             if isinstance(node, Named) and (node.name not in found or not ast.get_docstring(found[node.name])):
                 found[node.name] = node
     return found
+
+
+def words_of_rust() -> dict[str, str]:
+    """Docstrings of what is written in Rust, by dotted name; the stubs have names and types only."""
+    found: dict[str, str] = {}
+    for path in sorted(RUST.glob("*.rs")):
+        text = path.read_text(encoding="utf-8")
+        blocks = [("", "", text), *((f"{name}.", " {4}", body) for name, body in METHODS.findall(text))]
+        for prefix, indent, body in blocks:
+            pattern = rf"^((?:{indent}///.*\n)+)((?:{indent}[#) ].*\n)*){indent}(?:pub\(crate\) )?(?:fn|struct) (\w+)"
+            for words, attributes, name in re.findall(pattern, body, re.MULTILINE):
+                renamed = re.search(r'name = "(\w+)"', attributes)
+                found[prefix + (renamed.group(1) if renamed else name)] = re.sub(r"^ */// ?", "", words, flags=re.MULTILINE)
+    return found
+
+
+WORDS_OF_RUST = words_of_rust()
+
+
+def words(node: Named, prefix: str) -> str:
+    """The docstring of a definition; of a stub, which has a line at most, that of Rust."""
+    found = (ast.get_docstring(node) or "", WORDS_OF_RUST.get(f"{prefix}{node.name}", ""))
+    return inspect.cleandoc(max(found, key=len))
 
 
 def public(module: Path) -> list[str]:
@@ -42,7 +68,7 @@ def members(node: ast.ClassDef, known: dict[str, Named]) -> dict[str, ast.Functi
     """What a class defines, and what it inherits from classes of the package, by name."""
     found: dict[str, ast.FunctionDef] = {}
     for part in node.body:
-        if isinstance(part, ast.FunctionDef) and not part.name.startswith("_") and ast.get_docstring(part):
+        if isinstance(part, ast.FunctionDef) and not part.name.startswith("_") and words(part, f"{node.name}."):
             found[part.name] = part
     for base in node.bases:
         above = known.get(ast.unparse(base))
@@ -52,8 +78,8 @@ def members(node: ast.ClassDef, known: dict[str, Named]) -> dict[str, ast.Functi
 
 
 def entry(node: Named, known: dict[str, Named], prefix: str = "") -> str:
-    words = inspect.cleandoc(ast.get_docstring(node) or "")
-    text = f"```text\n{heading(node, prefix)}\n\n{words}\n```\n" if words else f"```text\n{heading(node, prefix)}\n```\n"
+    said = words(node, prefix)
+    text = f"```text\n{heading(node, prefix)}\n\n{said}\n```\n" if said else f"```text\n{heading(node, prefix)}\n```\n"
     if isinstance(node, ast.ClassDef):
         for part in members(node, known).values():
             text += "\n" + entry(part, known, f"{node.name}.")
@@ -65,8 +91,8 @@ def main() -> None:
         name = f"peristalsis.{module}".rstrip(".")
         file = PACKAGE / (f"{module}.py" if module else "__init__.py")
         file = file if file.exists() else PACKAGE / module / "__init__.py"
-        around = [*sorted(PACKAGE.glob("*.py*")), *sorted((PACKAGE / "analysis").glob("*.py"))]
-        known = definitions([file, *around])
+        # What a module takes from elsewhere stands in its own folder, or at the top.
+        known = definitions([file, *(sorted(PACKAGE.glob("*.py*")) if file.parent == PACKAGE else sorted(file.parent.glob("*.py")))])
         print(f"\n## {name}\n")
         print(inspect.cleandoc(ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or "").split("\n\n")[0] + "\n")
         for each in public(file):

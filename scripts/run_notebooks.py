@@ -1,4 +1,5 @@
-"""Executes notebooks from their first cell to the last; what a cell raises ends it, and so does a figure that is missing.
+"""Executes notebooks from their first cell to the last; what a cell raises ends it, and so does a figure that is missing or a
+text that is not the one stored.
 
 The metadata of a notebook say how many figures it shows: `"peristalsis": {"figures": 5}`. The files stay as they are;
 with --write they keep what their cells showed.
@@ -21,6 +22,12 @@ def figures(notebook: Any) -> int:
     return sum("image/png" in output.get("data", {}) for output in outputs)
 
 
+def said(notebook: Any) -> list[str]:
+    """What each cell prints, warnings included."""
+    cells = (cell.outputs for cell in notebook.cells if cell.cell_type == "code")
+    return ["".join(output.text for output in outputs if output.output_type == "stream") for outputs in cells]
+
+
 def main(arguments: list[str]) -> None:
     keep = "--write" in arguments
     for path in (Path(argument) for argument in arguments if argument != "--write"):
@@ -33,6 +40,9 @@ def main(arguments: list[str]) -> None:
         shown, expected = figures(notebook), notebook.metadata["peristalsis"]["figures"]
         if shown != expected:
             sys.exit(f"{path.name} shows {shown} figures, not {expected}")
+        if not keep and (new := said(notebook)) != (old := said(nbformat.read(path, as_version=4))):
+            differing = [f"was {one!r}, is {other!r}" for one, other in zip(old, new) if one != other]
+            sys.exit(f"{path.name} says other than what is stored:\n" + "\n".join(differing))
         if keep:
             notebook.metadata.pop("language_info", None)
             nbformat.write(notebook, path)

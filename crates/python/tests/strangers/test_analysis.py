@@ -59,6 +59,20 @@ def test_a_scaling_wants_all_its_parameters() -> None:
         analysis.Collapse(curves, {"critical_known": [1.0, 2.0, 3.0]}).quality([0.1, 1.0])
 
 
+@pytest.mark.parametrize(("a", "b"), [(0.0, 0.05), (2.4, 1.6)])
+def test_a_critical_line_that_is_left_open_is_not_trusted(a: float, b: float) -> None:
+    """PYTHON, high 2: three starts on a pure power law gave three answers with small errors, the caveat nowhere in Python."""
+    randomness, gap = np.random.default_rng(4), np.geomspace(0.02, 0.4, 6)
+    # y = (x_c - x)^-1.5 says of a and b that a = 1.5 b, and no more.
+    time = 5 * gap**-1.5
+    curves = [(p, 3 - 2 * p - gap, time * (1 + 0.03 * randomness.normal(size=6)), 0.03 * time) for p in (0.05, 0.1, 0.2)]
+    fit = analysis.Collapse(curves, "critical_line").fit([a, b, -2.0, 3.0], [0.1, 0.1, 0.1, 0.02], starts=1, correction=None)
+    assert not fit.trusted and any("leave parameter 2 open" in doubt for doubt in fit.doubts)
+    assert not np.isfinite([fit.intervals[1].lower, fit.intervals[1].upper]).all()
+    assert fit.parameters[0] / fit.parameters[1] == pytest.approx(1.5, abs=0.1)
+    assert "fix only a combination of a and b" in (analysis.Collapse.__doc__ or "")
+
+
 def test_results_are_pickled_and_say_their_fields() -> None:
     """PYTHON, low: thin docstrings."""
     import pickle

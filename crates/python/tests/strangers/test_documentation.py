@@ -3,8 +3,11 @@
 import doctest
 import inspect
 import re
+import subprocess
+import sys
 import types
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -38,6 +41,19 @@ def public() -> Iterator[tuple[str, object]]:
 
 
 NAMES = dict(public())
+
+
+def test_the_book_has_every_name_with_its_words() -> None:
+    """PYTHON, low: no reference in the book."""
+    program = Path(__file__).parents[4] / "scripts" / "book_api.py"
+    reference = subprocess.check_output([sys.executable, program], text=True)
+    said = {
+        f"{module}.{name}": words
+        for module, part in re.findall(r"^## (peristalsis[.\w]*)\n(.*?)(?=^## |\Z)", reference, re.MULTILINE | re.DOTALL)
+        for name, words in re.findall(r"^```text\n([\w.]+).*\n\n(.*)\n", part, re.MULTILINE)
+    }
+    first = {name: (inspect.getdoc(getattr(found, "__func__", found)) or "").splitlines()[0] for name, found in NAMES.items()}
+    assert {name: said.get(name) for name in NAMES} == first
 
 
 def section(text: str, title: str) -> str | None:

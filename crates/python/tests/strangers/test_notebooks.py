@@ -42,6 +42,19 @@ def test_a_lesson_asks_expects_and_has_exercises_with_answers(notebook: Any) -> 
     assert len(answers) == 3 and all(cell["outputs"] for cell in answers)
 
 
+def test_the_lesson_on_censoring_has_runs_that_are_censored() -> None:
+    """PYTHON, low: `study` explained censoring with "24 transitions in 24 runs"."""
+    notebook = json.loads((FOLDER / "study.ipynb").read_text(encoding="utf-8"))
+    outputs = [output for cell in notebook["cells"] for output in cell.get("outputs", ())]
+    said = "".join("".join(output.get("text", "")) for output in outputs)
+    assert "3 of 8 jammed" in said and "0 of 8 jammed" in said
+
+
+def test_nothing_that_is_stored_is_a_warning(notebook: Any) -> None:
+    """A lesson says in words what is doubtful."""
+    assert not any(output.get("name") == "stderr" for cell in notebook["cells"] for output in cell.get("outputs", ()))
+
+
 def test_no_legend_is_put_wherever_it_falls(notebook: Any) -> None:
     """PYTHON, low: a bare `axes.legend()` covers curves."""
     assert not any("legend()" in "".join(cell["source"]) for cell in notebook["cells"])

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from importlib.metadata import entry_points, metadata
 from pathlib import Path
 from typing import get_args, get_type_hints
 
@@ -33,6 +34,11 @@ def test_keywords_are_typed() -> None:
     assert set(hints) == unique
 
 
+def test_the_status_of_a_summary_is_typed_as_python_says_it() -> None:
+    """PYTHON, low: a normal run's status is "interrupted"."""
+    assert set(get_args(get_type_hints(_types.Summary)["status"])) == {"running", "complete", "settled", "diverged"}
+
+
 @pytest.mark.parametrize("settings", [{}, {"body_force": -0.001}])
 def test_a_summary_has_the_keys_of_its_type(settings: dict[str, float]) -> None:
     """PYTHON, low: `summary()` is `Any`."""
@@ -50,6 +56,22 @@ def test_a_summary_has_the_keys_of_its_type(settings: dict[str, float]) -> None:
             assert type(found) in kinds, (found, kind)
 
     check(simulation.summary(), peristalsis.Summary)
+
+
+def test_the_package_says_whose_it_is_and_brings_the_command() -> None:
+    """PYTHON, high 5 and medium 11: no console script; metadata without URL, author, licence text."""
+    (script,) = entry_points(group="console_scripts", name="peristalsis")
+    assert callable(script.load())
+    about = metadata("peristalsis")
+    assert about["Author"] and about["Project-URL"] and about["License-Expression"] == "MIT OR Apache-2.0"
+    assert {"LICENSE-MIT", "LICENSE-APACHE"} <= set(about.get_all("License-File") or ())
+
+
+def test_the_book_has_its_pages() -> None:
+    """PYTHON, low: no installation page, Python guide, reference, columns of studies, guide to the viewer, troubleshooting."""
+    summary = (ROOT / "docs" / "book" / "src" / "SUMMARY.md").read_text(encoding="utf-8")
+    for page in ("installation", "python", "api", "quantities", "viewer", "troubleshooting"):
+        assert f"({page}.md)" in summary
 
 
 def test_plot_is_there_without_being_imported() -> None:
