@@ -104,7 +104,12 @@ impl Collapse<'_> {
 
     /// S where enough points overlap; else a wall that leans toward more overlap.
     pub(crate) fn objective(&self, parameters: &[f64]) -> f64 {
-        match self.quality(parameters) {
+        self.objective_of(&self.scaled(parameters))
+    }
+
+    /// The same of scaled points.
+    pub(crate) fn objective_of(&self, scaled: &[Vec<CurvePoint>]) -> f64 {
+        match collapse_quality(scaled) {
             Err(_) => 3.0 * SHORT,
             Ok(found) if found.overlap < self.least_overlap || !found.is_connected => {
                 let missing = (self.least_overlap - found.overlap).max(0.0);

@@ -13,10 +13,10 @@ const FREE_OF_CORRECTION: usize = 2;
 /// Part of a pivot that is round-off.
 const ROUND_OFF: f64 = 1e-12;
 
-/// A scaled point, with the parameter of its curve.
+/// A scaled point, with the size of the correction at its curve.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scaled {
-    pub(crate) parameter: f64,
+    pub(crate) correction: f64,
     pub(crate) point: CurvePoint,
 }
 
@@ -31,78 +31,62 @@ pub(crate) struct Smooth {
 
 impl Smooth {
     /// Coefficients that smoothness leaves free.
-    pub(crate) fn free(correction: Option<f64>) -> usize {
-        FREE + correction.map_or(0, |_| FREE_OF_CORRECTION)
+    pub(crate) const fn free(is_corrected: bool) -> usize {
+        FREE + if is_corrected { FREE_OF_CORRECTION } else { 0 }
     }
 
-    /// Likelihood of points about a curve `f(X) + p^power g(X)`.
+    /// Likelihood of points about a curve `f(X) + correction g(X)`; f alone where it `is_corrected` not.
     ///
     /// f is a cubic spline with even knots whose third differences are normal numbers of variance `1/stiffness` in
     /// units of the mean error, and so integrated out (Eilers & Marx, Stat. Sci. 11, 89 (1996)); g is another, of second
     /// differences. What lies between the points is thus as uncertain as the curve is free to bend there, and curves that
     /// are pulled apart gain nothing.
-    pub(crate) fn of(
-        points: &[Scaled],
-        ln_stiffness: f64,
-        correction: Option<f64>,
-    ) -> Option<Self> {
+    pub(crate) fn of(points: &[Scaled], ln_stiffness: f64, is_corrected: bool) -> Option<Self> {
         let n = points.len() as f64;
-        let unit = points
-            .iter()
-            .map(|one| libm::log(one.point.error))
-            .sum::<f64>()
-            / n;
-        let unit = libm::exp(unit);
+        let logarithms = points.iter().map(|one| libm::log(one.point.error));
+        let unit = libm::exp(logarithms.sum::<f64>() / n);
         let x = || points.iter().map(|scaled| scaled.point.x);
         let low = x().fold(f64::INFINITY, f64::min);
         let span = x().fold(f64::NEG_INFINITY, f64::max) - low;
         if !(span > 0.0 && span.is_finite()) {
             return None;
         }
-        let curve = INTERVALS + SPLINES - 1;
-        let curves = if correction.is_some() { 2 } else { 1 };
-        let weights = correction.map(|power| fading(points, power));
-        let mut system = System::new(curves * curve);
-        for (place, scaled) in points.iter().enumerate() {
-            let CurvePoint { x, y, error } = scaled.point;
-            let place_in = (x - low) / span;
-            let mut row: Vec<(usize, f64)> = splines(place_in, INTERVALS).collect();
-            if let Some(weights) = &weights {
-                let correction = splines(place_in, INTERVALS);
-                row.extend(correction.map(|(k, value)| (curve + k, value * weights[place])));
+        // The coefficients of both curves alternate, so that those which meet lie close.
+        let curves = if is_corrected { 2 } else { 1 };
+        let each = INTERVALS + SPLINES - 1;
+        let mut system = System::new(curves * each, curves * SPLINES);
+        for Scaled { correction, point } in points {
+            let mut row = [(0, 0.0); 2 * SPLINES];
+            for (place, (k, value)) in splines((point.x - low) / span, INTERVALS).enumerate() {
+                row[curves * place] = (curves * k, value);
+                if is_corrected {
+                    row[curves * place + 1] = (curves * k + 1, value * correction);
+                }
             }
-            system.add(&row, y / unit, unit * unit / (error * error));
+            let weight = unit * unit / (point.error * point.error);
+            system.add(&row[..curves * SPLINES], point.y / unit, weight);
         }
         let stiffness = libm::exp(ln_stiffness);
-        let bent = |k: usize| [(k, 1.0), (k + 1, -3.0), (k + 2, 3.0), (k + 3, -1.0)];
-        for k in 0..curve - FREE {
-            system.add(&bent(k), 0.0, stiffness);
+        for k in 0..each - FREE {
+            let bend = [1.0, -3.0, 3.0, -1.0];
+            let bend = [0, 1, 2, 3].map(|next| (curves * (k + next), bend[next]));
+            system.add(&bend, 0.0, stiffness);
         }
-        let curved = |k: usize| [(k, 1.0), (k + 1, -2.0), (k + 2, 1.0)];
-        let correction = if curves > 1 {
-            curve - FREE_OF_CORRECTION
+        let of_correction = if is_corrected {
+            each - FREE_OF_CORRECTION
         } else {
             0
         };
-        for k in 0..correction {
-            system.add(&curved(curve + k), 0.0, stiffness);
+        for k in 0..of_correction {
+            let bend = [1.0, -2.0, 1.0];
+            let bend = [0, 1, 2].map(|next| (curves * (k + next) + 1, bend[next]));
+            system.add(&bend, 0.0, stiffness);
         }
         let (squares, ln_determinant) = system.solve();
-        let ln_volume = ln_determinant - (curve - FREE + correction) as f64 * ln_stiffness;
+        let ln_volume = ln_determinant - (each - FREE + of_correction) as f64 * ln_stiffness;
         let is_finite = squares.is_finite() && ln_volume.is_finite();
         is_finite.then_some(Self { squares, ln_volume })
     }
-}
-
-/// Sizes of a correction `p^power` at every point, 1 at the largest.
-fn fading(points: &[Scaled], power: f64) -> Vec<f64> {
-    let logarithm = |scaled: &Scaled| power * libm::log(scaled.parameter);
-    let logarithms: Vec<f64> = points.iter().map(logarithm).collect();
-    let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    logarithms
-        .iter()
-        .map(|one| libm::exp(one - largest))
-        .collect()
 }
 
 /// The cubic B-splines that are not 0 at a place between 0 and 1, with so many even intervals: number and value.
@@ -116,31 +100,39 @@ fn splines(place: f64, intervals: usize) -> impl Iterator<Item = (usize, f64)> {
     (0..SPLINES).map(move |k| (interval + k, values[k] / 6.0))
 }
 
-/// Normal equations of a linear least-squares fit.
+/// Normal equations of a linear least-squares fit in which only close coefficients meet.
 struct System {
-    matrix: Vec<Vec<f64>>,
+    /// The band up to the diagonal, row by row.
+    matrix: Vec<f64>,
+    /// Entries of a row.
+    band: usize,
     right: Vec<f64>,
     squares: f64,
 }
 
 impl System {
-    fn new(size: usize) -> Self {
-        let matrix = (0..size).map(|row| vec![0.0; row + 1]).collect();
-        let right = vec![0.0; size];
-        let squares = 0.0;
+    fn new(size: usize, band: usize) -> Self {
         Self {
-            matrix,
-            right,
-            squares,
+            matrix: vec![0.0; size * band],
+            band,
+            right: vec![0.0; size],
+            squares: 0.0,
         }
+    }
+
+    /// Place of an entry; the diagonal ends its row.
+    const fn place(&self, row: usize, column: usize) -> usize {
+        (row + 1) * self.band - 1 + column - row
     }
 
     /// Adds an equation of some coefficients, in order, with its weight.
     fn add(&mut self, row: &[(usize, f64)], y: f64, weight: f64) {
         for (index, &(k, value)) in row.iter().enumerate() {
-            self.right[k] += weight * value * y;
+            let weighted = weight * value;
+            self.right[k] += weighted * y;
             for &(before, other) in &row[..=index] {
-                self.matrix[k][before] += weight * value * other;
+                let place = self.place(k, before);
+                self.matrix[place] += weighted * other;
             }
         }
         self.squares += weight * y * y;
@@ -151,28 +143,34 @@ impl System {
     fn solve(mut self) -> (f64, f64) {
         let mut ln_determinant = 0.0;
         for row in 0..self.right.len() {
-            let (above, own) = self.matrix.split_at_mut(row);
-            let own = &mut own[0];
-            let diagonal = own[row];
-            for (column, other) in above.iter().enumerate() {
-                let known: f64 = own[..column].iter().zip(other).map(|(a, b)| a * b).sum();
-                let pivot = other[column];
-                own[column] = if pivot > 0.0 {
-                    (own[column] - known) / pivot
-                } else {
-                    0.0
-                };
+            let first = (row + 1).saturating_sub(self.band);
+            // What the factors before a column already hold of an entry.
+            let known = |factors: &[f64], of: &Self, column: usize| -> f64 {
+                let start = first.max((column + 1).saturating_sub(of.band));
+                let own = &factors[of.place(row, start)..of.place(row, column)];
+                let other = &factors[of.place(column, start)..of.place(column, column)];
+                own.iter().zip(other).map(|(a, b)| a * b).sum()
+            };
+            for column in first..row {
+                let pivot = self.matrix[self.place(column, column)];
+                let place = self.place(row, column);
+                let rest = self.matrix[place] - known(&self.matrix, &self, column);
+                self.matrix[place] = if pivot > 0.0 { rest / pivot } else { 0.0 };
             }
-            let known: f64 = own[..row].iter().map(|entry| entry * entry).sum();
-            let rest = diagonal - known;
+            let end = self.place(row, row);
+            let diagonal = self.matrix[end];
+            let rest = diagonal - known(&self.matrix, &self, row);
             if rest > ROUND_OFF * diagonal {
-                own[row] = rest.sqrt();
+                let pivot = rest.sqrt();
+                self.matrix[end] = pivot;
                 ln_determinant += libm::log(rest);
-                let known: f64 = own[..row].iter().zip(&self.right).map(|(a, b)| a * b).sum();
-                self.right[row] = (self.right[row] - known) / own[row];
+                let own = &self.matrix[self.place(row, first)..end];
+                let right = &self.right[first..row];
+                let known: f64 = own.iter().zip(right).map(|(a, b)| a * b).sum();
+                self.right[row] = (self.right[row] - known) / pivot;
                 self.squares -= self.right[row] * self.right[row];
             } else {
-                own[row] = 0.0;
+                self.matrix[end] = 0.0;
                 self.right[row] = 0.0;
             }
         }
@@ -185,9 +183,9 @@ mod tests {
     use super::*;
     use crate::tests::point;
 
-    fn scaled(parameter: f64, x: f64, y: f64) -> Scaled {
+    fn scaled(correction: f64, x: f64, y: f64) -> Scaled {
         let point = point(x, y, 0.5);
-        Scaled { parameter, point }
+        Scaled { correction, point }
     }
 
     #[test]
@@ -202,7 +200,7 @@ mod tests {
     #[test]
     fn a_system_of_two_by_hand() {
         // y = a + b x through (0, 1), (1, 2), (2, 4): rest 1/6, determinant of (3 3; 3 5).
-        let mut system = System::new(2);
+        let mut system = System::new(2, 2);
         for (x, y) in [(0.0, 1.0), (1.0, 2.0), (2.0, 4.0)] {
             system.add(&[(0, 1.0), (1, x)], y, 1.0);
         }
@@ -213,12 +211,12 @@ mod tests {
 
     #[test]
     fn a_correction_takes_up_what_fades_along_the_curves() {
-        let at = |p: f64| (0..9).map(move |k| (p, f64::from(k)));
-        let points = [4.0, 8.0, 16.0].into_iter().flat_map(at);
-        let points = points.map(|(p, x)| scaled(p, x, 2.0 * x + 9.0 * (3.0 - x) / p));
+        let at = |size: f64| (0..9).map(move |k| (size, f64::from(k)));
+        let points = [1.0, 0.5, 0.25].into_iter().flat_map(at);
+        let points = points.map(|(size, x)| scaled(size, x, 2.0 * x + 2.0 * (3.0 - x) * size));
         let points: Vec<Scaled> = points.collect();
-        let left = |correction| Smooth::of(&points, 3.0, correction).unwrap().squares;
-        assert!(left(None) > 10.0 && left(Some(-1.0)) < 1e-6);
-        assert!(Smooth::of(&points[..1], 0.0, None).is_none());
+        let left = |is_corrected| Smooth::of(&points, 3.0, is_corrected).unwrap().squares;
+        assert!(left(false) > 10.0 && left(true) < 1e-6);
+        assert!(Smooth::of(&points[..1], 0.0, false).is_none());
     }
 }

@@ -14,50 +14,76 @@ pub(super) const MOST_ROUNDS: u32 = 8;
 
 /// The likelihood of a scaling: of points with normal errors about one smooth curve. The parameters are those of the
 /// scaling and, last, ln of the stiffness.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(super) struct Likelihood<'a> {
     pub(super) collapse: &'a Collapse<'a>,
     pub(super) steps: &'a [f64],
-    pub(super) correction: Option<f64>,
+    /// Size of the correction at every curve, 1 at the largest, where one is allowed for.
+    corrections: Option<Vec<f64>>,
 }
 
 impl<'a> Likelihood<'a> {
+    /// `correction`: the power of the curves' parameters in it.
     pub(super) fn new(
         collapse: &'a Collapse<'a>,
         steps: &'a [f64],
         correction: Option<f64>,
     ) -> Result<Self, Error> {
-        if correction.is_some() {
-            let parameters = collapse.curves.iter().map(|curve| curve.parameter);
-            checked_positive(&parameters.collect::<Vec<_>>())?;
-        }
+        let corrections = match correction {
+            None => None,
+            Some(power) => {
+                let parameters = collapse.curves.iter().map(|curve| curve.parameter);
+                let parameters: Vec<f64> = parameters.collect();
+                let logarithms = checked_positive(&parameters)?.iter();
+                let logarithms: Vec<f64> = logarithms.map(|&p| power * libm::log(p)).collect();
+                let largest = logarithms.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                let sizes = logarithms.iter().map(|one| libm::exp(one - largest));
+                Some(sizes.collect())
+            }
+        };
         let new = Self {
             collapse,
             steps,
-            correction,
+            corrections,
         };
-        enough(new.points(), Smooth::free(correction) + steps.len() + 4)?;
+        enough(new.points(), new.free() + steps.len() + 4)?;
         Ok(new)
+    }
+
+    /// Whether a correction is allowed for.
+    pub(super) fn is_corrected(&self) -> bool {
+        self.corrections.is_some()
+    }
+
+    /// The same data with a correction of another power; `None` where there are too few points for it.
+    pub(super) fn allowing(&self, power: f64) -> Option<Self> {
+        Self::new(self.collapse, self.steps, Some(power)).ok()
+    }
+
+    fn free(&self) -> usize {
+        Smooth::free(self.is_corrected())
     }
 
     /// The smooth curve at some parameters and the points that the scaling sends to infinity; `None` where too few
     /// overlap.
     pub(super) fn curve(&self, parameters: &[f64]) -> Option<(Smooth, usize)> {
         let (&ln_stiffness, parameters) = parameters.split_last()?;
-        if self.collapse.objective(parameters) >= SHORT || !STIFFNESSES.contains(&ln_stiffness) {
+        if !STIFFNESSES.contains(&ln_stiffness) {
             return None;
         }
-        let curves = self.collapse.curves.iter();
-        let curves = curves.zip(self.collapse.scaled(parameters));
-        let points = curves.flat_map(|(curve, points)| {
-            let parameter = curve.parameter;
-            let of_curve = move |point| Scaled { parameter, point };
-            points.into_iter().map(of_curve)
-        });
-        let (usable, lost): (Vec<Scaled>, Vec<Scaled>) =
-            points.partition(|scaled| scaled.point.is_usable());
-        let curve = Smooth::of(&usable, ln_stiffness, self.correction)?;
-        Some((curve, lost.len()))
+        let scaled = self.collapse.scaled(parameters);
+        if self.collapse.objective_of(&scaled) >= SHORT {
+            return None;
+        }
+        let mut usable = Vec::with_capacity(self.points());
+        for (index, points) in scaled.iter().enumerate() {
+            let corrections = self.corrections.as_ref();
+            let correction = corrections.map_or(0.0, |sizes| sizes[index]);
+            let of_curve = points.iter().filter(|point| point.is_usable());
+            usable.extend(of_curve.map(|&point| Scaled { correction, point }));
+        }
+        let curve = Smooth::of(&usable, ln_stiffness, self.is_corrected())?;
+        Some((curve, self.points() - usable.len()))
     }
 
     pub(super) fn points(&self) -> usize {
@@ -69,8 +95,8 @@ impl<'a> Likelihood<'a> {
     }
 
     /// Points less the coefficients of the curve that smoothness leaves free.
-    pub(super) fn degrees_of_freedom(&self) -> f64 {
-        (self.points() - Smooth::free(self.correction)) as f64
+    fn degrees_of_freedom(&self) -> f64 {
+        (self.points() - self.free()) as f64
     }
 
     /// Squares of the distances over their degrees of freedom.
@@ -107,8 +133,15 @@ impl<'a> Likelihood<'a> {
         polished(|parameters| self.value(parameters), start, self.steps)
     }
 
-    /// The smallest value with one parameter held, from the others' values.
-    pub(super) fn settle_beside(&self, axis: usize, held: f64, rest: &[f64]) -> Option<Smallest> {
+    /// The smallest value with one parameter held, from the others' values and a guess of the inverse of their second
+    /// derivatives; one above `level` is not believed before a fresh search.
+    pub(super) fn settle_beside(
+        &self,
+        (axis, held): (usize, f64),
+        rest: &[f64],
+        inverse: &[Vec<f64>],
+        level: f64,
+    ) -> Option<Smallest> {
         let mut steps = self.steps.to_vec();
         steps.remove(axis);
         let all = |rest: &[f64]| {
@@ -116,22 +149,39 @@ impl<'a> Likelihood<'a> {
             parameters.insert(axis, held);
             self.value(&parameters)
         };
-        polished(all, rest, &steps)
+        let found = quasi_newton(all, rest, &steps, Some(inverse))?;
+        match found.value < level {
+            true => Some(found),
+            false => polished(all, &found.place, &steps),
+        }
     }
 }
 
-/// A minimum from which a fresh search leads no further.
-pub(super) fn polished(
-    function: impl Fn(&[f64]) -> f64,
-    start: &[f64],
-    steps: &[f64],
-) -> Option<Smallest> {
-    let mut best = quasi_newton(&function, start, steps)?;
+/// A minimum to which searches from beside it, along each variable, lead back, with the curvature that they have seen.
+fn polished(function: impl Fn(&[f64]) -> f64, start: &[f64], steps: &[f64]) -> Option<Smallest> {
+    let mut best = quasi_newton(&function, start, steps, None)?;
     for _ in 0..MOST_ROUNDS {
-        let again = quasi_newton(&function, &best.place, steps)?;
-        let gain = best.value - again.value;
-        best = again;
-        if gain < 1e-3 {
+        let before = best.value;
+        for axis in 0..steps.len() {
+            // In steps of the errors the variables are alike.
+            let error = |(own, step): (usize, &f64)| {
+                let error = (2.0 * best.inverse[own][own]).max(0.0).sqrt();
+                error.clamp(1e-3 * step, *step)
+            };
+            let errors: Vec<f64> = steps.iter().enumerate().map(error).collect();
+            let mut beside = best.place.clone();
+            beside[axis] += 0.5 * errors[axis];
+            let again = quasi_newton(&function, &beside, &errors, Some(&best.inverse));
+            best = match again {
+                Some(again) if again.value <= best.value => again,
+                Some(again) if again.value <= best.value + 1e-3 => Smallest {
+                    inverse: again.inverse,
+                    ..best
+                },
+                _ => best,
+            };
+        }
+        if best.value > before - 1e-3 {
             break;
         }
     }

@@ -118,6 +118,8 @@ impl Kind {
 /// What came out for many data sets: how often the intervals of each parameter cover, of those that are trusted.
 struct Tally {
     trusted: usize,
+    /// Those of which nothing is doubted but that there is no correction.
+    counted: usize,
     covered: Vec<[usize; 2]>,
     doubts: std::collections::BTreeMap<String, usize>,
 }
@@ -132,6 +134,7 @@ impl Kind {
     ) -> Tally {
         let mut tally = Tally {
             trusted: 0,
+            counted: 0,
             covered: vec![[0; 2]; self.truth.len()],
             doubts: std::collections::BTreeMap::new(),
         };
@@ -143,13 +146,18 @@ impl Kind {
             };
             assert_eq!(found.trusted, found.doubts.is_empty());
             for doubt in &found.doubts {
-                let beginning: String = doubt.chars().take(34).collect();
+                let beginning: String = doubt.chars().take(28).collect();
                 *tally.doubts.entry(beginning).or_default() += 1;
             }
-            if !found.trusted {
+            tally.trusted += usize::from(found.trusted);
+            if !found
+                .doubts
+                .iter()
+                .all(|doubt| doubt.contains("do not rule out"))
+            {
                 continue;
             }
-            tally.trusted += 1;
+            tally.counted += 1;
             let pairs = found.parameters.iter().zip(&self.truth);
             for ((parameter, &truth), covered) in pairs.zip(&mut tally.covered) {
                 covered[0] += usize::from(parameter.interval_68.contains(truth));
@@ -160,18 +168,14 @@ impl Kind {
     }
 }
 
-/// Asserts that the intervals of nearly all data sets can be trusted, and cover; errors a few times too small do not.
+/// Asserts that the intervals of nearly all data sets cover; errors a few times too small do not.
 fn assert_covered(kind: &Kind, sets: u64, least: usize) {
     let tally = kind.tally(0..sets, 0.0, false, 1.0);
-    assert!(
-        tally.trusted >= least,
-        "{} {:?}",
-        tally.trusted,
-        tally.doubts
-    );
+    let counted = tally.counted;
+    assert!(counted >= least, "{counted} {:?}", tally.doubts);
     for covered in &tally.covered {
         for (&covered, level) in covered.iter().zip([0.6827, 0.95]) {
-            assert_coverage(covered, tally.trusted, level, 0.03, kind.name);
+            assert_coverage(covered, counted, level, 0.03, kind.name);
         }
     }
 }
@@ -188,23 +192,30 @@ fn errors_at_known_critical_points_cover() {
     assert_covered(&kinds()[1], 20, 17);
 }
 
-/// PYTHON, high 2.
+/// PYTHON, high 2. More than half of these said that they could not be trusted.
 #[test]
 fn errors_of_a_critical_line_cover() {
-    assert_covered(&kinds()[2], 8, 2);
+    assert_covered(&kinds()[2], 6, 5);
 }
 
 /// With a correction in the data that is not allowed for, exponents are wrong, and the answer says that it cannot be
-/// trusted; allowed for, they are right.
+/// trusted; allowed for, they are right. At known critical points 59 of 60 called themselves trusted.
 #[test]
-fn a_correction_to_scaling_is_seen_and_can_be_allowed_for() {
-    let kind = &kinds()[0];
-    let blind = kind.tally(0..6, 0.4, false, 1.0);
-    assert!(blind.trusted <= 1, "{}", blind.trusted);
-    let allowed = kind.tally(0..8, 0.4, true, 1.0);
-    assert!(allowed.trusted >= 6, "{}", allowed.trusted);
-    for covered in &allowed.covered {
-        assert!(covered[1] + 2 >= allowed.trusted, "{:?}", allowed.covered);
+fn a_correction_to_scaling_can_be_allowed_for_and_is_missed_where_it_is_not() {
+    for kind in &kinds()[..2] {
+        let blind = kind.tally(0..6, 0.2, false, 1.0);
+        assert_eq!(blind.trusted, 0, "{}", kind.name);
+        assert!(
+            blind
+                .doubts
+                .keys()
+                .all(|doubt| doubt.contains("do not rule out"))
+        );
+        let allowed = kind.tally(0..8, 0.2, true, 1.0);
+        assert!(allowed.trusted >= 6, "{}", allowed.trusted);
+        for covered in &allowed.covered {
+            assert!(covered[1] + 2 >= allowed.trusted, "{:?}", allowed.covered);
+        }
     }
 }
 
@@ -268,15 +279,16 @@ fn errors_are_stretched_and_what_cannot_be_estimated_is_refused() {
     assert_refused!(estimate(&few) => TooFew { found: 5, .. });
 }
 
-/// The table of docs/python/collapse.md:
-/// `cargo test -p peristalsis-analysis --lib -- --ignored coverage_of_all_kinds --nocapture`, an hour; SETS=40 for less.
+/// The table of docs/python/collapse.md, row by row:
+/// `SETS=400 ROWS=0,1 cargo test --release -p peristalsis-analysis --lib -- --ignored coverage_of_all_kinds --nocapture`.
 #[test]
-#[ignore = "takes an hour"]
+#[ignore = "takes hours"]
 fn coverage_of_all_kinds() {
-    let sets = std::env::var("SETS")
-        .ok()
-        .and_then(|sets| sets.parse().ok());
+    let variable = |name| std::env::var(name).ok();
+    let sets = variable("SETS").and_then(|sets| sets.parse().ok());
     let sets: u64 = sets.unwrap_or(400);
+    let rows = variable("ROWS").map(|rows| rows.split(',').flat_map(str::parse).collect());
+    // Strength of the correction in the data, whether it is allowed for, factor by which errors are too small.
     let cases = [
         (0.0, false, 1.0),
         (0.0, false, 2.0),
@@ -284,17 +296,23 @@ fn coverage_of_all_kinds() {
         (0.2, false, 1.0),
         (0.2, true, 1.0),
     ];
-    for kind in kinds() {
-        for (strength, allowed, understated) in cases {
-            let tally = kind.tally(0..sets, strength, allowed, understated);
-            let share =
-                |covered: usize| (100.0 * covered as f64 / tally.trusted.max(1) as f64).round();
-            let shares = tally.covered.iter().map(|covered| covered.map(share));
-            let shares: Vec<[f64; 2]> = shares.collect();
-            println!(
-                "| {} | {strength} | {allowed} | {understated} | {} of {sets} | {shares:?} | {:?} |",
-                kind.name, tally.trusted, tally.doubts
-            );
-        }
+    let rows: Vec<usize> = rows.unwrap_or_else(|| (0..3 * cases.len()).collect());
+    for row in rows {
+        let kind = &kinds()[row / cases.len()];
+        let (strength, allowed, understated) = cases[row % cases.len()];
+        let begun = std::time::Instant::now();
+        let tally = kind.tally(0..sets, strength, allowed, understated);
+        let share = |covered: usize| 100.0 * covered as f64 / tally.counted.max(1) as f64;
+        let shares = tally.covered.iter().map(|covered| covered.map(share));
+        let shares = shares.map(|[narrow, wide]| format!("{narrow:.1}/{wide:.1}"));
+        println!(
+            "| {row} | {} | {strength} | {allowed} | {understated} | {} and {} of {sets} | {} | {:?} | {:.0} s",
+            kind.name,
+            tally.trusted,
+            tally.counted,
+            shares.collect::<Vec<_>>().join(", "),
+            tally.doubts,
+            begun.elapsed().as_secs_f64()
+        );
     }
 }

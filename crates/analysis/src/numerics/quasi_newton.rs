@@ -8,6 +8,19 @@ pub(crate) struct Smallest {
     pub(crate) inverse: Vec<Vec<f64>>,
 }
 
+impl Smallest {
+    /// With one variable held: the inverse for the others, and how they move with it while the function stays smallest.
+    pub(crate) fn beside(&self, axis: usize) -> (Vec<Vec<f64>>, Vec<f64>) {
+        let own = self.inverse[axis][axis];
+        let others = || (0..self.place.len()).filter(move |&k| k != axis);
+        let slope = |row: usize| self.inverse[row][axis] / own;
+        let entry =
+            |row: usize, k: usize| self.inverse[row][k] - slope(row) * self.inverse[axis][k];
+        let rows = others().map(|row| others().map(|k| entry(row, k)).collect());
+        (rows.collect(), others().map(slope).collect())
+    }
+}
+
 /// Most steps of a search.
 const MOST_STEPS: u32 = 80;
 /// Gain in value, of a step and of what the slope promises, that ends a search.
@@ -19,15 +32,25 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+fn scale(matrix: &mut [Vec<f64>], factor: impl Fn(usize, usize) -> f64) {
+    for (row, entries) in matrix.iter_mut().enumerate() {
+        for (column, entry) in entries.iter_mut().enumerate() {
+            *entry *= factor(row, column);
+        }
+    }
+}
+
 /// Local minimum by the method of Broyden, Fletcher, Goldfarb & Shanno (Nocedal & Wright, Numerical Optimization
 /// (2006), chapter 6), with slopes from central differences.
 ///
-/// `steps` scale the variables. Where the function is not a number or infinite the search does not go; `None` where it
-/// begins there.
+/// `steps` scale the variables. `inverse`: a guess of the inverse of the matrix of second derivatives, from a search close
+/// by, that saves most of the steps. Where the function is not a number or infinite the search does not go; `None` where
+/// it begins there.
 pub(crate) fn quasi_newton(
     function: impl Fn(&[f64]) -> f64,
     start: &[f64],
     steps: &[f64],
+    inverse: Option<&[Vec<f64>]>,
 ) -> Option<Smallest> {
     let dimensions = start.len();
     let at = |scaled: &[f64]| {
@@ -68,8 +91,18 @@ pub(crate) fn quasi_newton(
     let mut offset = vec![0.0; dimensions];
     let mut value = Some(at(&offset)).filter(|value| value.is_finite())?;
     let mut slope = slope_at(&offset, value);
-    let mut inverse = identity(1.0 / dot(&slope, &slope).sqrt().max(10.0));
-    let mut is_fresh = true;
+    let scaled = |inverse: &[Vec<f64>]| {
+        let mut inverse = inverse.to_vec();
+        scale(&mut inverse, |row, column| {
+            1.0 / (steps[row] * steps[column])
+        });
+        inverse
+    };
+    let mut is_fresh = inverse.is_none();
+    let mut inverse = match inverse {
+        Some(inverse) => scaled(inverse),
+        None => identity(1.0 / dot(&slope, &slope).sqrt().max(10.0)),
+    };
     for _ in 0..MOST_STEPS {
         let mut step: Vec<f64> = inverse.iter().map(|row| -dot(row, &slope)).collect();
         let longest = step
@@ -122,11 +155,11 @@ pub(crate) fn quasi_newton(
             }
             is_fresh = false;
             let turned: Vec<f64> = inverse.iter().map(|row| dot(row, &change)).collect();
-            let scale = 1.0 + dot(&change, &turned) / bend;
+            let factor = 1.0 + dot(&change, &turned) / bend;
             for (row, entries) in inverse.iter_mut().enumerate() {
                 for (column, entry) in entries.iter_mut().enumerate() {
                     let mixed = turned[row] * way[column] + way[row] * turned[column];
-                    *entry += (scale * way[row] * way[column] - mixed) / bend;
+                    *entry += (factor * way[row] * way[column] - mixed) / bend;
                 }
             }
         }
@@ -139,11 +172,7 @@ pub(crate) fn quasi_newton(
     let place = place
         .map(|((offset, start), step)| start + offset * step)
         .collect();
-    for (row, entries) in inverse.iter_mut().enumerate() {
-        for (column, entry) in entries.iter_mut().enumerate() {
-            *entry *= steps[row] * steps[column];
-        }
-    }
+    scale(&mut inverse, |row, column| steps[row] * steps[column]);
     Some(Smallest {
         place,
         value,
@@ -161,7 +190,7 @@ mod tests {
             let (across, along) = (p[1] - p[0] * p[0], 1.0 - p[0]);
             100.0 * across * across + along * along
         };
-        let found = quasi_newton(valley, &[-1.2, 1.0], &[0.5, 0.5]).unwrap();
+        let found = quasi_newton(valley, &[-1.2, 1.0], &[0.5, 0.5], None).unwrap();
         assert!(
             (found.place[0] - 1.0).abs() < 1e-2 && (found.place[1] - 1.0).abs() < 2e-2,
             "{found:?}"
@@ -171,7 +200,20 @@ mod tests {
             (found.inverse[0][0] - 0.5).abs() < 0.1 && (found.inverse[1][1] - 2.0).abs() < 0.4,
             "{found:?}"
         );
-        assert!(quasi_newton(|_| f64::NAN, &[0.0], &[1.0]).is_none());
-        assert_eq!(quasi_newton(|_| 2.0, &[], &[]).unwrap().value, 2.0);
+        // With the inverse known it is a step of Newton's method.
+        let bowl = |p: &[f64]| p[0] * p[0] + p[0] * p[1] + 2.0 * p[1] * p[1];
+        let calls = std::cell::Cell::new(0);
+        let counted = |p: &[f64]| {
+            calls.set(calls.get() + 1);
+            bowl(p)
+        };
+        let inverse = [vec![4.0 / 7.0, -1.0 / 7.0], vec![-1.0 / 7.0, 2.0 / 7.0]];
+        let found = quasi_newton(counted, &[3.0, 1.0], &[0.5, 0.2], Some(&inverse)).unwrap();
+        assert!(
+            found.value < 1e-8 && calls.get() < 22,
+            "{found:?} {calls:?}"
+        );
+        assert!(quasi_newton(|_| f64::NAN, &[0.0], &[1.0], None).is_none());
+        assert_eq!(quasi_newton(|_| 2.0, &[], &[], None).unwrap().value, 2.0);
     }
 }
