@@ -11,6 +11,7 @@ from . import _core
 from ._arrays import Array
 from ._core import AnalysisError, Table
 from ._progress import Progress, Shown
+from ._warnings import tell
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
@@ -165,9 +166,11 @@ def ramp(
     with Progress(simulation, len(course), shown, "levels") as display:
         for number, (_, value) in enumerate(course):
             setattr(simulation, parameter, value)
-            simulation.run(periods=periods)
+            # A doubt of one level may be none of the whole, such as a threshold that is crossed later.
+            simulation._step(simulation._steps_of(periods, None))
             found.append(_late(simulation, periods, settle))
             display.update(number + 1)
+    tell(simulation.warnings, simulation._told)
     means, errors = (np.array(column) for column in zip(*found))
     names = tuple(name for name, _ in course)
     return Loop(parameter, names, np.array([value for _, value in course]), means, errors, threshold)

@@ -168,6 +168,19 @@ class Simulation(Made):
         >>> sim.steps
         3
         """
+        self._step(steps, progress, callback, every, writers, threads)
+        tell(self.warnings, self._told)
+
+    def _step(
+        self,
+        steps: int,
+        progress: Shown = False,
+        callback: _Callbacks | None = None,
+        every: int | None = None,
+        writers: Iterable[Writer] = (),
+        threads: int | None = None,
+    ) -> None:
+        """As `step`, but tells no doubts."""
         steps = whole("steps", steps, 0)
         each = self._run.steps_per_sample if every is None else whole("every", every, 1)
         if not self._running.acquire(blocking=False):
@@ -187,7 +200,6 @@ class Simulation(Made):
                         writer._synchronize()
         finally:
             self._running.release()
-        tell(self.warnings, self._told)
 
     def _advance(self, steps: int, called: list[Trigger | Writer], display: Progress) -> None:
         first = now = self.steps

@@ -91,6 +91,17 @@ def test_a_ramp_gets_no_warning_of_its_schedule_and_can_be_repeated() -> None:
     assert np.array_equal(sim.positions, again.positions)
 
 
+def test_a_ramp_tells_doubts_of_the_whole_and_not_of_its_levels() -> None:
+    """PYTHON, medium 7: half way up the flow has not crossed the threshold yet."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        sim = Simulation.preset("frictionless-fine", width=2.95, strain_rate=0.01, waves=2, seed=1)
+        loop = sim.ramp("width", 2.95, 2.8, periods=40, levels=4, back=False)
+    assert loop.thresholds.there is not None and sim.warnings == ()
+    with pytest.warns(PeristalsisWarning, match="drive.strain_rate"):
+        Simulation.preset("frictionless-fine", **TIGHT).ramp("width", 2.6, 2.5, periods=4, levels=2, back=False)
+
+
 def test_a_loop_has_both_branches_with_errors_and_thresholds() -> None:
     """PYTHON, what would delight: `sim.ramp`."""
     sim = Simulation.preset("frictionless-fine", **TIGHT)
