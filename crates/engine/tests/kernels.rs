@@ -42,7 +42,9 @@ const LATER: Apart = Apart {
 };
 
 fn all_rows() -> Vec<Row> {
-    [Tube::Narrow, Tube::Wide, Tube::Elastic].map(rows).concat()
+    [Tube::Narrow, Tube::Scattered, Tube::Wide, Tube::Elastic]
+        .map(rows)
+        .concat()
 }
 
 fn number() -> impl Strategy<Value = usize> {

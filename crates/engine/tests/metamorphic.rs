@@ -139,7 +139,7 @@ fn turned_round(wall: &Wall) -> Wall {
         Wall::Prescribed(wall) => {
             let wave = wall.wave();
             waving(
-                *wall.lattice(),
+                *wall.lattice().expect("a wall of rings"),
                 wave.mean_radius,
                 wave.waveform,
                 -wave.heading,
@@ -259,7 +259,7 @@ impl Units {
             Wall::Prescribed(wall) => {
                 let wave = wall.wave();
                 Wall::Prescribed(PrescribedWall::new(
-                    self.lattice(*wall.lattice()),
+                    self.lattice(*wall.lattice().expect("a wall of rings")),
                     self.length * wave.mean_radius,
                     wave.waveform,
                     wave.heading,

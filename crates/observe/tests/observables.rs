@@ -19,6 +19,7 @@ const LATTICE: Lattice = Lattice {
     waves: 2,
     wavelength: 10.0,
     sphere_diameter: 1.0,
+    staggered: true,
 };
 const STRAIN_RATE: f64 = 0.1;
 
@@ -322,6 +323,7 @@ fn faults_of_an_elastic_wall_are_noted_once_with_place_and_cause() {
             waves: 2,
             wavelength: 20.0,
             sphere_diameter: 1.0,
+            staggered: true,
         },
         mean_radius: 3.5,
         network: ElasticNetwork::default(),

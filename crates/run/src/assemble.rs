@@ -224,6 +224,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
         waves: tube.waves,
         wavelength: tube.wavelength,
         sphere_diameter: wall.sphere_diameter,
+        staggered: true,
     };
     let heading = heading(configuration);
     let schedule = |parameter, constant| schedule(configuration, parameter, constant);

@@ -12,7 +12,7 @@ use rand_core::SeedableRng;
 
 pub use peristalsis_physics::method::InitialState;
 
-use self::packing::uniform;
+pub(crate) use self::packing::uniform;
 pub use self::packing::{LARGEST_MEAN_OVERLAP, Packing, PackingReport};
 
 use crate::bodies::Bodies;

@@ -40,6 +40,6 @@ pub struct PackingReport {
 }
 
 /// Uniform in [0, 1), from the upper 53 bits.
-pub(super) fn uniform(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
 }

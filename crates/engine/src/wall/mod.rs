@@ -6,7 +6,7 @@ mod prescribed;
 
 pub use elastic::{ElasticParameters, ElasticWall};
 pub use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, NetForce, Tethers};
-pub use prescribed::PrescribedWall;
+pub use prescribed::{PrescribedWall, Scattered};
 
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
@@ -47,8 +47,10 @@ impl Wall {
     pub(crate) fn difference(&self, other: &Self, time: f64) -> Option<&'static str> {
         let (same_kind, amplitudes) = match (self, other) {
             (Self::Prescribed(this), Self::Prescribed(other)) => {
+                let stands = this.stands_as(other);
                 let (this, other) = (this.wave(), other.wave());
-                let same = this.mean_radius == other.mean_radius
+                let same = stands
+                    && this.mean_radius == other.mean_radius
                     && this.waveform == other.waveform
                     && this.heading == other.heading;
                 (same, (this.amplitude, other.amplitude))
@@ -78,21 +80,23 @@ impl Wall {
         }
     }
 
-    /// The lattice of the wall's spheres; `None` where the wall has none.
+    /// The lattice of the wall's spheres; `None` where they stand anywhere.
     pub fn lattice(&self) -> Option<&Lattice> {
         match self {
-            Self::Prescribed(wall) => Some(wall.lattice()),
+            Self::Prescribed(wall) => wall.lattice(),
             Self::Elastic(wall) => Some(wall.lattice()),
         }
     }
 
-    /// Length of the tube, lambda and the number of wavelengths.
-    fn extent(&self) -> (f64, f64, u32) {
-        let lattice = match self {
-            Self::Prescribed(wall) => wall.lattice(),
-            Self::Elastic(wall) => wall.lattice(),
-        };
-        (lattice.length(), lattice.wavelength, lattice.waves)
+    /// Length of the tube, wavelengths in it, and diameter of the wall's spheres.
+    fn extent(&self) -> (f64, u32, f64) {
+        match self {
+            Self::Prescribed(wall) => wall.extent(),
+            Self::Elastic(wall) => {
+                let lattice = wall.lattice();
+                (lattice.length(), lattice.waves, lattice.sphere_diameter)
+            }
+        }
     }
 
     /// L, the period of the tube \[d\].
@@ -102,18 +106,20 @@ impl Wall {
 
     /// lambda \[d\]
     pub fn wavelength(&self) -> f64 {
-        self.extent().1
+        match self {
+            Self::Prescribed(wall) => wall.wave().wavelength,
+            Self::Elastic(wall) => wall.lattice().wavelength,
+        }
     }
 
     /// Wavelengths in the tube.
     pub fn waves(&self) -> u32 {
-        self.extent().2
+        self.extent().1
     }
 
-    /// Diameter of the wall's spheres, 0 where it has none \[d\]: the wall's surface lies half of it inside its radius.
+    /// Diameter of the wall's spheres \[d\]: the wall's surface lies half of it inside its radius.
     pub fn sphere_diameter(&self) -> f64 {
-        self.lattice()
-            .map_or(0.0, |lattice| lattice.sphere_diameter)
+        self.extent().2
     }
 
     /// Wavelengths that the wave has run since the start, the integral of c/lambda.
@@ -185,7 +191,7 @@ impl Wall {
     pub fn prescribed_spheres(&self) -> impl Iterator<Item = Sphere> {
         self.prescribed()
             .into_iter()
-            .flat_map(|wall| (0..wall.lattice().spheres()).map(|index| wall.sphere(index)))
+            .flat_map(|wall| (0..wall.number()).map(|index| wall.sphere(index)))
     }
 
     /// Displacements of the mobile spheres from their reference places: (radial, azimuthal, axial) along the reference

@@ -80,6 +80,7 @@ pub(crate) const fn lattice(
         waves,
         wavelength,
         sphere_diameter: 1.0,
+        staggered: true,
     }
 }
 

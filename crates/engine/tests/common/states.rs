@@ -1,5 +1,7 @@
 //! Every combination of laws, sizes, tube and integrator, and random states of each.
 
+use peristalsis_engine::wall::Scattered;
+
 use super::*;
 
 /// What surrounds the grains.
@@ -7,6 +9,8 @@ use super::*;
 pub(crate) enum Tube {
     /// Prescribed, some two grains wide.
     Narrow,
+    /// As narrow, of spheres that stand anywhere.
+    Scattered,
     /// Prescribed, ten grains wide, with waves of several grains across.
     Wide,
     /// Of mobile spheres.
@@ -129,7 +133,7 @@ impl Numbers {
 /// Grains packed into a tube of the row's kind, that move as a wave would have them move.
 pub(crate) fn lively(row: Row) -> State {
     let (wall, number) = match row.tube {
-        Tube::Narrow => (strained(coarse(2), -1.0, 2.6, 0.1), 60),
+        Tube::Narrow | Tube::Scattered => (strained(coarse(2), -1.0, 2.6, 0.1), 60),
         Tube::Wide => {
             let lattice = lattice(34, 22, 1, 20.0);
             (prescribed(lattice, 5.0, 1.0, 1.5, 0.02), 300)
@@ -167,6 +171,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
     });
     let (wall, radius) = match row.tube {
         Tube::Narrow => (narrow_tube(numbers, time_step), 1.5),
+        Tube::Scattered => (scattered_tube(numbers, time_step), 1.5),
         Tube::Wide => (wide_tube(numbers, time_step), 5.0),
         Tube::Elastic => springy(numbers, time_step),
     };
@@ -199,7 +204,7 @@ pub(crate) fn random(row: Row, number: usize, seed: u64) -> State {
 
 /// A prescribed tube of radius 1.5: fine, coarse, of one wave, and barely longer than two spheres.
 fn narrow_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
-    let lattice = numbers.one_of(&[
+    let mut lattice = numbers.one_of(&[
         lattice(24, 26, 2, 10.0),
         lattice(24, 26, 1, 10.0),
         lattice(12, 14, 1, 10.0),
@@ -210,8 +215,24 @@ fn narrow_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
         lattice(12, 6, 1, 2.62),
         lattice(12, 2, 1, 2.05),
     ]);
+    lattice.staggered = numbers.happens(0.6);
     let amplitude = numbers.perhaps(1.5);
     driven(numbers, lattice, 1.5, amplitude, time_step)
+}
+
+/// A prescribed tube of radius 1.5 whose spheres stand anywhere.
+fn scattered_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
+    let lattice = numbers.one_of(&[lattice(12, 14, 1, 10.0), lattice(24, 26, 2, 10.0)]);
+    let amplitude = numbers.perhaps(1.5);
+    let wall = driven(numbers, lattice, 1.5, amplitude, time_step);
+    let spheres = match numbers.happens(0.5) {
+        true => Scattered::random(&lattice, 3),
+        false => Scattered::disordered(&lattice, 1.5, 3),
+    };
+    match wall {
+        Wall::Prescribed(wall) => Wall::Prescribed(wall.with(spheres)),
+        elastic => elastic,
+    }
 }
 
 /// A prescribed tube of radius 5.
@@ -222,6 +243,7 @@ fn wide_tube(numbers: &mut Numbers, time_step: f64) -> Wall {
         waves: numbers.one_of(&[1, 2]),
         wavelength: 14.0,
         sphere_diameter: 1.0,
+        staggered: true,
     };
     let amplitude = numbers.between(0.5, 4.8);
     driven(numbers, lattice, 5.0, amplitude, time_step)
@@ -269,6 +291,7 @@ fn springy(numbers: &mut Numbers, time_step: f64) -> (Wall, f64) {
             waves,
             wavelength: spacing * f64::from(rings_per_wave),
             sphere_diameter: numbers.one_of(&[1.0, 0.8]),
+            staggered: true,
         },
         mean_radius: radius,
         network: ElasticNetwork {

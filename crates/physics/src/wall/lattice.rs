@@ -1,13 +1,14 @@
-//! The lattice of the wall: staggered rings of spheres along a periodic tube.
+//! The lattice of the wall: rings of spheres along a periodic tube.
 
 use core::f64::consts::PI;
 
 use crate::real::Real;
 
-/// Staggered rings: M spheres a ring, alternate rings turned by pi/M, an axial distance s apart.
+/// Rings of M spheres, an axial distance s apart; staggered ones are turned by pi/M in turn, aligned ones are not.
 ///
-/// Ring k stands at zeta_k = k s, s = lambda/(rings a wavelength); sphere i of it at the angle
-/// (2 i + (k mod 2)) pi/M. The number of rings of the whole tube is even, so that the pattern closes at the seam.
+/// Ring k stands at zeta_k = k s, s = lambda/(rings a wavelength); sphere i of it at the angle (2 i + (k mod 2)) pi/M,
+/// 2 i pi/M where they are aligned. The number of staggered rings in the whole tube is even, so that the pattern closes
+/// at the seam.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Lattice {
     /// M
@@ -20,6 +21,8 @@ pub struct Lattice {
     pub wavelength: f64,
     /// Diameter of a wall sphere \[d\].
     pub sphere_diameter: f64,
+    /// Whether every other ring is turned by half a spacing.
+    pub staggered: bool,
 }
 
 /// A sphere of the wall, by its place in the lattice.
@@ -73,7 +76,7 @@ impl Lattice {
 
     /// Angle of a sphere in units of pi/M, from 0 to 2M - 1.
     pub fn half_steps(&self, sphere: WallSphere) -> u32 {
-        2 * sphere.place + sphere.ring % 2
+        2 * sphere.place + u32::from(self.staggered) * (sphere.ring % 2)
     }
 
     /// Angle of a sphere \[rad\].
@@ -81,7 +84,7 @@ impl Lattice {
         f64::from(self.half_steps(sphere)) * PI / f64::from(self.spheres_per_ring)
     }
 
-    /// The six lattice neighbours of a sphere: two on its ring, two on each ring beside it.
+    /// The six lattice neighbours of a sphere of a staggered lattice: two on its ring, two on each ring beside it.
     pub fn neighbours(&self, sphere: WallSphere) -> [WallSphere; 6] {
         let (rings, per_ring) = (self.rings(), self.spheres_per_ring);
         let WallSphere { ring, place } = sphere;
@@ -103,15 +106,18 @@ impl Lattice {
         ]
     }
 
-    /// Widest gap of the straight tube: the radius of the largest sphere that could pass between three neighbouring
-    /// wall spheres of a tube of radius `radius`, less nothing for softness \[d\].
+    /// Widest gap of the straight tube: the radius of the largest sphere that could pass between three (aligned: four)
+    /// neighbouring wall spheres of a tube of radius `radius`, less nothing for softness \[d\].
     ///
-    /// The circumradius of the lattice triangle minus the wall spheres' radius; a grain of larger radius cannot leave
-    /// without overlapping the wall.
+    /// The circumradius of the lattice triangle (rectangle) minus the wall spheres' radius; a grain of larger radius cannot
+    /// leave without overlapping the wall.
     pub fn largest_passing_radius(&self, radius: f64) -> f64 {
         let chord = 2.0 * radius * libm::sin(PI / f64::from(self.spheres_per_ring));
         let half_turn = 2.0 * radius * libm::sin(0.5 * PI / f64::from(self.spheres_per_ring));
         let spacing = self.spacing();
+        if !self.staggered {
+            return 0.5 * (chord * chord + spacing * spacing).sqrt() - 0.5 * self.sphere_diameter;
+        }
         let oblique = (spacing * spacing + half_turn * half_turn).sqrt();
         // Isosceles triangle with base `chord` and legs `oblique`: circumradius = leg^2/(2 height).
         let height = (oblique * oblique - 0.25 * chord * chord).max(0.0).sqrt();
@@ -156,6 +162,7 @@ mod tests {
         waves: 10,
         wavelength: 10.0,
         sphere_diameter: 1.0,
+        staggered: true,
     };
 
     const FRICTIONAL: Lattice = Lattice {
@@ -164,6 +171,7 @@ mod tests {
         waves: 2,
         wavelength: 20.0,
         sphere_diameter: 1.0,
+        staggered: true,
     };
 
     fn position(lattice: &Lattice, sphere: WallSphere, radius: f64) -> [f64; 3] {

@@ -94,6 +94,7 @@ mod tests {
             waves: 10,
             wavelength: 10.0,
             sphere_diameter: 1.0,
+            staggered: true,
         }
     }
 

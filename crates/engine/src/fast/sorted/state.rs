@@ -67,7 +67,9 @@ impl Sorted {
         let Some(prescribed) = wall.prescribed() else {
             return false;
         };
-        let lattice = prescribed.lattice();
+        let Some(lattice) = prescribed.lattice() else {
+            return false;
+        };
         let equal = bodies.diameter.windows(2).all(|pair| pair[0] == pair[1])
             && bodies.mass.windows(2).all(|pair| pair[0] == pair[1]);
         let diameter = bodies.diameter.first().copied().unwrap_or(1.0);
@@ -75,7 +77,7 @@ impl Sorted {
         equal
             && lattice.length() > 2.0 * cutoff
             // Rings are counted on beyond the ends of the tube.
-            && lattice.rings().is_multiple_of(2)
+            && (!lattice.staggered || lattice.rings().is_multiple_of(2))
             // The candidates of a block are worked out at once, also with a very fine wall.
             && rings_in_reach(lattice, diameter) <= MOST_RINGS
     }

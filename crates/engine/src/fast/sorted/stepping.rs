@@ -39,7 +39,7 @@ impl Sorted {
                 reach: diameter,
                 reduced_radius: 0.25 * diameter,
             },
-            wall: WallTable::new(wall.prescribed()?.lattice(), diameter),
+            wall: WallTable::new(wall.prescribed()?.lattice()?, diameter),
             strips,
             of_tiles: vec![OfTile::default()],
             ..Self::default()

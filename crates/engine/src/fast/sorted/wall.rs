@@ -32,6 +32,8 @@ pub(super) struct WallTable {
     outward: Vec<(f64, f64)>,
     /// tan of the angle of half a step.
     half_step: f64,
+    /// Half steps by which every other ring is turned.
+    turn: f64,
     rings_per_wave: f64,
     waves_per_ring: f64,
     half_steps_per_radian: f64,
@@ -80,6 +82,7 @@ impl WallTable {
             directions,
             outward,
             half_step: libm::tan(angle(1.0).min(1.0)),
+            turn: if lattice.staggered { 1.0 } else { 0.0 },
             rings_per_wave: f64::from(lattice.rings_per_wave),
             waves_per_ring: 1.0 / f64::from(lattice.rings_per_wave),
             half_steps_per_radian: f64::from(per_ring) / core::f64::consts::PI,
@@ -96,10 +99,11 @@ impl WallTable {
     /// Takes over the rings where they are now.
     pub(super) fn follow(&mut self, wall: &Wall) {
         let wall = wall.prescribed().expect("a wall that this kernel serves");
-        for (entry, ring) in self.rings.chunks_exact_mut(2).zip(&wall.rings) {
+        let rings = &wall.rings().expect("a wall of rings").rings;
+        for (entry, ring) in self.rings.chunks_exact_mut(2).zip(rings) {
             entry.copy_from_slice(&[ring.radius, ring.velocity]);
         }
-        for (radius, ring) in self.radius.iter_mut().zip(wall.rings.iter().cycle()) {
+        for (radius, ring) in self.radius.iter_mut().zip(rings.iter().cycle()) {
             *radius = ring.radius;
         }
         let wave = wall.wave();
@@ -162,7 +166,7 @@ impl WallTable {
                 Lanes::<M>::windows(&self.rings, self.in_wave(ring).map(|ring| 2 * ring));
             let parity = {
                 let (half, _) = (ring * Lanes::splat(0.5) - Lanes::splat(0.25)).round();
-                ring - Lanes::splat(2.0) * half
+                (ring - Lanes::splat(2.0) * half) * Lanes::splat(self.turn)
             };
             let half_steps = approximate_angle(x, y) * Lanes::splat(self.half_steps_per_radian);
             let (sphere, _) = ((half_steps - parity) * Lanes::splat(0.5)).round();

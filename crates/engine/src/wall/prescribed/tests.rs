@@ -17,6 +17,7 @@ const COARSE: Lattice = Lattice {
     waves: 2,
     wavelength: 10.0,
     sphere_diameter: 1.0,
+    staggered: true,
 };
 
 fn wall(lattice: Lattice, heading: f64, amplitude: Schedule) -> PrescribedWall {
@@ -26,10 +27,10 @@ fn wall(lattice: Lattice, heading: f64, amplitude: Schedule) -> PrescribedWall {
 
 /// The spheres that touch, by looking at all of them, with their separations.
 fn by_looking_at_all(wall: &PrescribedWall, centre: DVec3, diameter: f64) -> BTreeMap<u32, DVec3> {
-    let reach = 0.5 * (diameter + wall.lattice.sphere_diameter);
-    (0..wall.lattice.spheres())
+    let reach = 0.5 * (diameter + wall.sphere_diameter);
+    (0..wall.number())
         .map(|sphere| {
-            let apart = periodic(centre - wall.sphere(sphere).position, wall.lattice.length());
+            let apart = periodic(centre - wall.sphere(sphere).position, wall.length);
             (sphere as u32, apart)
         })
         .filter(|(_, apart)| apart.length() < reach)
@@ -45,7 +46,7 @@ fn check(wall: &PrescribedWall, centre: DVec3, diameter: f64) -> usize {
             "sphere {sphere} twice"
         );
     });
-    let reach = 0.5 * (diameter + wall.lattice.sphere_diameter);
+    let reach = 0.5 * (diameter + wall.sphere_diameter);
     for (sphere, apart) in &expected {
         // At the very edge rounding decides.
         if apart.length() < reach - 1e-12 {
@@ -70,15 +71,24 @@ proptest! {
     #[test]
     fn the_spheres_that_touch_are_those_a_search_over_all_finds(
         from_axis in 0.0..2.6, angle in -3.2..3.2, z in 0.0..20.0, diameter in 0.3..1.6,
-        time in 0.0..40.0, amplitude in 0.0..1.3, backward: bool, refinement in 1_u32..4,
+        time in 0.0..40.0, amplitude in 0.0..1.3, backward: bool, refinement in 1_u32..4, standing in 0..4,
+        waveform in 0..Waveform::ALL.len(),
     ) {
         let lattice = Lattice {
             spheres_per_ring: 12 * refinement,
             rings_per_wave: 14 * refinement,
+            staggered: standing == 0,
             ..COARSE
         };
         let heading = if backward { 1.0 } else { -1.0 };
-        let mut wall = wall(lattice, heading, Schedule::constant(amplitude));
+        let (amplitude, frequency) = (Schedule::constant(amplitude), Schedule::constant(0.07));
+        let waveform = Waveform::ALL[waveform];
+        let mut wall = PrescribedWall::new(lattice, 1.5, waveform, heading, amplitude, frequency);
+        wall = match standing {
+            2 => wall.with(Scattered::random(&lattice, refinement.into())),
+            3 => wall.with(Scattered::disordered(&lattice, 1.5, refinement.into())),
+            _ => wall,
+        };
         wall.move_to(time);
         let place = DVec3::new(from_axis * libm::cos(angle), from_axis * libm::sin(angle), z);
         check(&wall, place, diameter);
@@ -196,8 +206,8 @@ fn forces_are_sums_over_the_spheres() {
             let (centre, diameter) = (bodies.position[grain], bodies.diameter[grain]);
             let mut expected = DVec3::ZERO;
             for (sphere, apart) in by_looking_at_all(&wall, centre, diameter) {
-                let ring = wall.lattice.sphere(sphere as usize).ring;
-                let z = wall.lattice.axial_position(ring);
+                let ring = COARSE.sphere(sphere as usize).ring;
+                let z = COARSE.axial_position(ring);
                 let speed = wall.wave.ring(z, wall.cycles, 0.07, 0.0).velocity;
                 let place = wall.sphere(sphere as usize).position;
                 let velocity = speed * DVec3::new(place.x, place.y, 0.0).normalize();

@@ -89,6 +89,7 @@ pub(crate) fn plane(diameter: f64, radius: f64) -> Wall {
         waves: 1,
         wavelength: 4.0 * diameter,
         sphere_diameter: diameter,
+        staggered: true,
     };
     straight(lattice, radius)
 }
@@ -101,6 +102,7 @@ pub(crate) fn far_away(radius: f64, length: f64) -> Wall {
         waves: 1,
         wavelength: length,
         sphere_diameter: 1.0,
+        staggered: true,
     };
     straight(lattice, radius)
 }
