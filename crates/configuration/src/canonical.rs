@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 
+use peristalsis_physics::wall::Arrangement;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use toml::Value;
@@ -92,8 +93,8 @@ impl Configuration {
 
     /// Every key with its resolved value, in the order of the types that hold them.
     ///
-    /// What is not there is not listed: neither friction, units or a body force that the run does without, nor an initial
-    /// velocity that the initial state has of itself, and of alternatives only the first.
+    /// What is not there is not listed: neither friction, units or a body force that the run does without, nor a staggered
+    /// arrangement, nor an initial velocity that the initial state has of itself, and of alternatives only the first.
     fn entries(&self) -> Vec<Entry> {
         let mut tables =
             toml::Table::try_from(self).expect("a configuration consists of what TOML can hold");
@@ -122,6 +123,8 @@ impl Configuration {
         let natural = self.natural_axial_velocity();
         entries.retain(|entry| match entry.path().as_str() {
             "drive.body_force" => self.drive.body_force != 0.0,
+            "tube.arrangement" => self.tube.arrangement != Arrangement::default(),
+            "tube.seed" => !self.tube.arrangement.has_rings(),
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
             path => !absent.contains(&path),
         });

@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 use peristalsis_physics::contact::ContactModel;
 use peristalsis_physics::method::{InitialState, Integrator, Kernel};
-use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, WaveDirection, Waveform};
+use peristalsis_physics::wall::{Arrangement, DriveAngle, ElasticNetwork, WaveDirection, Waveform};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -75,7 +75,7 @@ impl Grains {
     }
 }
 
-/// The tube: a lattice of wall spheres in staggered rings, periodic along its axis.
+/// The tube: wall spheres in rings or at random places, periodic along its axis.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
     /// Mean radius a, to the centres of the wall spheres.
@@ -87,13 +87,27 @@ pub struct Tube {
     /// Number of waves in the tube; its length is L = waves * wavelength.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub waves: u32,
+    /// How the wall spheres stand.
+    #[serde(default)]
+    pub arrangement: Arrangement,
+    /// Seed of a random or disordered arrangement.
+    #[serde(default = "first_seed")]
+    #[schemars(extend("x-unit" = "1", "minimum" = 0))]
+    pub seed: u64,
     /// Wall spheres in a ring.
     #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
-    /// Rings in a wavelength, alternate rings turned by half a spacing: even under strain control; under stress control
-    /// an odd number needs an even number of waves.
+    /// Rings in a wavelength: even under strain control, where they are staggered; under stress control an odd number
+    /// needs an even number of waves. Random and disordered walls have as many spheres as these rings.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
+}
+
+/// The default of [`Tube::seed`].
+pub(crate) const FIRST_SEED: u64 = 1;
+
+fn first_seed() -> u64 {
+    FIRST_SEED
 }
 
 impl Tube {

@@ -53,6 +53,11 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
     schedule.owns("ramp", "drive.ramp_periods");
     switches.push(schedule);
+    let mut arrangement = Switch::new("tube.arrangement", &["tube.seed"]);
+    for without_rings in ["random", "disordered"] {
+        arrangement.owns(without_rings, "tube.seed");
+    }
+    switches.push(arrangement);
     switches
 });
 

@@ -5,11 +5,11 @@ use peristalsis_configuration::{
     Configuration, Control, InitialState, ScheduledParameter, WaveDirection, Waveform,
 };
 use peristalsis_engine::initial::{Packing, PackingReport, pack};
-use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall};
+use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Scattered};
 use peristalsis_engine::{Bodies, Parameters, Simulation, Touching, Wall};
 use peristalsis_observe::TubeShape;
 use peristalsis_physics::newtonian::NewtonianPeristalsis;
-use peristalsis_physics::wall::{Lattice, Schedule};
+use peristalsis_physics::wall::{Arrangement, Lattice, Schedule};
 
 use crate::RunError;
 
@@ -224,7 +224,7 @@ pub fn walls(configuration: &Configuration) -> Wall {
         waves: tube.waves,
         wavelength: tube.wavelength,
         sphere_diameter: wall.sphere_diameter,
-        staggered: true,
+        staggered: tube.arrangement != Arrangement::Aligned,
     };
     let heading = heading(configuration);
     let schedule = |parameter, constant| schedule(configuration, parameter, constant);
@@ -233,14 +233,16 @@ pub fn walls(configuration: &Configuration) -> Wall {
         Control::Strain { width } => {
             let widths = schedule(ScheduledParameter::Width, width);
             let amplitude = widths.map(|width| tube.radius - 0.5 * width);
-            Wall::Prescribed(PrescribedWall::new(
-                lattice,
-                tube.radius,
-                drive.waveform,
-                heading,
-                amplitude,
-                frequency,
-            ))
+            let (radius, waveform) = (tube.radius, drive.waveform);
+            let wall =
+                PrescribedWall::new(lattice, radius, waveform, heading, amplitude, frequency);
+            Wall::Prescribed(match tube.arrangement {
+                Arrangement::Staggered | Arrangement::Aligned => wall,
+                Arrangement::Random => wall.with(Scattered::random(&lattice, tube.seed)),
+                Arrangement::Disordered => {
+                    wall.with(Scattered::disordered(&lattice, radius, tube.seed))
+                }
+            })
         }
         Control::Stress {
             force_amplitude,

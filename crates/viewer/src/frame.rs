@@ -8,14 +8,15 @@
 //! | 12 N | their velocities |
 //! | 4 N | their diameters |
 //! | 12 N | their angular velocities, where grains turn |
-//! | 12 W or 4 R | centres of the spheres of an elastic wall, or radii of the rings of one wavelength of a prescribed one |
+//! | 12 W or 4 R | centres of the wall's spheres, or radii of the rings of one wavelength where the page knows the rest |
 //!
 //! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
 
-use peristalsis_engine::Bodies;
+use peristalsis_engine::{Bodies, Wall};
 #[cfg(feature = "server")]
 use peristalsis_formats::Frame;
 use peristalsis_observe::Sample;
+use peristalsis_physics::wall::Lattice;
 use peristalsis_run::{Run, Warning};
 use serde::Serialize;
 
@@ -93,14 +94,19 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
         angular_velocity,
         ..
     } = run.simulation().bodies();
-    let [of_grains, of_wall] = [&position[..*grains], &position[*grains..]];
+    let [of_grains, mobile] = [&position[..*grains], &position[*grains..]];
     let spin = if head.turning {
         &angular_velocity[..*grains]
     } else {
         &[]
     };
     let wall = run.simulation().wall();
-    let rings: Vec<f64> = wall.wave().map_or_else(Vec::new, |wave| {
+    let known = known_rings(wall);
+    let mut of_wall = mobile.to_vec();
+    if known.is_none() {
+        of_wall.extend(wall.prescribed_spheres().map(|sphere| sphere.position));
+    }
+    let rings: Vec<f64> = known.and(wall.wave()).map_or_else(Vec::new, |wave| {
         let spacing = wall.wavelength() / head.rings as f64;
         let places = (0..head.rings).map(|ring| ring as f64 * spacing);
         places.map(|z| wave.radius(z, wall.cycles())).collect()
@@ -110,10 +116,24 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
         &flat(&velocity[..*grains]),
         &diameter[..*grains],
         &flat(spin),
-        &flat(of_wall),
+        &flat(&of_wall),
         &rings,
     ];
     encode(head, arrays)
+}
+
+/// The staggered lattice of a wall that moves as prescribed: the page needs its radii only, of other walls all spheres.
+pub(crate) fn known_rings(wall: &Wall) -> Option<&Lattice> {
+    wall.wave()?;
+    wall.lattice().filter(|lattice| lattice.staggered)
+}
+
+/// How many spheres of a wall, and radii of its rings, a frame holds.
+pub(crate) fn of_wall(wall: &Wall) -> (usize, usize) {
+    match known_rings(wall) {
+        Some(lattice) => (0, lattice.rings_per_wave as usize),
+        None => (wall.mobile_spheres() + wall.prescribed_spheres().count(), 0),
+    }
 }
 
 #[cfg(feature = "server")]

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
-use crate::frame::{Head, of_run};
+use crate::frame::{Head, of_run, of_wall};
 use crate::message::{self, Command, Notice, Steered};
 use crate::timeline::{Driven, Row, Timeline, thin};
 use crate::welcome::Welcome;
@@ -383,7 +383,7 @@ impl Tube {
         let simulation = self.run.simulation();
         let (bodies, wall) = (simulation.bodies(), simulation.wall());
         let samples = self.run.recorder().samples();
-        let prescribed = bodies.number() == bodies.grains;
+        let (wall_spheres, rings) = of_wall(wall);
         let head = Head {
             number: None,
             epoch: self.epoch,
@@ -397,12 +397,8 @@ impl Tube {
             period: wall.cycles(),
             wave_speed: wall.frequency(simulation.time()) * wall.wavelength(),
             grains: bodies.grains,
-            wall_spheres: bodies.number() - bodies.grains,
-            rings: if prescribed {
-                self.run.configuration().tube.rings_per_wave as usize
-            } else {
-                0
-            },
+            wall_spheres,
+            rings,
             turning: self.run.configuration().contact.friction.is_some(),
             driven: Driven::of(&self.run),
             rows: self.rows(samples.len().saturating_sub(ROWS)).collect(),

@@ -10,7 +10,7 @@ mod units;
 
 use peristalsis_physics::contact::ContactModel;
 
-use crate::configuration::{Configuration, Control, Wall};
+use crate::configuration::{Configuration, Control, FIRST_SEED, Wall};
 use crate::contract;
 use crate::document::{self, Table};
 use crate::error::{ConfigurationError, Problem, ProblemKind, Problems};
@@ -330,7 +330,10 @@ fn shown(origin: &Origin) -> String {
 
 fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration> {
     let contact = contact(keys.contact, context);
-    let tube = keys.tube;
+    let mut tube = keys.tube;
+    if tube.arrangement.has_rings() {
+        tube.seed = FIRST_SEED;
+    }
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
     let grains = grains::grains(&keys.grains, &tube, context);
     if let Some(grains) = &grains {

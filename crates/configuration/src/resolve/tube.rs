@@ -1,5 +1,7 @@
 //! The tube and its lattice.
 
+use peristalsis_physics::wall::Arrangement;
+
 use super::Context;
 use crate::configuration::{Control, Tube};
 use crate::error::ProblemKind;
@@ -7,7 +9,17 @@ use crate::limits;
 
 /// Whether the lattice closes and its size is sane.
 pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Context<'_>) {
-    check_rings(tube, control, context);
+    if let Control::Stress { .. } = control
+        && tube.arrangement != Arrangement::Staggered
+    {
+        let keys = ["tube.arrangement"];
+        let message = "tube.arrangement is \"staggered\" under stress control: an elastic wall is a net of springs between staggered rings".to_owned();
+        let help = "leave tube.arrangement out, or take drive.control = \"strain\"".to_owned();
+        context.refuse::<()>(ProblemKind::Inconsistent, &keys, message, help);
+    }
+    if tube.arrangement == Arrangement::Staggered {
+        check_rings(tube, control, context);
+    }
     // Three factors below 2^20 each: no overflow in 64 bits.
     let (spheres, most) = (tube.wall_spheres(), limits::MOST_WALL_SPHERES);
     if spheres > most {

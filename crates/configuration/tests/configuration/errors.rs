@@ -31,7 +31,11 @@ const WRONG: &str = r#"
 width = 2.75 -> widht = 2.75\n& | UnknownKey | drive.widht | 13 | did you mean drive.width?
 [grains] -> width = 2.75\n& | UnknownKey | width | 1 | did you mean drive.width?
 [grains] -> [grain]\n& | UnknownKey | grain | 1 | did you mean grains?
-radius = 1.5 -> &\ncolour = 1 | UnknownKey | tube.colour | 7 | known here: radius
+waves = 10 -> &\narrangement = "random"\nseed = -1 | OutOfRange | tube.seed | 10 | 0 or more
+waves = 10 -> &\narrangement = "aligned"\nseed = 2 | Conflict | tube.seed | 10 | arrangement = "random" or "disordered"
+waves = 10 -> &\narrangement = "hexagonal" | WrongType | tube.arrangement | 9 | "staggered", "aligned", "random", "disordered"
+control = "strain" -> control = "stress"; width = 2.75 -> force_amplitude = 0.004; waves = 10 -> &\narrangement = "aligned" | Inconsistent | tube.arrangement | 9 | leave tube.arrangement out
+radius = 1.5 -> &\ncolour = 1 | UnknownKey | tube.colour | 7 | known here: arrangement, radius
 
 volume_fraction = 0.15 -> &\nnumber = 200 | Conflict | grains.volume_fraction | 2 3 | keep one of
 width = 2.75 -> &\namplitude = 0.1 | Conflict | drive.width | 13 14 | keep one of
@@ -251,7 +255,13 @@ fn presets_that_do_not_exist_or_differ() {
     let problem = only_problem(over(FILE, &["preset=frictional"]));
     assert_eq!(problem.kind, ProblemKind::Preset);
     let problem = only_problem(over("preset = \"frictionless\"\ntube = 3\n", &[]));
-    expect(&problem, "WrongType", "tube", &[2], "a table of radius");
+    expect(
+        &problem,
+        "WrongType",
+        "tube",
+        &[2],
+        "a table of arrangement, radius",
+    );
 }
 
 #[test]

@@ -28,6 +28,8 @@ fn overrides() -> impl Strategy<Value = Vec<String>> {
         (0.0..3.0).prop_map(|width: f64| words(&["drive.control=strain", &format!("drive.width={width:?}")])),
         (0.0..1.5).prop_map(|amplitude: f64| vec![
             "drive.control=strain".into(),
+            "tube.arrangement=disordered".into(),
+            "tube.seed=77".into(),
             format!("drive.amplitude={amplitude:?}"),
             "drive.schedule={form='steps', parameter='amplitude', at=[0.1, 3], values=[0.3, 0.7]}".into(),
         ]),
@@ -292,12 +294,15 @@ fn deep_and_long_texts_are_survived() {
 fn the_hash_is_of_what_matters() {
     let base = preset("frictionless", NO_OVERRIDES);
     let of = |overrides: &[&str]| preset("frictionless", overrides);
-    let same: [&[&str]; 7] = [
+    let same: [&[&str]; 9] = [
         &["drive.body_force=-0.0", "drive.waveform=sine"],
         &["grains.number=203"],
         &["drive.amplitude=0.125"],
         &["drive.wave_speed=0.5"],
         &["run.duration=800.0"],
+        &["tube.arrangement=staggered"],
+        // No wall of rings asks for random numbers.
+        &["tube.seed=2"],
         &["initial.axial_velocity=-0.0"],
         &["contact.sliding=literal", "run.time_step=0.0500000000001"],
     ];
@@ -327,7 +332,7 @@ fn the_hash_is_of_what_matters() {
         );
         assert_ne!(of(overrides).run_hash(), base.run_hash(), "{overrides:?}");
     }
-    let other: [&[&str]; 14] = [
+    let other: [&[&str]; 18] = [
         &["grains.number=202"],
         &["drive.width=2.7500000000000004"],
         &["drive.strain_rate=0.1"],
@@ -341,6 +346,10 @@ fn the_hash_is_of_what_matters() {
         &["run.neighbour_skin=0.4"],
         &["initial.state=jammed"],
         &["drive.schedule={form='ramp', end=3}"],
+        &["tube.arrangement=aligned"],
+        &["tube.arrangement=random"],
+        &["tube.arrangement=random", "tube.seed=2"],
+        &["tube.arrangement=disordered"],
         &[
             "contact.static_friction=0.1",
             "contact.kinetic_friction=0.1",

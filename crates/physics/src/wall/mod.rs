@@ -1,11 +1,13 @@
-//! The wall: spheres on staggered rings, and the waves that move them.
+//! The wall: spheres in rings or anywhere, and the waves that move them.
 
+pub mod arrangement;
 pub mod elastic;
 pub mod lattice;
 pub mod schedule;
 pub mod wave;
 pub mod waveform;
 
+pub use arrangement::Arrangement;
 pub use elastic::{DriveAngle, ElasticNetwork, NetForce, Tethers};
 pub use lattice::{Lattice, WallSphere};
 pub use schedule::Schedule;

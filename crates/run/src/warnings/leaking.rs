@@ -62,12 +62,16 @@ fn energy_to_pass(law: impl NormalLaw, lattice: &Lattice, radius: f64, diameter:
         return f64::INFINITY;
     }
     let reduced_radius = reduced_radius(diameter, lattice.sphere_diameter);
-    // A ring through the base of the triangle, and the gap above the middle of two of its spheres.
-    let height = (spacing - circumradius).max(0.0);
+    // A ring through the base of the triangle (square), and the gap above the middle of two of its spheres.
+    let height = match lattice.staggered {
+        true => (spacing - circumradius).max(0.0),
+        false => 0.5 * spacing,
+    };
     let (rows, places) = (rows as i32, places as i32);
     let mut energy = 0.0;
     for row in -rows..=rows {
-        let turned = if row % 2 == 0 { 0.5 } else { 0.0 };
+        let is_turned = row % 2 != 0 && lattice.staggered;
+        let turned = if is_turned { 0.0 } else { 0.5 };
         for place in -places..=places {
             let across = (f64::from(place) + turned) * chord;
             let along = f64::from(row) * spacing - height;

@@ -10,7 +10,7 @@ use peristalsis_observe::Sample;
 use peristalsis_run::walls;
 
 use super::error::ViewerError;
-use crate::frame::{Head, of_recording};
+use crate::frame::{Head, of_recording, of_wall};
 use crate::timeline::{Row, Timeline, thin};
 use crate::welcome::{Recorded, Welcome};
 
@@ -95,7 +95,7 @@ impl Recording {
         self.check(&frame)?;
         let timeline = Timeline(&self.configuration);
         let clock = timeline.clock(frame.time);
-        let (lattice, mobile) = (self.wall.lattice(), self.wall.mobile_spheres());
+        let (wall_spheres, rings) = of_wall(&self.wall);
         let slack = SLACK * timeline.unit_period();
         let run = &self.configuration.run;
         let interval = run.steps_per_sample as f64 * run.time_step + slack;
@@ -117,24 +117,21 @@ impl Recording {
             period: frame.value("period").unwrap_or(clock),
             wave_speed: self.wall.frequency(frame.time) * self.wall.wavelength(),
             grains: frame.grains,
-            wall_spheres: mobile,
-            rings: match lattice {
-                Some(lattice) if mobile == 0 => lattice.rings_per_wave as usize,
-                _ => 0,
-            },
+            wall_spheres,
+            rings,
             turning: frame.rotation.is_some(),
             driven: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
             warnings: Vec::new(),
         };
-        let spheres_per_ring = lattice.map_or(0, |lattice| lattice.spheres_per_ring as usize);
+        let spheres_per_ring = self.configuration.tube.spheres_per_ring as usize;
         Ok(of_recording(&head, &frame, spheres_per_ring))
     }
 
     /// Whether a frame is of this run.
     fn check(&self, frame: &Frame) -> Result<(), ViewerError> {
-        let spheres = self.wall.lattice().map_or(0, |lattice| lattice.spheres());
+        let spheres = self.configuration.tube.wall_spheres() as usize;
         let (length, wall) = (self.wall.length(), frame.spheres() - frame.grains);
         let is_as_long = (frame.length - length).abs() <= TOLERANCE * length;
         if !is_as_long || wall != spheres || frame.grains != self.grains {

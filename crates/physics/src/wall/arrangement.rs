@@ -1,0 +1,26 @@
+//! How the spheres of the wall stand.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// How the spheres of the wall stand on the tube.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Arrangement {
+    /// In rings, every other ring turned by half a spacing.
+    #[default]
+    Staggered,
+    /// In rings that are not turned: squares, where spacing and chord are equal; strain control.
+    Aligned,
+    /// At random places that know nothing of each other, as many as in rings; strain control.
+    Random,
+    /// At random places that keep the largest distance at which all find room one after another; strain control.
+    Disordered,
+}
+
+impl Arrangement {
+    /// Whether the spheres stand in rings.
+    pub fn has_rings(self) -> bool {
+        matches!(self, Self::Staggered | Self::Aligned)
+    }
+}
