@@ -76,7 +76,7 @@ impl Grains {
 }
 
 /// The tube: wall spheres in rings or at random places, periodic along its axis.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct Tube {
     /// Mean radius a, to the centres of the wall spheres.
     #[schemars(extend("x-unit" = "d", "exclusiveMinimum" = 0, "maximum" = 1e6))]
@@ -94,11 +94,20 @@ pub struct Tube {
     #[serde(default = "first_seed")]
     #[schemars(extend("x-unit" = "1", "minimum" = 0))]
     pub seed: u64,
+    /// Angle of each wall sphere about the axis, from x towards y; under arrangement = "file".
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-unit" = "rad", "items" = {"type": "number", "minimum": -1e6, "maximum": 1e6}))]
+    pub angles: Vec<f64>,
+    /// Place of each of them along the tube, 0 <= z < L.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[schemars(extend("x-unit" = "d", "items" = {"type": "number", "minimum": 0, "maximum": 1e9}))]
+    pub places: Vec<f64>,
     /// Wall spheres in a ring.
     #[schemars(extend("x-unit" = "1", "minimum" = 3, "maximum" = 1_000_000))]
     pub spheres_per_ring: u32,
     /// Rings in a wavelength: even under strain control, where they are staggered; under stress control an odd number
-    /// needs an even number of waves. Random and disordered walls have as many spheres as these rings.
+    /// needs an even number of waves. Random and disordered walls have as many spheres as these rings; those of a file
+    /// stand without them.
     #[schemars(extend("x-unit" = "1", "minimum" = 1, "maximum" = 1_000_000))]
     pub rings_per_wave: u32,
 }
@@ -118,6 +127,9 @@ impl Tube {
 
     /// Wall spheres in the whole tube.
     pub fn wall_spheres(&self) -> u64 {
+        if self.arrangement == Arrangement::File {
+            return self.places.len() as u64;
+        }
         u64::from(self.spheres_per_ring) * u64::from(self.rings_per_wave) * u64::from(self.waves)
     }
 

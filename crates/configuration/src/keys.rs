@@ -34,9 +34,12 @@ pub(crate) const DAMPINGS: [&[&str]; 2] = [
     &["contact.dissipation_time", "contact.restitution"],
 ];
 
+/// Where the wall spheres of arrangement = "file" come from; at most one is given.
+const SPHERES: &[&str] = &["tube.file", "tube.places"];
+
 /// All groups of keys that exclude one another.
 pub(crate) fn exclusive_groups() -> impl Iterator<Item = &'static [&'static str]> {
-    ALTERNATIVES.into_iter().chain(DAMPINGS)
+    ALTERNATIVES.into_iter().chain(DAMPINGS).chain([SPHERES])
 }
 
 /// Configuration of one simulation of grains in a peristaltic tube.
@@ -45,7 +48,7 @@ pub(crate) struct Keys {
     #[serde(default)]
     pub(crate) grains: GrainsKeys,
     pub(crate) contact: ContactKeys,
-    pub(crate) tube: Tube,
+    pub(crate) tube: TubeKeys,
     pub(crate) drive: DriveKeys,
     #[serde(default)]
     pub(crate) wall: Wall,
@@ -57,6 +60,18 @@ pub(crate) struct Keys {
     pub(crate) observe: Observe,
     #[serde(default)]
     pub(crate) units: UnitsKeys,
+}
+
+/// The tube, and where its spheres are read.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+pub(crate) struct TubeKeys {
+    #[serde(flatten)]
+    pub(crate) tube: Tube,
+    /// Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the columns angle \[rad\]
+    /// and place \[d\], one sphere a line. Its path is that from the configuration file, or from where the program runs.
+    #[serde(rename = "file")]
+    #[schemars(extend("default" = null))]
+    pub(crate) _file: Option<String>,
 }
 
 /// The grains: how many and how large. Exactly one of number, volume_fraction and number_density is given.

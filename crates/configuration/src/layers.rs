@@ -54,8 +54,11 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     schedule.owns("ramp", "drive.ramp_periods");
     switches.push(schedule);
     let mut arrangement = Switch::new("tube.arrangement", &["tube.seed"]);
-    for without_rings in ["random", "disordered"] {
-        arrangement.owns(without_rings, "tube.seed");
+    for drawn in ["random", "disordered"] {
+        arrangement.owns(drawn, "tube.seed");
+    }
+    for key in ["tube.file", "tube.angles", "tube.places"] {
+        arrangement.owns("file", key);
     }
     switches.push(arrangement);
     switches

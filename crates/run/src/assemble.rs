@@ -242,6 +242,11 @@ pub fn walls(configuration: &Configuration) -> Wall {
                 Arrangement::Disordered => {
                     wall.with(Scattered::disordered(&lattice, radius, tube.seed))
                 }
+                Arrangement::File => {
+                    let angles = tube.angles.iter().copied();
+                    let places = tube.places.iter().copied();
+                    wall.with(Scattered::at(&lattice, angles.zip(places)))
+                }
             })
         }
         Control::Stress {

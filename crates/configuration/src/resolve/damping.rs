@@ -26,7 +26,7 @@ pub(super) fn damped(
         }
         return Some(contact);
     };
-    let wave_speed = drive.strain_rate * keys.tube.wavelength;
+    let wave_speed = drive.strain_rate * keys.tube.tube.wavelength;
     let speed = keys.contact.restitution_speed.unwrap_or(wave_speed);
     let diameter = 0.5 * (grains.diameter_min + grains.diameter_max);
     let normal = contact

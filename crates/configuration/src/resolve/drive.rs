@@ -12,7 +12,7 @@ pub(super) fn drive(
     units: Option<&Units>,
     context: &mut Context<'_>,
 ) -> Option<Drive> {
-    let (written, tube) = (&keys.drive, &keys.tube);
+    let (written, tube) = (&keys.drive, &keys.tube.tube);
     let mut drive = written.drive.clone();
     if let Control::Strain { width: resolved } = &mut drive.control {
         *resolved = width(*resolved, written.amplitude, tube, context)?;

@@ -5,6 +5,7 @@ mod drive;
 mod grains;
 mod run;
 mod schedules;
+mod spheres;
 mod tube;
 mod units;
 
@@ -58,10 +59,12 @@ impl Configuration {
         above: &[Table],
     ) -> Result<Self, ConfigurationError> {
         let mut problems = Problems::default();
-        let table = layered(sources, above, &mut problems);
+        let mut table = layered(sources, above, &mut problems);
         problems.check()?;
         layers::check_switches(&table, &mut problems);
         check_given(&table, sources, &mut problems);
+        problems.check()?;
+        spheres::read(&mut table, &mut problems);
         problems.check()?;
         let keys = deserialised(&table)?;
         let mut context = Context {
@@ -330,8 +333,8 @@ fn shown(origin: &Origin) -> String {
 
 fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration> {
     let contact = contact(keys.contact, context);
-    let mut tube = keys.tube;
-    if tube.arrangement.has_rings() {
+    let mut tube = keys.tube.tube.clone();
+    if !tube.arrangement.is_drawn() {
         tube.seed = FIRST_SEED;
     }
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
@@ -406,7 +409,8 @@ fn wall(keys: &Keys, context: &Context<'_>) -> Wall {
         (Control::Stress { .. }, elastic) => {
             let elastic = elastic.get_or_insert_default();
             if !context.given("wall.natural_length") {
-                elastic.natural_length = NATURAL_LENGTH_RATIO * keys.tube.mean_neighbour_distance();
+                elastic.natural_length =
+                    NATURAL_LENGTH_RATIO * keys.tube.tube.mean_neighbour_distance();
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use peristalsis_physics::wall::Arrangement;
 
-use super::Context;
+use super::{Context, spheres};
 use crate::configuration::{Control, Tube};
 use crate::error::ProblemKind;
 use crate::limits;
@@ -19,6 +19,9 @@ pub(super) fn check_lattice(tube: &Tube, control: &Control, context: &mut Contex
     }
     if tube.arrangement == Arrangement::Staggered {
         check_rings(tube, control, context);
+    }
+    if tube.arrangement == Arrangement::File {
+        spheres::check(tube, context);
     }
     // Three factors below 2^20 each: no overflow in 64 bits.
     let (spheres, most) = (tube.wall_spheres(), limits::MOST_WALL_SPHERES);

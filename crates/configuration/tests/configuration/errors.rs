@@ -33,9 +33,16 @@ width = 2.75 -> widht = 2.75\n& | UnknownKey | drive.widht | 13 | did you mean d
 [grains] -> [grain]\n& | UnknownKey | grain | 1 | did you mean grains?
 waves = 10 -> &\narrangement = "random"\nseed = -1 | OutOfRange | tube.seed | 10 | 0 or more
 waves = 10 -> &\narrangement = "aligned"\nseed = 2 | Conflict | tube.seed | 10 | arrangement = "random" or "disordered"
+waves = 10 -> &\narrangement = "file" | Inconsistent | tube.places | 9 | give tube.file | no sphere
+waves = 10 -> &\narrangement = "file"\nangles = [0]\nplaces = [0, 5] | Inconsistent | tube.places | 11 10 9 | one of both | 1 angles and 2 places
+waves = 10 -> &\narrangement = "file"\nangles = [0, 1]\nplaces = [0, 100.0] | Inconsistent | tube.places | 11 10 9 | 0 <= z < L = waves * wavelength = 100 | wall sphere 2
+waves = 10 -> &\narrangement = "file"\nangles = [0]\nplaces = [-1] | OutOfRange | tube.places[0] | 11 | 0 or more
+waves = 10 -> &\narrangement = "file"\nfile = "no-such.csv" | Inconsistent | tube.file | 10 | angle,place | no-such.csv
+waves = 10 -> &\narrangement = "file"\nfile = "a.csv"\nplaces = [0] | Conflict | tube.file | 10 11 | keep one of
+waves = 10 -> &\nfile = "a.csv"\narrangement = "random" | Conflict | tube.file | 9 10 | arrangement = "file"
 waves = 10 -> &\narrangement = "hexagonal" | WrongType | tube.arrangement | 9 | "staggered", "aligned", "random", "disordered"
 control = "strain" -> control = "stress"; width = 2.75 -> force_amplitude = 0.004; waves = 10 -> &\narrangement = "aligned" | Inconsistent | tube.arrangement | 9 | leave tube.arrangement out
-radius = 1.5 -> &\ncolour = 1 | UnknownKey | tube.colour | 7 | known here: arrangement, radius
+radius = 1.5 -> &\ncolour = 1 | UnknownKey | tube.colour | 7 | known here: angles, arrangement
 
 volume_fraction = 0.15 -> &\nnumber = 200 | Conflict | grains.volume_fraction | 2 3 | keep one of
 width = 2.75 -> &\namplitude = 0.1 | Conflict | drive.width | 13 14 | keep one of
@@ -260,7 +267,7 @@ fn presets_that_do_not_exist_or_differ() {
         "WrongType",
         "tube",
         &[2],
-        "a table of arrangement, radius",
+        "a table of angles, arrangement",
     );
 }
 

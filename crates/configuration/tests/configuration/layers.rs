@@ -44,7 +44,7 @@ fn the_frictionless_preset_by_hand() {
         (24, 26)
     );
     let mut same_but_lattice = fine.clone();
-    same_but_lattice.tube = coarse.tube;
+    same_but_lattice.tube = coarse.tube.clone();
     assert_eq!(same_but_lattice, coarse);
 }
 

@@ -26,6 +26,13 @@ fn overrides() -> impl Strategy<Value = Vec<String>> {
     ];
     let drive = prop_oneof![
         (0.0..3.0).prop_map(|width: f64| words(&["drive.control=strain", &format!("drive.width={width:?}")])),
+        (0.0..3.0).prop_map(|angle: f64| vec![
+            "drive.control=strain".into(),
+            "drive.width=2".into(),
+            "tube.arrangement=file".into(),
+            format!("tube.angles=[{angle:?}, -1.0]"),
+            "tube.places=[0.0, 1e-9]".into(),
+        ]),
         (0.0..1.5).prop_map(|amplitude: f64| vec![
             "drive.control=strain".into(),
             "tube.arrangement=disordered".into(),
@@ -332,7 +339,7 @@ fn the_hash_is_of_what_matters() {
         );
         assert_ne!(of(overrides).run_hash(), base.run_hash(), "{overrides:?}");
     }
-    let other: [&[&str]; 18] = [
+    let other: [&[&str]; 20] = [
         &["grains.number=202"],
         &["drive.width=2.7500000000000004"],
         &["drive.strain_rate=0.1"],
@@ -350,6 +357,16 @@ fn the_hash_is_of_what_matters() {
         &["tube.arrangement=random"],
         &["tube.arrangement=random", "tube.seed=2"],
         &["tube.arrangement=disordered"],
+        &[
+            "tube.arrangement=file",
+            "tube.angles=[0, 3]",
+            "tube.places=[1, 2]",
+        ],
+        &[
+            "tube.arrangement=file",
+            "tube.angles=[0, 3]",
+            "tube.places=[2, 1]",
+        ],
         &[
             "contact.static_friction=0.1",
             "contact.kinetic_friction=0.1",

@@ -16,11 +16,13 @@ pub enum Arrangement {
     Random,
     /// At random places that keep the largest distance at which all find room one after another; strain control.
     Disordered,
+    /// At the angles and places of a table; strain control.
+    File,
 }
 
 impl Arrangement {
-    /// Whether the spheres stand in rings.
-    pub fn has_rings(self) -> bool {
-        matches!(self, Self::Staggered | Self::Aligned)
+    /// Whether random numbers decide where the spheres stand.
+    pub fn is_drawn(self) -> bool {
+        matches!(self, Self::Random | Self::Disordered)
     }
 }

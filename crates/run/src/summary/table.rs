@@ -102,6 +102,7 @@ pub(super) const QUANTITIES: &[RunQuantity] = &[
     setting("radius", "d", "a, to the centres of the wall spheres", Real(|c| c.tube.radius)).only_in_rows().labelled("radius a / d"),
     setting("wavelength", "d", "lambda", Real(|c| c.tube.wavelength)).only_in_rows().labelled("wavelength λ / d"),
     setting("waves", "1", "waves in the tube", Whole(|c| c.tube.waves.into())).only_in_rows().labelled("waves"),
+    setting("arrangement", "", "how the wall spheres stand", Text(|c| name(c.tube.arrangement))).only_in_rows(),
     setting("spheres_per_ring", "1", "wall spheres in a ring", Whole(|c| c.tube.spheres_per_ring.into())).only_in_rows().labelled("wall spheres a ring"),
     setting("rings_per_wave", "1", "rings in a wavelength", Whole(|c| c.tube.rings_per_wave.into())).only_in_rows().labelled("rings a wave"),
     result("time", "t", "time reached: where a run without a transition is censored", Real(|s| s.time)),

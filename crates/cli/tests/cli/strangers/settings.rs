@@ -244,3 +244,48 @@ fn faults_of_a_study_file_name_their_lines() {
         &["twice.toml:6:1", "the axis has 2.5 twice"],
     );
 }
+
+#[test]
+fn wall_spheres_stand_where_a_table_says() {
+    let place = Place::new();
+    let radians = |step: f64| step * std::f64::consts::PI / 12.0;
+    let spheres = (0..28 * 12).map(|sphere| (sphere / 12, sphere % 12));
+    let lines = spheres.map(|(ring, at)| {
+        let angle = radians(f64::from(2 * at + ring % 2));
+        format!("{angle:?}, {:?}", f64::from(ring) * 10.0 / 14.0)
+    });
+    let lines: Vec<String> = lines.collect();
+    let table = format!("# a lattice\nangle,place\n{}\n", lines.join("\n"));
+    std::fs::create_dir(place.path("folder")).unwrap();
+    place.write("folder/wall.csv", table);
+    let text = "preset = \"frictionless\"\n[grains]\nnumber = 20\n[tube]\nwaves = 2\narrangement = \"file\"\nfile = \"wall.csv\"\n[run]\nperiods = 4\n";
+    place.write("folder/run.toml", text);
+    place.does("run folder/run.toml --out table");
+    place.does("run SMALL --out lattice");
+    // The same places: the same flow but for the rounding of sums.
+    let [table, lattice] =
+        ["table", "lattice"].map(|folder| read_json(&place.path(folder).join("summary.json")));
+    let flow = |summary: &Value| summary["flow_rate_ratio"].as_f64().unwrap();
+    assert!(
+        (flow(&table) - flow(&lattice)).abs() < 1e-6,
+        "{} {}",
+        flow(&table),
+        flow(&lattice)
+    );
+    // The record of the run holds the places, and needs the file no more.
+    std::fs::remove_file(place.path("folder/wall.csv")).unwrap();
+    place.does("run table/config.toml --out again");
+    let [one, other] = ["table", "again"]
+        .map(|folder| std::fs::read(place.path(folder).join("timeseries.parquet")).unwrap());
+    assert!(one == other);
+    place.refuses(
+        "run folder/run.toml",
+        &["tube.file", "wall.csv", "run.toml:7"],
+    );
+    place.write("folder/wall.csv", "angle,place\n0,0\n1,x\n");
+    place.refuses("run folder/run.toml", &["line 3", "1,x", "two numbers"]);
+    place.write("folder/wall.csv", "0,0\n");
+    place.refuses("run folder/run.toml", &["first line", "angle,place"]);
+    place.write("folder/wall.csv", "angle,place\n0,20\n");
+    place.refuses("run folder/run.toml", &["0 <= z < L", "20"]);
+}

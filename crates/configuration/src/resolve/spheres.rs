@@ -1,0 +1,119 @@
+//! Wall spheres whose places the user gives.
+
+use std::path::Path;
+
+use super::Context;
+use crate::configuration::Tube;
+use crate::document::{self, Entry, Item, Node, Table};
+use crate::error::{Problem, ProblemKind, Problems};
+use crate::source::{Origin, SourceKind};
+
+/// Columns of the table: angle \[rad\] and place along the tube \[d\].
+const COLUMNS: &str = "angle,place";
+
+/// Reads the file of `tube.file`, if there is one, into `tube.angles` and `tube.places`: from then on a run needs it no more.
+pub(super) fn read(table: &mut Table, problems: &mut Problems) {
+    let Some(Entry { item, .. }) = document::entry(table, "tube.file") else {
+        return;
+    };
+    let Node::Text(name) = &item.node else { return };
+    let origin = item.origin.clone();
+    let columns = match text_of(name, &origin).and_then(|text| columns_of(&text)) {
+        Ok(columns) => columns,
+        Err(message) => {
+            let message = format!("tube.file = {name:?}: {message}");
+            let problem = Problem::new(ProblemKind::Inconsistent, message)
+                .key("tube.file")
+                .at(&origin, "this file")
+                .help(format!("a first line {COLUMNS}, then a line a sphere: its angle [rad] and its place z [d]"));
+            return problems.push(problem);
+        }
+    };
+    let Some(Node::Table(tube)) = table.get_mut("tube").map(|entry| &mut entry.item.node) else {
+        return;
+    };
+    for (key, numbers) in ["angles", "places"].into_iter().zip(columns) {
+        let item = |node| Item {
+            origin: origin.clone(),
+            node,
+        };
+        let numbers = numbers.into_iter().map(|number| item(Node::Float(number)));
+        let item = item(Node::Array(numbers.collect()));
+        let key_origin = origin.clone();
+        tube.insert(
+            key.to_owned(),
+            Entry {
+                key: key_origin,
+                item,
+            },
+        );
+    }
+}
+
+/// The file beside the one that names it, or else seen from where the program runs.
+fn text_of(name: &str, origin: &Origin) -> Result<String, String> {
+    let beside = match origin.source.kind {
+        SourceKind::File => Path::new(&*origin.source.name).parent(),
+        SourceKind::Preset | SourceKind::Override => None,
+    };
+    let beside = beside.map(|folder| folder.join(name));
+    let path = beside.filter(|path| path.is_file());
+    let path = path.as_deref().unwrap_or(Path::new(name));
+    std::fs::read_to_string(path).map_err(|error| error.to_string())
+}
+
+/// Angles and places.
+fn columns_of(text: &str) -> Result<[Vec<f64>; 2], String> {
+    let mut columns = [Vec::new(), Vec::new()];
+    let lines = text.lines().map(str::trim).enumerate();
+    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    let heading = lines.next().map_or("", |(_, line)| line);
+    if heading.replace([' ', '"'], "") != COLUMNS {
+        return Err(format!("its first line is {heading:?}, not {COLUMNS}"));
+    }
+    for (number, line) in lines {
+        let mut values = line.split(',').map(|value| value.trim().parse::<f64>());
+        match (values.next(), values.next(), values.next()) {
+            (Some(Ok(angle)), Some(Ok(place)), None) if (angle + place).is_finite() => {
+                columns[0].push(angle);
+                columns[1].push(place);
+            }
+            _ => return Err(format!("line {} is {line:?}, not two numbers", number + 1)),
+        }
+    }
+    Ok(columns)
+}
+
+/// Whether each sphere has an angle and a place in the tube.
+pub(super) fn check(tube: &Tube, context: &mut Context<'_>) {
+    let keys = ["tube.places", "tube.angles", "tube.arrangement"];
+    let (angles, places) = (tube.angles.len(), tube.places.len());
+    let length = tube.length();
+    let outside = tube
+        .places
+        .iter()
+        .position(|place| !(0.0..length).contains(place));
+    let (message, help) = if places == 0 {
+        let message = "tube.arrangement is \"file\", and there is no sphere".to_owned();
+        (
+            message,
+            "give tube.file, or tube.angles and tube.places".to_owned(),
+        )
+    } else if angles != places {
+        let message = format!("{angles} angles and {places} places");
+        (message, "each wall sphere has one of both".to_owned())
+    } else if let Some(sphere) = outside {
+        let place = tube.places[sphere];
+        let message = format!(
+            "wall sphere {} stands at z = {place}, outside the tube",
+            sphere + 1
+        );
+        (
+            message,
+            format!("0 <= z < L = waves * wavelength = {length}"),
+        )
+    } else {
+        return;
+    };
+    context.refuse::<()>(ProblemKind::Inconsistent, &keys, message, help);
+}
