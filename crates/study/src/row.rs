@@ -6,6 +6,9 @@ use peristalsis_run::{RowColumn, Summary, Value, gathered, row_columns, set_by};
 
 use crate::identity::Identity;
 
+/// Columns that rows of earlier versions lack, and what all of those had.
+const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
+
 /// The row of one finished run, a table of one row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
@@ -144,6 +147,10 @@ fn joined(columns: impl IntoIterator<Item = Column>) -> Table {
 
 /// One value of a column of another table; an empty column of a CSV file reads as reals.
 fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, FormatError> {
+    let later = LATER.iter().find(|(name, _)| *name == column.name);
+    if let (Some((_, value)), Err(_)) = (later, table.column(&column.name)) {
+        return Ok(Values::Text(vec![(*value).to_owned()]));
+    }
     let found = table.column(&column.name)?;
     match (column.kind, &found.values) {
         (ValueKind::Real, Values::Real(values)) => Ok(Values::Real(vec![values[row]])),
@@ -182,8 +189,10 @@ mod tests {
     #[test]
     fn a_row_reads_back_and_lacks_no_column() {
         let row = Row::from_csv(&without("nothing")).unwrap();
-        assert_eq!(row.table().columns().len(), 93);
+        assert_eq!(row.table().columns().len(), 94);
         assert_eq!(Row::from_csv(&row.to_csv()).unwrap(), row);
+        let earlier = Row::from_csv(&without("arrangement")).unwrap();
+        assert_eq!(earlier.table().texts("arrangement").unwrap(), ["staggered"]);
         let error = Row::from_csv(&without("wall_power")).unwrap_err();
         assert!(error.contains("wall_power"), "{error}");
     }
