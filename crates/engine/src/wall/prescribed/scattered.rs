@@ -16,6 +16,8 @@ const STREAM: u64 = 3;
 /// Failures in a row after which spheres are let come nearer to each other, and by how much.
 const PATIENCE: u32 = 20_000;
 const NEARER: f64 = 0.99;
+/// Distance \[d\] by which a first look at a sphere sees too far, so that rounding hides none.
+const EDGE: f64 = 1e-6;
 /// Part of a surface that discs cover where no more find room, when they come one after another: nobody has covered more.
 const MOST_COVERED: f64 = 0.55;
 
@@ -156,13 +158,17 @@ impl Scattered {
                 let place = &self.places[index];
                 let dz = z - place.z;
                 let room = reach * reach - dz * dz;
-                if room <= 0.0 {
+                // How far the grain is from the line on which the sphere moves, and along it.
+                let (cos, sin) = place.direction;
+                let across = centre.x * sin - centre.y * cos;
+                let along = centre.x * cos + centre.y * sin;
+                if room <= 0.0 || across * across > room + EDGE || along + reach + EDGE < narrowest
+                {
                     continue;
                 }
                 let Ring {
                     radius, velocity, ..
                 } = ring(place, wave, now);
-                let (cos, sin) = place.direction;
                 let (dx, dy) = (centre.x - radius * cos, centre.y - radius * sin);
                 if dx * dx + dy * dy < room {
                     let moving = DVec3::new(velocity * cos, velocity * sin, 0.0);
