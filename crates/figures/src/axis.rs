@@ -11,6 +11,8 @@ pub enum Scale {
     /// Equal steps for equal differences.
     #[default]
     Linear,
+    /// The same for what is counted: ticks stand at whole numbers only.
+    Counting,
     /// Equal steps for equal ratios; only positive values have a place.
     Logarithmic,
 }
@@ -56,11 +58,17 @@ impl Layer {
 /// Decades below which a logarithmic axis labels 2 and 5 too.
 const FEW_DECADES: f64 = 1.6;
 
+/// Multiples of powers of ten that a logarithmic axis labels, from the fewest to the most.
+const LABELLED: [&[u8]; 3] = [&[1], &[1, 2, 5], &[1, 2, 3, 5, 7]];
+
+/// Largest part of an axis that may lie before its first or after its last label.
+const MOST_BARE: f64 = 0.35;
+
 /// Labels below which those of a logarithmic axis stand at powers of ten only.
 const MOST_FOR_POWERS: usize = 4;
 
 /// Values between which a short logarithmic axis is labelled with plain numbers.
-const PLAIN: (f64, f64) = (1e-3, 2e4);
+const PLAIN: (f64, f64) = (5e-4, 2e4);
 
 /// Labels that an axis needs to tell its scale.
 const LEAST_LABELS: usize = 2;
@@ -86,7 +94,7 @@ impl Axis {
     /// Place of a value, 0 at the least and 1 at the largest; values without a place go to the nearer end.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         match self.scale {
-            Scale::Linear => (value - self.least) / (self.largest - self.least),
+            Scale::Linear | Scale::Counting => (value - self.least) / (self.largest - self.least),
             Scale::Logarithmic if value > 0.0 => {
                 libm::log10(value / self.least) / libm::log10(self.largest / self.least)
             }
@@ -94,18 +102,25 @@ impl Axis {
         }
     }
 
-    /// Ticks at round numbers, with at most about `most` labels.
-    fn ticks(&self, most: usize) -> Vec<Tick> {
+    /// Ways to bear ticks at round numbers with at most about `most` labels, the best first.
+    fn candidates(&self, most: usize) -> Vec<Vec<Tick>> {
+        let most = most.max(LEAST_LABELS);
+        let linear = [self.linear_ticks(most)];
         match self.scale {
-            Scale::Linear => self.linear_ticks(most.max(2)),
-            Scale::Logarithmic => self.logarithmic_ticks(most.max(2)),
+            Scale::Linear | Scale::Counting => linear.into(),
+            Scale::Logarithmic => {
+                let mut all = self.logarithmic_ticks(most);
+                all.extend(linear);
+                all
+            }
         }
     }
 
     /// Ticks at round numbers with as many labels as stand apart on an axis of some length, and no more than the most.
     ///
     /// `extent` is the room that a label takes along the axis, its gap to the next included. Two labels stand on every
-    /// axis, even where they come close: one alone would not tell a scale.
+    /// axis, even where they come close: one alone would not tell a scale. Nor do labels at one end only: where they leave
+    /// much of the axis bare, the ticks that leave the least bare stand there.
     pub(crate) fn fitting_ticks(
         &self,
         length: f64,
@@ -122,11 +137,68 @@ impl Axis {
                 |one: (f64, f64), next: (f64, f64)| next.0 - one.0 >= (one.1 + next.1) / 2.0;
             labelled.windows(2).all(|pair| are_apart(pair[0], pair[1]))
         };
-        (2..=most.max(2))
-            .rev()
-            .map(|most| self.ticks(most))
-            .find(|ticks| stand_apart(ticks))
-            .unwrap_or_else(|| self.ticks(2))
+        let all = (LEAST_LABELS..=most.max(LEAST_LABELS)).rev();
+        let all = all.flat_map(|most| self.candidates(most));
+        let mut least_bare: Option<(f64, Vec<Tick>)> = None;
+        for ticks in all.filter(|ticks| labels_of(ticks) >= LEAST_LABELS && stand_apart(ticks)) {
+            let bare = self.bare(&ticks);
+            if bare <= MOST_BARE {
+                return ticks;
+            }
+            if least_bare.as_ref().is_none_or(|(least, _)| bare < *least) {
+                least_bare = Some((bare, ticks));
+            }
+        }
+        let otherwise = || self.linear_ticks(LEAST_LABELS);
+        least_bare.map_or_else(otherwise, |(_, ticks)| ticks)
+    }
+
+    /// Ticks at the ends of the axis that are further than a label from the labels of some ticks.
+    pub(crate) fn end_ticks(
+        &self,
+        length: f64,
+        ticks: &[Tick],
+        extent: impl Fn(&str) -> f64,
+    ) -> Vec<Tick> {
+        let tick = |value: f64| {
+            let label = self.label_of_end(value);
+            let room = extent(&label) / length;
+            let is_near = |other: &Tick| {
+                other.label.is_some()
+                    && (self.fraction(other.value) - self.fraction(value)).abs() < room
+            };
+            (!ticks.iter().any(is_near)).then_some(Tick {
+                value,
+                length: MAJOR_TICK,
+                label: Some(label),
+            })
+        };
+        [self.least, self.largest]
+            .into_iter()
+            .filter_map(tick)
+            .collect()
+    }
+
+    /// An end with as many digits as tell it from values a hundredth of the axis away.
+    fn label_of_end(&self, value: f64) -> String {
+        let magnitude = value.abs();
+        let slack = match self.scale {
+            Scale::Linear | Scale::Counting => (self.largest - self.least) / 100.0,
+            Scale::Logarithmic => magnitude / 100.0,
+        };
+        let step = |exponent: f64| libm::pow(10.0, exponent);
+        let mut exponent = libm::floor(libm::log10(magnitude.max(slack)));
+        while (libm::round(value / step(exponent)) * step(exponent) - value).abs() > slack {
+            exponent -= 1.0;
+        }
+        Notation::new(magnitude.max(slack), exponent).label(value)
+    }
+
+    /// The longer of the parts of the axis before the first and after the last label.
+    fn bare(&self, ticks: &[Tick]) -> f64 {
+        let labelled = ticks.iter().filter(|tick| tick.label.is_some());
+        let (first, last) = extent(labelled.map(|tick| self.fraction(tick.value)));
+        first.max(1.0 - last)
     }
 
     fn linear_ticks(&self, most: usize) -> Vec<Tick> {
@@ -138,7 +210,11 @@ impl Axis {
     }
 
     fn round_ticks(&self, most: usize) -> Vec<Tick> {
-        let wanted = (self.largest - self.least) / most as f64;
+        let is_counting = self.scale == Scale::Counting;
+        let mut wanted = (self.largest - self.least) / most as f64;
+        if is_counting {
+            wanted = wanted.max(1.0);
+        }
         let (mut factor, mut exponent) = (1.0, libm::floor(libm::log10(wanted)));
         let reduced = wanted / libm::pow(10.0, exponent);
         if reduced > 5.0 + ROUNDING {
@@ -148,8 +224,14 @@ impl Axis {
         } else if reduced > 1.0 + ROUNDING {
             factor = 2.0;
         }
-        let parts = if factor == 2.0 { 4.0 } else { 5.0 };
-        let fine = factor * libm::pow(10.0, exponent) / parts;
+        let step = factor * libm::pow(10.0, exponent);
+        let parts = match factor {
+            // Nothing lies between two neighbouring whole numbers.
+            _ if is_counting && step < 10.0 => step,
+            2.0 => 4.0,
+            _ => 5.0,
+        };
+        let fine = step / parts;
         let notation = Notation::new(self.least.abs().max(self.largest.abs()), exponent);
         // A tick that rounding pushes over the end still belongs to the axis.
         let first = (self.least / fine - 1e-6).ceil();
@@ -168,26 +250,23 @@ impl Axis {
             .collect()
     }
 
-    fn logarithmic_ticks(&self, most: usize) -> Vec<Tick> {
-        let few = libm::log10(self.largest / self.least) < FEW_DECADES;
-        let ticks = self.power_ticks(most, few && most >= MOST_FOR_POWERS);
-        if labels_of(&ticks) >= LEAST_LABELS {
-            return ticks;
+    fn logarithmic_ticks(&self, most: usize) -> Vec<Vec<Tick>> {
+        let ticks = |multiples: &&[u8]| self.power_ticks(most, multiples);
+        let mut all: Vec<Vec<Tick>> = LABELLED.iter().map(ticks).collect();
+        let decades = libm::log10(self.largest / self.least);
+        if decades < FEW_DECADES && most >= MOST_FOR_POWERS {
+            all.rotate_left(1);
         }
-        // Few decades may hold but one power of ten, and less than one may hold none.
-        let ticks = self.power_ticks(most, few);
-        if labels_of(&ticks) >= LEAST_LABELS {
-            ticks
-        } else {
-            self.linear_ticks(most)
-        }
+        all
     }
 
-    /// Ticks at the multiples of powers of ten, with labels at the powers, and between them if so wished.
-    fn power_ticks(&self, most: usize, label_between: bool) -> Vec<Tick> {
+    /// Ticks at the multiples of powers of ten, with labels at some multiples.
+    fn power_ticks(&self, most: usize, labelled: &[u8]) -> Vec<Tick> {
         let decades = libm::log10(self.largest / self.least);
         let stride = (decades / most as f64).ceil().max(1.0);
-        let plain = decades < FEW_DECADES && self.least >= PLAIN.0 && self.largest <= PLAIN.1;
+        let plain = (decades < FEW_DECADES || labelled.len() > 1)
+            && self.least >= PLAIN.0
+            && self.largest <= PLAIN.1;
         let first = libm::floor(libm::log10(self.least));
         let last = libm::ceil(libm::log10(self.largest));
         let mut ticks = Vec::new();
@@ -198,11 +277,8 @@ impl Axis {
                 if value < self.least * (1.0 - 1e-9) || value > self.largest * (1.0 + 1e-9) {
                     continue;
                 }
-                let labelled = match multiple {
-                    1 => exponent.rem_euclid(stride) == 0.0,
-                    2 | 5 => label_between,
-                    _ => false,
-                };
+                let labelled = labelled.contains(&multiple)
+                    && (multiple > 1 || exponent.rem_euclid(stride) == 0.0);
                 let label = || {
                     if plain {
                         decimal(value, (-exponent).max(0.0) as usize)
@@ -298,7 +374,7 @@ mod tests {
     use super::*;
 
     fn labels(axis: &Axis, most: usize) -> Vec<String> {
-        let ticks = axis.ticks(most).into_iter();
+        let ticks = axis.fitting_ticks(1000.0, most, |_| 20.0).into_iter();
         ticks.filter_map(|tick| tick.label).collect()
     }
 
@@ -326,6 +402,35 @@ mod tests {
         // One power of ten alone would not tell a scale.
         let one = Axis::new(Scale::Logarithmic, (18.0, 640.0));
         assert_eq!(labels(&one, 3), ["20", "50", "100", "200", "500"]);
+    }
+
+    /// COMMAND-LINE, low: `length` (b) and `collapse` (d) lacked labels at the low end.
+    #[test]
+    fn labels_reach_both_ends_of_an_axis() {
+        for (range, expected) in [
+            ((14.7, 680.0), "20 50 100 200 500"),
+            ((1.1, 45.0), "2 5 10 20"),
+            ((2.1, 9.0), "3 5 7"),
+        ] {
+            let axis = Axis::new(Scale::Logarithmic, range);
+            let found = labels(&axis, 6).join(" ");
+            assert!(found.starts_with(expected), "{range:?}: {found}");
+            let bare = axis.bare(&axis.fitting_ticks(300.0, 6, |_| 20.0));
+            assert!(bare <= MOST_BARE, "{range:?}: {bare}");
+        }
+    }
+
+    /// COMMAND-LINE, low: fractional ticks on the number of a wave.
+    #[test]
+    fn what_is_counted_has_ticks_at_whole_numbers() {
+        for waves in [1, 2, 3, 5, 20, 137] {
+            let axis = Axis::new(Scale::Counting, (-0.5, f64::from(waves) - 0.5));
+            let ticks = axis.fitting_ticks(120.0, 7, |_| 9.0);
+            let whole = ticks.iter().all(|tick| tick.value.fract() == 0.0);
+            assert!(whole && ticks[0].value == 0.0, "{waves}: {ticks:?}");
+            let whole = |tick: &Tick| tick.label.as_ref().is_none_or(|it| !it.contains('.'));
+            assert!(ticks.iter().all(whole), "{waves}: {ticks:?}");
+        }
     }
 
     #[test]

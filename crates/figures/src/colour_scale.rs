@@ -87,7 +87,7 @@ impl ColourScale {
 
     pub(crate) fn check(&self) -> Result<(), FigureError> {
         let lowest = match self.scale {
-            Scale::Linear => f64::MIN,
+            Scale::Linear | Scale::Counting => f64::MIN,
             Scale::Logarithmic => f64::MIN_POSITIVE,
         };
         if lowest <= self.least && self.least < self.largest && self.largest.is_finite() {
@@ -118,9 +118,10 @@ impl ColourScale {
         }
     }
 
-    /// Ticks of a bar, those at ends with values beyond them marked so.
+    /// Ticks of a bar, and numbers at its ends where there is room; ends with values beyond them are marked so.
     fn ticks(&self, length: f64, most: usize, extent: impl Fn(&str) -> f64) -> Vec<Tick> {
-        let mut ticks = self.axis().fitting_ticks(length, most, extent);
+        let mut ticks = self.axis().fitting_ticks(length, most, &extent);
+        ticks.extend(self.axis().end_ticks(length, &ticks, extent));
         for tick in &mut ticks {
             let sign = match tick.value {
                 value if value <= self.least && self.found.0 < self.least => "≤ ",
@@ -235,6 +236,29 @@ mod tests {
         let signed = ColourScale::new("", -2.0, 2.0).palette(Palette::Diverging);
         assert_eq!(signed.colour(0.0), diverging(0.0));
         assert_eq!(signed.colour(9.0), diverging(1.0));
+    }
+
+    /// COMMAND-LINE, low: colour bars lacked their lower end.
+    #[test]
+    fn a_bar_says_where_it_begins_and_ends() {
+        let ends = |scale: ColourScale| {
+            let mut ticks = scale.ticks_up(200.0);
+            ticks.retain(|tick| tick.label.is_some());
+            ticks.sort_by(|one, other| one.value.total_cmp(&other.value));
+            [&ticks[0], &ticks[ticks.len() - 1]].map(|tick| tick.label.clone().unwrap())
+        };
+        let rates = ColourScale::new("", 0.03, 0.2).logarithmic();
+        assert_eq!(ends(rates), ["0.03", "0.2"]);
+        assert_eq!(
+            ends(ColourScale::new("", 0.001, 0.008).logarithmic()),
+            ["0.001", "0.008"]
+        );
+        assert_eq!(
+            ends(ColourScale::new("", -0.2374, 1.0)),
+            ["\u{2212}0.24", "1.0"]
+        );
+        // A number that stands close to an end says enough.
+        assert_eq!(ends(ColourScale::new("", 0.0, 1.02)), ["0.0", "1.0"]);
     }
 
     #[test]

@@ -49,7 +49,7 @@ pub(crate) fn cells_of_peaks(flows: &[f64]) -> [String; 2] {
             if peaks.is_double() { "two" } else { "one" }.to_owned()
         }),
         cell_of(dip_test(flows, BOOTSTRAP).ok(), |test| {
-            number(test.probability, 3)
+            probability(test.probability)
         }),
     ]
 }
@@ -211,4 +211,17 @@ pub(crate) fn fitted_curve(
             .tint(Tint::Value(line.strain_rate))
             .weight(0.8)
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// COMMAND-LINE, low: "probability of a line: 0.000".
+    #[test]
+    fn a_probability_is_never_nought() {
+        for (value, expected) in [(0.0, "< 0.001"), (9e-4, "< 0.001"), (0.0312, "0.031")] {
+            assert_eq!(probability(value), expected);
+        }
+    }
 }

@@ -275,12 +275,21 @@ pub(crate) fn space_time() -> Drawn {
             values.push(if is_missing { f64::NAN } else { value });
         }
     }
-    let field = Field::new(&values, rows, (0.0, f64::from(columns)), (0.0, rows as f64));
-    ChartFigure::new(panel(Quantity::Period, Quantity::Wave).with(field))
-        .title("*w* = 2.7 *d*, *ε\u{307}* = 0.1")
-        .colour_scale(ColourScale::new("flow rate, *J*/*J*_{max}", 0.0, 1.0))
-        .panel_height(36.0)
-        .draw()
+    let field = Field::new(
+        &values,
+        rows,
+        (0.0, f64::from(columns)),
+        (-0.5, rows as f64 - 0.5),
+    );
+    ChartFigure::new(
+        panel(Quantity::Period, Quantity::Wave)
+            .y_scale(Scale::Counting)
+            .with(field),
+    )
+    .title("*w* = 2.7 *d*, *ε\u{307}* = 0.1")
+    .colour_scale(ColourScale::new("flow rate, *J*/*J*_{max}", 0.0, 1.0))
+    .panel_height(36.0)
+    .draw()
 }
 
 /// Spheres of a made-up wall in staggered rings, and grains at random places that keep apart in it.

@@ -148,7 +148,7 @@ impl Check {
         let heights = || bars.heights.iter().enumerate().filter(finite);
         for (row, &height) in heights() {
             // An empty bar of a histogram has no height to draw, on either scale.
-            if height != 0.0 || self.y.scale == Scale::Linear {
+            if height != 0.0 || self.y.scale != Scale::Logarithmic {
                 self.y.push(&self.series, row, height)?;
             }
         }
@@ -246,6 +246,6 @@ impl Values {
     }
 
     fn has_place(&self, value: f64) -> bool {
-        self.scale == Scale::Linear || value > 0.0
+        self.scale != Scale::Logarithmic || value > 0.0
     }
 }

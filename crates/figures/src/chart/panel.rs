@@ -129,11 +129,11 @@ impl AxisWish {
             });
         }
         let forth = |value: f64| match self.scale {
-            Scale::Linear => value,
+            Scale::Linear | Scale::Counting => value,
             Scale::Logarithmic => libm::log10(value),
         };
         let back = |place: f64| match self.scale {
-            Scale::Linear => place,
+            Scale::Linear | Scale::Counting => place,
             Scale::Logarithmic => libm::pow(10.0, place),
         };
         let (mut low, mut high) = (forth(least), forth(largest));

@@ -55,7 +55,7 @@ _COLUMNS = {
     "granular_temperature": ("granular temperature", r"T_{\mathrm{g}}", PURPLE),
     "radius": ("wall radius", "R", BLUE),
     "wall_pressure": ("pressure on the wall", "p", ORANGE),
-    "wall_shear": ("shear on the wall", r"\tau", GREEN),
+    "wall_shear": ("shear on the wall", r"\sigma", GREEN),
     "wall_axial_velocity": ("axial velocity of the wall", "v_z", ALONG),
 }
 #: Name that marks what is drawn once in axes, however often a function is called.

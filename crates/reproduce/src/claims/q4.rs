@@ -157,10 +157,19 @@ fn space_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
             *column += 1;
         }
     }
-    let field = Field::new(&values, rows, (0.0, columns as f64), (0.0, rows as f64));
-    let chart = ChartFigure::new(panel(Axis::Period, Axis::Wave).with(field))
-        .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
-        .panel_height(50.0);
+    let field = Field::new(
+        &values,
+        rows,
+        (0.0, columns as f64),
+        (-0.5, rows as f64 - 0.5),
+    );
+    let chart = ChartFigure::new(
+        panel(Axis::Period, Axis::Wave)
+            .y_scale(Scale::Counting)
+            .with(field),
+    )
+    .colour_scale(ColourScale::new(&label(Axis::FlowRateRatio), 0.0, 1.0))
+    .panel_height(50.0);
     let (waves, width) = (rows, row.width());
     draft.chart("space-time", values!(waves, width), chart)
 }

@@ -58,8 +58,8 @@ impl<'a> Compared<'a> {
             .chain([
                 scatter.scatter_exponent.to_string(),
                 probability(scatter.chance_probability),
-                number(scatter.constant_probability, 3),
-                number(scatter.inverse_probability, 3),
+                probability(scatter.constant_probability),
+                probability(scatter.inverse_probability),
             ])
             .collect()
     }

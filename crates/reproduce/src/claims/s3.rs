@@ -125,9 +125,16 @@ fn branches(lines: &[ForceLine<'_>], tight: &[&ForceLine<'_>]) -> ChartFigure {
         .rev()
         .filter_map(|line| line.both_ends())
         .find(|(first, last)| last > first);
+    let title = "filled: from rest, open: from jammed";
+    let title = title.to_owned()
+        + if window.is_some() {
+            "; shaded: both flows"
+        } else {
+            ""
+        };
     let flow = with_branches(flow_against_force(), tight)
         .with_all(window.map(|(first, last)| Window::new("", first, last)))
-        .title("filled: from rest, open: from jammed");
+        .title(&title);
     grid(2, [flow].into_iter().chain(heights(tight)))
         .legend(LegendPlace::Hidden)
         .colour_scale(colours_of_rates(lines))

@@ -94,11 +94,8 @@ impl Report {
     pub fn write(&self, folder: &Path) -> Result<PathBuf, ReproduceError> {
         let (figures, tables) = (figure_files(&self.examinations), table_files(self)?);
         make_folder(folder)?;
-        if !figures.files.is_empty() {
-            make_folder(&folder.join("figures"))?;
-        }
-        if !tables.is_empty() {
-            make_folder(&folder.join("tables"))?;
+        for name in ["figures", "tables"] {
+            make_folder(&folder.join(name))?;
         }
         for (name, figure) in &figures.files {
             write_drawing(&folder.join("figures"), name, &figure.drawing)?;

@@ -9,7 +9,9 @@ use peristalsis_figures::chart::{
     Band, ChartFigure, ChartLayer, ChartPanel, Field, LegendPlace, Line, Pattern, Points,
     Reference, Tint,
 };
-use peristalsis_figures::{ColourScale, Drawing, FigureError, Palette, Quantity, Units, Width};
+use peristalsis_figures::{
+    ColourScale, Drawing, FigureError, Palette, Quantity, Scale, Units, Width,
+};
 
 use crate::error::RunError;
 use crate::run::Run;
@@ -133,7 +135,7 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
     let averages = recorder.averages();
     let intervals = configuration.observe.samples_per_period as usize;
     let periods = middles(averages.len(), intervals);
-    let mut last = time.iter().copied().fold(0.0, f64::max);
+    let mut last = end(samples.len());
     if last >= MANY_PERIODS {
         last = last.ceil();
     }
@@ -142,6 +144,11 @@ fn flow(run: &Run, summary: &Summary) -> Result<Drawing, FigureError> {
         .x_range(0.0..=last)
         .with_all([guide(0.0), guide(1.0)])
         .with(samples_line.weight(0.6));
+    if let [_] = samples {
+        // One sample is no line.
+        let mark = Points::new("samples", &time, &ratio).tint(Tint::Sky);
+        panel = panel.with(mark.series(0));
+    }
     if averages.iter().any(|average| average.is_finite()) {
         let name = "mean over a period";
         let line = Line::new(name, &periods, averages).tint(Tint::Blue);
@@ -233,8 +240,11 @@ pub fn space_time(run: &Run) -> Result<Drawing, RunError> {
         .period
         .max(last.period - flows[flows.len() - 1 - waves.min(flows.len() - 1)].period);
     let x = ((first.period - step).max(0.0), last.period);
-    let field = Field::new(&values, waves, x, (0.0, waves as f64));
-    let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave)).with(field);
+    // The cell of a wave lies about its number.
+    let field = Field::new(&values, waves, x, (-0.5, waves as f64 - 0.5));
+    let panel = ChartPanel::new(&label(Quantity::Period), &label(Quantity::Wave))
+        .y_scale(Scale::Counting)
+        .with(field);
     ChartFigure::new(panel)
         .title(&title(run.configuration()))
         .description("Flow rate of each wave against time.")

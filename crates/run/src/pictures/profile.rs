@@ -53,10 +53,10 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
         tube(&bins),
         curve("*n*_{1} *d*", Tint::Blue, |bin| bin.density).y_range(0.0..),
         velocity(&bins, speed),
-        curve("*T*_{g}", Tint::Purple, |bin| bin.temperature).y_range(0.0..),
+        temperature(&bins, speed),
     ];
     if bins.iter().any(|bin| bin.wall_pressure.0.is_finite()) {
-        let (pressure, shear) = (format!("*p*{unit}"), format!("*τ*{unit}"));
+        let (pressure, shear) = (format!("*p*{unit}"), format!("*σ*{unit}"));
         panels.push(curve(&pressure, Tint::Orange, |bin| bin.wall_pressure).y_range(0.0..));
         panels.push(curve(&shear, Tint::Green, |bin| bin.wall_shear).with(guide(0.0)));
     }
@@ -68,6 +68,13 @@ pub(super) fn profile(run: &Run) -> Result<Drawing, FigureError> {
         .panel_height(PANEL_HEIGHT)
         .share_x()
         .draw()
+}
+
+/// The granular temperature over the mass of a grain and the square of a speed.
+fn temperature(bins: &[ProfileBin], speed: f64) -> ChartPanel {
+    let unit = speed * speed;
+    let of = |bin: &ProfileBin| (bin.temperature.0 / unit, bin.temperature.1 / unit);
+    with_curve(panel("*T*_{g}/*mc*^{2}"), Tint::Purple, bins, of).y_range(0.0..)
 }
 
 /// Adds the curve of a value of each bin with the band of its error.
@@ -164,6 +171,20 @@ pub(super) fn wall(run: &Run) -> Result<Drawing, FigureError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// COMMAND-LINE, low: T_g had no unit.
+    #[test]
+    fn the_temperature_is_in_units_of_the_wave() {
+        let bin = |position: f64| ProfileBin {
+            position,
+            temperature: (8.0, 0.4),
+            ..ProfileBin::default()
+        };
+        let bins = [bin(0.25), bin(0.75)];
+        let of = |bin: &ProfileBin| (bin.temperature.0 / 4.0, bin.temperature.1 / 4.0);
+        let expected = with_curve(panel("*T*_{g}/*mc*^{2}"), Tint::Purple, &bins, of);
+        assert_eq!(temperature(&bins, 2.0), expected.y_range(0.0..));
+    }
 
     #[test]
     fn a_velocity_changes_its_colour_at_nought_and_an_unknown_error_has_no_band() {
