@@ -128,6 +128,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("small-strain-rate-coarse"),
     study!("small-strain-rate-fine"),
     study!("roughness"),
+    study!("walls"),
     study!("restitution"),
     study!("softness"),
     study!("wavelength"),
