@@ -1,10 +1,12 @@
 //! Q2: roughness of the wall.
 
+use peristalsis_analysis::{fit_line, power_exponent};
+
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, &["roughness"], examine);
+pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, &["roughness", "walls"], examine);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -99,6 +101,124 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         draft.quantity("critical width", values!(lattice, rate), wall.critical);
     }
     draft.table("lattices", &[], walls.iter().map(Wall::row));
+    candidates(&mut draft, evidence.study("walls")?.rows())?;
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
     Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
+}
+
+/// What one arrangement of wall spheres shows over the strain rates.
+struct Candidate {
+    name: String,
+    /// Spheres per area of the straight tube \[1/d^2\].
+    density: f64,
+    /// dw_c/depsdot.
+    slope: Option<Uncertain>,
+    /// Power of the strain rate with which tau (w_c - w) goes next to w_c.
+    power: Option<Uncertain>,
+    /// Largest fraction of grains outside near w_c.
+    escaped: f64,
+}
+
+/// Distances from w_c, in units of epsdot^(3/2), at which tau (w_c - w) is read: where the source claims its law.
+const WHERE_CLAIMED: core::ops::RangeInclusive<f64> = 0.7..=5.0;
+
+/// What the source says of dw_c/depsdot, and what its scaling says of the power.
+const SLOPE: f64 = -3.75;
+const POWER: f64 = -2.0;
+
+impl Candidate {
+    fn of(arrangement: &str, rows: &[Row<'_>]) -> Option<Self> {
+        let first = rows.first()?;
+        let lattice = first.lattice();
+        let (mut widths, mut amplitudes, mut escaped) = (Vec::new(), Vec::new(), 0.0_f64);
+        for (rate, rows) in by_strain_rate(rows.iter().copied()) {
+            let Some(critical) = crossing(&rows).map(|crossing| crossing.width) else {
+                continue;
+            };
+            let distance = |row: &Row<'_>| critical.value - row.width();
+            let near = rows
+                .iter()
+                .filter(|row| distance(row).abs() < ESCAPED_WITHIN);
+            escaped = near.map(Row::escaped_fraction).fold(escaped, f64::max);
+            widths.push((rate, critical));
+            let claimed =
+                |row: &&Row<'_>| WHERE_CLAIMED.contains(&(distance(row) * rate.powf(-1.5)));
+            let claimed: Vec<Row<'_>> = rows.iter().filter(claimed).copied().collect();
+            let amplitude = mean_of(&claimed, |row| match row.transition().observed() {
+                Some(time) => (time * distance(row), time * critical.error),
+                None => (f64::NAN, f64::NAN),
+            });
+            amplitudes.extend(amplitude.map(|amplitude| (rate, amplitude)));
+        }
+        let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
+        let line = fit_line(&rate, &width, &error).ok();
+        let [rate, amplitude, error] = columns(amplitudes, 0.0);
+        let power = power_exponent(&rate, &amplitude, &error).ok();
+        let area = core::f64::consts::TAU * first.radius() * first.wavelength();
+        Some(Self {
+            name: match arrangement {
+                "" | "staggered" => lattice.name(),
+                other => format!("{} {other}", lattice.name()),
+            },
+            density: (lattice.spheres_per_ring * lattice.rings_per_wave) as f64 / area,
+            slope: line.map(|line| slope(&line)),
+            power: power.map(|line| slope(&line)),
+            escaped,
+        })
+    }
+
+    fn row(&self) -> Vec<String> {
+        vec![
+            self.name.clone(),
+            number(self.density, 2),
+            cell(self.slope),
+            cell(self.power),
+            number(self.escaped, 3),
+        ]
+    }
+}
+
+/// The walls that the source could have had, side by side.
+fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
+    let groups = grouped(rows, |row| (row.text("arrangement"), row.lattice()));
+    let found = groups
+        .iter()
+        .filter_map(|((arrangement, _), rows)| Candidate::of(arrangement, rows));
+    let mut found: Vec<Candidate> = found.collect();
+    if found.is_empty() {
+        return Ok(());
+    }
+    found.sort_by(|one, other| one.density.total_cmp(&other.density));
+    for one in &found {
+        let wall = &one.name;
+        let of = |name, ours: Option<Uncertain>, source| {
+            ours.map(|ours| PROSE.quantity(name, values!(wall), ours).sourced(source))
+        };
+        let quantities = [of("slope", one.slope, SLOPE), of("power", one.power, POWER)];
+        draft
+            .finding
+            .quantities
+            .extend(quantities.into_iter().flatten());
+    }
+    let agreeing = |number: fn(&Candidate) -> Option<Uncertain>, source| -> String {
+        let agrees =
+            |one: &&Candidate| number(one).and_then(|ours| agrees(&ours, source)) == Some(true);
+        let names: Vec<&str> = found.iter().filter(agrees).map(|one| &*one.name).collect();
+        if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        }
+    };
+    let slopes = agreeing(|one| one.slope, SLOPE);
+    let powers = agreeing(|one| one.power, POWER);
+    draft.table("candidates", &[], found.iter().map(Candidate::row));
+    let all = found.iter().filter_map(|one| one.power);
+    let [least, most] = all.fold(
+        [f64::INFINITY, f64::NEG_INFINITY],
+        |[least, most], power| [least.min(power.value), most.max(power.value)],
+    );
+    let [least, most] = [least, most].map(|power| number(power, 1));
+    draft.paragraph("candidates", values!(slopes, powers, least, most));
+    Ok(())
 }
