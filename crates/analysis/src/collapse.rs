@@ -75,17 +75,15 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
         points
     };
     let sorted: Vec<Vec<CurvePoint>> = curves.iter().map(sorted).collect();
-    let mut groups: Vec<usize> = (0..curves.len()).collect();
     let mut sum = 0.0;
     let mut compared = 0_usize;
     for (own, curve) in sorted.iter().enumerate() {
         for point in curve {
             let mut line = Line::default();
-            for (other, curve) in sorted.iter().enumerate().filter(|(other, _)| *other != own) {
+            for (_, curve) in sorted.iter().enumerate().filter(|(other, _)| *other != own) {
                 if let Some([left, right]) = enclosing(curve, point.x) {
                     line.add(left, point.x);
                     line.add(right, point.x);
-                    join(&mut groups, own, other);
                 }
             }
             if let Some((height, variance)) = line.at_origin() {
@@ -101,8 +99,41 @@ pub fn collapse_quality(curves: &[Vec<CurvePoint>]) -> Result<CollapseQuality, E
         quality: sum / compared as f64,
         overlap: compared as f64 / total as f64,
         compared,
-        is_connected: groups.iter().all(|&group| group == groups[0]),
+        is_connected: overlap(curves).1,
     })
+}
+
+/// Points within the range of another curve, and whether all curves hang together.
+pub(crate) fn overlap(curves: &[Vec<CurvePoint>]) -> (usize, bool) {
+    let usable = |curve: &Vec<CurvePoint>| -> Vec<f64> {
+        let points = curve.iter().filter(|point| point.is_usable());
+        points.map(|point| point.x).collect()
+    };
+    let places: Vec<Vec<f64>> = curves.iter().map(usable).collect();
+    let range = |places: &Vec<f64>| match places.len() {
+        0 | 1 => (f64::INFINITY, f64::NEG_INFINITY),
+        _ => places
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            }),
+    };
+    let ranges: Vec<(f64, f64)> = places.iter().map(range).collect();
+    let mut groups: Vec<usize> = (0..curves.len()).collect();
+    let mut compared = 0;
+    for (own, places) in places.iter().enumerate() {
+        for x in places {
+            let mut is_compared = false;
+            for (other, (low, high)) in ranges.iter().enumerate() {
+                if other != own && low <= x && x <= high {
+                    is_compared = true;
+                    join(&mut groups, own, other);
+                }
+            }
+            compared += usize::from(is_compared);
+        }
+    }
+    (compared, groups.iter().all(|&group| group == groups[0]))
 }
 
 impl CurvePoint {
@@ -126,6 +157,9 @@ fn enclosing(curve: &[CurvePoint], x: f64) -> Option<[CurvePoint; 2]> {
 /// Makes two curves members of one group.
 fn join(groups: &mut [usize], a: usize, b: usize) {
     let (kept, gone) = (groups[a].min(groups[b]), groups[a].max(groups[b]));
+    if kept == gone {
+        return;
+    }
     for group in groups.iter_mut().filter(|group| **group == gone) {
         *group = kept;
     }

@@ -1,7 +1,7 @@
 //! The scaling under which curves collapse best, with errors.
 
 use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
-use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
+use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality, overlap};
 use crate::error::{Error, checked, checked_positive, enough, ensure, same_length};
 use crate::numerics::simplex::{Lowest, nelder_mead};
 use serde::{Deserialize, Serialize};
@@ -102,14 +102,16 @@ impl Collapse<'_> {
         }
     }
 
-    /// S where enough points overlap; else a wall that leans toward more overlap.
-    pub(crate) fn objective(&self, parameters: &[f64]) -> f64 {
-        self.objective_of(&self.scaled(parameters))
+    /// Whether enough scaled points overlap, and all curves hang together.
+    pub(crate) fn overlaps(&self, scaled: &[Vec<CurvePoint>]) -> bool {
+        let (compared, is_connected) = overlap(scaled);
+        let total: usize = scaled.iter().map(Vec::len).sum();
+        is_connected && compared > 0 && compared as f64 >= self.least_overlap * total as f64
     }
 
-    /// The same of scaled points.
-    pub(crate) fn objective_of(&self, scaled: &[Vec<CurvePoint>]) -> f64 {
-        match collapse_quality(scaled) {
+    /// S where enough points overlap; else a wall that leans toward more overlap.
+    pub(crate) fn objective(&self, parameters: &[f64]) -> f64 {
+        match self.quality(parameters) {
             Err(_) => 3.0 * SHORT,
             Ok(found) if found.overlap < self.least_overlap || !found.is_connected => {
                 let missing = (self.least_overlap - found.overlap).max(0.0);

@@ -189,6 +189,62 @@ pub fn fit_law(
     }
 }
 
+/// A law fitted to the values at the largest widths alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct NearestFit {
+    /// How many widths, the largest ones.
+    pub widths: usize,
+    /// The least of them.
+    pub least: f64,
+    /// The fit.
+    pub fit: LawFit,
+}
+
+/// Fits a law to the values at the k largest widths, for every k: the exponent against the window.
+///
+/// From one width more than the law has free parameters (4 with w_c free, 3 with a `known` one) up to all. An exponent
+/// that moves with the window beyond its error is an effective one, that of the range and not of w_c. The fits share
+/// their values and do not scatter independently. Windows without a fit are left out.
+///
+/// # Errors
+/// Those of [`fit_law`] for all values.
+///
+/// ```
+/// use peristalsis_analysis::{Law, fit_law_to_nearest};
+/// // 1/tau = d + d^2 with d = 3 - w: alpha goes to 1 as the window closes.
+/// let distance = [1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125];
+/// let width = distance.map(|d| 3.0 - d);
+/// let time = distance.map(|d| 1.0 / (d + d * d));
+/// let fits = fit_law_to_nearest(Law::Power, &width, &time, &time.map(|t| 0.01 * t), None)?;
+/// let exponents: Vec<f64> = fits.iter().map(|one| one.fit.exponent.value).collect();
+/// assert_eq!((fits[0].widths, fits[0].least, exponents.len()), (4, 2.75, 3));
+/// assert!(exponents[0] < exponents[1] && exponents[1] < exponents[2] && exponents[0] > 1.0);
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fit_law_to_nearest(
+    law: Law,
+    width: &[f64],
+    value: &[f64],
+    error: &[f64],
+    known: Option<Uncertain>,
+) -> Result<Vec<NearestFit>, Error> {
+    let whole = fit_law(law, width, value, error, known)?;
+    let places = distinct(width);
+    let free = if known.is_some() { 2 } else { law.parameters() };
+    let nearest = |widths: usize| {
+        let least = places[places.len() - widths];
+        let fit = if widths == places.len() {
+            whole
+        } else {
+            let rows: Vec<usize> = (0..width.len()).filter(|&i| width[i] >= least).collect();
+            let of = |column: &[f64]| -> Vec<f64> { rows.iter().map(|&i| column[i]).collect() };
+            fit_law(law, &of(width), &of(value), &of(error), known).ok()?
+        };
+        Some(NearestFit { widths, least, fit })
+    };
+    Ok((free + 1..=places.len()).filter_map(nearest).collect())
+}
+
 /// The fit at a w_c that is fixed or does not matter.
 fn at_fixed(points: &Points<'_>, critical: f64) -> Option<LawFit> {
     let line = points.line(critical)?;

@@ -31,7 +31,7 @@ impl RunTable {
 
 /// The likelihood of one law and family, as a function of w_c and shape.
 pub(crate) struct LawLikelihood {
-    law: Law,
+    pub(crate) law: Law,
     family: Family,
     pub(crate) places: Vec<f64>,
     pub(crate) groups: Vec<Group>,
@@ -94,19 +94,22 @@ impl LawLikelihood {
         self.groups.iter().map(at_shape).collect()
     }
 
+    /// Widths below a w_c: runs beyond never change, are certain to be censored and say nothing.
+    pub(crate) fn below(&self, critical: f64) -> usize {
+        match self.law.is_critical() {
+            true => self.places.partition_point(|&place| place < critical),
+            false => self.places.len(),
+        }
+    }
+
     /// Regression of the mean on the law at a w_c.
-    fn regression<'a>(
+    pub(crate) fn regression<'a>(
         &'a self,
         likelihoods: &'a [GroupLikelihood<'a>],
         ln_distance: f64,
     ) -> Regression<'a> {
         let critical = self.range.critical(ln_distance);
-        // Runs at w >= w_c never change: they are certain to be censored and say nothing.
-        let below = if self.law.is_critical() {
-            self.places.partition_point(|&place| place < critical)
-        } else {
-            self.places.len()
-        };
+        let below = self.below(critical);
         let covariate = |&place: &f64| self.law.covariate(place, critical);
         let x = self.places[..below].iter().map(covariate).collect();
         Regression::new(x, &self.groups[..below], &likelihoods[..below])

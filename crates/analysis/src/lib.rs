@@ -9,8 +9,8 @@
 //! | when does a run change? | [`TransitionDetector`], [`transition_time`] |
 //! | is a series stationary, and its mean? | [`stationary_mean`], [`stationarity`], [`mean_with_error`], [`autocorrelation_time`] |
 //! | how are transition times distributed? | [`Survival`], [`restricted_moments`], [`fit_lifetime`], [`fit_shifted_exponential`], [`ensembles_by_width`] |
-//! | where and how does the time diverge? | [`fit_law_to_runs`], [`fit_law_to_runs_in_windows`], [`fit_law`] |
-//! | does it diverge at all? | [`compare_laws`], [`fit_law_with_scatter`], [`power_exponent`] |
+//! | where and how does the time diverge? | [`fit_law_to_runs`], [`fit_law_to_runs_in_windows`], [`fit_law`], [`fit_law_to_nearest`], [`fit_inverse_line`], [`fit_inverse_parabola`] |
+//! | does it diverge at all? | [`compare_laws`], [`compare_laws_with_scatter`], [`fit_law_with_scatter`], [`power_exponent`] |
 //! | how does the flow rate fluctuate? | [`ensemble_moments`], [`second_moment`], [`second_moment_peak`] |
 //! | do the curves collapse? | [`Collapse`], [`Scaling`], [`collapse_quality`] |
 //! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
@@ -39,6 +39,7 @@ mod ensembles;
 mod error;
 mod family;
 mod hysteresis;
+mod inverse_law;
 mod jump;
 mod law;
 mod law_fit;
@@ -66,18 +67,19 @@ pub use autocorrelation::{AutocorrelationTime, autocorrelation_time};
 pub use blocks::{Estimate, mean_with_error};
 pub use bootstrap::{Bootstrap, Resampled};
 pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
-pub use collapse_estimate::CollapseEstimate;
+pub use collapse_estimate::{CollapseEstimate, JointTest};
 pub use collapse_fit::{Collapse, CollapseFit, Transform};
 pub use dip::{DipTest, dip_test};
-pub use divergence::{LawEvidence, compare_laws};
+pub use divergence::{LawEvidence, compare_laws, compare_laws_with_scatter};
 pub use ensemble::{Moments, ensemble_moments, mean_and_error};
 pub use ensembles::{WidthEnsemble, ensembles_by_width};
 pub use error::Error;
 pub use family::Family;
 pub use hysteresis::{Hysteresis, hysteresis};
+pub use inverse_law::{InverseFit, fit_inverse_line, fit_inverse_parabola};
 pub use jump::{Jump, jump_height};
 pub use law::Law;
-pub use law_fit::{LawFit, fit_law};
+pub use law_fit::{LawFit, NearestFit, fit_law, fit_law_to_nearest};
 pub use law_runs::{LawRunsFit, WindowRunsFit, fit_law_to_runs, fit_law_to_runs_in_windows};
 pub use lifetime::{LifetimeFit, fit_lifetime};
 pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};

@@ -3,11 +3,10 @@
 use crate::error::Error;
 use crate::family::{Family, LN_SHAPE_BOUNDS};
 use crate::law::Law;
-use crate::law_likelihood::{LawLikelihood, RunTable};
+use crate::law_likelihood::{Largest, LawLikelihood, RunTable};
 use crate::numerics::gamma::chi_squared_tail;
 use crate::numerics::linear::{Cholesky, curvature, error_of};
 use crate::numerics::simplex::{Lowest, nelder_mead};
-use crate::regression::Regression;
 use crate::transition::Transition;
 use crate::uncertain::Uncertain;
 use serde::{Deserialize, Serialize};
@@ -64,35 +63,38 @@ impl ScatterLawFit {
     }
 }
 
-/// Likelihood of gamma distributions whose shape is a power of the distance from w_c, on the runs of the likelihood with
-/// one shape.
+/// Likelihood of gamma distributions whose shape changes toward w_c, on the runs of the likelihood with one shape.
 struct ScatterLikelihood<'a>(&'a LawLikelihood);
 
 impl ScatterLikelihood<'_> {
     /// Minus the log-likelihood, a and b at (ln(w_c - top), ln k at one span, q); at a given exponent where there is
-    /// one.
+    /// one. The shape is a power q of the distance from w_c; `exp(q distance)` of that from the largest width with a
+    /// transition where the law has no w_c.
     fn at(&self, [place, ln_shape, q]: [f64; 3], exponent: Option<f64>) -> (f64, f64, f64) {
         let LawLikelihood {
+            law,
             places,
             groups,
             range,
             ..
         } = self.0;
         let critical = range.critical(place);
-        let places = &places[..places.partition_point(|&place| place < critical)];
         let nowhere = (f64::INFINITY, f64::NAN, f64::NAN);
-        let mut likelihoods = Vec::with_capacity(places.len());
-        for (&place, group) in places.iter().zip(groups) {
-            let ln_shape = ln_shape + q * libm::log((critical - place) / range.span);
+        let below = self.0.below(critical);
+        let mut likelihoods = Vec::with_capacity(below);
+        for (&place, group) in places[..below].iter().zip(groups) {
+            let distance = match law.is_critical() {
+                true => libm::log((critical - place) / range.span),
+                false => (range.top - place) / range.span,
+            };
+            let ln_shape = ln_shape + q * distance;
             let possible = ln_shape > LN_SHAPE_BOUNDS.0 && ln_shape < LN_SHAPE_BOUNDS.1;
             if !possible {
                 return nowhere;
             }
             likelihoods.push(group.at_shape(Family::Gamma, libm::exp(ln_shape)));
         }
-        let covariate = |&place: &f64| Law::Power.covariate(place, critical);
-        let x = places.iter().map(covariate).collect();
-        let regression = Regression::new(x, &groups[..places.len()], &likelihoods);
+        let regression = self.0.regression(&likelihoods, place);
         match exponent {
             Some(exponent) => (-regression.at_slope(exponent), f64::NAN, exponent),
             None => {
@@ -100,6 +102,19 @@ impl ScatterLikelihood<'_> {
                 (-value, a, b)
             }
         }
+    }
+
+    /// The best of all three parameters, from the best with a common shape.
+    fn best(&self, start: Largest) -> Option<Lowest> {
+        let range = self.0.range;
+        // A constant scatter may put w_c far off, or even at infinity, where a growing one does not.
+        let place = start.ln_distance.min(libm::log(range.span));
+        let found = [0.0, 1.0].map(|q| match self.0.law.is_critical() {
+            true => self.lowest(&[place, start.ln_shape, q], |p| [p[0], p[1], p[2]]),
+            false => self.lowest(&[start.ln_shape, q], |p| [0.0, p[0], p[1]]),
+        });
+        let found = found.into_iter().min_by(|a, b| a.value.total_cmp(&b.value));
+        found.filter(|best| best.value.is_finite())
     }
 
     /// Search for the minimum from a start, begun afresh until it stays.
@@ -122,6 +137,17 @@ impl ScatterLikelihood<'_> {
         }
         best
     }
+}
+
+/// Largest log-likelihood of a law whose scatter changes toward w_c, and that w_c, infinite where it has run away.
+pub(crate) fn largest_with_scatter(common: &LawLikelihood) -> Result<(f64, f64), Error> {
+    let best = ScatterLikelihood(common).best(common.largest()?);
+    let best = best.ok_or_else(|| common.undetermined())?;
+    let critical = match common.range.is_beyond(best.place[0]) {
+        true => f64::INFINITY,
+        false => common.range.critical(best.place[0]),
+    };
+    Ok((-best.value, critical))
 }
 
 /// Fits power laws of the mean and of the relative variance of the transition times to the runs at all widths.
@@ -150,13 +176,9 @@ pub fn fit_law_with_scatter(
     let range = common.range;
     let start = common.largest().map_err(|_| undetermined)?;
     let chance = chance.largest().map_err(|_| undetermined)?;
-    // A constant scatter may put w_c far off, or even at infinity, where a growing one does not.
-    let place = start.ln_distance.min(libm::log(range.span));
-    let best = [0.0, 1.0]
-        .map(|q| likelihood.lowest(&[place, start.ln_shape, q], |p| [p[0], p[1], p[2]]))
-        .into_iter()
-        .min_by(|a, b| a.value.total_cmp(&b.value))
-        .filter(|best| best.value.is_finite() && !range.is_beyond(best.place[0]))
+    let best = likelihood
+        .best(start)
+        .filter(|best| !range.is_beyond(best.place[0]))
         .ok_or(undetermined)?;
     let parameters = [best.place[0], best.place[1], best.place[2]];
     let (deficit, ln_amplitude, exponent) = likelihood.at(parameters, None);

@@ -168,6 +168,7 @@ proptest! {
         }
         let _ = fit_law_with_scatter(&width, &runs);
         let _ = compare_laws(&laws, Family::Exponential, &width, &runs);
+        let _ = compare_laws_with_scatter(&laws, &width, &runs);
     }
 
     #[test]
@@ -181,9 +182,14 @@ proptest! {
         }
         let _ = fit_parabola(&x, &y, &errors);
         let _ = power_exponent(&x, &y, &errors);
+        for fit in [fit_inverse_line(&x, &y, &errors), fit_inverse_parabola(&x, &y, &errors)] {
+            if let Ok(fit) = fit {
+                prop_assert!(is_whole(&[fit.critical_width, fit.linear]), "{:?}", fit);
+            }
+        }
         for known in [None, Some(Uncertain::normal(at, error)), Some(Uncertain::normal(at, 0.0))] {
             for law in [Law::Power, Law::Barrier { power: at }, Law::Exponential] {
-                let _ = fit_law(law, &x, &y, &errors, known);
+                let _ = fit_law_to_nearest(law, &x, &y, &errors, known);
             }
         }
         let half = rows.len() / 2;
@@ -214,7 +220,7 @@ proptest! {
     }
 
     #[test]
-    fn collapses(rows in table(), start in number(), step in number()) {
+    fn collapses(rows in table(), start in number(), step in number(), at in number()) {
         let points: Vec<CurvePoint> = rows
             .iter()
             .map(|&(x, y, error, _)| CurvePoint { x, y, error })
@@ -244,7 +250,10 @@ proptest! {
             let _ = collapse.leave_one_out(&start, &steps, 1, 0);
             if let Ok(found) = collapse.estimate(&start, &steps, 1, 0, Some(1.0)) {
                 prop_assert!(found.quality.overlap >= 0.2);
+                let _ = collapse.joint_test(&[], &found, &steps, &[(0, start[0]), (1, at)]);
             }
+            let known = [(0, Uncertain::normal(at, steps[0]))];
+            let _ = collapse.estimate_knowing(&known, &start, &steps, 1, 0, None);
         }
     }
 }

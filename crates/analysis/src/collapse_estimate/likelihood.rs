@@ -1,9 +1,10 @@
 //! The likelihood of points about one smooth curve.
 
 use crate::collapse_fit::{Collapse, SHORT};
-use crate::error::{Error, checked_positive, enough};
+use crate::error::{Error, checked, checked_positive, enough, ensure};
 use crate::master_curve::{Scaled, Smooth};
 use crate::numerics::quasi_newton::{Smallest, quasi_newton};
+use crate::uncertain::Uncertain;
 
 /// Distance, in errors, that a point counts with which the scaling sends to infinity.
 const LOST: f64 = 5.0;
@@ -18,6 +19,8 @@ pub(super) const MOST_ROUNDS: u32 = 8;
 pub(super) struct Likelihood<'a> {
     pub(super) collapse: &'a Collapse<'a>,
     pub(super) steps: &'a [f64],
+    /// Parameters known from elsewhere, by their place.
+    known: &'a [(usize, Uncertain)],
     /// Size of the correction at every curve, 1 at the largest, where one is allowed for.
     corrections: Option<Vec<f64>>,
 }
@@ -28,7 +31,22 @@ impl<'a> Likelihood<'a> {
         collapse: &'a Collapse<'a>,
         steps: &'a [f64],
         correction: Option<f64>,
+        known: &'a [(usize, Uncertain)],
     ) -> Result<Self, Error> {
+        let errors: Vec<f64> = known.iter().map(|(_, known)| known.error).collect();
+        checked_positive(&errors)?;
+        for &(place, known) in known {
+            checked(&[known.value], 1)?;
+            // The last step is that of the stiffness.
+            let expected = steps.len() - 1;
+            ensure(
+                place < expected,
+                Error::LengthMismatch {
+                    expected,
+                    found: place + 1,
+                },
+            )?;
+        }
         let corrections = match correction {
             None => None,
             Some(power) => {
@@ -44,6 +62,7 @@ impl<'a> Likelihood<'a> {
         let new = Self {
             collapse,
             steps,
+            known,
             corrections,
         };
         enough(new.points(), new.free() + steps.len() + 4)?;
@@ -57,7 +76,7 @@ impl<'a> Likelihood<'a> {
 
     /// The same data with a correction of another power; `None` where there are too few points for it.
     pub(super) fn allowing(&self, power: f64) -> Option<Self> {
-        Self::new(self.collapse, self.steps, Some(power)).ok()
+        Self::new(self.collapse, self.steps, Some(power), self.known).ok()
     }
 
     fn free(&self) -> usize {
@@ -72,7 +91,7 @@ impl<'a> Likelihood<'a> {
             return None;
         }
         let scaled = self.collapse.scaled(parameters);
-        if self.collapse.objective_of(&scaled) >= SHORT {
+        if !self.collapse.overlaps(&scaled) {
             return None;
         }
         let mut usable = Vec::with_capacity(self.points());
@@ -104,7 +123,8 @@ impl<'a> Likelihood<'a> {
         (curve.squares + LOST * LOST * lost as f64) / self.degrees_of_freedom()
     }
 
-    /// -2 ln likelihood, with errors stretched by the best factor of 1 or more; infinite where too few points overlap.
+    /// -2 ln likelihood, with errors stretched by the best factor of 1 or more and what is known of the parameters from
+    /// elsewhere; infinite where too few points overlap.
     pub(super) fn value(&self, parameters: &[f64]) -> f64 {
         let Some((curve, lost)) = self.curve(parameters) else {
             return f64::INFINITY;
@@ -114,7 +134,12 @@ impl<'a> Likelihood<'a> {
             true => 1.0 + libm::log(variance),
             false => variance,
         };
-        self.degrees_of_freedom() * misfit + curve.ln_volume
+        let deviation = |&(place, known): &(usize, Uncertain)| {
+            let deviations = known.deviations_from(parameters[place]);
+            deviations * deviations
+        };
+        let known: f64 = self.known.iter().map(deviation).sum();
+        self.degrees_of_freedom() * misfit + curve.ln_volume + known
     }
 
     /// The same for a coarse search, that finds its way back to where enough points overlap.
@@ -154,6 +179,25 @@ impl<'a> Likelihood<'a> {
             true => Some(found),
             false => polished(all, &found.place, &steps),
         }
+    }
+
+    /// The smallest value with some parameters held, from all of them.
+    pub(super) fn settle_holding(&self, held: &[(usize, f64)], start: &[f64]) -> Option<Smallest> {
+        let is_held = |place: usize| held.iter().any(|&(one, _)| one == place);
+        let free = (0..start.len()).filter(|&place| !is_held(place));
+        let free: Vec<usize> = free.collect();
+        let of = |all: &[f64]| -> Vec<f64> { free.iter().map(|&place| all[place]).collect() };
+        let value = |rest: &[f64]| {
+            let mut parameters = start.to_vec();
+            for (&place, &value) in free.iter().zip(rest) {
+                parameters[place] = value;
+            }
+            for &(place, value) in held {
+                parameters[place] = value;
+            }
+            self.value(&parameters)
+        };
+        polished(value, &of(start), &of(self.steps))
     }
 }
 

@@ -219,6 +219,105 @@ fn a_correction_to_scaling_can_be_allowed_for_and_is_missed_where_it_is_not() {
     }
 }
 
+/// REFEREE, Methods: the error of a critical width was taken for that of every point by itself.
+#[test]
+fn the_error_of_a_critical_width_is_common_to_its_curve() {
+    let kind = &kinds()[1];
+    let Scaling::CriticalKnown(critical) = &kind.scaling else {
+        panic!("{:?}", kind.scaling)
+    };
+    let (mut covered, mut moved, mut held) = ([0; 2], 0.0, 0.0);
+    for seed in 0..5 {
+        let curves = kind.curves(seed, 0.0, 1.0);
+        let transform = |p: &[f64], k: usize, parameter: f64, point: CurvePoint| {
+            Scaling::CriticalEach.apply(p, k, parameter, point)
+        };
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &transform,
+            least_overlap: 0.5,
+        };
+        // Each off by its error, a third of the distance of the nearest point.
+        let off = white_noise(seed + 500, critical.len());
+        let error = |k: usize| 0.03 * libm::pow(kind.parameters[k], 1.5);
+        let known = |k: usize| {
+            let off = off[k].clamp(-2.0, 2.0);
+            (
+                2 + k,
+                Uncertain::normal(critical[k] + error(k) * off, error(k)),
+            )
+        };
+        let known: Vec<(usize, Uncertain)> = (0..critical.len()).map(known).collect();
+        let values = known.iter().map(|(_, known)| known.value);
+        let start: Vec<f64> = kind.truth.iter().copied().chain(values).collect();
+        let steps = known.iter().map(|(_, known)| known.error);
+        let steps: Vec<f64> = kind.steps.iter().copied().chain(steps).collect();
+        let found = collapse.estimate_knowing(&known, &start, &steps, 4, seed, None);
+        let found = found.unwrap();
+        moved += found.quality.quality / 5.0;
+        held += collapse.quality(&start).unwrap().quality / 5.0;
+        for (place, covered) in covered.iter_mut().enumerate() {
+            *covered += usize::from(
+                found.parameters[place]
+                    .interval_95
+                    .contains(kind.truth[place]),
+            );
+        }
+        let beyond = [(7, known[0].1)];
+        assert_refused!(
+            collapse.estimate_knowing(&beyond, &start, &steps, 4, seed, None) =>
+            LengthMismatch { expected: 7, found: 8 }
+        );
+    }
+    assert!(covered.iter().all(|&covered| covered >= 4), "{covered:?}");
+    assert!((0.6..1.6).contains(&moved) && held > 2.0, "{moved} {held}");
+}
+
+/// REFEREE, F3: exponents that each lie within two errors of the source's lie together outside of their valley.
+#[test]
+fn exponents_are_compared_together() {
+    let kind = &kinds()[1];
+    let transform = |p: &[f64], k: usize, parameter: f64, point: CurvePoint| {
+        kind.scaling.apply(p, k, parameter, point)
+    };
+    let truth = [(0, kind.truth[0]), (1, kind.truth[1])];
+    let mut improbable = 0;
+    for seed in 0..20 {
+        let curves = kind.curves(seed, 0.0, 1.0);
+        let collapse = Collapse {
+            curves: &curves,
+            transform: &transform,
+            least_overlap: 0.5,
+        };
+        let found = kind.estimate(&curves, None, seed).unwrap();
+        let test = |claimed: &[(usize, f64)]| {
+            collapse
+                .joint_test(&[], &found, &kind.steps, claimed)
+                .unwrap()
+        };
+        improbable += usize::from(test(&truth).probability < 0.3173);
+        if seed > 0 {
+            continue;
+        }
+        let [a, b] = [found.parameters[0], found.parameters[1]];
+        let one = test(&[(0, a.interval_68.upper)]);
+        assert!(
+            (one.chi_squared - 1.0).abs() < 0.1 && one.degrees_of_freedom == 1,
+            "{one:?}"
+        );
+        let across = test(&[(0, a.value + 1.5 * a.error), (1, b.value - 1.5 * b.error)]);
+        assert!(
+            across.probability < 1e-4 && across.degrees_of_freedom == 2,
+            "{across:?}"
+        );
+        assert_refused!(
+            collapse.joint_test(&[], &found, &kind.steps, &[(2, 0.0)]) =>
+            LengthMismatch { expected: 2, found: 3 }
+        );
+    }
+    assert_coverage(improbable, 20, 0.3173, 0.03, "probability of the truth");
+}
+
 /// PYTHON, high 2: three starts on a pure power law gave a = 1.34, -0.02 and 2.36, all converged.
 #[test]
 fn a_pure_power_law_fixes_no_exponent_and_the_answer_says_so() {

@@ -87,3 +87,33 @@ fn what_does_not_determine_a_law_is_refused() {
         NotPositive { index: 0, .. }
     );
 }
+
+/// REFEREE, F2: the exponent is that of the window until the window is close to w_c.
+#[test]
+fn the_exponent_against_the_window() {
+    let (value, error) = noisy(3, 1.0);
+    let fits = fit_law_to_nearest(Law::Power, &WIDTHS, &value, &error, None).unwrap();
+    let widths: Vec<usize> = fits.iter().map(|one| one.widths).collect();
+    assert_eq!(widths, [4, 5, 6, 7, 8, 9, 10]);
+    let whole = fit_law(Law::Power, &WIDTHS, &value, &error, None).unwrap();
+    assert_eq!((fits[6].fit, fits[6].least), (whole, 2.3));
+    let agrees = |one: &NearestFit| one.fit.exponent.interval_95.contains(1.0);
+    assert!(
+        fits.iter().filter(|one| agrees(one)).count() >= 6,
+        "{fits:?}"
+    );
+    // The rows come in any order.
+    let back = |column: [f64; 10]| -> Vec<f64> { column.into_iter().rev().collect() };
+    let known = Some(Uncertain::normal(2.82, 0.0));
+    let fit = |width: &[f64], value: &[f64], error: &[f64]| {
+        fit_law_to_nearest(Law::Power, width, value, error, known).unwrap()
+    };
+    let (there, here) = (
+        fit(&back(WIDTHS), &back(value), &back(error)),
+        fit(&WIDTHS, &value, &error),
+    );
+    assert_eq!((there.len(), there[0].widths, there[0].least), (8, 3, 2.73));
+    let difference = there[3].fit.exponent.value - here[3].fit.exponent.value;
+    assert!(difference.abs() < 1e-9, "{difference}");
+    assert_refused!(fit_law_to_nearest(Law::Power, &[2.0], &[1.0], &[0.1], None) => TooFewPlaces { .. });
+}

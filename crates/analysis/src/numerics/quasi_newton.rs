@@ -40,6 +40,48 @@ fn scale(matrix: &mut [Vec<f64>], factor: impl Fn(usize, usize) -> f64) {
     }
 }
 
+/// Slopes by central differences, or to the side where the function has a value.
+fn slope_of(function: &impl Fn(&[f64]) -> f64, offset: &[f64], here: f64) -> Vec<f64> {
+    let slope = |axis: usize| {
+        let mut offset = offset.to_vec();
+        let mut moved = |by: f64| {
+            let kept = offset[axis];
+            offset[axis] += by;
+            let value = function(&offset);
+            offset[axis] = kept;
+            value
+        };
+        let [up, down] = [moved(DIFFERENCE), moved(-DIFFERENCE)];
+        match [up.is_finite(), down.is_finite()] {
+            [true, true] => (up - down) / (2.0 * DIFFERENCE),
+            [true, false] => (up - here) / DIFFERENCE,
+            [false, true] => (here - down) / DIFFERENCE,
+            [false, false] => 0.0,
+        }
+    };
+    (0..offset.len()).map(slope).collect()
+}
+
+fn diagonal(dimensions: usize, entry: f64) -> Vec<Vec<f64>> {
+    let row = |row| {
+        let entries = (0..dimensions).map(|k| if k == row { entry } else { 0.0 });
+        entries.collect()
+    };
+    (0..dimensions).map(row).collect()
+}
+
+/// Adds to the inverse what a change of the slope along a way says of it; `bend` is their product.
+fn learn(inverse: &mut [Vec<f64>], way: &[f64], change: &[f64], bend: f64) {
+    let turned: Vec<f64> = inverse.iter().map(|row| dot(row, change)).collect();
+    let factor = 1.0 + dot(change, &turned) / bend;
+    for (row, entries) in inverse.iter_mut().enumerate() {
+        for (column, entry) in entries.iter_mut().enumerate() {
+            let mixed = turned[row] * way[column] + way[row] * turned[column];
+            *entry += (factor * way[row] * way[column] - mixed) / bend;
+        }
+    }
+}
+
 /// Local minimum by the method of Broyden, Fletcher, Goldfarb & Shanno (Nocedal & Wright, Numerical Optimization
 /// (2006), chapter 6), with slopes from central differences.
 ///
@@ -60,37 +102,9 @@ pub(crate) fn quasi_newton(
             .collect();
         function(&place)
     };
-    let slope_at = |offset: &[f64], here: f64| -> Vec<f64> {
-        let slope = |axis: usize| {
-            let mut offset = offset.to_vec();
-            let mut moved = |by: f64| {
-                let kept = offset[axis];
-                offset[axis] += by;
-                let value = at(&offset);
-                offset[axis] = kept;
-                value
-            };
-            let [up, down] = [moved(DIFFERENCE), moved(-DIFFERENCE)];
-            match [up.is_finite(), down.is_finite()] {
-                [true, true] => (up - down) / (2.0 * DIFFERENCE),
-                [true, false] => (up - here) / DIFFERENCE,
-                [false, true] => (here - down) / DIFFERENCE,
-                [false, false] => 0.0,
-            }
-        };
-        (0..dimensions).map(slope).collect()
-    };
-    let identity = |scale: f64| -> Vec<Vec<f64>> {
-        let row = |row| {
-            (0..dimensions)
-                .map(|k| if k == row { scale } else { 0.0 })
-                .collect()
-        };
-        (0..dimensions).map(row).collect()
-    };
     let mut offset = vec![0.0; dimensions];
     let mut value = Some(at(&offset)).filter(|value| value.is_finite())?;
-    let mut slope = slope_at(&offset, value);
+    let mut slope = slope_of(&at, &offset, value);
     let scaled = |inverse: &[Vec<f64>]| {
         let mut inverse = inverse.to_vec();
         scale(&mut inverse, |row, column| {
@@ -101,7 +115,7 @@ pub(crate) fn quasi_newton(
     let mut is_fresh = inverse.is_none();
     let mut inverse = match inverse {
         Some(inverse) => scaled(inverse),
-        None => identity(1.0 / dot(&slope, &slope).sqrt().max(10.0)),
+        None => diagonal(dimensions, 1.0 / dot(&slope, &slope).sqrt().max(10.0)),
     };
     for _ in 0..MOST_STEPS {
         let mut step: Vec<f64> = inverse.iter().map(|row| -dot(row, &slope)).collect();
@@ -132,12 +146,12 @@ pub(crate) fn quasi_newton(
             if is_fresh {
                 break;
             }
-            inverse = identity(1.0 / dot(&slope, &slope).sqrt().max(10.0));
+            inverse = diagonal(dimensions, 1.0 / dot(&slope, &slope).sqrt().max(10.0));
             is_fresh = true;
             continue;
         };
         let gain = value - there;
-        let next = slope_at(&moved, there);
+        let next = slope_of(&at, &moved, there);
         let change: Vec<f64> = next
             .iter()
             .zip(&slope)
@@ -151,17 +165,10 @@ pub(crate) fn quasi_newton(
         let bend = dot(&change, &way);
         if bend > 1e-12 {
             if is_fresh {
-                inverse = identity(bend / dot(&change, &change));
+                inverse = diagonal(dimensions, bend / dot(&change, &change));
             }
             is_fresh = false;
-            let turned: Vec<f64> = inverse.iter().map(|row| dot(row, &change)).collect();
-            let factor = 1.0 + dot(&change, &turned) / bend;
-            for (row, entries) in inverse.iter_mut().enumerate() {
-                for (column, entry) in entries.iter_mut().enumerate() {
-                    let mixed = turned[row] * way[column] + way[row] * turned[column];
-                    *entry += (factor * way[row] * way[column] - mixed) / bend;
-                }
-            }
+            learn(&mut inverse, &way, &change, bend);
         }
         (offset, value, slope) = (moved, there, next);
         if gain <= GAIN && promised.abs() <= 10.0 * GAIN {

@@ -217,7 +217,8 @@ class Collapse:
         correction : float, "usual" or None
             Power c of p in the correction to scaling p^c g(X) that is allowed for: -1 for sizes, 1 for strain rates is
             usual (``"finite_size"`` and functions, the critical scalings). None says that there is none: errors are then
-            several times smaller, and wrong if there is one, which no test can rule out.
+            several times smaller, and wrong if there is one. The result is not trusted where the points leave room for
+            one that takes a parameter out of its interval.
         leave_one_out : bool
             Whether to repeat the search without each curve in turn.
 
