@@ -19,6 +19,11 @@ pub const PRESETS: &[Preset] = &[
         text: include_str!("../presets/frictionless.toml"),
     },
     Preset {
+        name: "frictionless-source",
+        summary: "The same with the lattice on which most claims of the source hold.",
+        text: include_str!("../presets/frictionless-source.toml"),
+    },
+    Preset {
         name: "frictionless-fine",
         summary: "The same with a fine, nearly smooth lattice of wall spheres.",
         text: include_str!("../presets/frictionless-fine.toml"),

@@ -81,7 +81,12 @@ fn a_person_reads_the_same_numbers() {
 
 #[test]
 fn presets_and_examples_give_no_warning() {
-    for preset in ["frictionless", "frictionless-fine", "frictional"] {
+    for preset in [
+        "frictionless",
+        "frictionless-source",
+        "frictionless-fine",
+        "frictional",
+    ] {
         assert!(
             warned(&check(&format!("--preset {preset}"))).is_empty(),
             "{preset}"

@@ -2,7 +2,12 @@
 
 use crate::Place;
 
-const PRESETS: [&str; 3] = ["frictionless", "frictionless-fine", "frictional"];
+const PRESETS: [&str; 4] = [
+    "frictionless",
+    "frictionless-source",
+    "frictionless-fine",
+    "frictional",
+];
 
 #[test]
 fn the_schema_is_one_and_refuses_what_the_program_refuses() {

@@ -454,7 +454,7 @@ fn names_that_are_given_in_the_wrong_place_are_put_right() {
         &["study.toml is a study", "study run study.toml"],
     );
     let completions = place.does("completions bash").stdout;
-    assert!(completions.contains("frictionless frictionless-fine frictional"));
+    assert!(completions.contains("frictionless frictionless-source frictionless-fine frictional"));
     let help = place.does("run --help").stdout;
     assert!(help.contains("--checkpoint-every"));
 }
