@@ -147,6 +147,20 @@ pub(crate) fn bracket(lower: f64, upper: f64) -> Uncertain {
     }
 }
 
+/// The fraction of the grains outside the tube near a transition, by the one rule of all claims: the mean over the runs from
+/// one start at a width, the largest of those of all widths within [`ESCAPED_WITHIN`] of the transition, or of all widths
+/// where there is no transition.
+pub(crate) fn leak(rows: &[Row<'_>], transition: Option<f64>) -> f64 {
+    let is_near = |row: &&Row<'_>| {
+        transition.is_none_or(|place| (row.width() - place).abs() <= ESCAPED_WITHIN)
+    };
+    let near = rows.iter().copied().filter(|row| is_near(&row));
+    grouped(near, |row| (row.start(), row.width()))
+        .iter()
+        .map(|(_, rows)| escaped(rows))
+        .fold(0.0, f64::max)
+}
+
 /// The runs at one value of a control that no longer drift, with their flow; `None` where none has one, or most still drift.
 pub(crate) fn stationary<'a>(all: &[Row<'a>]) -> Option<(Vec<Row<'a>>, Uncertain)> {
     let rows: Vec<Row<'a>> = all
@@ -304,18 +318,6 @@ impl<'a> Branch<'a> {
         }))
     }
 
-    /// Largest fraction of grains outside at a point next to the step, over all points without one.
-    pub(crate) fn escaped(&self) -> f64 {
-        let middle = self.step().map(|step| step.place().value);
-        self.points
-            .iter()
-            .filter(|point| {
-                middle.is_none_or(|middle| (point.control - middle).abs() <= ESCAPED_WITHIN)
-            })
-            .map(Point::escaped)
-            .fold(0.0, f64::max)
-    }
-
     /// How much is behind it, at its one strain rate.
     pub(crate) fn statistics(&self, runs: usize) -> Statistics {
         let replicates = self.points.iter().map(|point| point.runs).min();
@@ -366,11 +368,6 @@ impl<'a> Branches<'a> {
         points
             .filter_map(|rest| Some(Step::between(rest, self.jammed.at(rest.control)?)))
             .max_by(|one, other| one.height.value.total_cmp(&other.height.value))
-    }
-
-    /// Largest fraction of grains outside near a step.
-    pub(crate) fn escaped(&self) -> f64 {
-        self.rest.escaped().max(self.jammed.escaped())
     }
 }
 

@@ -7,11 +7,11 @@ use peristalsis_analysis::{
 use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
 
-use crate::critical::OnLattice;
+use crate::critical::Line;
 use crate::exhibit::{cell_of, coloured, ends, grid, points, rate_colours};
 use crate::finding::{Quantity, ReportTable};
-use crate::judgement::{agrees, all_hold};
-use crate::thresholds::{COLLAPSED, OVERLAP, RESOLVED};
+use crate::thresholds::{OVERLAP, RESOLVED};
+use crate::walls::OnWall;
 
 /// Searches for the best collapse, resamples for its errors, and the seed of both.
 const STARTS: usize = 12;
@@ -38,13 +38,13 @@ pub(crate) struct Collapsed {
 
 /// Collapses a quantity of the transition times, mean or variance, that goes about as (w_c - w)^-slope; `None` where too few strain rates have it.
 pub(crate) fn collapse(
-    lattice: &OnLattice<'_>,
+    wall: &OnWall<Line<'_>>,
     claimed: [f64; 2],
     slope: f64,
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
     let mut curves = Curves::default();
-    for (line, fit) in lattice.fitted() {
+    for (line, fit) in wall.fitted() {
         let known = |one: &&WidthEnsemble| {
             one.observed >= 3 * one.censored
                 && one.observed > 2
@@ -153,7 +153,7 @@ impl Curves {
 
 /// Standard error from estimates that leave out one of n curves each, [(n - 1)/n sum (t_i - mean)^2]^(1/2); 0 without any.
 /// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
-fn jackknife(estimates: &[f64]) -> f64 {
+pub(crate) fn jackknife(estimates: &[f64]) -> f64 {
     let number = estimates.len().max(1) as f64;
     let mean = estimates.iter().sum::<f64>() / number;
     let squares: f64 = estimates.iter().map(|one| (one - mean).powi(2)).sum();
@@ -161,26 +161,6 @@ fn jackknife(estimates: &[f64]) -> f64 {
 }
 
 impl Collapsed {
-    /// Houdayer and Hartmann's S at the best exponents.
-    pub(crate) fn quality(&self) -> f64 {
-        self.fit.quality.quality
-    }
-
-    /// Whether the curves fall on one within a few of their errors.
-    pub(crate) fn holds(&self) -> bool {
-        self.fit.quality.quality <= COLLAPSED
-    }
-
-    /// Whether both exponents are those of the source; not, where the curves do not collapse at all; `None` where the errors
-    /// are too large to say or the source gives none.
-    pub(crate) fn agrees(&self) -> Option<bool> {
-        if !self.holds() {
-            return Some(false);
-        }
-        let (claimed, _) = self.claimed?;
-        all_hold(&[0, 1].map(|place| agrees(&self.exponents[place], claimed[place])))
-    }
-
     /// The exponents, S and the overlap as text.
     fn best(&self) -> [String; 4] {
         [

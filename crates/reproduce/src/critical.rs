@@ -7,68 +7,25 @@ use peristalsis_analysis::{
 use peristalsis_run::THRESHOLDS;
 
 use crate::branch::{Branch, Control};
-use crate::draft::Draft;
-use crate::error::Result;
-use crate::evidence::Evidence;
 use crate::finding::Statistics;
-use crate::judgement::{Part, agrees};
-use crate::lattices::LATTICES;
-use crate::prose::values;
-use crate::row::{
-    Row, Start, behind, by_strain_rate, escaped, grouped, longest, nearest_threshold,
-};
-use crate::thresholds::{MOST_ESCAPED, RESOLVED, WINDOW};
+use crate::near::Near;
+use crate::row::{Row, Start, behind, by_strain_rate, grouped, nearest_threshold};
+use crate::thresholds::{RESOLVED, STRAIGHT, WINDOW};
+use crate::walls::{AtRate, OnWall, Runs};
 
-/// The studies that [`OnLattice::all`] reads.
-pub(crate) const DIVERGENCES: &[&str] = &[
-    "divergence-fine",
-    "divergence-coarse",
-    "branches-fine",
-    "branches-coarse",
-];
+/// The studies that [`OnWall::all`] reads.
+pub(crate) const TRANSITIONS: &[&str] = &["divergence-*", "near-*", "branches-*"];
 
-/// The transition times on one lattice.
-pub(crate) struct OnLattice<'a> {
-    /// Name of the lattice.
-    pub(crate) name: String,
-    /// By ascending strain rate, watched midway between the branches.
-    pub(crate) lines: Vec<Line<'a>>,
-}
-
-impl<'a> OnLattice<'a> {
-    /// Both lattices.
-    pub(crate) fn all(evidence: &'a Evidence) -> Result<Vec<Self>> {
-        let mut all = Vec::new();
-        for lattice in LATTICES {
-            let of = |study: String| -> Result<_> {
-                let rows = evidence.study(&study)?.rows().into_iter();
-                Ok(rows.filter(move |row| row.lattice() == lattice))
-            };
-            let name = lattice.name();
-            let thresholds = Thresholds::of(of(format!("branches-{name}"))?);
-            let runs = of(format!("divergence-{name}"))?;
-            let lines = by_strain_rate(runs.filter(|row| row.start() == Start::Rest)).into_iter();
-            all.push(Self {
-                lines: lines
-                    .map(|(rate, rows)| Line::new(rate, thresholds.at(rate), rows))
-                    .collect(),
-                name,
-            });
-        }
-        Ok(all)
+impl<'a> OnWall<Line<'a>> {
+    /// The laws next to w_c where the tube holds its grains.
+    pub(crate) fn near(&self) -> impl Iterator<Item = &Near> {
+        self.tight().filter_map(|one| one.found.near.as_ref())
     }
 
-    /// The lines that hold their grains.
-    pub(crate) fn tight(&self) -> impl Iterator<Item = &Line<'a>> {
-        self.lines
-            .iter()
-            .filter(|line| line.escaped() <= MOST_ESCAPED)
-    }
-
-    /// Those of them that have a fit, with it.
+    /// The lines that count and have a fit, with it.
     pub(crate) fn fitted(&self) -> impl Iterator<Item = (&Line<'a>, &Divergence)> {
-        self.tight()
-            .filter_map(|line| Some((line, line.fit.as_ref()?)))
+        let lines = self.tight().map(|one| &one.found);
+        lines.filter_map(|line| Some((line, line.fit.as_ref()?)))
     }
 
     /// Those of which the scatter has a law of its own, with it.
@@ -76,19 +33,24 @@ impl<'a> OnLattice<'a> {
         self.fitted()
             .filter_map(|(line, fit)| Some((line, fit.scatter?)))
     }
+}
 
-    /// How much is behind the fits.
-    pub(crate) fn statistics(&self) -> Statistics {
-        Statistics::weakest(self.fitted().map(|(line, _)| line.statistics()))
+impl<'a> AtRate<'a> for Line<'a> {
+    fn of(runs: &Runs<'a>) -> Option<Self> {
+        if runs.times.is_empty() {
+            return None;
+        }
+        let line = Self::new(runs.strain_rate, runs.threshold, runs.times.clone());
+        let near = Near::of(&line);
+        Some(Self { near, ..line })
     }
 
-    /// What it says of a claim about the fits.
-    pub(crate) fn part(&self, holds: Option<bool>) -> Part {
-        Part {
-            lattice: self.name.clone(),
-            holds,
-            statistics: self.statistics(),
-        }
+    fn rows<'b>(runs: &'b Runs<'a>) -> &'b [Row<'a>] {
+        &runs.times
+    }
+
+    fn statistics(&self) -> Statistics {
+        behind(&self.rows, Row::width)
     }
 }
 
@@ -104,6 +66,8 @@ pub(crate) struct Line<'a> {
     pub(crate) ensembles: Vec<WidthEnsemble>,
     /// The power law in the window of [`WINDOW`] widths.
     pub(crate) fit: Option<Divergence>,
+    /// The laws next to w_c, of the lines of a wall.
+    pub(crate) near: Option<Near>,
 }
 
 /// Thresholds midway between the branches at the strain rates where these are known.
@@ -167,6 +131,7 @@ impl<'a> Line<'a> {
             rows,
             ensembles: ensembles_by_width(Family::Gamma, &width, &transitions).unwrap_or_default(),
             fit: None,
+            near: None,
         };
         line.fit = line.fit_in(WINDOW);
         line
@@ -201,26 +166,6 @@ impl<'a> Line<'a> {
         ensemble
             .naive_mean
             .is_some_and(|mean| mean > periods * period)
-    }
-
-    /// What is behind it.
-    pub(crate) fn statistics(&self) -> Statistics {
-        behind(&self.rows, Row::width)
-    }
-
-    /// Largest fraction of grains outside the tube, mean over the runs at a width, of the widths that a fit looks at.
-    pub(crate) fn escaped(&self) -> f64 {
-        let from = self.window_from(WINDOW).unwrap_or(f64::NEG_INFINITY);
-        grouped(self.rows.iter().copied(), Row::width)
-            .into_iter()
-            .filter(|(width, _)| *width >= from)
-            .map(|(_, rows)| escaped(&rows))
-            .fold(0.0, f64::max)
-    }
-
-    /// Longest time that a run was given, in periods.
-    pub(crate) fn periods(&self) -> f64 {
-        longest(&self.rows)
     }
 
     /// The first of the last so many widths at which at least half of the runs had a transition that averages over periods
@@ -268,14 +213,20 @@ impl<'a> Line<'a> {
         Divergence::of(&width, &transitions)
     }
 
-    /// Power laws in all windows, from four widths to all: stability against the choice.
+    /// The power law of the fewest widths that a fit can use.
+    pub(crate) fn nearest(&self) -> Option<Divergence> {
+        self.fit_in(STRAIGHT)
+    }
+
+    /// Power laws in all windows, from the fewest widths to all: stability against the choice.
     pub(crate) fn fits(&self) -> Vec<Divergence> {
-        let mut windows: Vec<f64> = (4..=grouped(self.rows.iter().copied(), Row::width).len())
+        let mut windows: Vec<f64> = (STRAIGHT
+            ..=grouped(self.rows.iter().copied(), Row::width).len())
             .filter_map(|number| self.window_from(number))
             .collect();
         // Beyond the last usable width nothing changes.
         windows.dedup();
-        (4..4 + windows.len())
+        (STRAIGHT..STRAIGHT + windows.len())
             .filter_map(|number| self.fit_in(number))
             .collect()
     }
@@ -352,26 +303,6 @@ pub(crate) fn weighted_mean(estimates: &[Uncertain]) -> Option<Uncertain> {
     let freedom = (usable.len() - 1).max(1) as f64;
     let ratio = (chi_squared / freedom).max(1.0).sqrt();
     Some(Uncertain::normal(mean, ratio / weights.sqrt()))
-}
-
-/// Compares the mean of the exponents at each strain rate of a lattice with that of the source: whether it agrees, and it in
-/// words, section `mean`. The draft gets it as a number, section `quantity: exponent`.
-pub(crate) fn mean_exponent(
-    draft: &mut Draft,
-    lattice: &OnLattice<'_>,
-    source: f64,
-    exponents: &[Uncertain],
-) -> (Part, Option<String>) {
-    let mean = weighted_mean(exponents);
-    let prose = draft.prose;
-    let words = mean.map(|mean| {
-        let (lattice, rates, window) = (&lattice.name, exponents.len(), WINDOW);
-        let found = prose.quantity("exponent", values!(lattice, rates, window), mean);
-        draft.finding.quantities.push(found.sourced(source));
-        prose.text("mean", values!(mean, lattice))
-    });
-    let agrees = mean.and_then(|mean| agrees(&mean, source));
-    (lattice.part(agrees), words)
 }
 
 /// The slope of a line, its error stretched to the scatter about the line.

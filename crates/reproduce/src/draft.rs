@@ -5,6 +5,7 @@ use peristalsis_figures::chart::ChartFigure;
 
 use crate::error::Result;
 use crate::finding::{Finding, Statistics, Verdict};
+use crate::judgement::Judgement;
 use crate::prose::{Prose, Values};
 
 /// A finding while it is written, in the words of its claim.
@@ -79,6 +80,14 @@ impl Draft {
     pub(crate) fn weakness(&mut self, section: &str, values: &Values<'_>) {
         let text = self.prose.text(section, values);
         self.finding.weaknesses.push(text);
+    }
+
+    /// The finding with the verdict of all walls; its summary begins with those on which it holds.
+    pub(crate) fn judged(mut self, judgement: Judgement, summary: &str) -> Finding {
+        let summary = format!("{}. {summary}", judgement.headline());
+        let (statistics, needed) = (judgement.statistics, judgement.needed);
+        self.finding.walls = judgement.walls;
+        self.concluded(judgement.verdict, summary, statistics, &needed)
     }
 
     /// The finding with its verdict.

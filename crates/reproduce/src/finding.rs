@@ -116,11 +116,26 @@ impl Statistics {
     }
 }
 
+/// What one wall says of a claim.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct WallVerdict {
+    /// Name of the wall: spheres a ring, rings a wave, and how they stand.
+    pub wall: String,
+    /// The verdict there: reproduced, differs or open.
+    pub verdict: Verdict,
+    /// The number that decides, with its error, in a few words of markup.
+    pub number: String,
+    /// Why this verdict, in markup.
+    pub why: String,
+}
+
 /// The finding on a claim, or on a textbook case.
 #[derive(Clone, Debug, Default)]
 pub struct Finding {
     /// The verdict.
     pub verdict: Verdict,
+    /// The verdict on each wall that was examined; none where a claim is not about walls of fixed spheres.
+    pub walls: Vec<WallVerdict>,
     /// Why this verdict, in one or two sentences with numbers, in markup.
     pub summary: String,
     /// The runs behind it.

@@ -1,9 +1,14 @@
 //! From numbers to verdicts.
+//!
+//! A verdict belongs to a claim and a wall. The source had one tube and does not say which, so that its claim counts as
+//! reproduced where at least one wall with enough evidence reproduces it; it differs where all walls that could be judged
+//! differ; else it is open. The headline names the walls.
 
 use peristalsis_analysis::Uncertain;
 
-use crate::finding::{Statistics, Verdict};
-use crate::thresholds::{AGREES_WITHIN, LARGE_ERROR};
+use crate::exhibit::listed;
+use crate::finding::{Statistics, Verdict, WallVerdict};
+use crate::thresholds::{AGREES_WITHIN, LARGE_ERROR, LEAST_RATES, MOST_RATES};
 
 /// Whether a value agrees with the source within its errors; `None` where these are so large that hardly any would not.
 pub(crate) fn agrees(found: &Uncertain, source: f64) -> Option<bool> {
@@ -19,44 +24,142 @@ pub(crate) fn all_hold(parts: &[Option<bool>]) -> Option<bool> {
     parts.iter().all(Option::is_some).then_some(true)
 }
 
-/// What one lattice says of a claim.
+/// At which strain rates, or other values of a parameter, a claim holds.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rates {
+    /// Where it does, where it does not, and where that cannot be told, each ascending.
+    pub(crate) holding: Vec<f64>,
+    pub(crate) failing: Vec<f64>,
+    pub(crate) unknown: Vec<f64>,
+}
+
+impl Rates {
+    /// From each strain rate and whether the claim holds there.
+    pub(crate) fn of(all: impl IntoIterator<Item = (f64, Option<bool>)>) -> Self {
+        let mut rates = Self::default();
+        for (rate, holds) in all {
+            match holds {
+                Some(true) => rates.holding.push(rate),
+                Some(false) => rates.failing.push(rate),
+                None => rates.unknown.push(rate),
+            }
+        }
+        rates
+    }
+
+    /// Whether the claim holds at nearly all strain rates: one alone decides nothing. `None` where too few can be told, or
+    /// they are divided.
+    pub(crate) fn hold(&self) -> Option<bool> {
+        let told = self.holding.len() + self.failing.len();
+        let part = self.holding.len() as f64 / told as f64;
+        match told >= LEAST_RATES {
+            true if part >= MOST_RATES => Some(true),
+            true if part <= 1.0 - MOST_RATES => Some(false),
+            _ => None,
+        }
+    }
+
+    /// "4 of 5".
+    pub(crate) fn count(&self) -> String {
+        let all = self.holding.len() + self.failing.len() + self.unknown.len();
+        format!("{} of {all}", self.holding.len())
+    }
+
+    /// "at *ε̇* = 0.05, 0.1; not at 0.03; unclear at 0.2".
+    pub(crate) fn in_words(&self) -> String {
+        let parts = [
+            ("at *ε̇* = ", &self.holding),
+            ("not at ", &self.failing),
+            ("unclear at ", &self.unknown),
+        ];
+        let texts: Vec<String> = parts
+            .iter()
+            .filter(|(_, rates)| !rates.is_empty())
+            .map(|(word, rates)| format!("{word}{}", listed(rates.iter().copied())))
+            .collect();
+        texts.join("; ")
+    }
+}
+
+/// What one wall says of a claim.
 pub(crate) struct Part {
     /// Its name.
-    pub(crate) lattice: String,
+    pub(crate) wall: String,
     /// Whether the claim holds there; `None` where the errors are too large to say.
     pub(crate) holds: Option<bool>,
     /// How much is behind it.
     pub(crate) statistics: Statistics,
+    /// The number that decides, with its error, in a few words.
+    pub(crate) number: String,
+    /// Why.
+    pub(crate) why: String,
 }
 
-/// The verdict of several lattices: the one on which the lattices with enough evidence agree, else open. With it
-/// the statistics of the lattice that has most, and why the verdict is open, if it is.
-pub(crate) fn judge(parts: &[Part], needed: &Statistics) -> (Verdict, Statistics, String) {
-    let enough: Vec<&Part> = parts
-        .iter()
-        .filter(|part| part.statistics.suffice(needed))
-        .collect();
-    let named = |holds: bool| -> String {
-        let those = enough.iter().filter(|part| part.holds == Some(holds));
-        let names: Vec<&str> = those.map(|part| part.lattice.as_str()).collect();
-        names.join(" and ")
-    };
-    let (holding, failing) = (named(true), named(false));
-    let (verdict, why) = match (holding.is_empty(), failing.is_empty()) {
-        (false, true) => (Verdict::Reproduced, String::new()),
-        (true, false) => (Verdict::Differs, String::new()),
-        (false, false) => (
-            Verdict::Open,
-            format!(" It holds on the {holding} lattice and not on the {failing} one: open."),
-        ),
-        (true, true) if enough.is_empty() => (Verdict::Open, String::new()),
-        (true, true) => (
-            Verdict::Open,
-            " The errors are too large to tell.".to_owned(),
-        ),
-    };
-    let statistics = best(parts.iter().map(|part| part.statistics), needed);
-    (verdict, statistics, why)
+/// The verdict on a claim from all walls.
+pub(crate) struct Judgement {
+    /// The claim's own verdict.
+    pub(crate) verdict: Verdict,
+    /// The statistics of the wall that has most.
+    pub(crate) statistics: Statistics,
+    /// What it takes.
+    pub(crate) needed: Statistics,
+    /// The verdict on each wall.
+    pub(crate) walls: Vec<WallVerdict>,
+}
+
+impl Judgement {
+    /// Of what each wall says.
+    pub(crate) fn of(parts: Vec<Part>, needed: &Statistics) -> Self {
+        let statistics = best(parts.iter().map(|part| part.statistics), needed);
+        let on_wall = |part: Part| {
+            let is_enough = part.statistics.suffice(needed);
+            let verdict = match part.holds.filter(|_| is_enough) {
+                Some(true) => Verdict::Reproduced,
+                Some(false) => Verdict::Differs,
+                None => Verdict::Open,
+            };
+            let why = match is_enough {
+                true => part.why,
+                false => format!("too few runs for a verdict; {}", part.why),
+            };
+            let (wall, number) = (part.wall, part.number);
+            WallVerdict {
+                wall,
+                verdict,
+                number,
+                why,
+            }
+        };
+        let walls: Vec<WallVerdict> = parts.into_iter().map(on_wall).collect();
+        let any = |verdict| walls.iter().any(|wall| wall.verdict == verdict);
+        let verdict = match (any(Verdict::Reproduced), any(Verdict::Differs)) {
+            (true, _) => Verdict::Reproduced,
+            (false, true) => Verdict::Differs,
+            (false, false) => Verdict::Open,
+        };
+        Self {
+            verdict,
+            statistics,
+            needed: *needed,
+            walls,
+        }
+    }
+
+    /// "Reproduced on 24 × 26; differs on 12 × 14."
+    pub(crate) fn headline(&self) -> String {
+        let verdicts = [Verdict::Reproduced, Verdict::Differs, Verdict::Open];
+        let on = |verdict: Verdict| {
+            let walls = self.walls.iter().filter(|wall| wall.verdict == verdict);
+            let names: Vec<&str> = walls.map(|wall| wall.wall.as_str()).collect();
+            (!names.is_empty()).then(|| format!("{} on {}", verdict.name(), names.join(", ")))
+        };
+        let text = verdicts.into_iter().filter_map(on).collect::<Vec<_>>();
+        let mut letters = text.join("; ");
+        if let Some(first) = letters.get_mut(..1) {
+            first.make_ascii_uppercase();
+        }
+        letters
+    }
 }
 
 /// The statistics that suffice, or come nearest to that.
@@ -70,4 +173,58 @@ pub(crate) fn best(all: impl Iterator<Item = Statistics>, needed: &Statistics) -
         )
     })
     .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(wall: &str, holds: Option<bool>, replicates: usize) -> Part {
+        Part {
+            wall: wall.to_owned(),
+            holds,
+            statistics: Statistics::of(4, 8, replicates, 320),
+            number: String::new(),
+            why: String::new(),
+        }
+    }
+
+    #[test]
+    fn one_wall_that_reproduces_suffices_and_all_must_differ() {
+        let (yes, no) = (Some(true), Some(false));
+        for (parts, verdict, headline) in [
+            (
+                vec![part("a", yes, 10), part("b", no, 10)],
+                Verdict::Reproduced,
+                "Reproduced on a; differs on b",
+            ),
+            (
+                vec![part("a", yes, 9), part("b", no, 10)],
+                Verdict::Differs,
+                "Differs on b; open on a",
+            ),
+            (vec![part("a", None, 10)], Verdict::Open, "Open on a"),
+            (Vec::new(), Verdict::Open, ""),
+        ] {
+            let found = Judgement::of(parts, &Statistics::FOR_A_VERDICT);
+            assert_eq!((found.verdict, &*found.headline()), (verdict, headline));
+        }
+    }
+
+    #[test]
+    fn one_strain_rate_alone_decides_nothing() {
+        let rates = |holds: &[bool]| {
+            Rates::of(
+                (1..)
+                    .zip(holds)
+                    .map(|(rate, holds)| (f64::from(rate), Some(*holds))),
+            )
+        };
+        assert_eq!(rates(&[true, true, false, true]).hold(), Some(true));
+        assert_eq!(rates(&[false, true, false, false]).hold(), Some(false));
+        assert_eq!(rates(&[false, true, false, true]).hold(), None);
+        assert_eq!(rates(&[true, true]).hold(), None);
+        let words = rates(&[true, false, true]).in_words();
+        assert_eq!(words, "at *ε̇* = 1, 3; not at 2");
+    }
 }

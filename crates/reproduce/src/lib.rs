@@ -22,7 +22,7 @@ mod exhibit;
 mod finding;
 mod forces;
 mod judgement;
-mod lattices;
+mod near;
 mod prose;
 pub mod report;
 mod reproduction;
@@ -30,6 +30,7 @@ mod row;
 mod studies;
 pub mod textbook;
 mod thresholds;
+mod walls;
 
 pub use check::{Check, Convergence};
 pub use claim::Claim;
@@ -37,7 +38,7 @@ pub use claims::CLAIMS;
 pub use error::ReproduceError;
 pub use evidence::{Evidence, StudyResults};
 pub use examination::Examination;
-pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict};
+pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict, WallVerdict};
 pub use prose::Prose;
 pub use reproduction::{
     Event, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,

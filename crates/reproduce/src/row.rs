@@ -286,7 +286,7 @@ pub(crate) fn ascending(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 /// Longest time that a run was given, in whole periods.
-pub(crate) fn longest<'a>(rows: impl IntoIterator<Item = &'a Row<'a>>) -> f64 {
+pub(crate) fn longest<'b, 'a: 'b>(rows: impl IntoIterator<Item = &'b Row<'a>>) -> f64 {
     rows.into_iter()
         .map(|row| row.time() * row.strain_rate())
         .fold(0.0, f64::max)

@@ -120,7 +120,7 @@ pub const STUDIES: &[StudyFile] = &[
     study!("branches-fine"),
     study!("branches-coarse"),
     study!("flow-in-time"),
-    study!("second-moment").needing(Products::OfAll),
+    study!("second-moment"),
     study!("jam-lifetime"),
     study!("density-12x16"),
     study!("density-fine"),

@@ -45,11 +45,21 @@ pub(crate) const AGREES_WITHIN: f64 = 2.0;
 /// Error beyond which a value says nothing of the source's, as a fraction of the latter: hardly any value would disagree.
 pub(crate) const LARGE_ERROR: f64 = 0.25;
 
+/// Strain rates at which a claim can be told, at least, for a wall to have a verdict.
+pub(crate) const LEAST_RATES: usize = 3;
+/// Part of them at which it must hold for the wall to reproduce it; where it fails at that part, the wall differs. One of
+/// four may err, so that no strain rate alone decides.
+pub(crate) const MOST_RATES: f64 = 0.75;
+
 // Transition times.
 
 /// Widths closest to the critical one that a fit uses, of those at which at least half of the runs had a transition: nearer,
 /// the four parameters of the fit have too few widths; farther, the power law need not hold.
 pub(crate) const WINDOW: usize = 6;
+/// Distance from w_c, over epsdot^(3/2), up to which widths are near it: the source's laws are for distances about 1.
+pub(crate) const NEAR: f64 = 4.0;
+/// Widths that a straight line of 1/tau takes at least.
+pub(crate) const STRAIGHT: usize = 4;
 /// Mean transition time, in periods, below which averages over periods do not resolve it: it takes three of them to be seen.
 pub(crate) const RESOLVED: f64 = 3.0;
 
@@ -94,9 +104,6 @@ pub(crate) const FREE_FLIGHT: f64 = 0.01;
 
 /// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
 pub(crate) const OVERLAP: f64 = 0.75;
-/// Houdayer and Hartmann's S up to which curves count as collapsed: their distance is a few of their errors.
-pub(crate) const COLLAPSED: f64 = 10.0;
-
 // F1: two kinds of flow.
 
 /// J/Jmax below which a flow is slow: half of the jammed flow.
@@ -110,26 +117,23 @@ pub(crate) const NEARLY_ALL: f64 = 0.95;
 
 // F5: the second moment of the flow.
 
-/// Height below which the peak of the second moment is bounded: 1/4 is the variance of a number that is 0 or 1 with equal
-/// probability, and the flows scatter a little about both.
-pub(crate) const BOUNDED_MOMENT: f64 = 0.3;
-/// Houdayer and Hartmann's S up to which peaks agree within their errors; it differs from [`COLLAPSED`], which allows a few
-/// of them.
-pub(crate) const SAME_CURVE: f64 = 2.0;
+/// Part of its bound, the variance of runs of which half have passed from one flow to the other, from which on a peak of the
+/// second moment cannot grow.
+pub(crate) const SATURATED: f64 = 0.8;
+/// Bound of the second moment below which thresholds 0.1 apart do not resolve the distance of the flows, 0.3.
+pub(crate) const LEAST_BOUND: f64 = 0.0225;
 /// Least error of a peak: resampled runs that all jam at one time give none.
 pub(crate) const LEAST_ERROR_OF_A_MOMENT: f64 = 1e-4;
 /// Runs at a width below which there is no variance to speak of.
-pub(crate) const LEAST_RUNS_OF_A_MOMENT: usize = 4;
+pub(crate) const LEAST_RUNS_OF_A_MOMENT: usize = 8;
 
 // F6: the jump.
 
 /// Distance from the jump \[d\] of the widths whose runs make the histogram: near enough for both flows.
 pub(crate) const NEAR_THE_JUMP: f64 = 0.05;
 
-// F7: the slope of the critical width.
-
-/// Strain rates that a slope takes: a line through two points has no say.
-pub(crate) const LEAST_RATES_OF_A_SLOPE: usize = 3;
+/// R^2 of a line through critical widths from which on they lie on one, as it is drawn through points.
+pub(crate) const A_LINE: f64 = 0.98;
 /// Least error of a critical width \[d\] in a fit: half of the spacing of the widths about it.
 pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
 
@@ -139,26 +143,29 @@ pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
 pub(crate) const F8_NEEDED: Statistics = Statistics::of(1, 8, 10, 320);
 /// Densities that a verdict takes.
 pub(crate) const LEAST_DENSITIES: usize = 4;
-/// Change of w_c over the range of densities, as a fraction of w_c, up to which it hardly depends on them: a tenth of the
-/// change with the strain rate.
-pub(crate) const HARDLY: f64 = 0.02;
+/// Change of 2a − w_c over the range of densities, as a fraction of its mean, up to which w_c hardly depends on them. The
+/// distance from the straight tube is what counts: of w_c itself everything is a few per cent.
+pub(crate) const HARDLY: f64 = 0.2;
 /// Width at which the flow of all densities is compared \[d\]: all of them are jammed there.
 pub(crate) const COMPARED_WIDTH: f64 = 2.6;
 
 // F9: the loop.
 
-/// Errors of the loop's width from which on there is a loop; it differs from [`CLEAR`], since the probability below is asked
-/// for as well.
-pub(crate) const CLEAR_LOOP: f64 = 3.0;
-/// Probability of such runs with one critical width for both starts, below which there are two.
-pub(crate) const ONE_WIDTH_BY_CHANCE: f64 = 0.01;
+/// Probability of such outcomes of the runs from both starts if the start did not matter, below which both flows exist at a
+/// width; shared among all widths that are compared.
+pub(crate) const ONE_FLOW_BY_CHANCE: f64 = 0.01;
+/// Distance beyond w_c \[d\] within which both starts must have runs to say that both flows exist nowhere: loops are seldom
+/// narrower.
+pub(crate) const NEXT_TO_THE_FALL: f64 = 0.02;
+/// Contacts a grain below which grains do not jam but coast, past one another and the wall.
+pub(crate) const LEAST_CONTACTS: f64 = 0.05;
 
 // Q1: small strain rates.
 
 /// For an answer: four strain rates, five replicates, since each run takes long.
 pub(crate) const Q1_NEEDED: Statistics = Statistics::of(4, 8, 5, 300);
-/// Errors by which the critical width must fall to turn back; it differs from [`CLEAR`] and is that of [`CLEAR_LOOP`], since
-/// the errors are those of brackets.
+/// Errors by which the critical width must fall to turn back; it differs from [`CLEAR`], since the
+/// errors are those of brackets.
 pub(crate) const CLEAR_TURN: f64 = 3.0;
 /// J/Jmax of the threshold that first runs had.
 pub(crate) const HALF: f64 = 0.5;

@@ -6,14 +6,12 @@ use peristalsis_run::{Run, RunError, snapshot_stack};
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f1.md"));
-const STUDIES: &[&str] = &["flow-in-time", "branches-fine", "branches-coarse"];
+const STUDIES: &[&str] = &["flow-in-time", "branches-*"];
 
 pub(super) const CLAIM: Claim = Claim::new("F1", PROSE, STUDIES, examine);
 
-/// What the branch from rest of one lattice at one strain rate says.
+/// What the branch from rest on one wall at one strain rate says.
 struct Kind<'a> {
-    lattice: Lattice,
-    strain_rate: f64,
     runs: usize,
     branch: Branch<'a>,
     /// Fractions of the runs beyond the jump that stay slow, and of those below it that become fast.
@@ -25,7 +23,8 @@ struct Kind<'a> {
 }
 
 impl<'a> AtRate<'a> for Kind<'a> {
-    fn of(lattice: Lattice, strain_rate: f64, mut rows: Vec<Row<'a>>) -> Option<Self> {
+    fn of(runs: &Runs<'a>) -> Option<Self> {
+        let mut rows = runs.branches.clone();
         rows.retain(|row| row.start() == Start::Rest);
         let branch = Branch::of(&rows, Start::Rest, Control::Width);
         let [before, after] = branch.step()?.controls;
@@ -41,8 +40,6 @@ impl<'a> AtRate<'a> for Kind<'a> {
         let mut points = branch.points.iter();
         let is_below = |point: &&Point<'_>| point.control <= before - BELOW_THE_JUMP;
         Some(Self {
-            lattice,
-            strain_rate,
             runs: rows.len(),
             slow: fraction(true),
             fast: fraction(false),
@@ -50,10 +47,6 @@ impl<'a> AtRate<'a> for Kind<'a> {
             slow_flow: points.find(|point| point.control >= after)?.flow,
             branch,
         })
-    }
-
-    fn escaped(&self) -> f64 {
-        self.branch.escaped()
     }
 
     fn statistics(&self) -> Statistics {
@@ -70,52 +63,51 @@ impl Kind<'_> {
             && self.fast_flow.value >= NEAR_ONE
     }
 
-    fn row(&self) -> Vec<String> {
+    fn row(wall: &str, one: &Shown<Self>) -> Vec<String> {
+        let kind = &one.found;
         vec![
-            self.lattice.name(),
-            number(self.strain_rate, 3),
-            number(self.slow, 2),
-            number(self.fast, 2),
-            self.slow_flow.to_string(),
-            self.fast_flow.to_string(),
-            number(self.escaped(), 2),
+            wall.to_owned(),
+            number(one.strain_rate, 3),
+            number(kind.slow, 2),
+            number(kind.fast, 2),
+            kind.slow_flow.to_string(),
+            kind.fast_flow.to_string(),
+            if kind.holds() { "yes" } else { "no" }.to_owned(),
+            number(one.escaped, 2),
         ]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let both = Shown::<Kind<'_>>::on_both(evidence)?;
-    let (mut parts, mut counts) = (Vec::new(), Vec::new());
-    for one in &both {
-        let holding = one.tight().filter(|kind| kind.holds()).count();
-        let all = one.tight().count();
-        counts.push(PROSE.text("count", values!(holding, all, lattice = one.name)));
-        parts.push(one.part(holding == all));
+    let walls = OnWall::<Kind<'_>>::all(evidence)?;
+    let (mut draft, mut parts, mut rows) = (Draft::of(PROSE), Vec::new(), Vec::new());
+    for one in &walls {
+        let rates = one.rates(|kind| Some(kind.holds()));
+        let count = PROSE.text("count", values!(count = rates.count()));
+        parts.push(one.part(rates.hold(), count, rates.in_words()));
+        rows.extend(one.all.iter().map(|kind| Kind::row(&one.name, kind)));
+        for kind in one.tight() {
+            let (wall, rate, below) = (&one.name, kind.strain_rate, BELOW_THE_JUMP);
+            let flow = kind.found.fast_flow;
+            draft.quantity("jammed flow", values!(wall, rate, below), flow);
+        }
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    if both.iter().all(|one| one.all.is_empty()) {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(parts, &needed);
+    if walls.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     let (slow, below, near) = (SLOW, BELOW_THE_JUMP, NEAR_ONE);
-    let counts = counts.join(" and ");
-    let summary = PROSE.text("summary", values!(slow, below, near, counts, why));
-    let mut draft = Draft::of(PROSE);
-    let [fine, coarse] = &both;
-    for kind in fine.tight() {
-        let (rate, flow) = (kind.strain_rate, kind.fast_flow);
-        draft.quantity("jammed flow", values!(rate, below), flow);
-    }
-    let rows = fine.all.iter().chain(&coarse.all).map(Kind::row);
+    let summary = PROSE.text("summary", values!(slow, below, near));
     draft.table("kinds", values!(below), rows);
-    let periods = fine.periods.max(coarse.periods);
+    let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
     in_time(&mut draft, evidence.study("flow-in-time")?)?;
     draft.finding.figures.push(snapshots()?);
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
 }
 
-/// J/Jmax in time for several widths, a panel a lattice; nothing where only rows were imported.
+/// J/Jmax in time for several widths, a panel a wall; nothing where only rows were imported.
 fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
     let mut panels = Vec::new();
     let mut widths: Vec<f64> = Vec::new();
@@ -130,8 +122,8 @@ fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
                 drawn = Some(row.strain_rate());
             }
         }
-        let name = lattice.name();
-        panels.extend(drawn.map(|rate| panel.title(&format!("{name} lattice, *ε̇* = {rate}"))));
+        let name = format!("{} × {}", lattice.spheres_per_ring, lattice.rings_per_wave);
+        panels.extend(drawn.map(|rate| panel.title(&format!("{name}, *ε̇* = {rate}"))));
     }
     let Some(first) = widths.first() else {
         return Ok(());
@@ -142,7 +134,7 @@ fn in_time(draft: &mut Draft, study: &StudyResults) -> Result<()> {
     draft.chart("flow-in-time", &[], chart)
 }
 
-/// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the fine lattice, after so many periods.
+/// Widths of the snapshots \[d\]: jammed and unjammed at this strain rate on the wall 24 × 26, after so many periods.
 const SNAPSHOTS: [(f64, &str); 2] = [
     (2.9, "unjammed, *w* = 2.9 *d*"),
     (2.5, "jammed, *w* = 2.5 *d*"),

@@ -6,7 +6,7 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f2.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("F2", PROSE, DIVERGENCES, examine);
+pub(super) const CLAIM: Claim = Claim::new("F2", PROSE, TRANSITIONS, examine);
 
 /// What the source says.
 const EXPONENT: f64 = 1.0;
@@ -15,87 +15,133 @@ const SHIFTS: [f64; 3] = [-0.1, 0.0, 0.1];
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let lattices = OnLattice::all(evidence)?;
-    let (mut draft, mut parts, mut means) = (Draft::of(PROSE), Vec::new(), Vec::new());
-    let (mut rows, mut sensitivity) = (Vec::new(), Vec::new());
-    for one in &lattices {
-        let exponents: Vec<Uncertain> = one.fitted().map(|(_, fit)| fit.exponent).collect();
-        let (part, words) = mean_exponent(&mut draft, one, EXPONENT, &exponents);
-        parts.push(part);
-        means.extend(words);
-        for (line, fit) in one.fitted() {
-            rows.push(row(&one.name, line, fit));
-            sensitivity.push(shifted(&one.name, line));
+    let walls = OnWall::<Line<'_>>::all(evidence)?;
+    let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
+    let (mut rows, mut laws, mut sensitivity) = (Vec::new(), Vec::new(), Vec::new());
+    for one in &walls {
+        parts.push(part(&mut draft, one));
+        for shown in &one.all {
+            rows.push(row(&one.name, shown));
         }
-        let is_fitted = |line: &&Line<'_>| line.fit.is_some() && line.escaped() <= MOST_ESCAPED;
-        let others = one.lines.iter().filter(|line| !is_fitted(line));
-        rows.extend(others.map(|line| row_without_fit(&one.name, line)));
+        laws.extend(one.tight().filter_map(|shown| law_row(&one.name, shown)));
+        let fitted = one.fitted();
+        sensitivity.extend(fitted.map(|(line, _)| shifted(&one.name, line)));
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    if means.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(parts, &needed);
+    if sensitivity.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let summary = PROSE.text("summary", values!(means = means.join(", "), why));
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(window = WINDOW));
+    let summary = PROSE.text("summary", &[]);
+    let (window, worse, near) = (WINDOW, WORSE, NEAR);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(window, worse, near));
+    draft.table("laws", values!(window), laws);
     draft.table("exponents", &[], rows);
     draft.table("sensitivity", &[], sensitivity);
-    let lines = lattices.iter().flat_map(|one| &one.lines);
-    let chart = grid(2, lattices.iter().filter_map(times))
+    let lines = walls.iter().flat_map(|one| &one.all);
+    let chart = grid(2, walls.iter().filter_map(times))
         .share_y()
         .colour_scale(rate_colours(lines.map(|line| line.strain_rate)));
     draft.chart("transition-times", &[], chart)?;
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
 }
 
-fn row(lattice: &str, line: &Line<'_>, fit: &Divergence) -> Vec<String> {
-    let exponents = line.fits().into_iter().map(|fit| fit.exponent.value);
-    let alone = fit.exponent.value;
-    let (least, largest) = ends(exponents).unwrap_or((alone, alone));
-    vec![
-        lattice.to_owned(),
-        number(line.strain_rate, 3),
-        number(line.threshold, 1),
-        fit.critical_width.to_string(),
-        fit.exponent.to_string(),
-        interval(&fit.exponent),
-        format!("{} … {}", number(least, 2), number(largest, 2)),
-        format!("{}/{}", fit.observed, fit.observed + fit.censored),
-        number(line.escaped(), 2),
-    ]
+/// What one wall says, by the laws next to w_c at each strain rate.
+fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
+    let agrees = |exponent: &Uncertain| agrees(exponent, EXPONENT);
+    let rates = one.rates(|line| line.near.as_ref()?.is_linear(agrees));
+    let exponents: Vec<Uncertain> = one.near().filter_map(|near| near.exponent).collect();
+    let mean = weighted_mean(&exponents);
+    let (wall, count) = (&one.name, exponents.len());
+    if let Some(mean) = mean {
+        let found = PROSE.quantity("exponent", values!(wall, count, widths = STRAIGHT), mean);
+        draft.finding.quantities.push(found.sourced(EXPONENT));
+    }
+    let sum = |of: fn(&Near) -> Option<f64>| -> f64 { one.near().filter_map(of).sum() };
+    let curved = sum(|near| near.power.and(near.curved).map(|fit| fit.chi_squared));
+    let power = sum(|near| near.curved.and(near.power).map(|fit| fit.chi_squared));
+    let (curved, power) = (number(curved, 1), number(power, 1));
+    let number = PROSE.text("number", values!(exponent = cell(mean)));
+    let words = rates.in_words();
+    let why = PROSE.text("why", values!(words, curved, power));
+    one.part(rates.hold(), number, why)
 }
 
-fn row_without_fit(lattice: &str, line: &Line<'_>) -> Vec<String> {
-    let is_left_out = line.escaped() > MOST_ESCAPED;
+/// The laws next to w_c, each with its goodness.
+fn law_row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {
+    let near = shown.found.near.as_ref()?;
+    let goodness = |chi_squared: f64, freedom: usize, chance: f64| {
+        format!(
+            "{}/{freedom}, {}",
+            number(chi_squared, 1),
+            probability(chance)
+        )
+    };
+    let of = |fit: &Linear| goodness(fit.chi_squared, fit.degrees_of_freedom, fit.probability);
+    let power = near.power.as_ref();
+    Some(vec![
+        wall.to_owned(),
+        number(shown.strain_rate, 3),
+        cell(near.straight.map(|fit| fit.critical_width)),
+        cell_of(near.straight, |fit| number(fit.determination, 3)),
+        cell_of(near.straight.as_ref(), of),
+        cell(near.curved.map(|fit| fit.critical_width)),
+        cell_of(near.curved.as_ref(), of),
+        cell(power.map(|fit| fit.exponent)),
+        cell_of(power, |fit| {
+            goodness(fit.chi_squared, fit.degrees_of_freedom, fit.probability)
+        }),
+    ])
+}
+
+/// Critical width and exponents in windows of growing size.
+fn row(wall: &str, shown: &Shown<Line<'_>>) -> Vec<String> {
+    let line = &shown.found;
+    let fit = line.fit.as_ref().filter(|_| shown.is_tight());
+    let first = match fit {
+        Some(fit) => fit.critical_width.to_string(),
+        None if shown.is_tight() => "no fit".to_owned(),
+        None => "left out".to_owned(),
+    };
+    let fits = if fit.is_some() {
+        line.fits()
+    } else {
+        Vec::new()
+    };
+    let exponent = |fit: Option<&Divergence>| cell_of(fit, |fit| fit.exponent.to_string());
     let mut row = vec![
-        lattice.to_owned(),
-        number(line.strain_rate, 3),
+        wall.to_owned(),
+        number(shown.strain_rate, 3),
         number(line.threshold, 1),
-        if is_left_out { "left out" } else { "no fit" }.to_owned(),
+        first,
     ];
-    row.resize(8, String::new());
-    row.push(number(line.escaped(), 2));
+    row.extend((0..3).map(|place| exponent(fits.get(place))));
+    row.push(exponent(fits.last().filter(|_| fits.len() > 3)));
+    row.push(cell_of(fit, |fit| {
+        format!("{}/{}", fit.observed, fit.observed + fit.censored)
+    }));
+    row.push(number(shown.escaped, 2));
     row
 }
 
 /// Critical width and exponent at other thresholds.
-fn shifted(lattice: &str, line: &Line<'_>) -> Vec<String> {
+fn shifted(wall: &str, line: &Line<'_>) -> Vec<String> {
     let at = |shift: f64| {
         let fit = line.at_threshold(line.threshold + shift).fit;
         cell_of(fit, |fit| {
             format!("{}; {}", fit.critical_width, fit.exponent)
         })
     };
-    let names = [lattice.to_owned(), number(line.strain_rate, 3)];
+    let names = [wall.to_owned(), number(line.strain_rate, 3)];
     names.into_iter().chain(SHIFTS.map(at)).collect()
 }
 
-/// Mean transition times of one lattice with the fitted laws; `None` without any.
-fn times(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
+/// Mean transition times on one wall with the fitted laws; `None` without any.
+fn times(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
     let mut drawn = false;
     let mut panel = panel(Axis::Width, Axis::TransitionPeriod)
         .y_scale(Scale::Logarithmic)
-        .title(&format!("{} lattice", lattice.name));
-    for (number, line) in lattice.lines.iter().enumerate() {
+        .title(&one.name);
+    for (number, line) in one.all.iter().map(|shown| &shown.found).enumerate() {
         let seen = |one: &WidthEnsemble| one.observed >= one.censored && one.observed > 0;
         let time = |one: &WidthEnsemble| {
             let naive = || Uncertain::normal(one.naive_mean.unwrap_or(f64::NAN), 0.0);

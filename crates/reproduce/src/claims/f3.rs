@@ -6,38 +6,76 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f3.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("F3", PROSE, DIVERGENCES, examine);
+pub(super) const CLAIM: Claim = Claim::new("F3", PROSE, TRANSITIONS, examine);
 
-/// Powers of the strain rate that the source gives: of the time, and of the distance.
+/// Powers of the strain rate that the source gives: of the time, and of the distance; and that of tau (w_c − w), which
+/// follows from them where f(x) ~ 1/x.
 const EXPONENTS: [f64; 2] = [3.5, 1.5];
+const AMPLITUDE: f64 = EXPONENTS[1] - EXPONENTS[0];
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
     let mut found: Vec<(String, Collapsed)> = Vec::new();
-    let mut parts = Vec::new();
-    for one in OnLattice::all(evidence)? {
+    let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
+    let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
+    for one in OnWall::<Line<'_>>::all(evidence)? {
         let mean = |ensemble: &WidthEnsemble| Some(ensemble.fit?.mean);
         let collapsed = collapse(&one, EXPONENTS, 1.0, mean);
-        parts.push(one.part(collapsed.as_ref().and_then(Collapsed::agrees)));
+        let known = at_rates(one.near(), Near::amplitude);
+        let power = power_of_rate(&known);
+        let wall = &one.name;
+        if let Some(power) = power {
+            let found = PROSE.quantity("amplitude", values!(wall, rates = known.len()), power);
+            draft.finding.quantities.push(found.sourced(AMPLITUDE));
+        }
+        let row = |(rate, found): &(f64, Uncertain)| {
+            vec![wall.clone(), number(*rate, 3), found.to_string()]
+        };
+        rows.extend(known.iter().map(row));
+        let words = PROSE.text("number", values!(power = cell(power)));
+        let why = cell_of(collapsed.as_ref(), |collapsed| {
+            PROSE.text("collapse", values!(found = collapsed.in_words()))
+        });
+        let holds = power.and_then(|power| agrees(&power, AMPLITUDE));
+        parts.push(one.part(holds, words, why));
+        amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    if found.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(parts, &needed);
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let words =
-        |(name, found): &(String, Collapsed)| format!("{name} lattice: {}", found.in_words());
-    let words: Vec<String> = found.iter().map(words).collect();
-    let summary = PROSE.text("summary", values!(found = words.join("; "), why));
-    let mut draft = Draft::of(PROSE);
+    let summary = PROSE.text("summary", &[]);
+    draft.table("amplitudes", &[], rows);
     for (name, collapsed) in &found {
-        let of = format!("{name} lattice");
+        let of = format!("wall {name}");
         let exponents = collapsed.quantities(&of, ["*a*", "*b*"]);
         draft.finding.quantities.extend(exponents);
         draft.finding.tables.push(collapsed.table(&of));
     }
-    let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"];
-    let chart = chart(&found, labels, "*τε̇*^{*a*}", -1.0);
-    draft.chart("collapse-of-transition-times", &[], chart)?;
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    draft.chart("amplitudes", &[], against_rate(&amplitudes))?;
+    if !found.is_empty() {
+        let labels = ["(*w*_{c} − *w*)/*ε̇*^{3/2}", "*τε̇*^{7/2}"];
+        let chart = chart(&found, labels, "*τε̇*^{*a*}", -1.0);
+        draft.chart("collapse-of-transition-times", &[], chart)?;
+    }
+    Ok(draft.judged(judgement, &summary))
+}
+
+/// tau (w_c − w) of each wall against the strain rate, beside the power of the source through the first of them.
+fn against_rate(walls: &[(String, Vec<(f64, Uncertain)>)]) -> ChartFigure {
+    let all = || walls.iter().flat_map(|(_, known)| known);
+    let drawn = walls
+        .iter()
+        .map(|(name, known)| joined(name, known.iter().copied()));
+    let mut panel = ChartPanel::new(&label(Axis::StrainRate), "*C* = *τ*(*w*_{c} − *w*)/*d*")
+        .x_scale(Scale::Logarithmic)
+        .y_scale(Scale::Logarithmic)
+        .with_all(numbered(drawn));
+    if let (Some(first), Some((least, most))) = (all().next(), ends(all().map(|one| one.0))) {
+        let at = |rate: f64| first.1.value * (rate / first.0).powf(AMPLITUDE);
+        let curve = Curve::new("*ε̇*^{−2} (talk)", &[least, most], &[at(least), at(most)]);
+        panel = panel.with(curve.tint(Tint::Black).pattern(Pattern::Dotted));
+    }
+    ChartFigure::new(panel)
 }

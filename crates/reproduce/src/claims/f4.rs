@@ -6,49 +6,39 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f4.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("F4", PROSE, DIVERGENCES, examine);
+pub(super) const CLAIM: Claim = Claim::new("F4", PROSE, TRANSITIONS, examine);
 
 /// What the source says of chi_tau against the width, and of its scaling.
 const EXPONENT: f64 = 3.0;
 const SCALING: [f64; 2] = [7.0, 1.5];
 
+/// Power of the strain rate in chi_tau (w_c − w)^3 that follows where g(x) ~ x^−3.
+const AMPLITUDE: f64 = EXPONENT * SCALING[1] - SCALING[0];
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let lattices = OnLattice::all(evidence)?;
-    let (mut draft, mut parts, mut means) = (Draft::of(PROSE), Vec::new(), Vec::new());
+    let walls = OnWall::<Line<'_>>::all(evidence)?;
+    let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut collapses) = (Vec::new(), Vec::new());
-    for one in &lattices {
-        let exponents = one.scattered().map(|(_, fit)| fit.variance_exponent);
-        let exponents: Vec<Uncertain> = exponents.collect();
-        let (part, words) = mean_exponent(&mut draft, one, EXPONENT, &exponents);
-        parts.push(part);
-        means.extend(words);
-        rows.extend(one.scattered().map(|(line, fit)| {
-            vec![
-                one.name.clone(),
-                number(line.strain_rate, 3),
-                fit.variance_exponent.to_string(),
-                interval(&fit.variance_exponent),
-                fit.scatter_exponent.to_string(),
-                probability(fit.chance_probability),
-            ]
-        }));
+    for one in &walls {
+        parts.push(part(&mut draft, one));
+        rows.extend(one.tight().filter_map(|shown| row(&one.name, shown)));
         let variance = |ensemble: &WidthEnsemble| Some(ensemble.fit?.variance);
         if let Some(collapsed) = collapse(one, SCALING, EXPONENT, variance) {
-            let of = format!("variance, {} lattice", one.name);
+            let of = format!("variance, wall {}", one.name);
             let exponents = collapsed.quantities(&of, ["*a_{χ}*", "*b_{χ}*"]);
             draft.finding.quantities.extend(exponents);
             collapses.push((one.name.clone(), collapsed));
         }
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    if means.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(parts, &needed);
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let summary = PROSE.text("summary", values!(means = means.join(", "), why));
+    let summary = PROSE.text("summary", &[]);
     draft.table("exponents", &[], rows);
-    let lines = lattices.iter().flat_map(OnLattice::fitted);
-    let variances = grid(2, lattices.iter().filter_map(variances))
+    let lines = walls.iter().flat_map(OnWall::fitted);
+    let variances = grid(2, walls.iter().filter_map(variances))
         .share_y()
         .colour_scale(rate_colours(lines.map(|(line, _)| line.strain_rate)));
     draft.chart("transition-time-variance", &[], variances)?;
@@ -57,16 +47,61 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let scaled = chart(&collapses, labels, "*χ_{τ}ε̇*^{*a*}", -3.0);
         draft.chart("collapse-of-variances", &[], scaled)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
 }
 
-/// Variances of one lattice with the fitted laws; `None` without any.
-fn variances(lattice: &OnLattice<'_>) -> Option<ChartPanel> {
+/// What one wall says of both halves: the exponent, and the scaling with the strain rate.
+fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
+    let wall = &one.name;
+    let agrees_at = |line: &Line<'_>| agrees(&line.near.as_ref()?.variance_exponent()?, EXPONENT);
+    let rates = one.rates(agrees_at);
+    let exponents = at_rates(one.near(), Near::variance_exponent);
+    let exponents: Vec<Uncertain> = exponents.into_iter().map(|one| one.1).collect();
+    let mean = weighted_mean(&exponents);
+    let amplitudes = at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
+    let power = power_of_rate(&amplitudes);
+    let scales = power.and_then(|power| agrees(&power, AMPLITUDE));
+    if let Some(mean) = mean {
+        let found = PROSE.quantity("exponent", values!(wall, rates = exponents.len()), mean);
+        draft.finding.quantities.push(found.sourced(EXPONENT));
+    }
+    if let Some(power) = power {
+        let found = PROSE.quantity("amplitude", values!(wall, rates = amplitudes.len()), power);
+        draft.finding.quantities.push(found.sourced(AMPLITUDE));
+    }
+    let (exponent, power) = (cell(mean), cell(power));
+    let said = |holds: Option<bool>| match holds {
+        Some(true) => "holds",
+        Some(false) => "does not hold",
+        None => "cannot be told",
+    };
+    let (words, scaling) = (rates.in_words(), said(scales));
+    let why = PROSE.text("why", values!(half = said(rates.hold()), words, scaling));
+    let number = PROSE.text("number", values!(exponent, power));
+    one.part(all_hold(&[rates.hold(), scales]), number, why)
+}
+
+fn row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {
+    let near = shown.found.near.as_ref()?;
+    let scatter = shown.found.fit.and_then(|fit| fit.scatter);
+    Some(vec![
+        wall.to_owned(),
+        number(shown.strain_rate, 3),
+        cell(near.variance_exponent()),
+        cell(near.variance_amplitude(EXPONENT)),
+        cell(scatter.map(|fit| fit.variance_exponent)),
+        cell(scatter.map(|fit| fit.scatter_exponent)),
+        cell_of(scatter, |fit| probability(fit.chance_probability)),
+    ])
+}
+
+/// Variances on one wall with the fitted laws; `None` without any.
+fn variances(one: &OnWall<Line<'_>>) -> Option<ChartPanel> {
     let mut drawn = false;
     let mut panel = ChartPanel::new(&label(Axis::Width), "variance, *χ_{τ}*/*T*^2")
         .y_scale(Scale::Logarithmic)
-        .title(&format!("{} lattice", lattice.name));
-    for (number, (line, fit)) in lattice.fitted().enumerate() {
+        .title(&one.name);
+    for (number, (line, fit)) in one.fitted().enumerate() {
         let squared = line.strain_rate * line.strain_rate;
         let variances: Vec<(f64, Uncertain)> = line
             .ensembles

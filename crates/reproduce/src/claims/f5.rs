@@ -1,234 +1,335 @@
 //! F5: the fluctuation of the flow rate across an ensemble.
 
 use peristalsis_analysis::{
-    AfterEnd, Bootstrap, Interval, Law, MomentPeak, fit_law, second_moment, second_moment_peak,
+    AfterEnd, Bootstrap, Law, MomentPeak, fit_law, second_moment, second_moment_peak,
 };
+use peristalsis_run::THRESHOLDS;
 
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f5.md"));
+const STUDIES: &[&str] = &[
+    "divergence-*",
+    "near-*",
+    "branches-*",
+    "second-moment",
+    "length",
+];
 
-pub(super) const CLAIM: Claim = Claim::new("F5", PROSE, &["second-moment"], examine);
+pub(super) const CLAIM: Claim = Claim::new("F5", PROSE, STUDIES, examine);
 
 /// Resamples for the errors of a peak.
-const BOOTSTRAP: Bootstrap = Bootstrap::new(200, 5);
-/// Periods whose mean stands for a run after its end.
-const HELD: usize = 5;
+const BOOTSTRAP: Bootstrap = Bootstrap::new(60, 5);
+/// Times at which the flows of a width are compared, about.
+const TIMES: usize = 60;
 
-/// The peak of chi_J at one width.
-struct Peak {
+/// The second moment at one width.
+struct Moment {
     width: f64,
     peak: MomentPeak,
+    /// Its variance if half of the runs had passed from one flow to the other, and the others not yet.
+    bound: f64,
+    /// Integral of chi_J over time, in periods.
+    integral: Uncertain,
+    /// Time in periods and chi_J.
+    course: Vec<(f64, f64)>,
     runs: usize,
+    /// Whether most runs had a transition.
+    jams: bool,
 }
 
-impl Peak {
-    fn height(&self) -> Uncertain {
-        self.peak.value
-    }
-}
-
-/// One strain rate.
-struct Line {
-    strain_rate: f64,
-    peaks: Vec<Peak>,
-    /// chi_J(t) by width.
-    moments: Vec<(f64, Vec<f64>)>,
-    /// Largest width at which most runs had a transition.
-    last: f64,
-}
-
-impl Line {
-    fn of(study: &StudyResults, strain_rate: f64, rows: Vec<Row<'_>>) -> Result<Self> {
-        let (mut peaks, mut moments) = (Vec::new(), Vec::new());
-        let mut last = f64::NAN;
-        for (width, group) in grouped(rows, Row::width) {
-            let has_jammed = |row: &&Row<'_>| row.transition().observed().is_some();
-            if 2 * group.iter().filter(has_jammed).count() > group.len() {
-                last = width;
-            }
-            let mut series = Vec::new();
-            for row in &group {
-                let averages = study.period_averages(row)?;
-                series.extend(averages.filter(|averages| averages.len() > HELD));
-            }
-            if series.len() < LEAST_RUNS_OF_A_MOMENT {
-                continue;
-            }
-            let after_end = AfterEnd::Hold { samples: HELD };
-            if let (Ok(peak), Ok(moment)) = (
-                second_moment_peak(&series, after_end, BOOTSTRAP),
-                second_moment(&series, after_end),
-            ) {
-                let runs = series.len();
-                peaks.push(Peak { width, peak, runs });
-                moments.push((width, moment.iter().map(|moment| moment.variance).collect()));
-            }
-        }
-        Ok(Self {
-            strain_rate,
-            peaks,
-            moments,
-            last,
-        })
-    }
-
-    /// Midway between the last width at which most runs jammed and the next one.
-    fn critical_width(&self) -> Option<Uncertain> {
-        let mut widths = self.peaks.iter().map(|peak| peak.width);
-        let beyond = widths.find(|width| *width > self.last)?;
-        let interval = Interval {
-            lower: self.last,
-            upper: beyond,
-        };
-        Some(Uncertain {
-            value: 0.5 * (self.last + beyond),
-            error: 0.3 * (beyond - self.last),
-            interval_68: interval,
-            interval_95: interval,
-        })
-    }
-
-    /// Width and height of the peaks at the widths at which most runs jam.
-    fn rising(&self) -> impl Iterator<Item = (f64, Uncertain)> {
-        let rising = self.peaks.iter().filter(|peak| peak.width <= self.last);
-        rising.map(|peak| (peak.width, peak.height()))
-    }
-
-    fn highest(&self) -> Option<&Peak> {
-        let height = |peak: &Peak| peak.height().value;
-        self.peaks
+impl Moment {
+    /// Of the runs at one width; `None` where these are too few or none had a transition.
+    fn of(width: f64, rows: &[Row<'_>], threshold: f64) -> Option<Self> {
+        let passed: Vec<Vec<f64>> = rows.iter().map(passages).collect();
+        let all = passed.iter().flatten().copied();
+        let times = ascending(all.chain([0.0]));
+        let times: Vec<f64> = times
             .iter()
-            .max_by(|one, other| height(one).total_cmp(&height(other)))
+            .step_by(times.len().div_ceil(TIMES))
+            .copied()
+            .collect();
+        if rows.len() < LEAST_RUNS_OF_A_MOMENT || times.len() < 3 {
+            return None;
+        }
+        let flows = |passed: &Vec<f64>| -> Vec<f64> {
+            let number = |time: &f64| passed.iter().filter(|passed| *passed <= time).count();
+            // Between two of the thresholds.
+            let flow = |time| (number(time) as f64 + 0.5) / 10.0;
+            times.iter().map(flow).collect()
+        };
+        let series: Vec<Vec<f64>> = passed.iter().map(flows).collect();
+        let ends =
+            |place: fn(&[f64]) -> Option<&f64>| series.iter().filter_map(move |one| place(one));
+        let last = ends(<[f64]>::last).copied().fold(0.0, f64::max);
+        let first = ends(<[f64]>::first).copied().fold(1.0, f64::min);
+        let moments = second_moment(&series, AfterEnd::Leave).ok()?;
+        let without = (0..series.len()).map(|place| {
+            let mut rest = series.clone();
+            rest.swap_remove(place);
+            second_moment(&rest, AfterEnd::Leave).map_or(f64::NAN, |rest| integral(&times, &rest))
+        });
+        let error = jackknife(&without.collect::<Vec<_>>());
+        let had = |row: &&Row<'_>| row.transition_at(threshold).observed().is_some();
+        let variances = moments.iter().map(|moment| moment.variance);
+        Some(Self {
+            width,
+            peak: second_moment_peak(&series, AfterEnd::Leave, BOOTSTRAP).ok()?,
+            bound: (0.5 * (last - first)).powi(2),
+            integral: Uncertain::normal(integral(&times, &moments), error),
+            course: times.iter().copied().zip(variances).collect(),
+            runs: rows.len(),
+            jams: 2 * rows.iter().filter(had).count() > rows.len(),
+        })
     }
 
-    fn row(&self, highest: &Peak) -> Vec<String> {
-        let beyond = self.peaks.iter().filter(|peak| peak.width > self.last);
-        let beyond = beyond
-            .map(|peak| peak.height().value)
-            .fold(f64::NAN, f64::max);
-        vec![
-            number(self.strain_rate, 3),
-            number(self.last, 3),
-            number(highest.width, 3),
-            highest.height().to_string(),
-            with_error(highest.peak.index.value, highest.peak.index.error),
-            number(beyond, 3),
-        ]
+    /// The peak with an error that is not zero.
+    fn height(&self) -> Uncertain {
+        let peak = self.peak.value;
+        Uncertain::normal(peak.value, peak.error.max(LEAST_ERROR_OF_A_MOMENT))
     }
 
-    /// Exponent of the rise of the peak toward the critical width, where it can be fitted, and the number of widths.
-    fn exponent(&self) -> Option<(Uncertain, usize)> {
-        let [width, value, error] = columns(self.rising(), LEAST_ERROR_OF_A_MOMENT);
-        let critical = self.critical_width()?;
-        let fit = fit_law(Law::Power, &width, &value, &error, Some(critical)).ok()?;
-        Some((fit.exponent, width.len()))
+    /// Whether the peak is as high as two flows allow; `None` where its errors do not allow to say, or the flows are too near
+    /// one another to be told apart by thresholds 0.1 apart.
+    fn is_saturated(&self) -> Option<bool> {
+        let (peak, full) = (self.height(), SATURATED * self.bound);
+        let reach = AGREES_WITHIN * peak.error;
+        match self.bound >= LEAST_BOUND {
+            true if peak.value >= full => Some(true),
+            true if peak.value + reach < full => Some(false),
+            _ => None,
+        }
+    }
+}
+
+/// When a run passed each of [`THRESHOLDS`], in periods, as far as it did.
+fn passages(row: &Row<'_>) -> Vec<f64> {
+    let passages = THRESHOLDS.iter();
+    let passages = passages.filter_map(|threshold| row.transition_at(*threshold).observed());
+    passages.map(|time| time * row.strain_rate()).collect()
+}
+
+fn integral(times: &[f64], moments: &[peristalsis_analysis::SecondMoment]) -> f64 {
+    let spans = times.windows(2).zip(moments);
+    spans
+        .map(|(ends, moment)| (ends[1] - ends[0]) * moment.variance)
+        .sum()
+}
+
+/// The second moments at one strain rate.
+struct Moments {
+    strain_rate: f64,
+    moments: Vec<Moment>,
+    critical: Option<Uncertain>,
+}
+
+impl<'a> AtRate<'a> for Moments {
+    const ALSO: &'static [&'static str] = &["second-moment"];
+
+    fn of(runs: &Runs<'a>) -> Option<Self> {
+        let near = <Line<'_> as AtRate<'_>>::of(runs)?.near;
+        let groups = grouped(runs.times.iter().copied(), Row::width).into_iter();
+        let moment = |(width, rows): (f64, Vec<Row<'a>>)| Moment::of(width, &rows, runs.threshold);
+        let moments: Vec<Moment> = groups.filter_map(moment).collect();
+        (!moments.is_empty()).then(|| Self {
+            strain_rate: runs.strain_rate,
+            critical: near.and_then(|near| near.critical_width()),
+            moments,
+        })
+    }
+
+    fn rows<'b>(runs: &'b Runs<'a>) -> &'b [Row<'a>] {
+        &runs.times
+    }
+
+    fn statistics(&self) -> Statistics {
+        let runs = || self.moments.iter().map(|moment| moment.runs);
+        Statistics::of(
+            1,
+            self.moments.len(),
+            runs().min().unwrap_or(0),
+            runs().sum(),
+        )
+    }
+}
+
+impl Moments {
+    /// The widths below w_c at which most runs jam, ascending.
+    fn rising(&self) -> Vec<&Moment> {
+        let below = |moment: &&Moment| {
+            let critical = self.critical.is_some_and(|w_c| moment.width < w_c.value);
+            moment.jams && critical
+        };
+        self.moments.iter().filter(below).collect()
+    }
+
+    /// Exponent of a number of the nearest widths against the distance from w_c.
+    fn exponent(&self, widths: usize, number: fn(&Moment) -> Uncertain) -> Option<Uncertain> {
+        let rising = self.rising();
+        let nearest = &rising[rising.len().saturating_sub(widths)..];
+        let numbers = nearest.iter().map(|moment| (moment.width, number(moment)));
+        let known = numbers.filter(|(_, one)| one.value > 0.0 && one.error > 0.0);
+        let [width, value, error] = columns(known, 0.0);
+        let fit = fit_law(Law::Power, &width, &value, &error, Some(self.critical?)).ok()?;
+        Some(fit.exponent)
+    }
+
+    /// Whether the peak still grows next to w_c, and has room to; not, where it is as high as two flows allow.
+    fn diverges(&self) -> Option<bool> {
+        if self.rising().last()?.is_saturated()? {
+            return Some(false);
+        }
+        let exponent = self.exponent(STRAIGHT, Moment::height)?;
+        (exponent.value > AGREES_WITHIN * exponent.error).then_some(true)
+    }
+
+    fn row(wall: &str, shown: &Shown<Self>) -> Option<Vec<String>> {
+        let rising = shown.found.rising();
+        let nearest = rising.last()?;
+        let exponent = |widths, number| cell(shown.found.exponent(widths, number));
+        Some(vec![
+            wall.to_owned(),
+            number(shown.strain_rate, 3),
+            number(nearest.width, 4),
+            nearest.height().to_string(),
+            number(nearest.bound, 3),
+            exponent(usize::MAX, Moment::height),
+            exponent(STRAIGHT, Moment::height),
+            exponent(WINDOW, |moment| moment.integral),
+        ])
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let study = evidence.study("second-moment")?;
-    let mut lines = Vec::new();
-    for (rate, rows) in by_strain_rate(study.rows()) {
-        lines.push(Line::of(study, rate, rows)?);
-    }
-    lines.retain(|line| line.peaks.len() > 1);
-    let peaks = || lines.iter().flat_map(|line| &line.peaks);
-    let statistics = Statistics {
-        strain_rates: lines.len(),
-        widths: lines.iter().map(|line| line.peaks.len()).min().unwrap_or(0),
-        replicates: peaks().map(|peak| peak.runs).min().unwrap_or(0),
-        runs: study.rows().len(),
-    };
-    if lines.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
-    }
-    let (mut draft, mut rows, mut bounded) = (Draft::of(PROSE), Vec::new(), 0);
-    for line in &lines {
-        let Some(highest) = line.highest() else {
-            continue;
-        };
-        bounded += usize::from(highest.height().value < BOUNDED_MOMENT);
-        let (rate, width) = (line.strain_rate, highest.width);
-        let height = highest.height();
-        draft.quantity("peak", values!(rate, width), height);
-        if let Some((exponent, widths)) = line.exponent() {
-            draft.quantity("exponent", values!(rate, widths), exponent);
+    let walls = OnWall::<Moments>::all(evidence)?;
+    let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
+    for one in &walls {
+        rows.extend(
+            one.tight()
+                .filter_map(|shown| Moments::row(&one.name, shown)),
+        );
+        for shown in one.tight() {
+            let (wall, rate) = (&one.name, shown.strain_rate);
+            let found = shown.found.exponent(usize::MAX, Moment::height);
+            draft.quantity("exponent", values!(wall, rate), found);
+            let found = shown.found.exponent(WINDOW, |moment| moment.integral);
+            draft.quantity("integral", values!(wall, rate), found);
         }
-        rows.push(line.row(highest));
     }
-    let scaling = scaling_relation(&lines);
-    let in_words = match &scaling {
-        None => PROSE.text("no scaling", &[]),
-        Some(found) => {
-            let how = if found.quality() <= SAME_CURVE {
-                "fall on one curve within their errors"
-            } else if found.holds() {
-                "come near one curve, but differ by more than their errors"
-            } else {
-                "do not fall on one curve"
-            };
-            PROSE.text("scaling", values!(how, exponents = found.in_words()))
-        }
-    };
-    let verdict = match bounded == lines.len() {
-        true => Verdict::Differs,
-        false => Verdict::Open,
-    };
-    let all = lines.len();
-    let summary = PROSE.text("summary", values!(bounded, all, scaling = in_words));
+    let judgement = Judgement::of(walls.iter().map(part).collect(), &needed);
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
+    }
+    let lengths = against_length(&evidence.study("length")?.rows());
+    draft.quantity(
+        "length",
+        &[],
+        lengths.map(|power| Uncertain::normal(2.0 + power.value, power.error)),
+    );
+    let summary = PROSE.text("summary", &[]);
+    let saturated = number(100.0 * SATURATED, 0);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(saturated));
     draft.table("peaks", &[], rows);
-    if let Some(found) = scaling {
-        let of = "peak of the second moment";
-        let exponents = found.quantities(of, ["*a_{J}*", "*b_{J}*"]);
-        draft.finding.quantities.extend(exponents);
-        draft.finding.tables.push(found.table(of));
-        let found = [("fine".to_owned(), found)];
-        let chart = chart(&found, ["", ""], "max_{*t*} *χ_{J}ε̇*^{*a*}", -1.0);
-        draft.chart("collapse-of-second-moments", &[], chart)?;
+    draft.chart("second-moment-peak", &[], against_distance(&walls))?;
+    let middle = walls
+        .iter()
+        .filter_map(|one| one.all.get(one.all.len() / 2));
+    if let Some(shown) = middle.into_iter().next() {
+        draft.chart("second-moment-in-time", &[], in_time(&shown.found))?;
     }
-    draft.chart("second-moment-peak", &[], against_width(&lines))?;
-    if let Some(line) = lines.get(lines.len() / 2) {
-        draft.chart("second-moment-in-time", &[], in_time(line))?;
+    for (one, found) in walls.iter().filter_map(|one| Some((one, scaling(one)?))) {
+        let of = format!("peak of the second moment, wall {}", one.name);
+        draft
+            .finding
+            .quantities
+            .extend(found.quantities(&of, ["*a_{J}*", "*b_{J}*"]));
     }
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
+}
+
+fn part(one: &OnWall<Moments>) -> Part {
+    let rates = one.rates(Moments::diverges);
+    let nearest = one
+        .tight()
+        .filter_map(|shown| Some(shown.found.rising().last()?.height()));
+    let highest = nearest.map(|height| height.value).fold(0.0, f64::max);
+    let exponent = |number: fn(&Moment) -> Uncertain, widths: usize| {
+        let exponents = one
+            .tight()
+            .filter_map(|shown| shown.found.exponent(widths, number));
+        cell(weighted_mean(&exponents.collect::<Vec<_>>()))
+    };
+    let peak = exponent(Moment::height, STRAIGHT);
+    let integral = exponent(|moment| moment.integral, WINDOW);
+    let highest = number(highest, 2);
+    let words = PROSE.text("number", values!(peak, highest));
+    let why = PROSE.text("why", values!(rates = rates.in_words(), integral));
+    one.part(rates.hold(), words, why)
+}
+
+/// Power of the number of waves with which the peak of the moment of J/Jmax goes, over the widths that most runs jam at.
+fn against_length(rows: &[Row<'_>]) -> Option<Uncertain> {
+    let widths = grouped(rows.iter().copied(), Row::width).into_iter();
+    let power = |(width, rows): (f64, Vec<Row<'_>>)| {
+        let lengths = grouped(rows, |row| row.number("waves")).into_iter();
+        let peak = |(waves, rows): (f64, Vec<Row<'_>>)| {
+            let moment = Moment::of(width, &rows, rows[0].number("transition_threshold"))?;
+            moment.jams.then(|| (waves, moment.height()))
+        };
+        power_of_rate(&lengths.filter_map(peak).collect::<Vec<_>>())
+    };
+    weighted_mean(&widths.filter_map(power).collect::<Vec<_>>())
 }
 
 /// Collapse of the rising sides of the peaks of all strain rates, with free exponents.
-fn scaling_relation(lines: &[Line]) -> Option<Collapsed> {
+fn scaling(one: &OnWall<Moments>) -> Option<Collapsed> {
     let mut curves = Curves::default();
-    for line in lines {
-        if let Some(width) = line.critical_width() {
-            let rising = line.rising().map(|(x, height)| {
-                let error = height.error.max(LEAST_ERROR_OF_A_MOMENT);
-                (x, Uncertain::normal(height.value, error))
-            });
-            curves.add(line.strain_rate, &width, 1.0, rising);
-        }
+    for shown in one.tight() {
+        let rising = shown.found.rising().into_iter();
+        let rising = rising.map(|moment| (moment.width, moment.height()));
+        curves.add(shown.strain_rate, &shown.found.critical?, 1.0, rising);
     }
     curves.collapse([0.0, 1.0], None)
 }
 
-fn against_width(lines: &[Line]) -> ChartFigure {
-    let series = |line: &Line| {
-        let known = line.peaks.iter().filter(|peak| peak.height().value > 0.0);
-        let peaks = known.map(|peak| (peak.width, peak.height()));
-        (line.strain_rate, joined("", peaks))
+/// Peaks against the distance from w_c, a panel a wall.
+fn against_distance(walls: &[OnWall<Moments>]) -> ChartFigure {
+    let panel = |one: &OnWall<Moments>| {
+        let series = |shown: &Shown<Moments>| {
+            let rising = shown.found.rising();
+            let critical = shown.found.critical.map_or(f64::NAN, |w_c| w_c.value);
+            let peaks = rising.iter().filter(|moment| moment.height().value > 0.0);
+            let peaks = peaks.map(|moment| (critical - moment.width, moment.height()));
+            (shown.strain_rate, joined("", peaks))
+        };
+        ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "peak of *χ_{J}*")
+            .x_scale(Scale::Logarithmic)
+            .y_scale(Scale::Logarithmic)
+            .title(&one.name)
+            .with_all(coloured(one.tight().map(series)))
     };
-    let panel = ChartPanel::new(&label(Axis::Width), "peak of *χ_{J}*")
-        .y_scale(Scale::Logarithmic)
-        .with_all(coloured(lines.iter().map(series)));
-    let rates = lines.iter().map(|line| line.strain_rate);
-    ChartFigure::new(panel).colour_scale(rate_colours(rates))
+    let rates = walls
+        .iter()
+        .flat_map(|one| &one.all)
+        .map(|one| one.strain_rate);
+    grid(2, walls.iter().map(panel))
+        .share_y()
+        .colour_scale(rate_colours(rates))
 }
 
-fn in_time(line: &Line) -> ChartFigure {
-    let courses = line.moments.iter();
+fn in_time(found: &Moments) -> ChartFigure {
+    let courses = found.rising().into_iter().map(|moment| {
+        let (time, value): (Vec<f64>, Vec<f64>) = moment.course.iter().copied().unzip();
+        Curve::new("", &time, &value)
+            .stepped()
+            .tint(Tint::Value(moment.width))
+    });
     let panel = panel(Axis::Period, Axis::FlowRateMoment)
-        .title(&format!("*ε̇* = {}", line.strain_rate))
-        .with_all(courses.map(|(width, moment)| course(*width, moment)));
-    let widths = line.moments.iter().map(|one| one.0);
-    let scale = colours(&label(Axis::Width), widths, (line.last, line.last));
+        .title(&format!("*ε̇* = {}", found.strain_rate))
+        .with_all(courses);
+    let widths = found.rising().into_iter().map(|moment| moment.width);
+    let otherwise = found.moments.first().map_or(2.5, |moment| moment.width);
+    let scale = colours(&label(Axis::Width), widths, (otherwise, otherwise + 0.01));
     ChartFigure::new(panel).colour_scale(scale)
 }

@@ -6,70 +6,33 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f7.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("F7", PROSE, DIVERGENCES, examine);
+pub(super) const CLAIM: Claim = Claim::new("F7", PROSE, TRANSITIONS, examine);
 
 /// What the source says.
 const SLOPE: f64 = -3.75;
-/// The definition of the critical width that the verdict goes by, in words, and the other one.
-const DIVERGENCE: &str = "divergence of the mean time";
-const HALF: &str = "half of the runs jam";
-
-/// Strain rates with their critical widths, ascending, of errors no smaller than [`LEAST_ERROR_OF_A_WIDTH`].
+/// Strain rates with their critical widths, ascending.
 type Critical = Vec<(f64, Uncertain)>;
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let (mut draft, mut parts, mut slopes) = (Draft::of(PROSE), Vec::new(), Vec::new());
-    let (mut rows, mut periods) = (Vec::new(), 0.0);
+    let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
+    let (mut rows, mut periods) = (Vec::new(), 0.0_f64);
     let mut panel = panel(Axis::StrainRate, Axis::CriticalWidth).x_range(0.0..);
-    for (place, one) in OnLattice::all(evidence)?.iter().enumerate() {
-        let of = |critical: fn(&Line<'_>) -> Option<Uncertain>| -> Critical {
-            let known = |line: &Line<'_>| {
-                let width = critical(line)?;
-                let error = width.error.max(LEAST_ERROR_OF_A_WIDTH);
-                Some((line.strain_rate, Uncertain::normal(width.value, error)))
-            };
-            one.tight().filter_map(known).collect()
-        };
-        periods = one.lines.iter().map(Line::periods).fold(periods, f64::max);
-        rows.extend(one.lines.iter().map(|line| row(&one.name, line)));
-        let diverging = of(diverging);
-        if diverging.is_empty() {
-            continue;
-        }
-        let drawn = points(&format!("{} lattice", one.name), diverging.clone());
+    for (place, one) in OnWall::<Line<'_>>::all(evidence)?.iter().enumerate() {
+        periods = periods.max(one.periods);
+        rows.extend(one.all.iter().map(|shown| row(&one.name, shown)));
+        let critical = at_rates(one.near(), Near::critical_width);
+        let drawn = points(&one.name, critical.iter().copied());
         panel = panel.with_all(drawn.map(|points| points.series(place)));
-        let mut holds = None;
-        for (how, critical) in [(DIVERGENCE, &diverging), (HALF, &of(half))] {
-            let [rate, width, error] = columns(critical.iter().copied(), 0.0);
-            let Ok(line) = fit_line(&rate, &width, &error) else {
-                continue;
-            };
-            let slope = slope(&line);
-            if how == DIVERGENCE {
-                // A line through two points has no say.
-                holds = agrees(&slope, SLOPE).filter(|_| rate.len() >= LEAST_RATES_OF_A_SLOPE);
-                slopes.push(format!("{slope} on the {} lattice", one.name));
-                panel = with_line(panel, &line, &rate, place);
-            }
-            let quantities = &mut draft.finding.quantities;
-            quantities.extend(of_line(&line, &one.name, how, rate.len()));
-            if let Ok(curve) = fit_parabola(&rate, &width, &error) {
-                let probability = match curve.linearity < 5e-4 {
-                    true => "below 0.001".to_owned(),
-                    false => number(curve.linearity, 3),
-                };
-                let (lattice, ours) = (&one.name, curve.quadratic);
-                let curvature =
-                    PROSE.quantity("curvature", values!(lattice, how, probability), ours);
-                quantities.push(curvature.sourced(0.0));
-            }
+        let line = straight(&critical);
+        if let Some(line) = &line {
+            panel = with_line(panel, line, &critical, place);
         }
-        parts.push(one.part(holds));
+        parts.push(part(&mut draft, one, &critical, line.as_ref()));
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    if slopes.is_empty() {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(parts, &needed);
+    if draft.finding.quantities.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     let ends = [3.0 - 0.075, 3.0 - 0.45];
     panel = panel.with(
@@ -77,54 +40,121 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .tint(Tint::Black)
             .pattern(Pattern::Dotted),
     );
-    let summary = PROSE.text("summary", values!(slopes = slopes.join(" and "), why));
+    let summary = PROSE.text("summary", &[]);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
     draft.table("critical widths", &[], rows);
     draft.chart("critical-width", &[], ChartFigure::new(panel))?;
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
 }
 
-fn diverging(line: &Line<'_>) -> Option<Uncertain> {
-    Some(line.fit.as_ref()?.critical_width)
+/// A line by least squares, every strain rate with the same weight, as one draws it through points; its errors are those of
+/// the scatter about it. `None` with too few strain rates.
+fn straight(critical: &Critical) -> Option<LineFit> {
+    let [rate, width, _] = columns(critical.iter().copied(), 0.0);
+    let alike = vec![1.0; rate.len()];
+    let line = fit_line(&rate, &width, &alike).ok()?;
+    let scatter = (line.chi_squared / line.degrees_of_freedom.max(1) as f64).sqrt();
+    let line = fit_line(&rate, &width, &vec![scatter; rate.len()]).ok()?;
+    (rate.len() >= LEAST_RATES).then_some(line)
+}
+
+/// Part of the variance of the critical widths that the line explains.
+fn determination(line: &LineFit, width: &[f64]) -> f64 {
+    let number = width.len() as f64;
+    let mean = width.iter().sum::<f64>() / number;
+    let all: f64 = width.iter().map(|width| (width - mean).powi(2)).sum();
+    // The slope's error is that of the scatter: t^2 = R^2/(1 − R^2) times the degrees of freedom.
+    let score = line.slope.deviations_from(0.0).powi(2);
+    if all > 0.0 {
+        score / (score + number - 2.0)
+    } else {
+        0.0
+    }
+}
+
+/// What one wall says, by the slope of the line.
+fn part(
+    draft: &mut Draft,
+    one: &OnWall<Line<'_>>,
+    critical: &Critical,
+    line: Option<&LineFit>,
+) -> Part {
+    let (wall, rates) = (&one.name, critical.len());
+    let mut quantities = Vec::new();
+    if let Some(line) = line {
+        let found = PROSE.quantity("slope", values!(wall, rates), line.slope);
+        quantities.push(found.sourced(SLOPE));
+        quantities.push(PROSE.quantity("intercept", values!(wall, rates), line.intercept));
+    }
+    let [rate, width, error] = columns(critical.iter().copied(), 0.0);
+    let mut why = rates_in_words(one);
+    if let Ok(curve) = fit_parabola(&rate, &width, &error) {
+        let weighted = slope(&curve.line);
+        let (chi_squared, freedom) = (curve.line.chi_squared, curve.line.degrees_of_freedom);
+        let chi_squared = number(chi_squared, 1);
+        let weighted_slope = PROSE.quantity(
+            "weighted slope",
+            values!(wall, rates, chi_squared, freedom),
+            weighted,
+        );
+        quantities.push(weighted_slope.sourced(SLOPE));
+        let probability = probability(curve.linearity);
+        let curvature = PROSE.quantity("curvature", values!(wall, probability), curve.quadratic);
+        quantities.push(curvature.sourced(0.0));
+        let bend = PROSE.text("bend", values!(weighted, probability));
+        why = format!("{why}; {bend}");
+    }
+    draft.finding.quantities.extend(quantities);
+    let slope = line.map(|line| line.slope);
+    let determination = line.map(|line| determination(line, &width));
+    let holds = all_hold(&[
+        determination.map(|found| found >= A_LINE),
+        slope.and_then(|slope| agrees(&slope, SLOPE)),
+    ]);
+    let determination = cell_of(determination, |found| number(found, 3));
+    let words = PROSE.text("number", values!(slope = cell(slope), determination));
+    one.part(holds, words, why)
+}
+
+/// The strain rates of a line, and those left out.
+fn rates_in_words(one: &OnWall<Line<'_>>) -> String {
+    let rates = |tight: bool| {
+        let those = one.all.iter().filter(|shown| shown.is_tight() == tight);
+        listed(those.map(|shown| shown.strain_rate))
+    };
+    let through = rates(true);
+    let left_out = match rates(false) {
+        none if none.is_empty() => none,
+        leaking => PROSE.text("left out", values!(leaking)),
+    };
+    PROSE.text("rates", values!(through, left_out))
 }
 
 fn half(line: &Line<'_>) -> Option<Uncertain> {
     Some(line.crossing()?.width)
 }
 
-fn row(lattice: &str, line: &Line<'_>) -> Vec<String> {
-    let interval = |width: Option<Uncertain>| cell_of(width, |width| interval(&width));
+fn row(wall: &str, shown: &Shown<Line<'_>>) -> Vec<String> {
+    let line = &shown.found;
+    let near = line.near.as_ref();
+    let free = near.and_then(|near| near.power?.critical_width);
     vec![
-        lattice.to_owned(),
-        number(line.strain_rate, 3),
+        wall.to_owned(),
+        number(shown.strain_rate, 3),
         cell(half(line)),
-        interval(half(line)),
-        cell(diverging(line)),
-        interval(diverging(line)),
-        number(line.escaped(), 2),
+        cell(free),
+        cell(near.and_then(|near| Some(near.curved?.critical_width))),
+        cell(near.and_then(Near::critical_width)),
+        number(shown.escaped, 2),
     ]
 }
 
-/// Slope and intercept as quantities.
-fn of_line(line: &LineFit, lattice: &str, how: &str, rates: usize) -> [Quantity; 2] {
-    let (freedom, factor) = (line.degrees_of_freedom, line.scale_factor());
-    let intercept = line.intercept;
-    let intercept = Uncertain::normal(intercept.value, intercept.error * factor);
-    let slope = slope(line);
-    let (chi_squared, factor) = (number(line.chi_squared, 1), number(factor, 1));
-    let line = PROSE.text("line", values!(how, rates, chi_squared, freedom, factor));
-    let slope = PROSE.quantity("slope", values!(lattice, how, line), slope);
-    let intercept = PROSE.quantity("intercept", values!(lattice, how, line), intercept);
-    [slope.sourced(SLOPE), intercept]
-}
-
-fn with_line(panel: ChartPanel, line: &LineFit, rates: &[f64], place: usize) -> ChartPanel {
-    let largest = rates.iter().copied().fold(0.0, f64::max);
+fn with_line(panel: ChartPanel, line: &LineFit, critical: &Critical, place: usize) -> ChartPanel {
+    let largest = critical.iter().map(|one| one.0).fold(0.0, f64::max);
     let x = spaced(0.0, largest, 40);
     let at: Vec<Uncertain> = x.iter().map(|rate| line.at(*rate)).collect();
     let middle: Vec<f64> = at.iter().map(|one| one.value).collect();
-    let reach = line.scale_factor();
-    let error: Vec<f64> = at.iter().map(|one| reach * one.error).collect();
+    let error: Vec<f64> = at.iter().map(|one| one.error).collect();
     panel
         .with(error_band(&x, &middle, &error).series(place))
         .with(Curve::new("", &x, &middle).series(place).weight(0.8))

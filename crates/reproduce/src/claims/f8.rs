@@ -7,8 +7,7 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f8.md"));
 
-pub(super) const CLAIM: Claim =
-    Claim::new("F8", PROSE, &["density-fine", "density-coarse"], examine);
+pub(super) const CLAIM: Claim = Claim::new("F8", PROSE, &["density-*"], examine);
 
 /// What the source says of the transition time.
 const EXPONENT: f64 = 1.0;
@@ -18,7 +17,8 @@ struct Density<'a> {
     fraction: f64,
     branch: Branch<'a>,
     critical: Option<Uncertain>,
-    exponent: Option<Uncertain>,
+    /// The laws of the transition time next to w_c.
+    near: Option<Near>,
     /// J/Jmax at [`COMPARED_WIDTH`].
     flow: Option<Uncertain>,
     statistics: Statistics,
@@ -33,13 +33,19 @@ impl<'a> Density<'a> {
         Self {
             fraction: rows[0].number("volume_fraction"),
             critical: crossing(rows).map(|found| found.width).or_else(bracket),
-            exponent: Line::at_own_threshold(rows)
-                .and_then(|line| line.fit)
-                .map(|fit| fit.exponent),
+            near: Line::at_own_threshold(rows).and_then(|line| Near::of(&line)),
             flow: compared.map(|point| point.flow),
             statistics: branch.statistics(rows.len()),
             branch,
         }
+    }
+
+    /// 2a \[d\].
+    fn diameter(&self) -> f64 {
+        let rows = self.branch.points.iter().flat_map(|point| &point.rows);
+        rows.map(|row| 2.0 * row.radius())
+            .next()
+            .unwrap_or(f64::NAN)
     }
 
     /// The densities of a study, ascending.
@@ -50,13 +56,23 @@ impl<'a> Density<'a> {
         groups.map(|(_, rows)| Self::of(&rows)).collect()
     }
 
-    fn row(&self, lattice: &str) -> Vec<String> {
+    /// alpha next to w_c.
+    fn exponent(&self) -> Option<Uncertain> {
+        self.near.as_ref()?.exponent
+    }
+
+    fn row(&self, wall: &str) -> Vec<String> {
+        let diameter = self.diameter();
         vec![
-            lattice.to_owned(),
+            wall.to_owned(),
             number(self.fraction, 2),
             cell(self.flow),
             cell(self.critical),
-            cell(self.exponent),
+            cell(
+                self.critical
+                    .map(|width| Uncertain::normal(diameter - width.value, width.error)),
+            ),
+            cell(self.exponent()),
         ]
     }
 }
@@ -65,9 +81,11 @@ impl<'a> Density<'a> {
 struct Judged {
     /// Whether the flow falls with every density, by more than its errors; `None` without one at each.
     slower: Option<bool>,
-    /// d w_c/d rho, and the range of w_c over the largest.
+    /// d w_c/d rho, and the range of 2a − w_c over its mean.
     change: Option<Uncertain>,
     relative_change: f64,
+    /// Densities at which alpha = 1 next to w_c.
+    linear: Rates,
     exponent: Option<Uncertain>,
 }
 
@@ -83,12 +101,21 @@ impl Judged {
             .filter_map(|density| Some((density.fraction, density.critical?)));
         let [fraction, width, error] = columns(critical, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&fraction, &width, &error).ok();
-        let relative = |(least, largest): (f64, f64)| (largest - least) / largest;
-        let exponents = densities.iter().filter_map(|density| density.exponent);
+        let diameter = densities[0].diameter();
+        let distances = width.iter().map(|width| diameter - width);
+        let mean = distances.clone().sum::<f64>() / width.len().max(1) as f64;
+        let relative = |(least, largest): (f64, f64)| (largest - least) / mean;
+        let linear = densities.iter().map(|density| {
+            let near = density.near.as_ref();
+            let holds = near.and_then(|near| near.is_linear(|one| agrees(one, EXPONENT)));
+            ((density.fraction * 100.0).round() / 100.0, holds)
+        });
+        let exponents = densities.iter().filter_map(Density::exponent);
         Self {
             slower: flows.map(|flows| flows.windows(2).all(falls)),
             change: line.as_ref().map(slope),
-            relative_change: ends(width.iter().copied()).map_or(0.0, relative),
+            relative_change: ends(distances).map_or(0.0, relative),
+            linear: Rates::of(linear),
             exponent: weighted_mean(&exponents.collect::<Vec<_>>()),
         }
     }
@@ -98,80 +125,83 @@ impl Judged {
         all_hold(&[
             self.slower,
             Some(self.relative_change < HARDLY),
-            self.exponent
-                .and_then(|exponent| agrees(&exponent, EXPONENT)),
+            self.linear.hold(),
         ])
     }
 
-    fn in_words(&self, lattice: &str) -> String {
+    fn number(&self) -> String {
+        let change = number(100.0 * self.relative_change, 0);
+        PROSE.text("number", values!(change, exponent = cell(self.exponent)))
+    }
+
+    fn why(&self) -> String {
         let how = match self.slower {
             Some(true) => "decreases",
             Some(false) => "does not always decrease",
-            None => "is not known at every density, hence not how it changes",
+            None => "is not known at every density",
         };
-        let change = number(100.0 * self.relative_change, 1);
-        let exponent = cell(self.exponent);
-        PROSE.text("lattice", values!(lattice, how, change, exponent))
+        let hardly = match self.relative_change < HARDLY {
+            true => "hardly depends",
+            false => "depends",
+        };
+        let linear = self.linear.in_words().replace("*ε̇*", "*ρ*");
+        PROSE.text("why", values!(how, hardly, linear))
     }
 
-    fn quantities(&self, lattice: &str) -> [Quantity; 2] {
+    fn quantities(&self, wall: &str) -> [Quantity; 2] {
         // What is not known stands there without a number.
-        let change = PROSE.quantity("change", values!(lattice), self.change);
-        let exponent = PROSE.quantity("exponent", values!(lattice), self.exponent);
+        let change = PROSE.quantity("change", values!(wall), self.change);
+        let exponent = PROSE.quantity("exponent", values!(wall), self.exponent);
         [change.sourced(0.0), exponent.sourced(EXPONENT)]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let (mut parts, mut all, mut words) = (Vec::new(), Vec::new(), Vec::new());
+    let mut parts = Vec::new();
     let (mut draft, mut rows, mut panels) = (Draft::of(PROSE), Vec::new(), Vec::new());
-    for (lattice, study) in [("fine", "density-fine"), ("coarse", "density-coarse")] {
-        let densities = Density::all_of(evidence.study(study)?.rows());
+    for wall in WALLS {
+        let densities = Density::all_of(wall.rows("density", evidence)?);
         if densities.is_empty() {
             continue;
         }
-        let each = densities.iter().map(|density| density.statistics);
-        let statistics = Statistics::weakest_at_one_rate(each);
-        all.push(statistics);
+        let wall = wall.name();
         let judged = Judged::of(&densities);
-        let mut said = judged.in_words(lattice);
-        if densities.len() >= LEAST_DENSITIES {
-            parts.push(Part {
-                lattice: lattice.to_owned(),
-                holds: judged.all(),
-                statistics,
-            });
-        } else {
-            said.push_str(&PROSE.text("too few", values!(densities = LEAST_DENSITIES)));
-        }
-        words.push(said);
-        draft.finding.quantities.extend(judged.quantities(lattice));
-        rows.extend(densities.iter().map(|density| density.row(lattice)));
-        panels.extend(panels_of(lattice, &densities));
+        let is_enough = densities.len() >= LEAST_DENSITIES;
+        let each = densities.iter().map(|density| density.statistics);
+        parts.push(Part {
+            wall: wall.clone(),
+            holds: judged.all().filter(|_| is_enough),
+            statistics: Statistics::weakest_at_one_rate(each),
+            number: judged.number(),
+            why: judged.why(),
+        });
+        draft.finding.quantities.extend(judged.quantities(&wall));
+        rows.extend(densities.iter().map(|density| density.row(&wall)));
+        panels.extend(panels_of(&wall, &densities));
     }
-    let (verdict, _, why) = judge(&parts, &F8_NEEDED);
-    let found = best(all.into_iter(), &F8_NEEDED);
-    if words.is_empty() {
-        return Ok(PROSE.nothing(found, &F8_NEEDED));
+    let judgement = Judgement::of(parts, &F8_NEEDED);
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &F8_NEEDED));
     }
-    let summary = PROSE.text("summary", values!(found = words.join(". "), why));
-    let (compared, hardly) = (COMPARED_WIDTH, 100.0 * HARDLY);
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared, hardly));
+    let hardly = number(100.0 * HARDLY, 0);
+    let summary = PROSE.text("summary", values!(hardly));
+    let compared = COMPARED_WIDTH;
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(compared));
     draft.table("densities", values!(compared), rows);
     let chart = grid(3, panels);
     draft.chart("density", &[], chart)?;
-    Ok(draft.concluded(verdict, summary, found, &F8_NEEDED))
+    Ok(draft.judged(judgement, &summary))
 }
 
-fn panels_of(lattice: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
+fn panels_of(wall: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
     let flow = |density: &Density<'_>| {
         let name = format!("*ρ* = {}", number(density.fraction, 2));
         branch_points(&name, &density.branch)
     };
     let flow = flow_panel()
-        .title(&format!("{lattice} lattice"))
+        .title(wall)
         .with_all(numbered(densities.iter().map(flow)));
-    let against = |name: &str, value: fn(&Density<'_>) -> Option<Uncertain>| {
+    let against = |name: &str, value: &dyn Fn(&Density<'_>) -> Option<Uncertain>| {
         let known = densities
             .iter()
             .filter_map(|density| Some((density.fraction, value(density)?)))
@@ -187,7 +217,7 @@ fn panels_of(lattice: &str, densities: &[Density<'_>]) -> [ChartPanel; 3] {
     };
     [
         flow,
-        against(&label(Axis::CriticalWidth), |density| density.critical),
-        against("exponent, *α*", |density| density.exponent),
+        against(&label(Axis::CriticalWidth), &|density| density.critical),
+        against("exponent, *α*", &|density| density.exponent()),
     ]
 }

@@ -1,59 +1,100 @@
 //! F9: hysteresis.
 
-use peristalsis_analysis::{Family, Hysteresis, Transition, fit_lifetime, hysteresis};
+use peristalsis_analysis::{Family, Transition, fit_lifetime};
 
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("f9.md"));
-const STUDIES: &[&str] = &["branches-fine", "branches-coarse", "jam-lifetime"];
+const STUDIES: &[&str] = &["branches-*", "jam-lifetime"];
 
 pub(super) const CLAIM: Claim = Claim::new("F9", PROSE, STUDIES, examine);
 
-/// Both critical widths at one strain rate.
+/// How the runs from either start ended at one width.
+#[derive(Clone, Copy)]
+struct Outcomes {
+    width: f64,
+    /// Runs that ended jammed, and all of them: from rest, and from jammed.
+    rest: [u32; 2],
+    jammed: [u32; 2],
+}
+
+impl Outcomes {
+    fn of(width: f64, rows: &[Row<'_>], threshold: f64) -> Self {
+        let ended = |start: Start| {
+            let runs = rows.iter().filter(|row| {
+                row.start() == start && row.flow_rate_ratio().is_finite() && !coasts(row, threshold)
+            });
+            let jams = runs.clone().filter(|row| row.flow_rate_ratio() > threshold);
+            [jams.count() as u32, runs.count() as u32]
+        };
+        Self {
+            width,
+            rest: ended(Start::Rest),
+            jammed: ended(Start::Jammed),
+        }
+    }
+
+    /// Whether both starts have runs.
+    fn is_compared(&self) -> bool {
+        self.rest[1] > 0 && self.jammed[1] > 0
+    }
+
+    /// Probability that so many of the jams are of runs that began jammed, or more, if the start did not matter: Fisher's exact
+    /// test of one side.
+    fn probability(&self) -> f64 {
+        let ([rest, rests], [jammed, jams]) = (self.rest, self.jammed);
+        let all = rest + jammed;
+        let with = |jammed: u32| choose(jams, jammed) * choose(rests, all - jammed);
+        let possible = jammed..=jams.min(all);
+        possible.map(with).sum::<f64>() / choose(rests + jams, all)
+    }
+
+    /// Whether most runs that began jammed did not stay so.
+    fn breaks_up(&self) -> bool {
+        self.jammed[1] > 0 && 2 * self.jammed[0] < self.jammed[1]
+    }
+}
+
+/// Ways to choose k of n.
+fn choose(n: u32, k: u32) -> f64 {
+    if k > n {
+        return 0.0;
+    }
+    (0..k)
+        .map(|one| f64::from(n - one) / f64::from(k - one))
+        .product()
+}
+
+/// Whether a fast flow is no jam: grains that coast without contacts, or in a straight tube, which no wave can drive.
+fn coasts(row: &Row<'_>, threshold: f64) -> bool {
+    let is_straight = row.width() >= 2.0 * row.radius() - 1e-9;
+    row.flow_rate_ratio() > threshold && (is_straight || row.number("contacts") < LEAST_CONTACTS)
+}
+
+/// Both flows at one strain rate.
 struct Loop<'a> {
-    lattice: Lattice,
-    strain_rate: f64,
     flow: Branches<'a>,
-    /// w_c, where no loop is found from the branch alone.
+    /// w_c, the fall of the flow from rest, and whether it jumps there.
     critical: Uncertain,
-    /// Where both starts pass from one flow to the other at some width.
-    found: Option<Hysteresis>,
-    /// Lower bound of the distance where the jam outlives every width.
-    at_least: Option<f64>,
+    jumps: bool,
+    outcomes: Vec<Outcomes>,
     runs: usize,
 }
 
 impl<'a> AtRate<'a> for Loop<'a> {
-    fn of(lattice: Lattice, strain_rate: f64, rows: Vec<Row<'a>>) -> Option<Self> {
-        let flow = Branches::of(&rows, Control::Width);
-        let fall = flow.rest.step()?;
-        flow.jammed.step()?;
+    fn of(runs: &Runs<'a>) -> Option<Self> {
+        let flow = runs.flow();
+        let critical = flow.rest.step()?.place();
         let threshold = flow.rest.threshold()?;
-        let outcome = |start: Start| -> (Vec<f64>, Vec<bool>) {
-            rows.iter()
-                .filter(|row| row.start() == start && row.flow_rate_ratio().is_finite())
-                .map(|row| (row.width(), row.flow_rate_ratio() > threshold))
-                .unzip()
-        };
-        let (rest, jammed) = (outcome(Start::Rest), outcome(Start::Jammed));
-        let found = hysteresis((&rest.0, &rest.1), (&jammed.0, &jammed.1)).ok();
-        let outlives = found.is_none() && jammed.1.iter().all(|jammed| *jammed);
-        let largest = jammed.0.iter().copied().fold(0.0, f64::max);
+        let widths = grouped(runs.branches.iter().copied(), Row::width).into_iter();
+        let outcomes = widths.map(|(width, rows)| Outcomes::of(width, &rows, threshold));
         Some(Self {
-            lattice,
-            strain_rate,
-            critical: found
-                .as_ref()
-                .map_or(fall.place(), |found| found.from_rest.width),
-            found,
-            at_least: outlives.then_some(largest - fall.controls[1]),
-            runs: rows.len(),
+            jumps: flow.rest.jumps(),
+            outcomes: outcomes.collect(),
+            runs: runs.branches.len(),
+            critical,
             flow,
         })
-    }
-
-    fn escaped(&self) -> f64 {
-        self.flow.escaped()
     }
 
     fn statistics(&self) -> Statistics {
@@ -66,86 +107,119 @@ impl<'a> AtRate<'a> for Loop<'a> {
 }
 
 impl Loop<'_> {
-    /// Whether jams break up at some width, beyond that at which grains from rest begin to jam.
-    fn closes(&self) -> bool {
-        self.found.as_ref().is_some_and(|found| {
-            found.loop_width.value > CLEAR_LOOP * found.loop_width.error
-                && found.probability < ONE_WIDTH_BY_CHANCE
-        })
+    /// The width at which the starts part most clearly.
+    fn clearest(&self) -> Option<&Outcomes> {
+        let compared = self.outcomes.iter().filter(|one| one.is_compared());
+        compared.min_by(|one, other| one.probability().total_cmp(&other.probability()))
     }
 
-    /// The distance of w_c and w_c'.
-    fn distance(&self) -> Option<Uncertain> {
-        self.found.as_ref().map(|found| found.loop_width)
+    /// Probability of [`Self::clearest`] among all widths that are compared.
+    fn probability(&self) -> Option<f64> {
+        let number = self.outcomes.iter().filter(|one| one.is_compared()).count();
+        Some((self.clearest()?.probability() * number as f64).min(1.0))
     }
 
-    /// w_c', which may lie beyond all widths.
-    fn critical_jammed(&self) -> Option<Uncertain> {
-        self.found.as_ref().map(|found| found.from_jammed.width)
+    /// Whether both flows exist at some width; not asked where the flow from rest does not jump, and not told where no width
+    /// just beyond the jump has runs from both starts.
+    fn is_bistable(&self) -> Option<bool> {
+        let is_bistable = self.probability()? < ONE_FLOW_BY_CHANCE;
+        let beyond = |one: &Outcomes| one.width - self.critical.value;
+        let is_next = |one: &Outcomes| (0.0..=NEXT_TO_THE_FALL).contains(&beyond(one));
+        let mut compared = self.outcomes.iter().filter(|one| one.is_compared());
+        let is_told = is_bistable || compared.any(is_next);
+        (self.jumps && is_told).then_some(is_bistable)
     }
 
-    /// Whether both flows exist at some width, jams that outlive all runs included.
-    fn has_loop(&self) -> bool {
-        self.closes() || self.at_least.is_some_and(|least| least > 0.0)
+    /// The first width beyond w_c at which jams break up; not asked where the flow does not jump.
+    fn break_up(&self) -> Option<f64> {
+        if !self.jumps {
+            return None;
+        }
+        let mut beyond = self
+            .outcomes
+            .iter()
+            .filter(|one| one.width > self.critical.value);
+        beyond.find(|one| one.breaks_up()).map(|one| one.width)
     }
 
-    fn row(&self) -> Vec<String> {
-        let bound = |width: Option<Uncertain>, bound: &dyn Fn(f64) -> String| match (
-            width,
-            self.at_least,
-        ) {
-            (None, Some(least)) => bound(least),
-            _ => cell(width),
-        };
+    /// The widths beyond w_c at which both flows exist, ascending.
+    fn both(&self) -> Option<(f64, f64)> {
+        let both = self
+            .outcomes
+            .iter()
+            .filter(|one| one.is_compared() && one.probability() < ONE_FLOW_BY_CHANCE);
+        let widths: Vec<f64> = both.map(|one| one.width).collect();
+        Some((*widths.first()?, *widths.last()?))
+    }
+
+    fn row(wall: &str, shown: &Shown<Self>) -> Vec<String> {
+        let one = &shown.found;
+        let of = |[jams, runs]: [u32; 2]| format!("{jams} of {runs}");
+        let clearest = one.clearest();
         vec![
-            self.lattice.name(),
-            number(self.strain_rate, 3),
-            self.critical.to_string(),
-            bound(self.critical_jammed(), &|_| "> 3".to_owned()),
-            bound(self.distance(), &|least| format!("> {}", number(least, 2))),
-            number(self.escaped(), 2),
+            wall.to_owned(),
+            number(shown.strain_rate, 3),
+            one.critical.to_string(),
+            cell_of(clearest, |clearest| number(clearest.width, 4)),
+            cell_of(clearest, |clearest| of(clearest.rest)),
+            cell_of(clearest, |clearest| of(clearest.jammed)),
+            cell_of(one.probability(), probability),
+            cell_of(one.break_up(), |width| number(width, 4)),
+            number(shown.escaped, 2),
         ]
     }
 }
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let both = Shown::<Loop<'_>>::on_both(evidence)?;
-    let (mut parts, mut counts) = (Vec::new(), Vec::new());
-    for one in &both {
-        let looping = one.tight().filter(|one| one.has_loop()).count();
-        let closed = one.tight().filter(|one| one.closes()).count();
-        let (lattice, all) = (&one.name, one.tight().count());
-        counts.push(PROSE.text("count", values!(lattice, looping, all, closed)));
-        // Both halves of the claim: two states, and jams that break up.
-        parts.push(one.part(looping >= needed.strain_rates && closed > 0));
+    let walls = OnWall::<Loop<'_>>::all(evidence)?;
+    let (mut draft, mut rows) = (Draft::of(PROSE), Vec::new());
+    for one in &walls {
+        rows.extend(one.all.iter().map(|shown| Loop::row(&one.name, shown)));
+        for shown in one.tight() {
+            let (wall, rate) = (&one.name, shown.strain_rate);
+            let distance = shown
+                .found
+                .both()
+                .map(|(_, last)| last - shown.found.critical.value);
+            let distance =
+                distance.map(|least| Uncertain::normal(least, shown.found.critical.error));
+            draft.quantity("loop", values!(wall, rate), distance);
+        }
     }
-    let (verdict, statistics, why) = judge(&parts, &needed);
-    let loops = || both.iter().flat_map(|one| &one.all);
-    if loops().next().is_none() {
-        return Ok(PROSE.nothing(statistics, &needed));
+    let judgement = Judgement::of(walls.iter().map(part).collect(), &needed);
+    if rows.is_empty() {
+        return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
-    let periods = both.iter().map(|one| one.periods).fold(0.0, f64::max);
-    let summary = PROSE.text("summary", values!(periods, counts = counts.join("; "), why));
-    let mut draft = Draft::of(PROSE);
-    for one in loops().filter(|one| one.is_tight()) {
-        let (lattice, rate) = (one.lattice.name(), one.strain_rate);
-        draft.quantity("loop", values!(lattice, rate), one.distance());
-    }
-    draft.table("loops", &[], loops().map(Loop::row));
+    let periods = walls.iter().map(|one| one.periods).fold(0.0, f64::max);
+    let summary = PROSE.text("summary", values!(periods));
+    let (contacts, chance, next) = (LEAST_CONTACTS, ONE_FLOW_BY_CHANCE, NEXT_TO_THE_FALL);
+    draft.finding.paragraphs = PROSE.paragraphs("method", values!(contacts, chance, next));
+    draft.table("loops", &[], rows);
     let rows = lifetimes(evidence.study("jam-lifetime")?.rows());
     if !rows.is_empty() {
         draft.table("lifetimes", &[], rows);
     }
     draft.finding.weaknesses = PROSE.paragraphs("weaknesses", values!(periods));
-    let [fine, coarse] = &both;
-    let panels = [coarse, fine].map(|one| widest(&one.all));
-    let panels: Vec<ChartPanel> = panels.into_iter().flatten().collect();
+    let panels: Vec<ChartPanel> = walls.iter().filter_map(widest).collect();
     if !panels.is_empty() {
         let chart = grid(2, panels).share_y();
         draft.chart("hysteresis", &[], chart)?;
     }
-    Ok(draft.concluded(verdict, summary, statistics, &needed))
+    Ok(draft.judged(judgement, &summary))
+}
+
+fn part(one: &OnWall<Loop<'_>>) -> Part {
+    let rates = one.rates(Loop::is_bistable);
+    let broken = one.tight().filter(|shown| shown.found.break_up().is_some());
+    let broken = listed(broken.map(|shown| shown.strain_rate));
+    let broken = match broken.is_empty() {
+        true => "none".to_owned(),
+        false => format!("*ε̇* = {broken}"),
+    };
+    let count = PROSE.text("count", values!(count = rates.count()));
+    let why = PROSE.text("why", values!(rates = rates.in_words(), broken));
+    one.part(rates.hold(), count, why)
 }
 
 /// How long jams last in tubes too wide for them.
@@ -160,7 +234,7 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
             .or_else(|_| fit_lifetime(Family::Exponential, &transitions));
         let ratio = scattered(&group, Row::flow_rate_ratio);
         vec![
-            lattice.name(),
+            format!("{} × {}", lattice.spheres_per_ring, lattice.rings_per_wave),
             number(rate, 3),
             number(width, 2),
             format!("{} of {}", ended.count(), group.len()),
@@ -174,19 +248,18 @@ fn lifetimes(rows: Vec<Row<'_>>) -> Vec<Vec<String>> {
     grouped(jammed, key).into_iter().map(lifetime).collect()
 }
 
-/// The widest closed loop of a lattice, or the first that does not close.
-fn widest(loops: &[Loop<'_>]) -> Option<ChartPanel> {
-    let width = |one: &Loop<'_>| one.distance().map_or(0.0, |distance| distance.value);
-    let widest = loops
-        .iter()
-        .filter(|one| one.distance().is_some())
-        .max_by(|one, other| width(one).total_cmp(&width(other)));
-    let one = widest.or_else(|| loops.iter().find(|one| one.at_least.is_some()))?;
-    let lattice = one.lattice.name();
-    let mut panel = flow_panel().title(&format!("{lattice} lattice, *ε̇* = {}", one.strain_rate));
-    let (rest, jammed) = (one.critical.value, one.critical_jammed());
-    if let Some(jammed) = jammed.filter(|jammed| jammed.value > rest) {
-        panel = panel.with(Window::new("both states", rest, jammed.value));
+/// The widest window with both flows on a wall.
+fn widest(one: &OnWall<Loop<'_>>) -> Option<ChartPanel> {
+    let windows = one
+        .tight()
+        .filter_map(|shown| Some((shown, shown.found.both()?)));
+    let width = |(first, last): (f64, f64)| last - first;
+    let (shown, (first, last)) =
+        windows.max_by(|one, other| width(one.1).total_cmp(&width(other.1)))?;
+    let title = format!("{}, *ε̇* = {}", one.name, shown.strain_rate);
+    let mut panel = flow_panel().title(&title);
+    if last > first {
+        panel = panel.with(Window::new("both states", first, last));
     }
-    Some(panel.with_all(both_starts(&one.flow).into_iter().flatten()))
+    Some(panel.with_all(both_starts(&shown.found.flow).into_iter().flatten()))
 }

@@ -1,7 +1,7 @@
 //! The words in which claims are written.
 
 pub(super) use peristalsis_analysis::Uncertain;
-pub(super) use peristalsis_analysis::number::{decimal as number, interval, with_error};
+pub(super) use peristalsis_analysis::number::{decimal as number, with_error};
 pub(super) use peristalsis_figures::chart::{
     ChartFigure, ChartPanel, LegendPlace, Line as Curve, Pattern, Points, Reference, Tint, Window,
 };
@@ -19,7 +19,8 @@ pub(super) use crate::exhibit::*;
 pub(super) use crate::finding::{Finding, Quantity, ReportFigure, Statistics, Verdict};
 pub(super) use crate::forces::*;
 pub(super) use crate::judgement::*;
-pub(super) use crate::lattices::*;
+pub(super) use crate::near::*;
 pub(super) use crate::prose::{Prose, values};
 pub(super) use crate::row::*;
 pub(super) use crate::thresholds::*;
+pub(super) use crate::walls::*;

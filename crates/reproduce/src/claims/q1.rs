@@ -37,9 +37,9 @@ impl Line {
     /// `None` where there is no branch from rest, or grains leave the tube.
     fn of(lattice: &'static str, strain_rate: f64, rows: &[Row<'_>]) -> Option<Self> {
         let flow = Branches::of(rows, Control::Width);
-        let is_tight = flow.escaped() <= MOST_ESCAPED;
         let Branches { rest, jammed } = flow;
         let fall = rest.step()?;
+        let is_tight = leak(rows, Some(fall.place().value)) <= MOST_ESCAPED;
         let falls = jammed.step().filter(|step| -step.height.value > LEAST_FALL);
         is_tight.then(|| Self {
             lattice,

@@ -32,17 +32,12 @@ struct Wall {
 impl Wall {
     fn of(strain_rate: f64, lattice: Lattice, rows: &[Row<'_>]) -> Option<Self> {
         let critical = crossing(rows)?.width;
-        let near = |row: &&Row<'_>| (row.width() - critical.value).abs() < ESCAPED_WITHIN;
         Some(Self {
             lattice,
             strain_rate,
             depth: depth(&rows[0]),
+            escaped: leak(rows, Some(critical.value)),
             critical,
-            escaped: rows
-                .iter()
-                .filter(near)
-                .map(Row::escaped_fraction)
-                .fold(0.0, f64::max),
         })
     }
 

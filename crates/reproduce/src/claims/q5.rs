@@ -9,7 +9,7 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q5.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q5", PROSE, DIVERGENCES, examine);
+pub(super) const CLAIM: Claim = Claim::new("Q5", PROSE, TRANSITIONS, examine);
 
 /// The laws that are compared.
 const LAWS: [Law; 4] = [
@@ -21,18 +21,18 @@ const LAWS: [Law; 4] = [
 
 /// The laws at one strain rate.
 struct Compared<'a> {
-    lattice: &'a str,
+    wall: &'a str,
     line: &'a Line<'a>,
     scatter: ScatterLawFit,
     laws: Vec<LawEvidence>,
 }
 
 impl<'a> Compared<'a> {
-    fn of(lattice: &'a str, line: &'a Line<'a>, scatter: ScatterLawFit) -> Option<Self> {
+    fn of(wall: &'a str, line: &'a Line<'a>, scatter: ScatterLawFit) -> Option<Self> {
         let (width, transitions) = line.window(WINDOW)?;
         let laws = compare_laws(&LAWS, Family::Gamma, &width, &transitions);
         Some(Self {
-            lattice,
+            wall,
             line,
             scatter,
             laws: laws.unwrap_or_default(),
@@ -52,7 +52,7 @@ impl<'a> Compared<'a> {
 
     fn row(&self) -> Vec<String> {
         let scatter = &self.scatter;
-        [self.lattice.to_owned(), number(self.line.strain_rate, 3)]
+        [self.wall.to_owned(), number(self.line.strain_rate, 3)]
             .into_iter()
             .chain(LAWS.map(|law| cell_of(self.excess(law), |excess| number(excess, 1))))
             .chain([
@@ -83,17 +83,17 @@ impl<'a> Compared<'a> {
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;
-    let lattices = OnLattice::all(evidence)?;
-    let statistics = best(lattices.iter().map(OnLattice::statistics), &needed);
+    let walls = OnWall::<Line<'_>>::all(evidence)?;
+    let statistics = best(walls.iter().map(OnWall::statistics), &needed);
     let (mut draft, mut compared) = (Draft::of(PROSE), Vec::new());
     let (mut all, mut excluded) = (0, 0);
-    for one in &lattices {
+    for one in &walls {
         let exponents = one.scattered().map(|(_, fit)| fit.scatter_exponent);
         let exponents: Vec<Uncertain> = exponents.collect();
         let quantities = &mut draft.finding.quantities;
         quantities.extend(weighted_mean(&exponents).map(|mean| {
-            let (lattice, rates) = (&one.name, exponents.len());
-            let found = PROSE.quantity("exponent", values!(lattice, rates), mean);
+            let (wall, rates) = (&one.name, exponents.len());
+            let found = PROSE.quantity("exponent", values!(wall, rates), mean);
             found.sourced(1.0)
         }));
         all += exponents.len();
@@ -124,7 +124,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     );
     let survival = compared
         .iter()
-        .filter(|one| one.lattice == "fine" && (one.line.strain_rate - 0.1).abs() < 0.03)
+        .filter(|one| (one.line.strain_rate - 0.1).abs() < 0.03)
         .find_map(|one| survival_panel(one.line, one.scatter.critical_width.value));
     if let Some((panel, scale)) = survival {
         let chart = ChartFigure::new(panel).colour_scale(scale);
@@ -137,12 +137,15 @@ fn relative_variance(draft: &mut Draft, compared: &[Compared<'_>]) -> Result<()>
     let mut panel = ChartPanel::new("distance, (*w*_{c} − *w*)/*d*", "*χ_{τ}*/*τ*^2")
         .x_scale(Scale::Logarithmic)
         .y_scale(Scale::Logarithmic);
-    let mut rates = Vec::new();
+    let (mut rates, mut walls) = (Vec::new(), Vec::new());
     for one in compared {
         let rate = one.line.strain_rate;
         if let Some(points) = points("", one.variances()) {
             rates.push(rate);
-            let points = points.series(usize::from(one.lattice == "coarse"));
+            if walls.last() != Some(&one.wall) {
+                walls.push(one.wall);
+            }
+            let points = points.series(walls.len() - 1);
             panel = panel.with(points.tint(Tint::Value(rate)));
         }
     }

@@ -15,19 +15,29 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     if tight.is_empty() {
         return Ok(nothing(&PROSE));
     }
-    let of_kind = |kind: Kind| -> Vec<f64> {
-        let lines = tight.iter().filter(|line| line.kind() == kind);
+    let of_kind = |kind: Kind, replicates: usize| -> Vec<f64> {
+        let lines = tight
+            .iter()
+            .filter(|line| line.kind() == kind && line.statistics.replicates >= replicates);
         lines.map(|line| line.strain_rate).collect()
     };
-    let (jumping, smooth) = (of_kind(Kind::Jump), of_kind(Kind::Smooth));
-    let vanishing = vanishing(&jumping, &smooth);
+    // The interval rests on strain rates with replicates; single runs are told and drawn.
+    let [firm_jumps, firm_smooth] =
+        [Kind::Jump, Kind::Smooth].map(|kind| of_kind(kind, NEEDED.replicates));
+    let vanishing = vanishing(&firm_jumps, &firm_smooth);
+    let is_firm = |line: &&&ForceLine<'_>| line.statistics.replicates >= NEEDED.replicates;
+    let firm = tight.iter().filter(is_firm).count();
     let verdict = if vanishing.is_some() {
         Verdict::Reproduced
-    } else if jumping.len() == tight.len() || smooth.len() == tight.len() {
+    } else if [&firm_jumps, &firm_smooth]
+        .iter()
+        .any(|those| those.len() == firm)
+    {
         Verdict::Differs
     } else {
         Verdict::Open
     };
+    let (jumping, smooth) = (of_kind(Kind::Jump, 0), of_kind(Kind::Smooth, 0));
     let (jumping, smooth) = (in_words(jumping), in_words(smooth));
     let mut summary = PROSE.text("summary", values!(jumping, smooth));
     if let Some(rate) = vanishing {

@@ -1,10 +1,10 @@
 //! The findings for programs.
 
-use crate::{Examination, Quantity, ReportTable, Statistics, Verdict};
+use crate::{Examination, Quantity, ReportTable, Statistics, Verdict, WallVerdict};
 use serde::Serialize;
 
 use crate::report::files::{FigureFiles, figure_files, table_names};
-use crate::report::{Program, Report};
+use crate::report::{Program, Report, WallTally};
 
 /// Version of the layout of the file.
 const FORMAT: u32 = 1;
@@ -14,6 +14,7 @@ struct Document<'a> {
     format: u32,
     program: &'a Program,
     size: &'static str,
+    walls: Vec<WallTally<'a>>,
     claims: Vec<Claim<'a>>,
 }
 
@@ -24,6 +25,7 @@ struct Claim<'a> {
     statement: String,
     source: &'a str,
     verdict: Verdict,
+    walls: &'a [WallVerdict],
     summary: &'a str,
     statistics: Statistics,
     /// The parameter that `widths` counts.
@@ -71,6 +73,7 @@ pub(crate) fn text(report: &Report) -> String {
         format: FORMAT,
         program: &report.program,
         size: report.size.name(),
+        walls: report.walls(),
         claims: report
             .examinations
             .iter()
@@ -105,6 +108,7 @@ fn claim<'a>(
         statement: claim.prose.statement(),
         source: claim.prose.source(),
         verdict: finding.verdict,
+        walls: &finding.walls,
         summary: &finding.summary,
         statistics: finding.statistics,
         varied: finding.varied,
@@ -131,8 +135,8 @@ fn claim<'a>(
             })
             .collect(),
         studies: claim
-            .studies
-            .iter()
+            .all_studies()
+            .into_iter()
             .filter_map(|name| report.study(name))
             .map(|study| Study {
                 name: study.file.name,

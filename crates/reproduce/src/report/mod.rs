@@ -21,7 +21,7 @@ use peristalsis_formats::{atomic, csv};
 
 use self::files::{figure_files, table_files};
 use crate::error::{ReproduceError, make_folder};
-use crate::{Examination, Outcome, Size, StudyOutcome};
+use crate::{Examination, Outcome, Size, StudyOutcome, Verdict};
 
 pub(crate) use json::json_text;
 
@@ -63,6 +63,17 @@ pub struct Report {
     pub examinations: Vec<Examination>,
     /// The studies behind them.
     pub studies: Vec<StudyOutcome>,
+}
+
+/// How many claims a wall meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+pub(crate) struct WallTally<'a> {
+    /// Name of the wall.
+    pub(crate) wall: &'a str,
+    /// Claims that are reproduced there.
+    pub(crate) met: usize,
+    /// Claims that are reproduced there or differ.
+    pub(crate) judged: usize,
 }
 
 impl Report {
@@ -108,6 +119,27 @@ impl Report {
         let page = folder.join(PAGE);
         atomic::write(&page, self.html().as_bytes())?;
         Ok(page)
+    }
+
+    /// Every wall that a claim was asked of, with the number of claims that it meets and of those that could be judged there.
+    pub(crate) fn walls(&self) -> Vec<WallTally<'_>> {
+        let mut tallies: Vec<WallTally<'_>> = Vec::new();
+        let verdicts = self.examinations.iter().flat_map(|one| &one.finding.walls);
+        for on_wall in verdicts {
+            let place = tallies.iter().position(|tally| tally.wall == on_wall.wall);
+            let place = place.unwrap_or_else(|| {
+                let wall = on_wall.wall.as_str();
+                tallies.push(WallTally {
+                    wall,
+                    met: 0,
+                    judged: 0,
+                });
+                tallies.len() - 1
+            });
+            tallies[place].met += usize::from(on_wall.verdict == Verdict::Reproduced);
+            tallies[place].judged += usize::from(on_wall.verdict != Verdict::Open);
+        }
+        tallies
     }
 
     /// The study of this name.

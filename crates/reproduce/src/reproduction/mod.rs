@@ -159,12 +159,12 @@ impl Reproduction {
         make_folder(folder)?;
         make_folder(&stores)?;
         let mut works: Vec<Work> = Vec::new();
-        for name in claims.iter().flat_map(|claim| claim.studies) {
-            if works.iter().any(|work| work.file.name == *name) {
+        for name in claims.iter().flat_map(Claim::all_studies) {
+            if works.iter().any(|work| work.file.name == name) {
                 continue;
             }
-            let file = studies.iter().find(|study| study.name == *name);
-            let file = *file.ok_or_else(|| ReproduceError::NoSuchStudy((*name).to_owned()))?;
+            let file = studies.iter().find(|study| study.name == name);
+            let file = *file.ok_or_else(|| ReproduceError::NoSuchStudy(name.to_owned()))?;
             let study = file.specification(size)?;
             let store = Store::create(&stores.join(file.name), &study);
             works.push(Work { file, study, store });
@@ -408,7 +408,7 @@ impl<'a> Course<'a> {
     /// Examines the claims whose studies have all ended.
     fn examine_what_has_ended(&mut self) {
         for (place, claim) in self.claims.iter().enumerate() {
-            let mut studies = claim.studies.iter();
+            let mut studies = claim.all_studies().into_iter();
             let is_ready =
                 studies.all(|name| self.study(name).is_some_and(|study| study.has_ended));
             if is_ready && self.examinations[place].is_none() {
@@ -433,7 +433,7 @@ impl<'a> Course<'a> {
         let outcome = outcome.map_err(|error| match error {
             ReproduceError::Panicked => error.to_string(),
             error => {
-                let failed_study = claim.studies.iter().copied().find_map(failure);
+                let failed_study = claim.all_studies().into_iter().find_map(failure);
                 failed_study.unwrap_or_else(|| error.to_string())
             }
         });

@@ -13,8 +13,9 @@ pub(super) fn cheapest_claims_first(
     let mut waiting: Vec<Vec<usize>> = claims
         .iter()
         .map(|claim| {
+            let needed = claim.all_studies();
             (0..studies.len())
-                .filter(|place| claim.studies.contains(&studies[*place]))
+                .filter(|place| needed.contains(&studies[*place]))
                 .collect()
         })
         .collect();

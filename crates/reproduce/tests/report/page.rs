@@ -142,7 +142,8 @@ fn readers_who_do_not_see_are_told_what_is_there() {
         let heads = Selector::parse("thead th[scope=col]").unwrap();
         assert!(table.select(&heads).count() > 1);
     }
-    assert_eq!(all(&page, "nav[aria-label] a").len(), 1 + 1 + 6 + 2);
+    // Contents, verdict by wall, overview, six claims, studies, how to read.
+    assert_eq!(all(&page, "nav[aria-label] a").len(), 1 + 1 + 1 + 6 + 2);
 }
 
 #[test]

@@ -86,6 +86,15 @@ impl Rows {
         }
     }
 
+    /// Adds to a number of all runs.
+    pub(crate) fn shift(&mut self, name: &str, by: f64) {
+        for (_, numbers) in &mut self.rows {
+            numbers
+                .entry(name.to_owned())
+                .and_modify(|value| *value += by);
+        }
+    }
+
     /// Those runs of which `keep` holds, given their texts and numbers.
     pub(crate) fn only(
         &self,

@@ -1,6 +1,6 @@
 //! The section of a claim.
 
-use crate::{Examination, Quantity, ReportFigure, ReportTable};
+use crate::{Examination, Quantity, ReportFigure, ReportTable, WallVerdict};
 use maud::{Markup, html};
 use peristalsis_analysis::number::{distance, interval, plain};
 
@@ -35,6 +35,7 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
             } @else {
                 p.lead { (rich(&finding.summary)) }
                 (statistics(examination))
+                @if !finding.walls.is_empty() { (walls(&finding.walls)) }
             }
             @if !finding.quantities.is_empty() { (quantities(&finding.quantities)) }
             @for (number, figure) in finding.figures.iter().enumerate() {
@@ -51,7 +52,7 @@ pub(super) fn section(report: &Report, place: usize, examination: &Examination) 
             @if !claim.studies.is_empty() {
                 p.meta.sources {
                     "From "
-                    @for (place, study) in claim.studies.iter().filter_map(|name| report.study(name)).enumerate() {
+                    @for (place, study) in claim.all_studies().into_iter().filter_map(|name| report.study(name)).enumerate() {
                         @if place > 0 { "; " }
                         a href={ "#" (study_anchor(study.file.name)) } { (study.file.name) }
                         " (" (counts(study)) ")"
@@ -77,6 +78,29 @@ fn statistics(examination: &Examination) -> Markup {
                 @if examination.is_sufficient() { "enough for a verdict." }
                 @else {
                     "too few for a verdict, which takes " (needed.strain_rates) " × " (needed.widths) " × " (needed.replicates) "."
+                }
+            }
+        }
+    }
+}
+
+/// The verdict on each wall, and why.
+fn walls(walls: &[WallVerdict]) -> Markup {
+    html! {
+        div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
+            table.walls {
+                thead {
+                    tr { th scope="col" { "Wall" } th scope="col" { "Verdict" } th scope="col" { "Number" } th scope="col" { "Why" } }
+                }
+                tbody {
+                    @for one in walls {
+                        tr {
+                            th scope="row" { (one.wall) }
+                            td { (one.verdict.name()) }
+                            td { (rich(&one.number)) }
+                            td { (rich(&one.why)) }
+                        }
+                    }
                 }
             }
         }

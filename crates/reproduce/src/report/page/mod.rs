@@ -33,6 +33,7 @@ pub(crate) fn page(report: &Report) -> Markup {
                 div.sheet {
                     (masthead(report))
                     main #main {
+                        (by_wall(report))
                         (overview(report))
                         @for (place, examination) in report.examinations.iter().enumerate() {
                             (claim::section(report, place, examination))
@@ -52,6 +53,7 @@ fn navigation(report: &Report) -> Markup {
         nav.contents aria-label="Contents" {
             p.contents-title { a href="#top" { "Contents" } }
             ul {
+                @if !report.walls().is_empty() { li { a href="#walls" { "Verdict by wall" } } }
                 li { a href="#overview" { "The claims at a glance" } }
                 @for examination in &report.examinations {
                     li {
@@ -95,6 +97,65 @@ fn masthead(report: &Report) -> Markup {
                     ")."
                 }
             }
+        }
+    }
+}
+
+/// The verdicts of the claims about walls of fixed spheres: claims down, walls across; nothing where there is none.
+fn by_wall(report: &Report) -> Markup {
+    let walls = report.walls();
+    let asked = report
+        .examinations
+        .iter()
+        .filter(|one| !one.finding.walls.is_empty());
+    html! {
+        @if !walls.is_empty() {
+            section #walls {
+                h2 { "Verdict by wall" }
+                p {
+                    "A wall is named by its spheres a ring and rings a wave. The source had one tube and does not say which: a claim                     counts as reproduced where one wall or more reproduces it."
+                }
+                div.scroll tabindex="0" role="region" aria-label="Verdict by wall" {
+                    table.walls {
+                        thead {
+                            tr {
+                                th scope="col" { "Claim" }
+                                @for tally in &walls { th scope="col" { (tally.wall) } }
+                            }
+                        }
+                        tbody {
+                            @for examination in asked {
+                                tr {
+                                    th scope="row" {
+                                        a href={ "#" (anchor(examination.experiment.id)) } { (examination.experiment.id) }
+                                        " " (rich(examination.experiment.prose.title()))
+                                    }
+                                    @for tally in &walls { td { (on_wall(examination, tally.wall)) } }
+                                }
+                            }
+                            tr {
+                                th scope="row" { "claims met, of those judged" }
+                                @for tally in &walls { td { b { (tally.met) } " of " (tally.judged) } }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The verdict on a claim on one wall; empty where it was not asked.
+fn on_wall(examination: &Examination, wall: &str) -> Markup {
+    let found = examination
+        .finding
+        .walls
+        .iter()
+        .find(|one| one.wall == wall);
+    html! {
+        @if let Some(found) = found {
+            span.badge.(found.verdict.name()) { span.mark.(found.verdict.name()) aria-hidden="true" {} (found.verdict.name()) }
+            " " (rich(&found.number))
         }
     }
 }

@@ -30,7 +30,7 @@ fn entry(report: &Report, study: &StudyOutcome) -> Markup {
         .examinations
         .iter()
         .map(|examination| &examination.experiment)
-        .filter(|claim| claim.studies.contains(&study.file.name))
+        .filter(|claim| claim.all_studies().contains(&study.file.name))
         .map(|claim| claim.id)
         .collect();
     html! {

@@ -1,0 +1,224 @@
+//! The transition times next to the critical width: the source's method, alpha = 1 with a correction, and a free power.
+
+use peristalsis_analysis::{
+    Law, LawFit, Uncertain, fit_law, fit_line, fit_parabola, power_exponent,
+};
+
+use crate::branch::columns;
+use crate::critical::{Line, slope};
+use crate::thresholds::{LEAST_RATES, NEAR, STRAIGHT, WINDOW, WORSE};
+
+/// 1/tau at the widths next to w_c, and the laws fitted to it.
+#[derive(Clone, Debug)]
+pub(crate) struct Near {
+    /// epsdot.
+    strain_rate: f64,
+    /// 1/tau = B d with d = w_c − w, as the source draws it: through the nearest widths.
+    pub(crate) straight: Option<Linear>,
+    /// 1/tau = B d + C d²: alpha is 1, and as many parameters as the free power has.
+    pub(crate) curved: Option<Linear>,
+    /// tau = A d^−alpha over the same widths as `curved`.
+    pub(crate) power: Option<LawFit>,
+    /// alpha of the fewest widths that a fit can use, by the likelihood of the runs.
+    pub(crate) exponent: Option<Uncertain>,
+    /// Widths, chi_tau and its errors.
+    variance: [Vec<f64>; 3],
+}
+
+/// A law by which 1/tau vanishes linearly at w_c.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Linear {
+    /// w_c \[d\].
+    pub(crate) critical_width: Uncertain,
+    /// tau (w_c − w) in the limit, 1/B \[d t\].
+    pub(crate) amplitude: Uncertain,
+    /// Sum of the squared deviations in units of their errors.
+    pub(crate) chi_squared: f64,
+    /// Points less parameters.
+    pub(crate) degrees_of_freedom: usize,
+    /// Probability of so large a sum.
+    pub(crate) probability: f64,
+    /// Part of the variance of 1/tau that the law explains.
+    pub(crate) determination: f64,
+}
+
+impl Linear {
+    /// Through widths, 1/tau and its errors; straight or with a square. `None` where 1/tau does not come to 0 beyond the widths.
+    fn of([width, inverse, error]: &[Vec<f64>; 3], is_curved: bool) -> Option<Self> {
+        let last = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let from_last: Vec<f64> = width.iter().map(|width| width - last).collect();
+        let [distance, amplitude] = root(&from_last, inverse, error, is_curved)?;
+        // Errors to first order: each point moved by its own.
+        let mut squares = [0.0; 2];
+        for place in 0..inverse.len() {
+            let mut moved = inverse.clone();
+            moved[place] += error[place];
+            let found = root(&from_last, &moved, error, is_curved)?;
+            squares[0] += (found[0] - distance).powi(2);
+            squares[1] += (found[1] - amplitude).powi(2);
+        }
+        let (chi_squared, degrees_of_freedom, probability) = if is_curved {
+            let fit = fit_parabola(&from_last, inverse, error).ok()?;
+            (fit.chi_squared, fit.degrees_of_freedom, fit.probability)
+        } else {
+            let fit = fit_line(&from_last, inverse, error).ok()?;
+            (fit.chi_squared, fit.degrees_of_freedom, fit.probability)
+        };
+        Some(Self {
+            critical_width: Uncertain::normal(last + distance, squares[0].sqrt()),
+            amplitude: Uncertain::normal(amplitude, squares[1].sqrt()),
+            chi_squared,
+            degrees_of_freedom,
+            probability,
+            determination: 1.0 - chi_squared / scatter(inverse, error),
+        })
+    }
+
+    /// Whether the linear term is there: its error is below half of it.
+    fn is_clear(&self) -> bool {
+        self.amplitude.error < 0.5 * self.amplitude.value
+    }
+}
+
+/// Where the fit comes to 0, and the inverse of its slope there, less its sign.
+fn root(x: &[f64], y: &[f64], error: &[f64], is_curved: bool) -> Option<[f64; 2]> {
+    let (constant, linear, quadratic) = if is_curved {
+        let fit = fit_parabola(x, y, error).ok()?;
+        (fit.constant, fit.linear, fit.quadratic.value)
+    } else {
+        let fit = fit_line(x, y, error).ok()?;
+        (fit.intercept, fit.slope, 0.0)
+    };
+    let steepness = (linear.value.powi(2) - 4.0 * quadratic * constant.value).sqrt();
+    let distance = 2.0 * constant.value / (steepness - linear.value);
+    let is_beyond = steepness > 0.0 && distance > 0.0 && distance.is_finite();
+    is_beyond.then(|| [distance, 1.0 / steepness])
+}
+
+/// chi^2 about the weighted mean.
+fn scatter(y: &[f64], error: &[f64]) -> f64 {
+    let weight = |error: &f64| error.powi(-2);
+    let total: f64 = error.iter().map(weight).sum();
+    let pairs = || y.iter().zip(error);
+    let mean = pairs().map(|(y, error)| y * weight(error)).sum::<f64>() / total;
+    pairs()
+        .map(|(y, error)| (y - mean).powi(2) * weight(error))
+        .sum()
+}
+
+impl Near {
+    /// Of the transition times at one strain rate; `None` with fewer than three usable widths.
+    pub(crate) fn of(line: &Line<'_>) -> Option<Self> {
+        let from = line.window_from(WINDOW)?;
+        let usable = line.ensembles.iter();
+        let usable = usable.filter(|one| one.width >= from && one.observed >= one.censored);
+        let fits = usable.filter_map(|one| Some((one.width, one.fit?)));
+        let fits: Vec<_> = fits.filter(|(_, fit)| fit.mean.error > 0.0).collect();
+        let times = columns(fits.iter().map(|(width, fit)| (*width, fit.mean)), 0.0);
+        let inverse = [
+            times[0].clone(),
+            times[1].iter().map(|time| 1.0 / time).collect(),
+            times[1]
+                .iter()
+                .zip(&times[2])
+                .map(|(time, error)| error / (time * time))
+                .collect(),
+        ];
+        let curved = Linear::of(&inverse, true);
+        // The widths of the straight line: those near x = 1, at least the nearest four.
+        let unit = line.strain_rate.powf(1.5);
+        let critical = curved.map(|curved| curved.critical_width.value);
+        let is_near = |width: &f64| critical.is_some_and(|w_c| w_c - width <= NEAR * unit);
+        let number = inverse[0].iter().filter(|width| is_near(width)).count();
+        let first = inverse[0].len().saturating_sub(number.max(STRAIGHT));
+        let variance = fits.iter().map(|(width, fit)| (*width, fit.variance));
+        Some(Self {
+            strain_rate: line.strain_rate,
+            straight: Linear::of(&inverse.each_ref().map(|one| one[first..].to_vec()), false),
+            curved,
+            power: fit_law(Law::Power, &times[0], &times[1], &times[2], None).ok(),
+            exponent: line.nearest().map(|fit| fit.exponent),
+            variance: columns(variance.filter(|(_, one)| one.value > 0.0), 0.0),
+        })
+    }
+
+    /// Whether alpha = 1 next to w_c: where 1/tau = B d + C d² has a clear linear term and a free power, of as many parameters,
+    /// fits no better. Without a clear linear term the local exponent decides.
+    pub(crate) fn is_linear(&self, agrees: impl Fn(&Uncertain) -> Option<bool>) -> Option<bool> {
+        let (Some(curved), Some(power)) = (self.curved.filter(Linear::is_clear), &self.power)
+        else {
+            return self.exponent.as_ref().and_then(agrees);
+        };
+        Some(curved.chi_squared - power.chi_squared < WORSE)
+    }
+
+    /// tau (w_c − w) next to w_c, where alpha = 1 leaves a linear term.
+    pub(crate) fn amplitude(&self) -> Option<Uncertain> {
+        let curved = self.curved.filter(Linear::is_clear)?;
+        Some(curved.amplitude)
+    }
+
+    /// beta of chi_tau ~ (w_c − w)^−beta, about the w_c of alpha = 1, or of the free power where 1/tau has no linear term.
+    pub(crate) fn variance_exponent(&self) -> Option<Uncertain> {
+        let [width, variance, error] = &self.variance;
+        let critical = self.linear_or_free()?;
+        let fit = fit_law(Law::Power, width, variance, error, Some(critical)).ok()?;
+        Some(fit.exponent)
+    }
+
+    /// chi_tau (w_c − w)^power, the weighted mean over the widths.
+    pub(crate) fn variance_amplitude(&self, power: f64) -> Option<Uncertain> {
+        let [width, variance, error] = &self.variance;
+        let critical = self.linear_or_free()?;
+        let (mut weights, mut sum, mut shift) = (0.0, 0.0, 0.0);
+        for ((width, variance), error) in width.iter().zip(variance).zip(error) {
+            let distance = critical.value - width;
+            let weight = (variance / error).powi(2);
+            weights += weight;
+            sum += weight * (variance.ln() + power * distance.ln());
+            shift += weight * power / distance;
+        }
+        let value = (sum / weights).exp();
+        // The error of w_c moves all points together.
+        let relative = weights.powf(-0.5).hypot(critical.error * shift / weights);
+        value
+            .is_finite()
+            .then(|| Uncertain::normal(value, value * relative))
+    }
+
+    /// w_c of alpha = 1, or of the free power where 1/tau has no linear term.
+    fn linear_or_free(&self) -> Option<Uncertain> {
+        let linear = self.curved.map(|curved| curved.critical_width);
+        linear.or_else(|| self.power.and_then(|fit| fit.critical_width))
+    }
+
+    /// w_c with an error that knows of the law: midway between those of the free power and of alpha = 1, their distance
+    /// from it beside the larger error of both.
+    pub(crate) fn critical_width(&self) -> Option<Uncertain> {
+        let power = self.power.and_then(|fit| fit.critical_width);
+        let linear = self.curved.map(|curved| curved.critical_width);
+        let (one, other) = (power.or(linear)?, linear.or(power)?);
+        let half = 0.5 * (one.value - other.value);
+        let error = one.error.max(other.error).hypot(half);
+        Some(Uncertain::normal(other.value + half, error))
+    }
+}
+
+/// The power of the strain rate with which a number goes, its error stretched to the scatter; `None` with too few strain rates.
+pub(crate) fn power_of_rate(numbers: &[(f64, Uncertain)]) -> Option<Uncertain> {
+    let known = numbers.iter().copied();
+    let known = known.filter(|(_, one)| one.value > 0.0 && one.error > 0.0);
+    let [rate, value, error] = columns(known, 0.0);
+    let line = power_exponent(&rate, &value, &error).ok()?;
+    (rate.len() >= LEAST_RATES).then(|| slope(&line))
+}
+
+/// What one number of every strain rate is.
+pub(crate) fn at_rates<'a>(
+    all: impl IntoIterator<Item = &'a Near>,
+    number: impl Fn(&Near) -> Option<Uncertain>,
+) -> Vec<(f64, Uncertain)> {
+    let all = all.into_iter();
+    all.filter_map(|near| Some((near.strain_rate, number(near)?)))
+        .collect()
+}

@@ -1,0 +1,272 @@
+//! The walls that are examined, and what the studies of each show.
+
+use crate::branch::{Branch, Branches, Control, leak};
+use crate::critical::{Thresholds, crossing};
+use crate::error::Result;
+use crate::evidence::Evidence;
+use crate::finding::Statistics;
+use crate::judgement::{Part, Rates};
+use crate::row::{Row, Start, grouped, longest};
+use crate::studies::{STUDIES, StudyFile};
+use crate::thresholds::MOST_ESCAPED;
+
+/// A wall of spheres of the grains' diameter. Its studies are `branches-NAME`, `divergence-NAME`, `near-NAME` and
+/// `density-NAME`, as far as [`STUDIES`] has them.
+#[derive(Debug)]
+pub(crate) struct Wall {
+    /// What the names of its studies end with.
+    pub(crate) study: &'static str,
+    spheres_per_ring: u32,
+    rings_per_wave: u32,
+    arrangement: &'static str,
+}
+
+/// All walls that are examined, in the order of the report: the one place where a wall is named.
+pub(crate) const WALLS: &[Wall] = &[
+    Wall::new("fine", 24, 26, STAGGERED),
+    Wall::new("coarse", 12, 14, STAGGERED),
+];
+
+/// The arrangement that a name leaves out.
+const STAGGERED: &str = "staggered";
+
+impl Wall {
+    const fn new(
+        study: &'static str,
+        spheres_per_ring: u32,
+        rings_per_wave: u32,
+        arrangement: &'static str,
+    ) -> Self {
+        Self {
+            study,
+            spheres_per_ring,
+            rings_per_wave,
+            arrangement,
+        }
+    }
+
+    /// Its name for readers, such as "24 × 26" or "12 × 14 aligned": spheres a ring, rings a wave, and how they stand.
+    pub(crate) fn name(&self) -> String {
+        let lattice = format!("{} × {}", self.spheres_per_ring, self.rings_per_wave);
+        match self.arrangement {
+            STAGGERED => lattice,
+            arrangement => format!("{lattice} {arrangement}"),
+        }
+    }
+
+    /// Whether a run has this wall; a table without the column knows staggered walls only.
+    fn is_of(&self, row: &Row<'_>) -> bool {
+        let lattice = row.lattice();
+        let arrangement = match row.text("arrangement") {
+            "" => STAGGERED,
+            arrangement => arrangement,
+        };
+        (lattice.spheres_per_ring, lattice.rings_per_wave)
+            == (self.spheres_per_ring.into(), self.rings_per_wave.into())
+            && arrangement == self.arrangement
+    }
+
+    /// The runs of one of its studies; none where it has no such study.
+    pub(crate) fn rows<'a>(&self, kind: &str, evidence: &'a Evidence) -> Result<Vec<Row<'a>>> {
+        let name = format!("{kind}-{}", self.study);
+        match (evidence.study(&name), StudyFile::named(&name)) {
+            (Err(_), None) => Ok(Vec::new()),
+            (study, _) => Ok(study?.rows()),
+        }
+    }
+}
+
+/// The names that `name` stands for: `branches-*` is that study of every wall that has one.
+pub(crate) fn of_every_wall(name: &'static str) -> Vec<&'static str> {
+    let Some(kind) = name.strip_suffix('*') else {
+        return vec![name];
+    };
+    let studies = |wall: &Wall| {
+        let study = format!("{kind}{}", wall.study);
+        STUDIES.iter().find(|known| known.name == study)
+    };
+    let found = WALLS.iter().filter_map(studies);
+    found.map(|study| study.name).collect()
+}
+
+/// The runs on one wall at one strain rate.
+#[derive(Clone, Debug)]
+pub(crate) struct Runs<'a> {
+    /// epsdot.
+    pub(crate) strain_rate: f64,
+    /// The stationary flows, from both starts.
+    pub(crate) branches: Vec<Row<'a>>,
+    /// The transitions from rest, those of runs next to w_c included.
+    pub(crate) times: Vec<Row<'a>>,
+    /// J/Jmax whose crossing counts as a transition, midway between the branches.
+    pub(crate) threshold: f64,
+    /// Fraction of the grains outside the tube near the transition.
+    pub(crate) escaped: f64,
+}
+
+impl<'a> Runs<'a> {
+    /// The one rule of all claims for leaks: see [`leak`], about the fall of the branch from rest, or about the width at which
+    /// half of the runs have a transition where there is no branch.
+    fn new(strain_rate: f64, branches: Vec<Row<'a>>, times: Vec<Row<'a>>, threshold: f64) -> Self {
+        let fall = Branch::of(&branches, Start::Rest, Control::Width).step();
+        let half = || crossing(&times).map(|found| found.width.value);
+        let place = fall.map(|step| step.place().value).or_else(half);
+        let rows = if fall.is_some() { &branches } else { &times };
+        Self {
+            strain_rate,
+            escaped: leak(rows, place),
+            branches,
+            times,
+            threshold,
+        }
+    }
+
+    /// All strain rates of a wall, ascending; the runs on it in the studies `also` count among the transitions.
+    fn all(wall: &Wall, evidence: &'a Evidence, also: &[&str]) -> Result<Vec<Self>> {
+        let branches = wall.rows("branches", evidence)?;
+        let thresholds = Thresholds::of(branches.iter().copied());
+        let mut times = wall.rows("divergence", evidence)?;
+        times.extend(wall.rows("near", evidence)?);
+        for study in also {
+            let rows = evidence.study(study)?.rows().into_iter();
+            times.extend(rows.filter(|row| wall.is_of(row)));
+        }
+        times.retain(|row| row.start() == Start::Rest);
+        let of_branches = branches.len();
+        let rows = branches.into_iter().chain(times).enumerate();
+        // Each run with whether it is of a branch.
+        let marked = rows.map(|(place, row)| (row, place < of_branches));
+        let groups = grouped(marked, |(row, _)| row.strain_rate());
+        let runs = groups.into_iter().map(|(rate, rows)| {
+            let of = |is_branch: bool| -> Vec<Row<'a>> {
+                let those = rows.iter().filter(|row| row.1 == is_branch);
+                those.map(|row| row.0).collect()
+            };
+            Self::new(rate, of(true), of(false), thresholds.at(rate))
+        });
+        Ok(runs.collect())
+    }
+
+    /// The branches from both starts.
+    pub(crate) fn flow(&self) -> Branches<'a> {
+        Branches::of(&self.branches, Control::Width)
+    }
+}
+
+/// What the runs on one wall at one strain rate show of a claim.
+pub(crate) trait AtRate<'a>: Sized {
+    /// Studies of several walls, or of one, whose runs from rest count as well.
+    const ALSO: &'static [&'static str] = &[];
+
+    /// Of these runs; `None` where they show nothing.
+    fn of(runs: &Runs<'a>) -> Option<Self>;
+
+    /// Those of them that it looks at.
+    fn rows<'b>(runs: &'b Runs<'a>) -> &'b [Row<'a>] {
+        &runs.branches
+    }
+
+    /// How much is behind it.
+    fn statistics(&self) -> Statistics;
+}
+
+/// What is shown at one strain rate.
+#[derive(Debug)]
+pub(crate) struct Shown<T> {
+    /// epsdot.
+    pub(crate) strain_rate: f64,
+    /// Fraction of the grains outside the tube near the transition.
+    pub(crate) escaped: f64,
+    /// What it is.
+    pub(crate) found: T,
+}
+
+impl<T> Shown<T> {
+    /// Whether the tube holds its grains, so that it counts.
+    pub(crate) fn is_tight(&self) -> bool {
+        self.escaped <= MOST_ESCAPED
+    }
+}
+
+/// What is shown on one wall.
+#[derive(Debug)]
+pub(crate) struct OnWall<T> {
+    /// Name of the wall for readers.
+    pub(crate) name: String,
+    /// By ascending strain rate.
+    pub(crate) all: Vec<Shown<T>>,
+    /// Longest time that a run was given, in periods.
+    pub(crate) periods: f64,
+}
+
+impl<'a, T: AtRate<'a>> OnWall<T> {
+    /// On every wall that shows something.
+    pub(crate) fn all(evidence: &'a Evidence) -> Result<Vec<Self>> {
+        let mut walls = Vec::new();
+        for wall in WALLS {
+            let runs = Runs::all(wall, evidence, T::ALSO)?;
+            let periods = longest(runs.iter().flat_map(T::rows));
+            let shown = |runs: &Runs<'a>| {
+                Some(Shown {
+                    strain_rate: runs.strain_rate,
+                    escaped: runs.escaped,
+                    found: T::of(runs)?,
+                })
+            };
+            let all: Vec<Shown<T>> = runs.iter().filter_map(shown).collect();
+            if !all.is_empty() {
+                let name = wall.name();
+                walls.push(Self { name, all, periods });
+            }
+        }
+        Ok(walls)
+    }
+
+    /// Where the tube holds its grains.
+    pub(crate) fn tight(&self) -> impl Iterator<Item = &Shown<T>> {
+        self.all.iter().filter(|one| one.is_tight())
+    }
+
+    /// At which of the strain rates that count a claim holds.
+    pub(crate) fn rates(&self, holds: impl Fn(&T) -> Option<bool>) -> Rates {
+        Rates::of(self.tight().map(|one| (one.strain_rate, holds(&one.found))))
+    }
+
+    /// How much is behind those that count.
+    pub(crate) fn statistics(&self) -> Statistics {
+        Statistics::weakest(self.tight().map(|one| one.found.statistics()))
+    }
+
+    /// What it says of a claim, with a number in a few words.
+    pub(crate) fn part(&self, holds: Option<bool>, number: String, why: String) -> Part {
+        Part {
+            wall: self.name.clone(),
+            holds,
+            statistics: self.statistics(),
+            number,
+            why,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_study_of_a_wall_has_its_wall() {
+        for kind in ["branches", "divergence", "near", "density"] {
+            let is_of_kind = |study: &&StudyFile| study.name.starts_with(&format!("{kind}-"));
+            for study in STUDIES.iter().filter(is_of_kind) {
+                let name = &study.name[kind.len() + 1..];
+                assert!(WALLS.iter().any(|wall| wall.study == name), "{name}");
+            }
+        }
+        assert_eq!(
+            of_every_wall("branches-*"),
+            ["branches-fine", "branches-coarse"]
+        );
+        assert_eq!(of_every_wall("roughness"), ["roughness"]);
+        assert_eq!(Wall::new("x", 12, 14, "aligned").name(), "12 × 14 aligned");
+    }
+}
