@@ -25,6 +25,7 @@ pub(crate) struct Wall {
 pub(crate) const WALLS: &[Wall] = &[
     Wall::new("fine", 24, 26, STAGGERED),
     Wall::new("coarse", 12, 14, STAGGERED),
+    Wall::new("12x16", 12, 16, STAGGERED),
 ];
 
 /// The arrangement that a name leaves out.
@@ -264,7 +265,7 @@ mod tests {
         }
         assert_eq!(
             of_every_wall("branches-*"),
-            ["branches-fine", "branches-coarse"]
+            ["branches-fine", "branches-coarse", "branches-12x16"]
         );
         assert_eq!(of_every_wall("roughness"), ["roughness"]);
         assert_eq!(Wall::new("x", 12, 14, "aligned").name(), "12 × 14 aligned");
