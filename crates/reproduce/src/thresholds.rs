@@ -97,6 +97,8 @@ pub(crate) const PASSED: f64 = 0.5;
 pub(crate) const LEAST_DIFFERENCE: f64 = 0.05;
 /// Temperatures differ from this ratio on: they vary over decades.
 pub(crate) const LEAST_RATIO: f64 = 2.0;
+/// Part of the pairs of flows of one model that may differ by a measure which is to tell two models apart.
+pub(crate) const MOST_WITHIN: f64 = 0.5;
 /// Pressure on the wall, as a fraction of its largest, below which grains fly freely.
 pub(crate) const FREE_FLIGHT: f64 = 0.01;
 

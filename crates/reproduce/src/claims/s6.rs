@@ -177,7 +177,17 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let differ = number_of(Outcome::Differ);
     let warmer = number_of(Outcome::DifferInTemperature);
     let agree = number_of(Outcome::Agree);
-    let verdict = if differ + warmer == pairs.len() {
+    // The same measure among the flows of one model says whether it tells models apart, or any two flows.
+    let own = frictional.iter().enumerate().flat_map(|(place, one)| {
+        let others = frictional[place + 1..].iter();
+        others.map(move |other| one.beside(other))
+    });
+    let own: Vec<Outcome> = own.collect();
+    let differs =
+        |outcome: &&Outcome| matches!(outcome, Outcome::Differ | Outcome::DifferInTemperature);
+    let within = own.iter().filter(differs).count();
+    let is_specific = within as f64 <= MOST_WITHIN * own.len() as f64;
+    let verdict = if differ + warmer == pairs.len() && is_specific {
         Verdict::Reproduced
     } else if agree == pairs.len() {
         Verdict::Differs
@@ -185,7 +195,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         Verdict::Open
     };
     let number = pairs.len();
-    let summary = PROSE.text("summary", values!(differ, pairs = number, warmer, agree));
+    let own = own.len();
+    let summary = PROSE.text(
+        "summary",
+        values!(differ, pairs = number, warmer, agree, within, own),
+    );
     let mut draft = draft(PROSE);
     let alike = pairs.iter().filter_map(|(one, other, outcome)| {
         let alike = match outcome {
