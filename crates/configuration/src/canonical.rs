@@ -124,7 +124,7 @@ impl Configuration {
         entries.retain(|entry| match entry.path().as_str() {
             "drive.body_force" => self.drive.body_force != 0.0,
             "tube.arrangement" => self.tube.arrangement != Arrangement::default(),
-            "tube.seed" => self.tube.arrangement.is_drawn(),
+            "tube.arrangement_seed" => self.tube.arrangement.is_drawn(),
             "initial.axial_velocity" => self.initial.axial_velocity.to_bits() != natural.to_bits(),
             path => !absent.contains(&path),
         });

@@ -93,7 +93,7 @@ pub struct Tube {
     /// Seed of a random or disordered arrangement.
     #[serde(default = "first_seed")]
     #[schemars(extend("x-unit" = "1", "minimum" = 0))]
-    pub seed: u64,
+    pub arrangement_seed: u64,
     /// Angle of each wall sphere about the axis, from x towards y; under arrangement = "file".
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schemars(extend("x-unit" = "rad", "items" = {"type": "number", "minimum": -1e6, "maximum": 1e6}))]
@@ -112,7 +112,7 @@ pub struct Tube {
     pub rings_per_wave: u32,
 }
 
-/// The default of [`Tube::seed`].
+/// The default of [`Tube::arrangement_seed`].
 pub(crate) const FIRST_SEED: u64 = 1;
 
 fn first_seed() -> u64 {

@@ -67,8 +67,8 @@ pub(crate) struct Keys {
 pub(crate) struct TubeKeys {
     #[serde(flatten)]
     pub(crate) tube: Tube,
-    /// Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the columns angle \[rad\]
-    /// and place \[d\], one sphere a line. Its path is that from the configuration file, or from where the program runs.
+    /// Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the columns angle (rad)
+    /// and place (d), one sphere a line. Its path is that from the configuration file, or from where the program runs.
     #[serde(rename = "file")]
     #[schemars(extend("default" = null))]
     pub(crate) _file: Option<String>,

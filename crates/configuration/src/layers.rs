@@ -53,9 +53,9 @@ static SWITCHES: LazyLock<Vec<Switch>> = LazyLock::new(|| {
     let mut schedule = Switch::new("drive.schedule", &["drive.ramp_periods"]);
     schedule.owns("ramp", "drive.ramp_periods");
     switches.push(schedule);
-    let mut arrangement = Switch::new("tube.arrangement", &["tube.seed"]);
+    let mut arrangement = Switch::new("tube.arrangement", &["tube.arrangement_seed"]);
     for drawn in ["random", "disordered"] {
-        arrangement.owns(drawn, "tube.seed");
+        arrangement.owns(drawn, "tube.arrangement_seed");
     }
     for key in ["tube.file", "tube.angles", "tube.places"] {
         arrangement.owns("file", key);

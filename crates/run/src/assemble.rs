@@ -238,10 +238,14 @@ pub fn walls(configuration: &Configuration) -> Wall {
                 PrescribedWall::new(lattice, radius, waveform, heading, amplitude, frequency);
             Wall::Prescribed(match tube.arrangement {
                 Arrangement::Staggered | Arrangement::Aligned => wall,
-                Arrangement::Random => wall.with(Scattered::random(&lattice, tube.seed)),
-                Arrangement::Disordered => {
-                    wall.with(Scattered::disordered(&lattice, radius, tube.seed))
+                Arrangement::Random => {
+                    wall.with(Scattered::random(&lattice, tube.arrangement_seed))
                 }
+                Arrangement::Disordered => wall.with(Scattered::disordered(
+                    &lattice,
+                    radius,
+                    tube.arrangement_seed,
+                )),
                 Arrangement::File => {
                     let angles = tube.angles.iter().copied();
                     let places = tube.places.iter().copied();

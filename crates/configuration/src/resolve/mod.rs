@@ -335,7 +335,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     let contact = contact(keys.contact, context);
     let mut tube = keys.tube.tube.clone();
     if !tube.arrangement.is_drawn() {
-        tube.seed = FIRST_SEED;
+        tube.arrangement_seed = FIRST_SEED;
     }
     tube::check_lattice(&tube, &keys.drive.drive.control, context);
     let grains = grains::grains(&keys.grains, &tube, context);
