@@ -114,8 +114,6 @@ pub const STUDIES: &[StudyFile] = &[
     study!("divergence-fine"),
     study!("divergence-coarse"),
     study!("near-12x16"),
-    study!("near-fine"),
-    study!("near-coarse"),
     study!("branches-12x16"),
     study!("branches-fine"),
     study!("branches-coarse"),
