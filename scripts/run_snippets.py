@@ -25,7 +25,7 @@ BLOCK = re.compile(r"^```([\w,=.-]+)\n(.*?)^```\n(?:\n*```text\n(.*?)^```$)?", r
 #: Commands that are parsed only, each with the reason.
 PARSED = {
     r"peristalsis view\b": "waits for a browser",
-    r"peristalsis reproduce( --full .*)?$": "takes minutes to hours",
+    r"peristalsis reproduce( --(full|check) .*| --fresh| --quick)?$": "takes minutes to hours",
     r"peristalsis study (run|status|export) \S*(examples/studies/|stores/)jamming-width": "takes some minutes",
     r"peristalsis run --preset frictional .*(--trajectory|contact\.static_friction=0)": "takes half a minute",
     r"peristalsis render .*--film": "takes a minute",

@@ -7,6 +7,7 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use peristalsis_configuration::PRESETS;
 use peristalsis_engine::Instructions;
+use peristalsis_reproduce::Extent;
 use peristalsis_run::{Span, TrajectoryFormat, Window};
 
 use crate::choice::{INSTRUCTIONS, TRAJECTORIES, one_of};
@@ -21,7 +22,7 @@ use crate::commands::study::{StudyCommand, WorkArguments, time_span};
     version = concat!(env!("CARGO_PKG_VERSION")),
     propagate_version = true,
     max_term_width = 100,
-    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 129, 130, 138, 143 stopped by a signal (a second one, a second later, ends at once)."
+    after_help = "Exit codes: 0 done, or the time of --for is up (the last line says what is left); 1 failed or diverged; 2 bad input; 3 a published row is not what its run gives; 129, 130, 138, 143 stopped by a signal (a second one, a second later, ends at once)."
 )]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -257,22 +258,33 @@ pub(crate) struct NewtonianArguments {
 
 #[derive(Debug, Args)]
 #[command(
-    after_help = "Called again it goes on where it was; both sizes share their runs. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/."
+    after_help = "Begins from the published rows of finished runs, computes a random sample of them again, compares it to the bit, and examines every claim. Called again it goes on where it was; all designs share their runs. Writes report.html, claims.json, figures/ and tables/, and keeps the runs in stores/ and again/. Ends with 3 where a published row is not what its run gives."
 )]
 pub(crate) struct ReproduceArguments {
-    /// A few runs of everything, in minutes; the default.
-    #[arg(long, conflicts_with = "full")]
-    pub(crate) quick: bool,
-    /// Enough runs for verdicts, in hours or days.
-    #[arg(long)]
+    /// How many of the published rows to compute again: a part of each study's, such as 1%, or as many as fit into a time,
+    /// such as 90s; 0% for none. Unless given: 3 minutes, and with --full none.
+    #[arg(long, value_name = "PART|TIME", value_parser = extent, conflicts_with_all = ["quick", "fresh"])]
+    pub(crate) check: Option<Extent>,
+    /// Seed of the draw, to draw the same runs again; a new one unless given, which is said.
+    #[arg(long, value_name = "N", conflicts_with_all = ["quick", "fresh"])]
+    pub(crate) check_seed: Option<u64>,
+    /// Compute what the published rows lack as well, in hours or days.
+    #[arg(long, conflicts_with = "quick")]
     pub(crate) full: bool,
+    /// Begin from nothing and compute every run, in days.
+    #[arg(long, conflicts_with_all = ["quick", "import"])]
+    pub(crate) fresh: bool,
+    /// Begin from nothing and compute a few runs of everything, in minutes: the way of each analysis, too little for verdicts.
+    #[arg(long)]
+    pub(crate) quick: bool,
     /// Only these claims, such as F3,F6.
     #[arg(long, value_name = "CLAIMS", value_delimiter = ',')]
     pub(crate) only: Vec<String>,
     /// Folder for report and runs.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub(crate) out: PathBuf,
-    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from.
+    /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from. Unless given: the folder
+    /// validation/results here or above.
     #[arg(long, value_name = "PATH", num_args = 1..)]
     pub(crate) import: Vec<PathBuf>,
     #[command(flatten)]
@@ -283,6 +295,13 @@ pub(crate) struct ReproduceArguments {
     /// No progress on standard error.
     #[arg(long, short)]
     pub(crate) quiet: bool,
+}
+
+impl ReproduceArguments {
+    /// Whether every run of the design is computed that is missing.
+    pub(crate) fn computes_all(&self) -> bool {
+        self.quick || self.full || self.fresh
+    }
 }
 
 #[derive(Debug, Args)]
@@ -319,6 +338,19 @@ pub(crate) struct CompletionsArguments {
 /// The names of the presets.
 fn presets() -> PossibleValuesParser {
     PossibleValuesParser::new(PRESETS.iter().map(|preset| preset.name))
+}
+
+/// How many rows are computed again.
+fn extent(text: &str) -> Result<Extent, String> {
+    let misread = || "a part such as 1%, from 0% to 100%, or a time such as 90s".to_owned();
+    let Some(part) = text.strip_suffix('%') else {
+        return time_span(text).map(Extent::Time).map_err(|_| misread());
+    };
+    let part: f64 = part.trim().parse().map_err(|_| misread())?;
+    match (0.0..=100.0).contains(&part) {
+        true => Ok(Extent::Part(part / 100.0)),
+        false => Err(misread()),
+    }
 }
 
 /// A number above 0.
@@ -379,6 +411,18 @@ mod tests {
             "0..18446744073709551615",
         ] {
             assert!(read(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn an_extent_is_a_part_or_a_time() {
+        use super::{Extent, extent};
+        assert_eq!(extent("1%"), Ok(Extent::Part(0.01)));
+        assert_eq!(extent("0%"), Ok(Extent::Part(0.0)));
+        let time = std::time::Duration::from_secs(90);
+        assert_eq!(extent("90s"), Ok(Extent::Time(time)));
+        for text in ["", "1", "%", "101%", "-1%", "NaN%", "0s", "1h%"] {
+            assert!(extent(text).is_err(), "{text}");
         }
     }
 

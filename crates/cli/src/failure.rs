@@ -53,6 +53,9 @@ pub(crate) enum Failure {
     /// Claims, textbook cases or the report of them.
     #[error(transparent)]
     Claim(ReproduceError),
+    /// Published rows that are not what their runs give.
+    #[error("{message}")]
+    OtherRows { message: String },
     /// The viewer.
     #[error(transparent)]
     Viewer(#[from] ViewerError),
@@ -68,6 +71,8 @@ pub(crate) enum Failure {
 const BAD_INPUT: u8 = 2;
 /// Exit code for work that failed.
 const FAILED: u8 = 1;
+/// Exit code for a published row that is not what its run gives.
+const OTHER_ROWS: u8 = 3;
 
 impl From<ReproduceError> for Failure {
     fn from(error: ReproduceError) -> Self {
@@ -114,6 +119,14 @@ impl Failure {
             )),
             Self::Study(error) => of_study(error),
             Self::Claim(error) => of_claim(error),
+            Self::OtherRows { .. } => (
+                OTHER_ROWS,
+                Some(
+                    "either the tables were changed, or this program computes something else than the one that made them; \
+                     the report says which rows these are"
+                        .to_owned(),
+                ),
+            ),
             Self::Viewer(ViewerError::Listen { .. }) => {
                 failed("name another port with --port, or leave it out to get a free one")
             }

@@ -41,7 +41,8 @@ pub use examination::Examination;
 pub use finding::{Finding, Quantity, ReportFigure, ReportTable, Statistics, Verdict, WallVerdict};
 pub use prose::Prose;
 pub use reproduction::{
-    Event, Import, ImportedRuns, Outcome, Reproduction, Stage, StudyOutcome, chosen,
+    DifferingRow, Drawn, Event, Extent, Import, ImportedRuns, Outcome, PublishedRows, Reproduction,
+    Sample, Sampling, Stage, StudyOutcome, chosen, published_in_words,
 };
 pub use row::{Lattice, Row, Start};
 pub use studies::{Products, STUDIES, Size, StudyFile};

@@ -7,12 +7,13 @@
 
 use std::cell::Cell;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use peristalsis_reproduce::{
-    Claim, Event, Evidence, Finding, ImportedRuns, Outcome, Products, Prose, ReproduceError,
-    Reproduction, Size, Statistics, StudyFile, Verdict, chosen,
+    Claim, Event, Evidence, Extent, Finding, ImportedRuns, Outcome, Products, Prose, PublishedRows,
+    ReproduceError, Reproduction, Sample, Size, Statistics, StudyFile, Verdict, chosen,
+    published_in_words,
 };
 use peristalsis_study::{Effort, Ending, Store};
 
@@ -298,6 +299,104 @@ fn imported_rows_count_and_products_that_claims_need_are_computed_again() {
         assert_eq!(outcome.studies[0].done, 4);
         assert!(fractions.is_sorted(), "{fractions:?}");
     }
+}
+
+/// Computes both studies in a folder and answers the folder of their tables.
+fn tables_of_all(folder: &Path) -> PathBuf {
+    let (first, tables) = (folder.join("first"), folder.join("tables"));
+    run(&prepared(&first, Size::Full));
+    for name in ["long", "short"] {
+        let store = Store::open(&first.join("stores").join(name)).unwrap();
+        store.export(&tables, false).unwrap();
+        fs::remove_file(tables.join(format!("{name}.parquet"))).unwrap();
+    }
+    tables
+}
+
+fn sampled(reproduction: &Reproduction, extent: Extent, seed: u64) -> Vec<PublishedRows> {
+    let sample = Sample { extent, seed };
+    let mut fractions = Vec::new();
+    let drawn = reproduction.sample(sample, EFFORT, &|| false, &mut |sampling| {
+        fractions.push(sampling.board.fraction);
+    });
+    let drawn = drawn.unwrap();
+    assert_eq!(drawn.ending, Ending::Complete);
+    assert_eq!(drawn.within_reach, [("long", 6), ("short", 4)]);
+    assert!(fractions.is_sorted(), "{fractions:?}");
+    let outcome = reproduction.examine(&mut |_| {});
+    assert_eq!(summaries(&outcome)[0], "6 runs, 0 missing");
+    outcome.published
+}
+
+fn counts(published: &[PublishedRows]) -> Vec<[usize; 3]> {
+    let counts = |it: &PublishedRows| [it.rows, it.checked, it.differing.len()];
+    published.iter().map(counts).collect()
+}
+
+#[test]
+fn published_rows_that_are_drawn_come_out_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let tables = tables_of_all(folder.path());
+    let second = prepared(&folder.path().join("second"), Size::Full);
+    assert!(!second.has_published_rows());
+    second.import(std::slice::from_ref(&tables)).unwrap();
+    assert!(second.has_published_rows());
+    // Asked to stop at once, nothing is computed.
+    let extent = Extent::Part(0.5);
+    let stopped = second.sample(Sample { extent, seed: 7 }, EFFORT, &|| true, &mut |_| {});
+    assert_eq!(stopped.unwrap().ending, Ending::Stopped);
+    // Half of each, and with the same seed the same half, which is there already.
+    for _ in 0..2 {
+        assert_eq!(counts(&sampled(&second, extent, 7)), [[6, 3, 0], [4, 2, 0]]);
+    }
+    let other = prepared(&folder.path().join("third"), Size::Full);
+    other.import(std::slice::from_ref(&tables)).unwrap();
+    sampled(&other, extent, 7);
+    let drawn = |name: &str| {
+        let runs = folder.path().join(name).join("again/long/runs");
+        let runs = fs::read_dir(runs).unwrap();
+        let mut runs: Vec<_> = runs.map(|run| run.unwrap().file_name()).collect();
+        runs.sort();
+        runs
+    };
+    assert_eq!(drawn("second"), drawn("third"));
+    // A time that is enough for all.
+    let time = Extent::Time(Duration::from_secs(600));
+    let published = sampled(&second, time, 8);
+    assert_eq!(counts(&published), [[6, 6, 0], [4, 4, 0]]);
+    let words = published_in_words(&published, None).unwrap();
+    assert_eq!(
+        words,
+        "Of 10 published rows 10 of 2 of 2 studies were computed again: all came out the same to the bit."
+    );
+}
+
+#[test]
+fn a_published_row_that_was_changed_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let tables = tables_of_all(folder.path());
+    let path = tables.join("short.csv");
+    let text = fs::read_to_string(&path).unwrap();
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let mut names = lines[0].split(',');
+    let place = names.position(|name| name == "flow_rate_ratio").unwrap();
+    let last = lines.last_mut().unwrap();
+    let mut cells: Vec<&str> = last.split(',').collect();
+    let true_value = cells[place].to_owned();
+    cells[place] = "0.25";
+    let identity = cells[1].trim_matches('"').to_owned();
+    *last = cells.join(",");
+    fs::write(&path, lines.join("\n") + "\n").unwrap();
+    let second = prepared(&folder.path().join("second"), Size::Full);
+    second.import(std::slice::from_ref(&tables)).unwrap();
+    let published = sampled(&second, Extent::Part(1.0), 1);
+    assert_eq!(counts(&published), [[6, 6, 0], [4, 4, 1]]);
+    let found = &published[1].differing[0];
+    assert_eq!(found.identity.to_string(), identity);
+    assert!(found.configuration.is_file());
+    assert_eq!(found.columns.len(), 1);
+    assert_eq!(found.columns[0].column, "flow_rate_ratio");
+    assert_eq!(found.columns[0].values, ["0.25".to_owned(), true_value]);
 }
 
 #[test]

@@ -175,6 +175,13 @@ impl Plan {
         self.runs.sort_by_key(|run| (run.replicate, run.point));
     }
 
+    /// The same points with some of the runs.
+    pub(crate) fn part(&self, is_in: impl Fn(&PlannedRun) -> bool) -> Self {
+        let mut part = self.clone();
+        part.runs.retain(is_in);
+        part
+    }
+
     /// No two points are the same run.
     pub(crate) fn check_distinct(&self) -> Result<(), ConfigurationError> {
         let mut problems = Problems::default();

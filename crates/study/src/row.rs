@@ -4,8 +4,10 @@ use peristalsis_configuration::Configuration;
 use peristalsis_formats::{Column, FormatError, Table, ValueKind, Values, csv};
 use peristalsis_run::{RowColumn, Summary, Value, gathered, row_columns, set_by};
 
-use crate::identity::Identity;
+use crate::identity::{Identity, PHYSICS_VERSION};
 
+/// Metadata of a table of rows: the version of the physics that computed them.
+pub(crate) const PHYSICS: &str = "peristalsis.physics_version";
 /// Columns that rows of earlier versions lack, and what all of those had.
 const LATER: [(&str, &str); 1] = [("arrangement", "staggered")];
 
@@ -51,8 +53,16 @@ impl Row {
     /// Every row of a table that has the columns of rows; other columns are left out.
     ///
     /// # Errors
-    /// A sentence: the column that is missing or of another kind, or the text that is no identity.
+    /// A sentence: the column that is missing or of another kind, the text that is no identity, or the physics of another
+    /// version, whose runs have other identities.
     pub fn all_of(table: &Table) -> Result<Vec<Self>, String> {
+        let physics = table.metadata().get(PHYSICS);
+        if let Some(version) = physics.filter(|it| **it != PHYSICS_VERSION.to_string()) {
+            return Err(format!(
+                "its rows are of physics version {version}, and this program computes version {PHYSICS_VERSION}, whose \
+                 runs are others"
+            ));
+        }
         let in_words = |error: FormatError| error.to_string();
         let identities = table.texts("identity").map_err(in_words)?.iter();
         let row_of = |(row, identity): (usize, &String)| {
@@ -167,11 +177,11 @@ fn one_of(table: &Table, column: &RowColumn, row: usize) -> Result<Values, Forma
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    /// A table of one row with these of the columns.
-    fn without(left_out: &str) -> String {
+    /// A table of one row but for this column.
+    pub(crate) fn without(left_out: &str) -> String {
         let one = |column: RowColumn| {
             let values = match (column.name.as_str(), column.kind) {
                 ("identity", _) => Values::Text(vec!["0f".repeat(16)]),
@@ -184,6 +194,22 @@ mod tests {
         };
         let kept = columns().filter(|column| column.name != left_out);
         csv::encode(&joined(kept.map(one)))
+    }
+
+    #[test]
+    fn rows_of_another_physics_are_refused_in_words() {
+        let table = csv::decode(&without("nothing")).unwrap();
+        let of = |version: u32| {
+            let table = Table::builder().columns(table.columns().iter().cloned());
+            let table = table.metadata(PHYSICS, version.to_string()).build();
+            Row::all_of(&table.unwrap())
+        };
+        assert_eq!(of(PHYSICS_VERSION).unwrap().len(), 1);
+        let error = of(PHYSICS_VERSION - 1).unwrap_err();
+        assert!(
+            error.contains("physics version 1, and this program"),
+            "{error}"
+        );
     }
 
     #[test]

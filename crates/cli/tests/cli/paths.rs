@@ -89,7 +89,7 @@ fn reports() {
     let place = Place::new();
     call(
         &place,
-        "reproduce --out @report --only F2 --for 1s --workers 1",
+        "reproduce --quick --out @report --only F2 --for 1s --workers 1",
     )
     .expect_code(0);
     let page = place.folder.path().join(odd("report")).join("report.html");

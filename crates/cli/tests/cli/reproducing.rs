@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
+use peristalsis_formats::{Column, Table, Values, parquet, read_table};
 use serde_json::Value;
 
 use crate::{Outcome, Place, read_json};
 
 /// A claim, its studies, and how long to work on them: nothing ends in so short a time.
-const BRIEFLY: &str = "reproduce --only F2 --for 1s";
+const BRIEFLY: &str = "reproduce --quick --only F2 --for 1s";
 
 fn claims(out: &Path) -> Vec<Value> {
     read_json(&out.join("claims.json"))["claims"]
@@ -22,7 +23,7 @@ fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
     let outcome = place
         .does(BRIEFLY)
         .says(&[
-            "1 claim, quick design (--full has enough runs for verdicts), in reproduction",
+            "1 claim, quick design, in reproduction",
             "study 1 of",
             "% of all work",
             "F2 open (thin statistics):",
@@ -52,7 +53,7 @@ fn a_report_is_written_from_what_there_is_and_the_next_call_goes_on() {
     let before = checkpoints();
     assert!(before > 0);
     // As JSON, in the other size, without a word.
-    let outcome = place.does(&format!("{BRIEFLY} --full --json --quiet"));
+    let outcome = place.does("reproduce --fresh --only F2 --for 1s --json --quiet");
     assert_eq!(outcome.stderr, "");
     let printed: Value = outcome.json();
     assert_eq!(printed, read_json(&out.join("claims.json")));
@@ -98,6 +99,64 @@ fn tables_are_looked_through_for_runs_of_the_studies() {
     }
 }
 
+/// The shortest run among the published rows of a study, as a table with another value in one place.
+fn shortest_published(place: &Place, name: &str, changed: Option<(&str, f64)>) {
+    let published = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../validation/results");
+    let table = read_table(&published.join("wavelength.parquet")).unwrap();
+    let steps = table.integers("steps").unwrap();
+    let shortest = (0..table.rows()).min_by_key(|row| steps[*row]).unwrap();
+    let columns = table.columns().iter().map(|column| {
+        let values = match &column.values {
+            Values::Real(values) => Values::Real(vec![match changed {
+                Some((name, value)) if name == column.name => value,
+                _ => values[shortest],
+            }]),
+            Values::Integer(values) => Values::Integer(vec![values[shortest]]),
+            Values::Text(values) => Values::Text(vec![values[shortest].clone()]),
+            Values::Boolean(values) => Values::Boolean(vec![values[shortest]]),
+        };
+        Column {
+            values,
+            ..column.clone()
+        }
+    });
+    let one = Table::builder().columns(columns).build().unwrap();
+    std::fs::create_dir_all(place.path(name)).unwrap();
+    parquet::write(&place.path(name).join("wavelength.parquet"), &one).unwrap();
+}
+
+#[test]
+fn published_rows_are_computed_again_and_one_that_was_changed_is_named() {
+    let place = Place::new();
+    // Found in a folder above.
+    shortest_published(&place, "validation/results", None);
+    let line = "reproduce --only Q3 --check 100% --check-seed 5";
+    place
+        .does(line)
+        .says(&["wavelength: 1 of", "drawn with --check-seed 5"])
+        .shows(&[
+            "Q3   open",
+            "Of 1 published rows 1 of 1 of 1 studies were computed again, drawn with the seed 5: all came out the same",
+        ]);
+    place.refuses(
+        "reproduce --only Q3 --fresh",
+        &["holds published rows already"],
+    );
+    place.refuses("reproduce --only F8", &["none of these tables holds a row"]);
+    shortest_published(&place, "changed", Some(("flow_rate_ratio", 0.5)));
+    let line = "reproduce --only Q3 --check 100% --import changed --out other";
+    place.call(line).expect_code(3).says(&[
+        "a published row is not what its run gives study wavelength, run ",
+        "flow_rate_ratio: 0.5 in the table, 0.99",
+        "its configuration: other/again/wavelength/runs/",
+    ]);
+    let rows = &read_json(&place.path("other/claims.json"))["published_rows"];
+    assert_eq!(rows["studies"][0]["differing"], 1);
+    assert_eq!(rows["differing"][0]["column"], "flow_rate_ratio");
+    let page = std::fs::read_to_string(place.path("other/report.html")).unwrap();
+    assert!(page.contains("id=\"rows\"") && page.contains("one came out different"));
+}
+
 #[test]
 fn what_cannot_be_done_is_said_before_anything_is_made() {
     let place = Place::new();
@@ -106,7 +165,19 @@ fn what_cannot_be_done_is_said_before_anything_is_made() {
         "reproduce --only F2,F99",
         &["there is no claim \"F99\"", "claims: F1, F2,"],
     );
-    place.refuses("reproduce --quick --full", &["cannot be used with"]);
+    for options in ["--quick --full", "--quick --check 1%", "--fresh --import x"] {
+        place.refuses(&format!("reproduce {options}"), &["cannot be used with"]);
+    }
+    place.refuses("reproduce --check 2", &["a part such as 1%", "90s"]);
+    place.refuses(
+        "reproduce --only F2",
+        &[
+            "there is no folder validation/results",
+            "--import",
+            "--quick",
+            "--fresh",
+        ],
+    );
     place.refuses("reproduce --for 30", &["such as 30m"]);
     assert_eq!(place.inventory(), before);
     place.write("file", "");
@@ -125,7 +196,7 @@ fn a_signal_stops_it_with_a_report() {
     use std::io::{BufRead, BufReader, Read};
 
     let place = Place::new();
-    let mut child = place.start("reproduce --only F2");
+    let mut child = place.start("reproduce --quick --only F2");
     let mut errors = BufReader::new(child.stderr.take().unwrap());
     let mut said = String::new();
     // The first line of progress: it works.

@@ -276,5 +276,7 @@ pub(crate) fn specimen() -> Result<Report, FigureError> {
             outcome(FINE, 72, 0, None),
             outcome(COARSE, 60, 2, Some(disk)),
         ],
+        published: Vec::new(),
+        drawn: None,
     })
 }

@@ -1,6 +1,7 @@
 //! The findings for programs.
 
 use crate::{Examination, Quantity, ReportTable, Statistics, Verdict, WallVerdict};
+use peristalsis_study::RowDifference;
 use serde::Serialize;
 
 use crate::report::files::{FigureFiles, figure_files, table_names};
@@ -15,7 +16,35 @@ struct Document<'a> {
     program: &'a Program,
     size: &'static str,
     walls: Vec<WallTally<'a>>,
+    published_rows: Published<'a>,
     claims: Vec<Claim<'a>>,
+}
+
+#[derive(Serialize)]
+struct Published<'a> {
+    /// Of the draw; null where none was made.
+    seed: Option<u64>,
+    studies: Vec<PublishedStudy<'a>>,
+    differing: Vec<Differing<'a>>,
+}
+
+#[derive(Serialize)]
+struct PublishedStudy<'a> {
+    study: &'a str,
+    rows: usize,
+    within_reach: Option<usize>,
+    checked: usize,
+    older: usize,
+    differing: usize,
+}
+
+#[derive(Serialize)]
+struct Differing<'a> {
+    study: &'a str,
+    identity: String,
+    column: &'a str,
+    published: &'a str,
+    computed: &'a str,
 }
 
 #[derive(Serialize)]
@@ -74,6 +103,7 @@ pub(crate) fn text(report: &Report) -> String {
         program: &report.program,
         size: report.size.name(),
         walls: report.walls(),
+        published_rows: published(report),
         claims: report
             .examinations
             .iter()
@@ -82,6 +112,40 @@ pub(crate) fn text(report: &Report) -> String {
             .collect(),
     };
     json_text(&document)
+}
+
+fn published(report: &Report) -> Published<'_> {
+    let drawn = report.drawn.as_ref();
+    let reach = |name: &str| {
+        let mut studies = drawn?.within_reach.iter();
+        Some(studies.find(|(study, _)| *study == name)?.1)
+    };
+    let studies = report.published.iter().map(|it| PublishedStudy {
+        study: it.study,
+        rows: it.rows,
+        within_reach: reach(it.study),
+        checked: it.checked,
+        older: it.older,
+        differing: it.differing.len(),
+    });
+    let differing = report.published.iter().flat_map(|published| {
+        let rows = published.differing.iter();
+        rows.flat_map(|row| row.columns.iter().map(|it| (row.identity, it)))
+            .map(
+                |(identity, RowDifference { column, values, .. })| Differing {
+                    study: published.study,
+                    identity: identity.to_string(),
+                    column,
+                    published: &values[0],
+                    computed: &values[1],
+                },
+            )
+    });
+    Published {
+        seed: drawn.map(|drawn| drawn.sample.seed),
+        studies: studies.collect(),
+        differing: differing.collect(),
+    }
 }
 
 /// A document as indented JSON with a line break at its end.

@@ -21,7 +21,7 @@ use peristalsis_formats::{atomic, csv};
 
 use self::files::{figure_files, table_files};
 use crate::error::{ReproduceError, make_folder};
-use crate::{Examination, Outcome, Size, StudyOutcome, Verdict};
+use crate::{Drawn, Examination, Outcome, PublishedRows, Size, StudyOutcome, Verdict};
 
 pub(crate) use json::json_text;
 
@@ -63,6 +63,10 @@ pub struct Report {
     pub examinations: Vec<Examination>,
     /// The studies behind them.
     pub studies: Vec<StudyOutcome>,
+    /// What has become of the published rows, of each study that has any.
+    pub published: Vec<PublishedRows>,
+    /// The sample of them that was drawn, if one was.
+    pub drawn: Option<Drawn>,
 }
 
 /// How many claims a wall meets.
@@ -84,6 +88,8 @@ impl Report {
             program: Program::this(),
             examinations: outcome.examinations,
             studies: outcome.studies,
+            published: outcome.published,
+            drawn: outcome.drawn,
         }
     }
 

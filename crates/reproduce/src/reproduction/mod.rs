@@ -3,11 +3,15 @@
 
 mod import;
 mod order;
+mod published;
+mod sample;
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use peristalsis_study::{Board, Effort, Ending, Specification, State, Store, StudyError, work_on};
+use peristalsis_study::{
+    Board, Effort, Ending, PlannedRun, Specification, State, Store, StudyError, work_on,
+};
 
 use crate::claim::Claim;
 use crate::error::{ReproduceError, make_folder};
@@ -15,11 +19,13 @@ use crate::evidence::Evidence;
 use crate::examination::{Examination, experiments_named, without_panic};
 use crate::studies::{Products, Size, StudyFile};
 pub use import::{Import, ImportedRuns};
+pub use published::{DifferingRow, PublishedRows, published_in_words};
+pub use sample::{Drawn, Extent, Sample, Sampling};
 
 /// Folder of the stores below that of the results.
 const STORES: &str = "stores";
-/// Suffix of the store that computes runs again of which only rows were imported.
-const AGAIN: &str = "-again";
+/// Folder, beside it, of the stores that compute runs again of which only rows were imported.
+const AGAIN: &str = "again";
 
 /// Claims with the studies that they need, each in a store of its own.
 ///
@@ -29,7 +35,7 @@ pub struct Reproduction {
     size: Size,
     claims: Vec<Claim>,
     works: Vec<Work>,
-    stores: PathBuf,
+    again: PathBuf,
 }
 
 /// A study and where its runs are kept.
@@ -43,7 +49,7 @@ struct Work {
 impl Work {
     /// The part of the study whose products the claims need, with a store of its own, where the study's store has rows without
     /// them; `None` where nothing is wanting.
-    fn again(&self, stores: &Path) -> Result<Option<(Specification, Store)>, StudyError> {
+    fn again(&self, folder: &Path) -> Result<Option<(Specification, Store)>, StudyError> {
         let replicates = match self.file.products {
             Products::NotNeeded => return Ok(None),
             Products::OfFirst => 1,
@@ -55,13 +61,12 @@ impl Work {
         let survey = store.survey()?;
         let is_bare =
             |identity| survey.state(identity) == State::Done && !store.holds_products(identity);
-        let runs = survey.plan.runs().iter();
-        let mut needed = runs.filter(|run| run.replicate < replicates);
-        if !needed.any(|run| is_bare(run.identity)) {
+        let is_needed = |run: &PlannedRun| run.replicate < replicates && is_bare(run.identity);
+        let study = self.study.part(&survey.plan, is_needed);
+        if study.plan().runs().is_empty() {
             return Ok(None);
         }
-        let study = self.study.with_replicates(replicates)?;
-        let store = Store::create(&stores.join(format!("{}{AGAIN}", self.file.name)), &study)?;
+        let store = Store::create(&folder.join(self.file.name), &study)?;
         Ok(Some((study, store)))
     }
 }
@@ -132,6 +137,10 @@ pub struct Outcome {
     pub examinations: Vec<Examination>,
     /// The studies in the order of the claims that need them.
     pub studies: Vec<StudyOutcome>,
+    /// What has become of the published rows, of each study that has any.
+    pub published: Vec<PublishedRows>,
+    /// The sample of them that was drawn; `None` unless [`Reproduction::sample`] was asked for it.
+    pub drawn: Option<Drawn>,
 }
 
 /// The claims of these names, in the order of `all`; every claim where no name is given. Case does not matter.
@@ -143,7 +152,8 @@ pub fn chosen(all: &[Claim], names: &[String]) -> Result<Vec<Claim>, ReproduceEr
 }
 
 impl Reproduction {
-    /// Makes or opens the stores of the studies that the claims need, in `folder/stores`.
+    /// Makes or opens the stores of the studies that the claims need, in `folder/stores`; runs that are computed again go to
+    /// `folder/again`.
     ///
     /// A store that cannot be opened is told of later, and costs only the claims that need it.
     ///
@@ -173,7 +183,17 @@ impl Reproduction {
             size,
             claims: claims.to_vec(),
             works,
-            stores,
+            again: folder.join(AGAIN),
+        })
+    }
+
+    /// Whether rows of any of the studies were imported, in this call or before.
+    pub fn has_published_rows(&self) -> bool {
+        let surveys = self.works.iter().flat_map(|work| &work.store);
+        let mut surveys = surveys.flat_map(Store::survey);
+        surveys.any(|survey| {
+            let mut runs = survey.plan.runs().iter();
+            runs.any(|run| survey.is_imported(run.identity))
         })
     }
 
@@ -197,11 +217,17 @@ impl Reproduction {
         let ending = course.work(effort, stop);
         course.finish(ending)
     }
+
+    /// Examines the claims on what there is, and computes nothing.
+    pub fn examine(&self, watch: &mut dyn FnMut(Event<'_>)) -> Outcome {
+        Course::of(self, watch).finish(Ending::Complete)
+    }
 }
 
 /// A reproduction on its way.
 struct Course<'a> {
     claims: &'a [Claim],
+    again: &'a Path,
     studies: Vec<StudyCourse<'a>>,
     evidence: Evidence,
     /// Those of the claims that have been examined, each at the place of its claim.
@@ -285,7 +311,7 @@ impl StudyCourse<'_> {
 impl<'a> Course<'a> {
     fn of(reproduction: &'a Reproduction, watch: &'a mut dyn FnMut(Event<'_>)) -> Self {
         let course = |work: &'a Work| {
-            let again = work.again(&reproduction.stores);
+            let again = work.again(&reproduction.again);
             let mut course = StudyCourse {
                 work,
                 again: None,
@@ -300,6 +326,7 @@ impl<'a> Course<'a> {
         };
         Self {
             claims: &reproduction.claims,
+            again: &reproduction.again,
             studies: reproduction.works.iter().map(course).collect(),
             evidence: Evidence::default(),
             examinations: vec![None; reproduction.claims.len()],
@@ -379,11 +406,31 @@ impl<'a> Course<'a> {
             self.end(place);
         }
         self.examine_what_has_ended();
+        let published = self.published();
         Outcome {
             ending,
+            published,
+            drawn: None,
             studies: self.studies.into_iter().map(StudyCourse::outcome).collect(),
             examinations: self.examinations.into_iter().flatten().collect(),
         }
+    }
+
+    /// Compares the published rows with the runs that were computed again.
+    fn published(&mut self) -> Vec<PublishedRows> {
+        let mut all = Vec::new();
+        for study in &mut self.studies {
+            // A store that cannot be opened has been told of.
+            let Ok(store) = &study.work.store else {
+                continue;
+            };
+            match PublishedRows::of(study.work, store, &self.again.join(study.name())) {
+                Ok(published) if published.rows > 0 => all.push(published),
+                Ok(_) => {}
+                Err(error) => study.fail(error.to_string(), self.watch),
+            }
+        }
+        all
     }
 
     /// Takes the results of a study into the evidence.

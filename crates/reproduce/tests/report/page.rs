@@ -182,6 +182,8 @@ fn a_report_of_nothing_is_a_page() {
             ending: Ending::Stopped,
             examinations: Vec::new(),
             studies: Vec::new(),
+            published: Vec::new(),
+            drawn: None,
         },
     );
     let page = parsed(&report);

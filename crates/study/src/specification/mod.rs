@@ -18,7 +18,7 @@ use serde::Deserialize;
 
 use crate::error::{Result, StudyError};
 use crate::identity::{Record, column_names};
-use crate::plan::{Plan, state_name};
+use crate::plan::{Plan, PlannedRun, state_name};
 use axis::Axis;
 pub(crate) use axis::{neat, number};
 pub use keys::schema;
@@ -51,8 +51,6 @@ pub struct Specification {
     text: String,
     /// Where `file` names the base in `text`, quotes included.
     file_span: Option<Range<usize>>,
-    /// Where `replicates` is given in `text`.
-    replicates_span: Option<Range<usize>>,
 }
 
 /// The base of every run.
@@ -123,7 +121,7 @@ impl Specification {
             .refine
             .and_then(|keys| refinement(&keys, &table, &axes, &mut problems));
         problems.check()?;
-        let span_of = |key| document::entry(&table, key).map(|entry| entry.item.origin.span());
+        let file_span = document::entry(&table, "file").map(|entry| entry.item.origin.span());
         let base = Base {
             preset: keys.preset,
             file: keys.file.map(|name| file(&name)).transpose()?,
@@ -152,8 +150,7 @@ impl Specification {
             plan: Plan::default(),
             base,
             text: text.to_owned(),
-            file_span: span_of("file"),
-            replicates_span: span_of("replicates"),
+            file_span,
         };
         study.check_size(&table)?;
         study.plan = study.planned()?;
@@ -165,33 +162,24 @@ impl Specification {
         &self.plan
     }
 
-    /// The same study with so many replicates of each point.
-    ///
-    /// # Errors
-    /// [`StudyError::Configuration`] where so many are not allowed.
-    pub fn with_replicates(&self, replicates: u32) -> Result<Self> {
-        let text = self
-            .text_with(&self.replicates_span, &replicates.to_string())
-            .unwrap_or_else(|| format!("replicates = {replicates}\n{}", self.text));
-        Self::from_toml(&self.name, &text, |name| {
-            Ok(self
-                .base
-                .file
-                .clone()
-                .unwrap_or_else(|| (name.to_owned(), String::new())))
-        })
+    /// A study of some of the runs of a plan of this one, and of no others: it is not refined.
+    pub fn part(&self, plan: &Plan, is_in: impl Fn(&PlannedRun) -> bool) -> Self {
+        Self {
+            refinement: None,
+            plan: plan.part(is_in),
+            ..self.clone()
+        }
     }
 
     /// The file's text with its base under another name: what a store keeps beside a copy of the base.
     pub(crate) fn text_with_base(&self, base: &str) -> String {
-        self.text_with(&self.file_span, &format!("\"{base}\""))
-            .unwrap_or_else(|| self.text.clone())
-    }
-
-    /// The file's text with something else at a place; `None` where it has no such place.
-    fn text_with(&self, place: &Option<Range<usize>>, instead: &str) -> Option<String> {
-        let Range { start, end } = place.clone()?;
-        Some([&self.text[..start], instead, &self.text[end..]].concat())
+        match self.file_span.clone() {
+            Some(Range { start, end }) => {
+                let (before, behind) = (&self.text[..start], &self.text[end..]);
+                format!("{before}\"{base}\"{behind}")
+            }
+            None => self.text.clone(),
+        }
     }
 
     /// Whether this is what a study file and the file of its base say now.

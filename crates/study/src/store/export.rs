@@ -11,7 +11,7 @@ use super::{Index, Store, Survey, Verdict};
 use crate::error::{Result, StudyError};
 use crate::identity::{Identity, PHYSICS_VERSION};
 use crate::plan::{Plan, PlannedRun, Setting, SettingValue};
-use crate::row::Row;
+use crate::row::{PHYSICS, Row};
 use crate::store::entry::{Entry, State};
 
 /// What an export wrote.
@@ -251,7 +251,7 @@ fn rows_table(survey: &Survey, finished: &[Finished]) -> Result<Table> {
         .columns(rows.columns().iter().cloned())
         .metadata("peristalsis.study", &study.name)
         .metadata("peristalsis.title", &study.title)
-        .metadata("peristalsis.physics_version", PHYSICS_VERSION.to_string())
+        .metadata(PHYSICS, PHYSICS_VERSION.to_string())
         .build()?)
 }
 

@@ -8,6 +8,7 @@ use crate::estimate::work;
 use crate::identity::Identity;
 use crate::plan::Plan;
 use crate::refinement::{Finding, refine};
+use crate::row::Row;
 use crate::specification::Specification;
 
 /// All that is known of a study and its runs at one moment.
@@ -31,6 +32,26 @@ impl Survey {
             _ if self.leases.contains_key(&identity) => State::Leased,
             state => state.unwrap_or(State::Pending),
         }
+    }
+
+    /// Whether the row of a run was imported, and not computed here.
+    pub fn is_imported(&self, identity: Identity) -> bool {
+        let entry = self.entries.get(&identity);
+        entry.is_some_and(|entry| entry.state == State::Done && !entry.is_computed())
+    }
+
+    /// Why a run failed; empty where it did not.
+    pub fn reason(&self, identity: Identity) -> &str {
+        let entry = self.entries.get(&identity);
+        entry
+            .and_then(|entry| entry.reason.as_deref())
+            .unwrap_or_default()
+    }
+
+    /// The row of a finished run as the index has it; `None` where the run is not finished, or the index is damaged.
+    pub fn row(&self, identity: Identity) -> Option<Row> {
+        let entry = self.entries.get(&identity)?;
+        Row::from_csv(entry.row.as_deref()?).ok()
     }
 
     /// Runs of the plan in each state.

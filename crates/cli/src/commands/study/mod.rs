@@ -88,7 +88,7 @@ pub(crate) struct WorkArguments {
     workers: Option<u16>,
     /// Stop after this time, every run saved, such as 90s, 30m, 2h.
     #[arg(long = "for", value_name = "TIME", value_parser = time_span)]
-    limit: Option<Duration>,
+    pub(crate) limit: Option<Duration>,
 }
 
 impl WorkArguments {

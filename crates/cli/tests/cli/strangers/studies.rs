@@ -99,7 +99,7 @@ fn a_missing_ffmpeg_is_told_before_any_work() {
 #[test]
 fn a_report_names_its_source_and_how_to_make_it_again() {
     let place = Place::new();
-    place.call("reproduce --only F3 --for 1s --out report --quiet");
+    place.call("reproduce --quick --only F3 --for 1s --out report --quiet");
     let page = std::fs::read_to_string(place.path("report/report.html")).unwrap();
     for part in [
         "Yoshioka",

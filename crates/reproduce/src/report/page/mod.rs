@@ -2,6 +2,7 @@
 
 mod claim;
 mod parts;
+mod rows;
 mod studies;
 
 use crate::{CLAIMS, Examination, Size, Statistics, Verdict};
@@ -38,6 +39,7 @@ pub(crate) fn page(report: &Report) -> Markup {
                         @for (place, examination) in report.examinations.iter().enumerate() {
                             (claim::section(report, place, examination))
                         }
+                        (rows::section(report))
                         (studies::section(report))
                         (reading(report))
                     }
@@ -93,7 +95,7 @@ fn masthead(report: &Report) -> Markup {
                 p.notice {
                     "This is the " b { "quick" } " design: every figure, few runs. Its numbers show the way that an analysis takes, not its \
                     outcome; verdicts need the full design ("
-                    code { "peristalsis reproduce --full" }
+                    code { "peristalsis reproduce" }
                     ")."
                 }
             }
@@ -206,7 +208,7 @@ fn reading(report: &Report) -> Markup {
     PreEscaped(
         lines
             .collect::<String>()
-            .replace("{size}", report.size.name())
+            .replace("{quick}", report.size.choose(" --quick", ""))
             .replace("{only}", &only(report))
             .replace("{strain_rates}", &needed.strain_rates.to_string())
             .replace("{widths}", &needed.widths.to_string())

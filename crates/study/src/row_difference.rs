@@ -1,0 +1,160 @@
+//! Where a published row and the same row computed again differ.
+
+use peristalsis_formats::Values;
+
+use crate::row::Row;
+
+/// Columns that say by which program a run was computed, and not what came out.
+const PROGRAM: [&str; 2] = ["version", "revision"];
+/// Columns, by how they begin, that were added together while the physics stayed as it was; a row of an older program holds
+/// none of them, `late_periods` least of all, which every run has.
+const ADDED: [&str; 7] = [
+    "late_periods",
+    "flow_rate_ratio_drift",
+    "flow_rate_ratio_variance",
+    "narrow_",
+    "front_",
+    "throat_",
+    "belly_",
+];
+/// Columns whose sums have been added up in another order since: programs may differ in their last digits.
+const RESUMMED: [&str; 3] = [
+    "flow_rate_ratio_variance",
+    "wall_pressure",
+    "wall_pressure_largest",
+];
+/// The program whose rows hold an efficiency also of what does not pump, and the middle of the wave for a flat belly, with the
+/// columns, by how they begin.
+const REDEFINED: (&str, [&str; 2]) = ("38f22cc1bd75", ["pumping_efficiency", "belly_"]);
+/// Largest relative difference that the order of a sum makes there: a variance is a small difference of large numbers.
+const ROUNDING: f64 = 1e-9;
+
+/// A column in which a published row and the same row computed again differ, with both values as they are written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RowDifference {
+    /// Name of the column.
+    pub column: String,
+    /// The published value and the one that was computed again.
+    pub values: [String; 2],
+    /// Whether the program of the published row is known to have computed the column otherwise: it added up a sum in another
+    /// order, or defined the column in another way.
+    pub is_known: bool,
+}
+
+impl Row {
+    /// The columns in which this row, which was published, differs in a bit from the same row computed again. Those are left
+    /// out that say by which program it was computed, and those that its program did not have.
+    pub fn differences(&self, computed: &Self) -> Vec<RowDifference> {
+        let number = |row: &Self, name: &str| row.table().reals(name).map_or(f64::NAN, |it| it[0]);
+        let is_older = number(self, "late_periods").is_nan();
+        let revision = |row: &Self| row.table().texts("revision").map(|it| it[0].clone()).ok();
+        let published_by = revision(self);
+        let is_of_other = published_by != revision(computed);
+        let is_redefined = published_by.as_deref() == Some(REDEFINED.0);
+        let mut differences = Vec::new();
+        for column in self.table().columns() {
+            let name = column.name.as_str();
+            let here = number(self, name);
+            let was_added = ADDED.iter().any(|begin| name.starts_with(begin));
+            if PROGRAM.contains(&name) || is_older && was_added && here.is_nan() {
+                continue;
+            }
+            let there = computed.table().column(name).ok().map(|it| &it.values);
+            let is_same = match (&column.values, there) {
+                (Values::Real(one), Some(Values::Real(other))) => {
+                    one[0].to_bits() == other[0].to_bits() || one[0].is_nan() && other[0].is_nan()
+                }
+                (here, there) => Some(here) == there,
+            };
+            if !is_same {
+                let there_number = number(computed, name);
+                let is_near = (there_number - here).abs() <= ROUNDING * here.abs();
+                differences.push(RowDifference {
+                    column: name.to_owned(),
+                    values: [Some(&column.values), there]
+                        .map(|values| values.map_or_else(String::new, written)),
+                    is_known: is_of_other && is_near && RESUMMED.contains(&name)
+                        || is_redefined && REDEFINED.1.iter().any(|it| name.starts_with(it)),
+                });
+            }
+        }
+        differences
+    }
+}
+
+/// The one value of a column, a number with all its digits.
+fn written(values: &Values) -> String {
+    match values {
+        Values::Real(values) => format!("{:?}", values[0]),
+        Values::Integer(values) => values[0].to_string(),
+        Values::Boolean(values) => values[0].to_string(),
+        Values::Text(values) => values[0].clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::row::tests::without;
+
+    #[test]
+    fn rows_differ_by_the_bit_and_not_by_the_program() {
+        let text = without("nothing");
+        let row = Row::from_csv(&text).unwrap();
+        let place = text.lines().next().unwrap().split(',');
+        let place = |name: &str| place.clone().position(|column| column == name).unwrap();
+        let with = |settings: &[(&str, &'static str)]| {
+            let (head, line) = text.split_once('\n').unwrap();
+            let mut cells: Vec<&str> = line.trim().split(',').collect();
+            for (name, value) in settings {
+                cells[place(name)] = value;
+            }
+            Row::from_csv(&format!("{head}\n{}\n", cells.join(","))).unwrap()
+        };
+        let least = with(&[("flow_rate", "0.5000000000000001")]);
+        let expected = RowDifference {
+            column: "flow_rate".to_owned(),
+            values: ["0.5", "0.5000000000000001"].map(str::to_owned),
+            is_known: false,
+        };
+        assert_eq!(row.differences(&least), [expected]);
+        assert_eq!(row.differences(&with(&[("revision", "\"other\"")])), []);
+        // The rounding of a sum counts between programs only, and what a program did not have yet is not compared.
+        let other = [
+            ("revision", "\"other\""),
+            ("wall_pressure", "0.5000000000000001"),
+        ];
+        let known = |row: &Row, other: &Row| -> Vec<bool> {
+            let differences = row.differences(other).into_iter();
+            differences.map(|it| it.is_known).collect()
+        };
+        assert_eq!(known(&row, &with(&other)), [true]);
+        assert_eq!(known(&row, &with(&other[1..])), [false]);
+        assert_eq!(
+            known(&row, &with(&[other[0], ("wall_pressure", "0.500001")])),
+            [false]
+        );
+        let pump = [
+            ("revision", "\"38f22cc1bd75\""),
+            ("pumping_efficiency", "-3.0"),
+        ];
+        assert_eq!(known(&with(&pump), &row), [true]);
+        assert_eq!(known(&with(&pump[1..]), &row), [false]);
+        let older = with(&[("late_periods", ""), ("belly_density", "")]);
+        assert_eq!(older.differences(&row), []);
+        assert_eq!(with(&[("belly_density", "")]).differences(&row).len(), 1);
+        assert_eq!(
+            with(&[("late_periods", ""), ("transition_time", "")])
+                .differences(&row)
+                .len(),
+            1
+        );
+        let (zero, negative) = (
+            with(&[("flow_rate", "0.0")]),
+            with(&[("flow_rate", "-0.0")]),
+        );
+        assert_eq!(zero.differences(&negative).len(), 1);
+        let unknown = with(&[("flow_rate", "")]);
+        assert_eq!(unknown.differences(&unknown.clone()), []);
+    }
+}
