@@ -182,10 +182,9 @@ proptest! {
         }
         let _ = fit_parabola(&x, &y, &errors);
         let _ = power_exponent(&x, &y, &errors);
-        for fit in [fit_inverse_line(&x, &y, &errors), fit_inverse_parabola(&x, &y, &errors)] {
-            if let Ok(fit) = fit {
-                prop_assert!(is_whole(&[fit.critical_width, fit.linear]), "{:?}", fit);
-            }
+        let fits = [fit_inverse_line(&x, &y, &errors), fit_inverse_parabola(&x, &y, &errors)];
+        for fit in fits.into_iter().flatten() {
+            prop_assert!(is_whole(&[fit.critical_width, fit.linear]), "{:?}", fit);
         }
         for known in [None, Some(Uncertain::normal(at, error)), Some(Uncertain::normal(at, 0.0))] {
             for law in [Law::Power, Law::Barrier { power: at }, Law::Exponential] {

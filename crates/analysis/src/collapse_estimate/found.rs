@@ -17,6 +17,8 @@ const REACH: f64 = 50.0;
 const MOST_CUTS: u32 = 12;
 /// Factor of the errors from which on one curve does not describe the points.
 const MOST_STRETCH: f64 = 3.0;
+/// Most free parameters beside a correction for which intervals were found to cover as they should.
+const MOST_BESIDE_A_CORRECTION: usize = 3;
 
 /// A place found, with what its intervals are made of.
 pub(super) struct Found<'a> {
@@ -235,9 +237,14 @@ impl<'a> Found<'a> {
                 "the points lie {stretch:.1} times as far from one curve as their errors say: the scaling does not hold, or the errors are wrong"
             ));
         }
-        if !self.likelihood.is_corrected()
-            && let Some(place) = self.moved_by_a_correction(parameters)
-        {
+        let is_corrected = self.likelihood.is_corrected();
+        if is_corrected && self.likelihood.unknown() > MOST_BESIDE_A_CORRECTION {
+            doubts.push(
+                "the intervals of four parameters or more beside a correction are too narrow: on made-up data they cover some 60 and 90 per cent rather than 68 and 95"
+                    .to_owned(),
+            );
+        }
+        if !is_corrected && let Some(place) = self.moved_by_a_correction(parameters) {
             let number = place + 1;
             doubts.push(format!(
                 "the points do not rule out a correction to scaling that takes parameter {number} out of its interval: allow for one"

@@ -79,6 +79,11 @@ impl<'a> Likelihood<'a> {
         Self::new(self.collapse, self.steps, Some(power), self.known).ok()
     }
 
+    /// Parameters of the scaling of which nothing is known from elsewhere.
+    pub(super) fn unknown(&self) -> usize {
+        (self.steps.len() - 1).saturating_sub(self.known.len())
+    }
+
     fn free(&self) -> usize {
         Smooth::free(self.is_corrected())
     }
