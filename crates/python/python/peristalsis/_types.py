@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 if TYPE_CHECKING:
     #: Names of the presets.
-    _Preset = Literal["frictionless", "frictionless-fine", "frictional"]
+    _Preset = Literal["frictionless", "frictionless-source", "frictionless-fine", "frictional"]
 
 
 class Keywords(TypedDict, total=False):
@@ -26,6 +26,13 @@ class Keywords(TypedDict, total=False):
     control. (Unit: d.)"""
     angle: Literal["reference", "current"]
     """drive.angle. Angle that fixes the radial direction of the force on a wall sphere; stress control."""
+    angles: Sequence[float]
+    """tube.angles. Angle of each wall sphere about the axis, from x towards y; under arrangement = "file". (Unit:
+    rad.)"""
+    arrangement: Literal["staggered", "aligned", "random", "disordered", "file"]
+    """tube.arrangement. How the wall spheres stand."""
+    arrangement_seed: int
+    """tube.arrangement_seed. Seed of a random or disordered arrangement. (A pure number.)"""
     axial: float
     """wall.keep.axial. Stiffness of the axial tether of a wall sphere to its place. (Unit: m t^-2.)"""
     axial_velocity: float
@@ -95,6 +102,10 @@ class Keywords(TypedDict, total=False):
     duration: float
     """run.duration. Length of the run in time, rounded up to whole samples; the only choice for a static wave.
     (Unit: t.)"""
+    file: str
+    """tube.file. Table of the wall spheres under arrangement = "file", instead of angles and places: CSV with the
+    columns angle (rad) and place (d), one sphere a line. Its path is that from the configuration file, or from
+    where the program runs."""
     force_amplitude: float
     """drive.force_amplitude. Amplitude f^P of the radial force on each wall sphere; stress control. (Unit: m d
     t^-2.)"""
@@ -142,6 +153,8 @@ class Keywords(TypedDict, total=False):
     observe_transition_threshold: float
     periods: float
     """run.periods. Length of the run in wave periods, rounded up to whole samples. (Unit: periods.)"""
+    places: Sequence[float]
+    """tube.places. Place of each of them along the tube, 0 <= z < L. (Unit: d.)"""
     poisson_ratio: float
     """contact.poisson_ratio. Poisson's ratio nu of the Hertz law. (A pure number.)"""
     profile_bins: int
@@ -162,8 +175,9 @@ class Keywords(TypedDict, total=False):
     """contact.restitution_speed. Relative speed at which restitution holds. Missing: the speed of the wave, so that
     in a study of several strain rates each has its own material; a static wave needs it. (Unit: d t^-1.)"""
     rings_per_wave: int
-    """tube.rings_per_wave. Rings in a wavelength, alternate rings turned by half a spacing: even under strain
-    control; under stress control an odd number needs an even number of waves. (A pure number.)"""
+    """tube.rings_per_wave. Rings in a wavelength: even under strain control, where they are staggered; under stress
+    control an odd number needs an even number of waves. Random and disordered walls have as many spheres as these
+    rings; those of a file stand without them. (A pure number.)"""
     run_duration: float
     run_integrator: Literal["verlet", "adams_bashforth"]
     run_kernel: Literal["fast", "reference"]
@@ -221,6 +235,11 @@ class Keywords(TypedDict, total=False):
     """observe.transition_threshold. J/Jmax that the period average crosses at a transition, on its way from the
     initial state, 0 from rest and 1 jammed: from rest upward, or downward to back flow where the threshold is below
     0; from jammed downward, or upward where it is above 1. (A pure number.)"""
+    tube_angles: Sequence[float]
+    tube_arrangement: Literal["staggered", "aligned", "random", "disordered", "file"]
+    tube_arrangement_seed: int
+    tube_file: str
+    tube_places: Sequence[float]
     tube_radius: float
     tube_rings_per_wave: int
     tube_spheres_per_ring: int
