@@ -1,7 +1,8 @@
 //! The transition times next to the critical width: the source's method, alpha = 1 with a correction, and a free power.
 
 use peristalsis_analysis::{
-    Law, LawFit, Uncertain, fit_law, fit_line, fit_parabola, power_exponent,
+    InverseFit, Law, LawFit, Uncertain, fit_inverse_line, fit_inverse_parabola, fit_law,
+    power_exponent,
 };
 
 use crate::branch::columns;
@@ -14,9 +15,9 @@ pub(crate) struct Near {
     /// epsdot.
     strain_rate: f64,
     /// 1/tau = B d with d = w_c − w, as the source draws it: through the nearest widths.
-    pub(crate) straight: Option<Linear>,
+    pub(crate) straight: Option<InverseFit>,
     /// 1/tau = B d + C d²: alpha is 1, and as many parameters as the free power has.
-    pub(crate) curved: Option<Linear>,
+    pub(crate) curved: Option<InverseFit>,
     /// tau = A d^−alpha over the same widths as `curved`.
     pub(crate) power: Option<LawFit>,
     /// alpha of the fewest widths that a fit can use, by the likelihood of the runs.
@@ -25,85 +26,9 @@ pub(crate) struct Near {
     variance: [Vec<f64>; 3],
 }
 
-/// A law by which 1/tau vanishes linearly at w_c.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Linear {
-    /// w_c \[d\].
-    pub(crate) critical_width: Uncertain,
-    /// tau (w_c − w) in the limit, 1/B \[d t\].
-    pub(crate) amplitude: Uncertain,
-    /// Sum of the squared deviations in units of their errors.
-    pub(crate) chi_squared: f64,
-    /// Points less parameters.
-    pub(crate) degrees_of_freedom: usize,
-    /// Probability of so large a sum.
-    pub(crate) probability: f64,
-    /// Part of the variance of 1/tau that the law explains.
-    pub(crate) determination: f64,
-}
-
-impl Linear {
-    /// Through widths, 1/tau and its errors; straight or with a square. `None` where 1/tau does not come to 0 beyond the widths.
-    fn of([width, inverse, error]: &[Vec<f64>; 3], is_curved: bool) -> Option<Self> {
-        let last = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let from_last: Vec<f64> = width.iter().map(|width| width - last).collect();
-        let [distance, amplitude] = root(&from_last, inverse, error, is_curved)?;
-        // Errors to first order: each point moved by its own.
-        let mut squares = [0.0; 2];
-        for place in 0..inverse.len() {
-            let mut moved = inverse.clone();
-            moved[place] += error[place];
-            let found = root(&from_last, &moved, error, is_curved)?;
-            squares[0] += (found[0] - distance).powi(2);
-            squares[1] += (found[1] - amplitude).powi(2);
-        }
-        let (chi_squared, degrees_of_freedom, probability) = if is_curved {
-            let fit = fit_parabola(&from_last, inverse, error).ok()?;
-            (fit.chi_squared, fit.degrees_of_freedom, fit.probability)
-        } else {
-            let fit = fit_line(&from_last, inverse, error).ok()?;
-            (fit.chi_squared, fit.degrees_of_freedom, fit.probability)
-        };
-        Some(Self {
-            critical_width: Uncertain::normal(last + distance, squares[0].sqrt()),
-            amplitude: Uncertain::normal(amplitude, squares[1].sqrt()),
-            chi_squared,
-            degrees_of_freedom,
-            probability,
-            determination: 1.0 - chi_squared / scatter(inverse, error),
-        })
-    }
-
-    /// Whether the linear term is there: its error is below half of it.
-    fn is_clear(&self) -> bool {
-        self.amplitude.error < 0.5 * self.amplitude.value
-    }
-}
-
-/// Where the fit comes to 0, and the inverse of its slope there, less its sign.
-fn root(x: &[f64], y: &[f64], error: &[f64], is_curved: bool) -> Option<[f64; 2]> {
-    let (constant, linear, quadratic) = if is_curved {
-        let fit = fit_parabola(x, y, error).ok()?;
-        (fit.constant, fit.linear, fit.quadratic.value)
-    } else {
-        let fit = fit_line(x, y, error).ok()?;
-        (fit.intercept, fit.slope, 0.0)
-    };
-    let steepness = (linear.value.powi(2) - 4.0 * quadratic * constant.value).sqrt();
-    let distance = 2.0 * constant.value / (steepness - linear.value);
-    let is_beyond = steepness > 0.0 && distance > 0.0 && distance.is_finite();
-    is_beyond.then(|| [distance, 1.0 / steepness])
-}
-
-/// chi^2 about the weighted mean.
-fn scatter(y: &[f64], error: &[f64]) -> f64 {
-    let weight = |error: &f64| error.powi(-2);
-    let total: f64 = error.iter().map(weight).sum();
-    let pairs = || y.iter().zip(error);
-    let mean = pairs().map(|(y, error)| y * weight(error)).sum::<f64>() / total;
-    pairs()
-        .map(|(y, error)| (y - mean).powi(2) * weight(error))
-        .sum()
+/// Whether the linear term is there: its error is below half of it.
+fn is_clear(fit: &InverseFit) -> bool {
+    fit.linear.error < 0.5 * fit.linear.value
 }
 
 impl Near {
@@ -115,28 +40,24 @@ impl Near {
         let fits = usable.filter_map(|one| Some((one.width, one.fit?)));
         let fits: Vec<_> = fits.filter(|(_, fit)| fit.mean.error > 0.0).collect();
         let times = columns(fits.iter().map(|(width, fit)| (*width, fit.mean)), 0.0);
-        let inverse = [
-            times[0].clone(),
-            times[1].iter().map(|time| 1.0 / time).collect(),
-            times[1]
-                .iter()
-                .zip(&times[2])
-                .map(|(time, error)| error / (time * time))
-                .collect(),
-        ];
-        let curved = Linear::of(&inverse, true);
+        let [width, time, error] = &times;
+        // A w_c among the widths is none.
+        let last = width.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let is_beyond = |fit: &InverseFit| fit.critical_width.value > last;
+        let curved = fit_inverse_parabola(width, time, error).ok();
+        let curved = curved.filter(is_beyond);
         // The widths of the straight line: those near x = 1, at least the nearest four.
         let unit = line.strain_rate.powf(1.5);
         let critical = curved.map(|curved| curved.critical_width.value);
         let is_near = |width: &f64| critical.is_some_and(|w_c| w_c - width <= NEAR * unit);
-        let number = inverse[0].iter().filter(|width| is_near(width)).count();
-        let first = inverse[0].len().saturating_sub(number.max(STRAIGHT));
+        let number = width.iter().filter(|width| is_near(width)).count();
+        let first = width.len().saturating_sub(number.max(STRAIGHT));
         let variance = fits.iter().map(|(width, fit)| (*width, fit.variance));
         Some(Self {
             strain_rate: line.strain_rate,
-            straight: Linear::of(&inverse.each_ref().map(|one| one[first..].to_vec()), false),
+            straight: fit_inverse_line(&width[first..], &time[first..], &error[first..]).ok(),
             curved,
-            power: fit_law(Law::Power, &times[0], &times[1], &times[2], None).ok(),
+            power: fit_law(Law::Power, width, time, error, None).ok(),
             exponent: line.nearest().map(|fit| fit.exponent),
             variance: columns(variance.filter(|(_, one)| one.value > 0.0), 0.0),
         })
@@ -145,8 +66,7 @@ impl Near {
     /// Whether alpha = 1 next to w_c: where 1/tau = B d + C d² has a clear linear term and a free power, of as many parameters,
     /// fits no better. Without a clear linear term the local exponent decides.
     pub(crate) fn is_linear(&self, agrees: impl Fn(&Uncertain) -> Option<bool>) -> Option<bool> {
-        let (Some(curved), Some(power)) = (self.curved.filter(Linear::is_clear), &self.power)
-        else {
+        let (Some(curved), Some(power)) = (self.curved.filter(is_clear), &self.power) else {
             return self.exponent.as_ref().and_then(agrees);
         };
         Some(curved.chi_squared - power.chi_squared < WORSE)
@@ -154,8 +74,13 @@ impl Near {
 
     /// tau (w_c − w) next to w_c, where alpha = 1 leaves a linear term.
     pub(crate) fn amplitude(&self) -> Option<Uncertain> {
-        let curved = self.curved.filter(Linear::is_clear)?;
-        Some(curved.amplitude)
+        let curved = self.curved.filter(is_clear)?;
+        let slope = curved.linear;
+        let amplitude = 1.0 / slope.value;
+        Some(Uncertain::normal(
+            amplitude,
+            amplitude * slope.error / slope.value,
+        ))
     }
 
     /// beta of chi_tau ~ (w_c − w)^−beta, about the w_c of alpha = 1, or of the free power where 1/tau has no linear term.

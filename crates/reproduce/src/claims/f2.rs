@@ -1,6 +1,6 @@
 //! F2: how the mean transition time diverges.
 
-use peristalsis_analysis::WidthEnsemble;
+use peristalsis_analysis::{InverseFit, WidthEnsemble};
 
 use super::prelude::*;
 
@@ -76,13 +76,13 @@ fn law_row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {
             probability(chance)
         )
     };
-    let of = |fit: &Linear| goodness(fit.chi_squared, fit.degrees_of_freedom, fit.probability);
+    let of = |fit: &InverseFit| goodness(fit.chi_squared, fit.degrees_of_freedom, fit.probability);
     let power = near.power.as_ref();
     Some(vec![
         wall.to_owned(),
         number(shown.strain_rate, 3),
         cell(near.straight.map(|fit| fit.critical_width)),
-        cell_of(near.straight, |fit| number(fit.determination, 3)),
+        cell_of(near.straight, |fit| number(fit.explained, 3)),
         cell_of(near.straight.as_ref(), of),
         cell(near.curved.map(|fit| fit.critical_width)),
         cell_of(near.curved.as_ref(), of),

@@ -1,7 +1,7 @@
 //! Q5: is the divergence real?
 
 use peristalsis_analysis::{
-    Family, Law, LawEvidence, ScatterLawFit, Survival, Transition, compare_laws,
+    Law, LawEvidence, ScatterLawFit, Survival, Transition, compare_laws_with_scatter,
 };
 use peristalsis_figures::ColourScale;
 
@@ -30,7 +30,7 @@ struct Compared<'a> {
 impl<'a> Compared<'a> {
     fn of(wall: &'a str, line: &'a Line<'a>, scatter: ScatterLawFit) -> Option<Self> {
         let (width, transitions) = line.window(WINDOW)?;
-        let laws = compare_laws(&LAWS, Family::Gamma, &width, &transitions);
+        let laws = compare_laws_with_scatter(&LAWS, &width, &transitions);
         Some(Self {
             wall,
             line,
