@@ -186,14 +186,13 @@ fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
     found.sort_by(|one, other| one.density.total_cmp(&other.density));
     for one in &found {
         let wall = &one.name;
-        let of = |name, ours: Option<Uncertain>, source| {
-            ours.map(|ours| PROSE.quantity(name, values!(wall), ours).sourced(source))
-        };
-        let quantities = [of("slope", one.slope, SLOPE), of("power", one.power, POWER)];
-        draft
-            .finding
-            .quantities
-            .extend(quantities.into_iter().flatten());
+        let slope = one.slope;
+        let slope = slope.map(|ours| PROSE.quantity("slope", values!(wall), ours));
+        let power = one.power;
+        let power = power.map(|ours| PROSE.quantity("power", values!(wall), ours));
+        let quantities = &mut draft.finding.quantities;
+        quantities.extend(slope.map(|slope| slope.sourced(SLOPE)));
+        quantities.extend(power.map(|power| power.sourced(POWER)));
     }
     let agreeing = |number: fn(&Candidate) -> Option<Uncertain>, source| -> String {
         let agrees =
