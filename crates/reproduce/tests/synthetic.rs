@@ -222,7 +222,7 @@ fn verdicts_follow_the_law_of_the_tube() {
         ("F1", same, |tube| tube.jump = 0.4),
         ("F2", same, |tube| tube.alpha = 2.0),
         ("F3", same, |tube| tube.scaling = 0.0),
-        ("F4", same, |tube| tube.alpha = 2.0),
+        ("F4", same, |tube| tube.scaling = 0.0),
         // A jump that takes long leaves the second moment room to grow.
         ("F5", |tube| tube.duration = 300.0, |_| ()),
         ("F6", same, |tube| tube.jump = 0.0),
