@@ -96,7 +96,7 @@ bench-scaling *options:
     cargo build --release -p peristalsis
     python3 benchmarks/scaling/bench_scaling.py {{options}}
 
-# Textbook experiments beside their analytic solutions, and other codes where they are installed, into VALIDATION.md.
+# Textbook experiments beside their analytic solutions, and other codes where they are installed, into docs/verification.md.
 validate:
-    cargo run --release -- validate --write VALIDATION.md
+    cargo run --release -- validate --write docs/verification.md
     if [ -f scripts/validate_peers.sh ]; then bash scripts/validate_peers.sh; fi

@@ -14,6 +14,7 @@ import latex2mathml.converter
 PAGES = {
     "CONVENTIONS.md": "conventions.md",
     "VALIDATION.md": "validation.md",
+    "docs/verification.md": "verification.md",
     "BENCHMARKS.md": "benchmarks.md",
     "ARCHITECTURE.md": "developers.md",
     "docs/design.md": "developers.md",

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares our engine with LAMMPS from the same initial states, and writes what came out into VALIDATION.md."""
+"""Compares our engine with LAMMPS from the same initial states, and writes what came out into docs/verification.md."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ def arguments() -> argparse.Namespace:
     release = ROOT / "target" / "release"
     parser.add_argument("--program", type=Path, default=release / "peristalsis", help="the command line")
     parser.add_argument("--example", type=Path, default=release / "examples" / "placed_grains")
-    parser.add_argument("--document", type=Path, default=ROOT / "VALIDATION.md", help="where tables go")
+    parser.add_argument("--document", type=Path, default=ROOT / "docs" / "verification.md", help="where tables go")
     parser.add_argument("--pictures", type=Path, default=ROOT / "docs" / "images" / "validation")
     options = parser.parse_args()
     if options.rounds is None:

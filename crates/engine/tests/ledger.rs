@@ -22,7 +22,10 @@ fn residual(bodies: &Bodies, wall: &Wall, parameters: Parameters) -> (f64, Simul
 ///
 /// Measured, with some hundred contacts that begin and end meanwhile: the residual falls as h^1.9 to h^2.6. What a contact's onset does to the state to order 1 (see `two_grains.rs`) it does to the energies and to
 /// their integrals alike.
-#[allow(clippy::print_stdout, reason = "the numbers are for VALIDATION.md")]
+#[allow(
+    clippy::print_stdout,
+    reason = "the numbers are for docs/verification.md"
+)]
 fn closes(wall: &Wall, number: usize, check: impl Fn(&Simulation)) {
     for (name, normal, friction, integrator) in methods() {
         let name = format!("{name}, {integrator:?}");

@@ -130,7 +130,7 @@ fn an_unknown_case_is_named_with_those_that_exist() {
 #[test]
 fn results_are_written_into_their_places_and_nowhere_else() {
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("VALIDATION.md");
+    let path = folder.path().join("verification.md");
     let read = || fs::read_to_string(&path).unwrap();
     let text = "before\n<!-- validate summary -->\n<!-- /validate -->\n<!-- validate right -->\nold\n<!-- /validate -->\nafter\n";
     fs::write(&path, text).unwrap();

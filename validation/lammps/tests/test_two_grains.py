@@ -25,7 +25,7 @@ def test_restitution_of_the_linear_law(damping: float) -> None:
 
 
 def test_the_printed_viscoelastic_law_at_a_tenth() -> None:
-    """VALIDATION.md, section 4: 0.90256 at v = 0.1 with 3/2 A = 0.15."""
+    """docs/verification.md, section 3: 0.90256 at v = 0.1 with 3/2 A = 0.15."""
     after = collide(touching(0.0, 0.05), Hertz(0.15), STEP)
     assert -after.values[0, 5] / 0.05 == pytest.approx(0.90256, abs=5e-6)
 

@@ -58,6 +58,37 @@ pub fn plain_text(markup: &str) -> String {
     plain
 }
 
+/// The same as Markdown: italics are dropped, scripts are elements, and what Markdown or a table would take for its own is
+/// escaped.
+pub(crate) fn markdown(markup: &str) -> String {
+    let mut text = String::with_capacity(markup.len());
+    let mut level = Level::Base;
+    let element = |level: Level| match level {
+        Level::Base => None,
+        Level::Subscript => Some("sub"),
+        Level::Superscript => Some("sup"),
+    };
+    let mut change = |text: &mut String, to: Level| {
+        let from = std::mem::replace(&mut level, to);
+        if from != to {
+            text.extend(element(from).map(|name| format!("</{name}>")));
+            text.extend(element(to).map(|name| format!("<{name}>")));
+        }
+    };
+    for letter in letters(markup) {
+        change(&mut text, letter.level);
+        match letter.character {
+            '<' => text.push_str("&lt;"),
+            '&' => text.push_str("&amp;"),
+            sign @ ('*' | '|' | '\\') => text.extend(['\\', sign]),
+            sign if sign.is_control() => text.push(' '),
+            sign => text.push(sign),
+        }
+    }
+    change(&mut text, Level::Base);
+    text
+}
+
 /// Stretches of one level.
 fn script(stretches: &[Stretch]) -> Markup {
     let content = html! { @for stretch in stretches { (set(stretch)) } };
@@ -126,5 +157,7 @@ mod tests {
             "&lt;b onclick=&quot;x&quot;&gt;<i>a&lt;</i>&amp;amp;<sup>&lt;i&gt;</sup>"
         );
         assert_eq!(plain_text("*w*_{c}\\* <&"), "w_c* <&");
+        let marked = "w<sub>c</sub>\\* &lt;&amp; \\| 10<sup>−3</sup>";
+        assert_eq!(markdown("*w*_{c}\\* <& | 10^{−3}"), marked);
     }
 }

@@ -5,6 +5,7 @@
 //! SVG and PNG and every table as CSV. Nothing in them depends on when or how the runs were computed: the same runs give the
 //! same bytes. Nothing here prints or exits.
 
+mod document;
 mod files;
 mod json;
 pub(crate) mod markdown;
@@ -29,6 +30,8 @@ pub(crate) use json::json_text;
 const PAGE: &str = "report.html";
 /// The same for programs.
 const JSON: &str = "claims.json";
+/// The same to read where no browser is.
+const DOCUMENT: &str = "report.md";
 
 /// The program that made a report.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -103,7 +106,29 @@ impl Report {
         json::text(self)
     }
 
-    /// Writes `report.html`, `claims.json`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv` into a folder, each file
+    /// The findings as Markdown with the first figure of each claim; `figures` is the folder of the pictures as the document sees it.
+    /// `VALIDATION.md` of the repository is the document of the rows in `validation/results`.
+    pub fn markdown(&self, figures: &str) -> String {
+        document::text(self, figures)
+    }
+
+    /// The figures of the document, each with the name of its file.
+    pub fn main_figures(&self) -> Vec<(String, &Drawing)> {
+        let files = figure_files(&self.examinations);
+        let mut places: Vec<usize> = files
+            .places
+            .iter()
+            .filter_map(|of| of.first().copied())
+            .collect();
+        places.sort_unstable();
+        places.dedup();
+        places
+            .into_iter()
+            .map(|place| (files.files[place].0.clone(), &files.files[place].1.drawing))
+            .collect()
+    }
+
+    /// Writes `report.html`, `report.md`, `claims.json`, `figures/NAME.svg` and `.png`, and `tables/NAME.csv` into a folder, each file
     /// whole or not at all; answers the path of the page.
     ///
     /// # Errors
@@ -121,6 +146,7 @@ impl Report {
             csv::write(&folder.join("tables").join(name), table)?;
         }
         atomic::write(&folder.join(JSON), self.json().as_bytes())?;
+        atomic::write(&folder.join(DOCUMENT), self.markdown("figures").as_bytes())?;
         // Last, so that the page never speaks of files that are not there.
         let page = folder.join(PAGE);
         atomic::write(&page, self.html().as_bytes())?;

@@ -17,7 +17,7 @@ use crate::{Check, Convergence, Examination, ReportTable, ReproduceError, Size};
 const FORMAT: u32 = 1;
 
 /// Folder of figures beside a document.
-const FIGURES: &str = "docs/images/validation";
+const FIGURES: &str = "images/validation";
 
 /// The findings of several cases.
 #[derive(Clone)]
@@ -105,7 +105,7 @@ impl Validation {
     }
 
     /// Replaces in a Markdown document the text between `<!-- validate NAME -->` and `<!-- /validate -->` for each case,
-    /// and, where all cases were examined, for `summary`; figures go to `docs/images/validation` beside the document.
+    /// and, where all cases were examined, for `summary`; figures go to `images/validation` beside the document.
     ///
     /// # Errors
     /// [`ReproduceError::Read`], and [`ReproduceError::NoPlace`] where a marker is missing; nothing is changed then.

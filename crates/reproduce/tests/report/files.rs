@@ -24,7 +24,13 @@ fn page_json_figures_and_tables_are_written() {
     assert_eq!(report.write(&out).unwrap(), out.join("report.html"));
     assert_eq!(
         names(&out),
-        ["claims.json", "figures", "report.html", "tables"]
+        [
+            "claims.json",
+            "figures",
+            "report.html",
+            "report.md",
+            "tables"
+        ]
     );
     assert_eq!(
         names(&out.join("figures")),
@@ -50,7 +56,7 @@ fn page_json_figures_and_tables_are_written() {
     assert!(slope.contains(",-3.75,-2.21,0.06,"), "{slope}");
     // A second time it is the same.
     report.write(&out).unwrap();
-    assert_eq!(names(&out).len(), 4);
+    assert_eq!(names(&out).len(), 5);
 }
 
 #[test]

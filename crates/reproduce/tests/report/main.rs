@@ -8,6 +8,7 @@
 #[path = "../../examples/specimen/findings.rs"]
 mod findings;
 
+mod document;
 mod files;
 mod json;
 mod page;

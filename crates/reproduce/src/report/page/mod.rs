@@ -217,7 +217,7 @@ fn reading(report: &Report) -> Markup {
 }
 
 /// The option that asks for the claims of this page alone, if they are not all.
-fn only(report: &Report) -> String {
+pub(crate) fn only(report: &Report) -> String {
     let chosen: Vec<&str> = report
         .examinations
         .iter()

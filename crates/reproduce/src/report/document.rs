@@ -1,0 +1,207 @@
+//! The findings as one document in Markdown: the opening table, then a section a claim.
+
+use peristalsis_analysis::number::plain;
+
+use crate::contents::{Quantity, ReportTable};
+use crate::finding::{Finding, Statistics, Verdict};
+use crate::report::files::figure_files;
+use crate::report::markdown::table;
+use crate::report::markup::markdown;
+use crate::report::{Report, page};
+use crate::Examination;
+
+/// Numbers and rows of a table that a section shows at most; all are in the page and in the tables of the report.
+const MOST_NUMBERS: usize = 8;
+const MOST_ROWS: usize = 15;
+
+/// What stands above the table.
+const OPENING: &str = include_str!("document.md");
+
+/// The text; `figures` is the folder of the pictures as the document sees it.
+pub(crate) fn text(report: &Report, figures: &str) -> String {
+    let needed = Statistics::FOR_A_VERDICT;
+    let count = |verdict: Verdict| {
+        let examinations = report.examinations.iter();
+        let found = examinations.filter(|one| one.finding.verdict == verdict);
+        format!("{} {}", found.count(), verdict.name())
+    };
+    let verdicts = [
+        Verdict::Reproduced,
+        Verdict::Differs,
+        Verdict::Answered,
+        Verdict::Open,
+    ];
+    let mut text = OPENING
+        .replace("{command}", &command(report, None))
+        .replace("{count}", &verdicts.map(count).join(", "))
+        .replace("{strain_rates}", &needed.strain_rates.to_string())
+        .replace("{widths}", &needed.widths.to_string())
+        .replace("{replicates}", &needed.replicates.to_string());
+    text.push_str(&format!("\n{}", table(&overview(report))));
+    let files = figure_files(&report.examinations);
+    for (examination, places) in report.examinations.iter().zip(&files.places) {
+        let file = places.first().map(|place| files.files[*place].0.as_str());
+        text.push_str(&section(report, examination, file, figures));
+    }
+    text
+}
+
+/// The command that gives these findings, or that on one claim.
+fn command(report: &Report, claim: Option<&str>) -> String {
+    let quick = report.size.choose(" --quick", "");
+    let only = claim.map(|claim| format!(" --only {claim}"));
+    let only = only.unwrap_or_else(|| page::only(report));
+    format!("peristalsis reproduce{quick}{only}")
+}
+
+/// Claims down, walls across: the verdicts, the number of each, and the option that asks for the claim.
+fn overview(report: &Report) -> ReportTable {
+    let mut walls: Vec<&str> = Vec::new();
+    let all = || report.examinations.iter().map(|one| &one.finding);
+    for wall in all().flat_map(|finding| &finding.walls) {
+        if !walls.contains(&wall.wall.as_str()) {
+            walls.push(&wall.wall);
+        }
+    }
+    let on = |finding: &Finding, wall: &str| {
+        let found = finding.walls.iter().find(|one| one.wall == wall);
+        found.map(|one| (one.verdict, markdown(&one.number)))
+    };
+    let row = |examination: &Examination| {
+        let (id, finding) = (examination.experiment.id, &examination.finding);
+        let title = markdown(examination.experiment.prose.title());
+        let verdicts = walls.iter().map(|wall| {
+            let found = on(finding, wall);
+            found.map_or_else(String::new, |(verdict, number)| match &*number {
+                "" | "–" => verdict.name().to_owned(),
+                number => format!("{}: {number}", verdict.name()),
+            })
+        });
+        let number = finding.quantities.first().map(number_of);
+        let number = number.filter(|_| finding.walls.is_empty());
+        let mut cells = vec![
+            format!("[{id}](#{}) {title}", id.to_lowercase()),
+            format!("**{}**", finding.verdict.name()),
+        ];
+        cells.extend(verdicts);
+        cells.extend([number.unwrap_or_default(), format!("`--only {id}`")]);
+        cells
+    };
+    let mut rows: Vec<Vec<String>> = report.examinations.iter().map(row).collect();
+    if !walls.is_empty() {
+        let met = walls.iter().map(|wall| {
+            let verdicts: Vec<Verdict> = all().filter_map(|it| Some(on(it, wall)?.0)).collect();
+            let met = verdicts.iter().filter(|it| **it == Verdict::Reproduced);
+            format!("{} of {}", met.count(), verdicts.len())
+        });
+        let mut cells = vec!["claims met".to_owned(), String::new()];
+        cells.extend(met);
+        cells.extend([String::new(), String::new()]);
+        rows.push(cells);
+    }
+    let head = ["claim", "verdict"].into_iter().chain(walls);
+    ReportTable::new("", head.chain(["the number", "again"]), rows)
+}
+
+/// A number with its name, its error and the value of the source.
+fn number_of(quantity: &Quantity) -> String {
+    let ours = quantity.ours.as_ref();
+    let ours = ours.map_or_else(|| "not determined".to_owned(), ToString::to_string);
+    let source = quantity
+        .source
+        .map(|source| format!(" (source: {})", plain(source)));
+    let name = format!("{}: {ours}{}", quantity.name, source.unwrap_or_default());
+    markdown(&name)
+}
+
+/// What is said of a claim.
+fn section(
+    report: &Report,
+    examination: &Examination,
+    file: Option<&str>,
+    figures: &str,
+) -> String {
+    let (claim, finding) = (&examination.experiment, &examination.finding);
+    let (id, prose) = (claim.id, &claim.prose);
+    let mut text = format!(
+        "\n<a id=\"{}\"></a>\n\n## {id}. {}\n",
+        id.to_lowercase(),
+        markdown(prose.title())
+    );
+    let mut add = |paragraph: &str| text.push_str(&format!("\n{paragraph}\n"));
+    let source = match prose.source() {
+        "" => String::new(),
+        source => format!(" ({})", markdown(source)),
+    };
+    add(&format!("> {}{source}", markdown(&prose.statement())));
+    let summary = match &examination.failure {
+        Some(failure) => format!("It could not be examined: {failure}"),
+        None => finding.summary.clone(),
+    };
+    let verdict = finding.verdict.name();
+    add(&format!("**{verdict}** – {}", markdown(&summary)));
+    if let (Some(file), Some(figure)) = (file, finding.figures.first()) {
+        // A bracket would end the caption.
+        let caption = markdown(&figure.caption).replace(['[', ']'], " ");
+        add(&format!("![{caption}]({figures}/{file}.svg)"));
+    }
+    for paragraph in &finding.paragraphs {
+        add(&markdown(paragraph));
+    }
+    let walls = finding.walls.iter().map(|wall| {
+        let (name, verdict) = (markdown(&wall.wall), wall.verdict.name());
+        let (number, why) = (markdown(&wall.number), markdown(&wall.why));
+        format!("- {name}: **{verdict}**; {number}; {why}\n")
+    });
+    add_list(&mut text, "On each wall:", walls.collect());
+    text.push_str(&numbers(finding));
+    let weaknesses = finding.weaknesses.iter();
+    let weaknesses = weaknesses.map(|weakness| format!("- {}\n", markdown(weakness)));
+    add_list(&mut text, "Weaknesses:", weaknesses.collect());
+    text + &format!("\n`{}`\n", command(report, Some(id)))
+}
+
+/// Adds a list below a line, unless it is empty.
+fn add_list(text: &mut String, line: &str, list: String) {
+    if !list.is_empty() {
+        text.push_str(&format!("\n{line}\n\n{list}"));
+    }
+}
+
+/// The most important numbers beside those of the source, and the first table.
+fn numbers(finding: &Finding) -> String {
+    let row = |quantity: &Quantity| {
+        let ours = quantity.ours.as_ref();
+        let unit = match &*quantity.unit {
+            "" => String::new(),
+            unit => format!(" [{unit}]"),
+        };
+        let cells = [
+            format!("{}{unit}", quantity.name),
+            ours.map_or_else(|| "not determined".to_owned(), ToString::to_string),
+            quantity.source.map_or_else(String::new, plain),
+        ];
+        cells.map(|cell| markdown(&cell)).to_vec()
+    };
+    let mut text = String::new();
+    let all = finding.quantities.len();
+    if all > 0 {
+        let rows = finding.quantities.iter().take(MOST_NUMBERS).map(row);
+        let head = ["number", "ours", "source"];
+        text.push_str(&format!("\n{}", table(&ReportTable::new("", head, rows))));
+        if all > MOST_NUMBERS {
+            text.push_str(&format!(
+                "\n{MOST_NUMBERS} of {all} numbers; all are in `claims.json`.\n"
+            ));
+        }
+    }
+    let small = |one: &&ReportTable| !one.head.is_empty() && one.rows.len() <= MOST_ROWS;
+    if let Some(first) = finding.tables.first().filter(small) {
+        let marked = |cells: &[String]| cells.iter().map(|cell| markdown(cell)).collect();
+        let rows = first.rows.iter().map(|cells| marked(cells));
+        let head: Vec<String> = marked(&first.head);
+        let marked = table(&ReportTable::new("", head, rows));
+        text.push_str(&format!("\n{}\n\n{marked}", markdown(&first.caption)));
+    }
+    text
+}

@@ -1,0 +1,78 @@
+//! `VALIDATION.md` says what the rows in `validation/results` say.
+//!
+//! `GOLDEN=write cargo test -p peristalsis-reproduce --test validation` writes it anew, with the first figure of each claim:
+//! right where rows, claims or their words have changed.
+
+#![allow(
+    clippy::unwrap_used,
+    reason = "a test fails where what it needs is missing"
+)]
+
+use std::fs;
+use std::path::Path;
+
+use peristalsis_reproduce::report::Report;
+use peristalsis_reproduce::{CLAIMS, Reproduction, STUDIES, Size};
+
+/// Folder of the figures, as the document sees it.
+const FIGURES: &str = "docs/images/claims";
+/// Characters that fill two lines of a cell.
+const TWO_LINES: usize = 120;
+
+/// What the published rows say, nothing computed beside them.
+fn published(root: &Path) -> Report {
+    let folder = tempfile::tempdir().unwrap();
+    let reproduction = Reproduction::prepare(folder.path(), Size::Full, CLAIMS, STUDIES).unwrap();
+    reproduction
+        .import(&[root.join("validation/results")])
+        .unwrap();
+    let outcome = reproduction.examine(&mut |_| {});
+    Report::of(Size::Full, outcome)
+}
+
+/// A cell as it is seen: without elements and the addresses of links.
+fn seen(cell: &str) -> String {
+    let pieces = cell
+        .split('<')
+        .map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text));
+    let text: String = pieces.collect();
+    text.split("](")
+        .map(|piece| piece.split_once(')').map_or(piece, |(_, rest)| rest))
+        .collect()
+}
+
+#[test]
+fn the_document_says_what_the_rows_say() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let report = published(&root);
+    let (path, folder) = (root.join("VALIDATION.md"), root.join(FIGURES));
+    let text = report.markdown(FIGURES);
+    if std::env::var_os("GOLDEN").is_some_and(|value| value == "write") {
+        fs::write(&path, &text).unwrap();
+        fs::remove_dir_all(&folder).ok();
+        fs::create_dir_all(&folder).unwrap();
+        for (name, drawing) in report.main_figures() {
+            fs::write(folder.join(name).with_extension("svg"), drawing.svg()).unwrap();
+        }
+    }
+    assert!(
+        text == fs::read_to_string(&path).unwrap(),
+        "VALIDATION.md is not what the rows say: write it anew, as the head of this test says"
+    );
+    for (name, drawing) in report.main_figures() {
+        let file = fs::read_to_string(folder.join(&name).with_extension("svg"));
+        assert!(
+            file.is_ok_and(|file| file == drawing.svg()),
+            "{name}.svg: write it anew"
+        );
+    }
+    for line in text.lines().filter(|line| line.starts_with('|')) {
+        for cell in line.replace("\\|", "").split('|') {
+            let seen = seen(cell);
+            assert!(
+                seen.chars().count() <= TWO_LINES,
+                "a cell of more than two lines: {seen}"
+            );
+        }
+    }
+}
