@@ -56,13 +56,7 @@ fn command(report: &Report, claim: Option<&str>) -> String {
 
 /// Claims down, walls across: the verdicts, the number of each, and the option that asks for the claim.
 fn overview(report: &Report) -> ReportTable {
-    let mut walls: Vec<&str> = Vec::new();
-    let all = || report.examinations.iter().map(|one| &one.finding);
-    for wall in all().flat_map(|finding| &finding.walls) {
-        if !walls.contains(&wall.wall.as_str()) {
-            walls.push(&wall.wall);
-        }
-    }
+    let walls = report.walls();
     let on = |finding: &Finding, wall: &str| {
         let found = finding.walls.iter().find(|one| one.wall == wall);
         found.map(|one| (one.verdict, markdown(&one.number)))
@@ -70,8 +64,8 @@ fn overview(report: &Report) -> ReportTable {
     let row = |examination: &Examination| {
         let (id, finding) = (examination.experiment.id, &examination.finding);
         let title = markdown(examination.experiment.prose.title());
-        let verdicts = walls.iter().map(|wall| {
-            let found = on(finding, wall);
+        let verdicts = walls.iter().map(|tally| {
+            let found = on(finding, tally.wall);
             found.map_or_else(String::new, |(verdict, number)| match &*number {
                 "" | "–" => verdict.name().to_owned(),
                 number => format!("{}: {number}", verdict.name()),
@@ -89,17 +83,15 @@ fn overview(report: &Report) -> ReportTable {
     };
     let mut rows: Vec<Vec<String>> = report.examinations.iter().map(row).collect();
     if !walls.is_empty() {
-        let met = walls.iter().map(|wall| {
-            let verdicts: Vec<Verdict> = all().filter_map(|it| Some(on(it, wall)?.0)).collect();
-            let met = verdicts.iter().filter(|it| **it == Verdict::Reproduced);
-            format!("{} of {}", met.count(), verdicts.len())
-        });
+        let met = walls.iter();
+        let met = met.map(|tally| format!("{} of {}", tally.met, tally.judged));
         let mut cells = vec!["claims met".to_owned(), String::new()];
         cells.extend(met);
         cells.extend([String::new(), String::new()]);
         rows.push(cells);
     }
-    let head = ["claim", "verdict"].into_iter().chain(walls);
+    let head = ["claim", "verdict"].into_iter();
+    let head = head.chain(walls.iter().map(|tally| tally.wall));
     ReportTable::new("", head.chain(["the number", "again"]), rows)
 }
 

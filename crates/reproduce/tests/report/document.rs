@@ -39,6 +39,9 @@ fn every_claim_has_a_row_and_a_section() {
 #[test]
 fn walls_stand_across_with_the_claims_that_each_meets() {
     let mut report = specimen().unwrap();
+    for examination in &mut report.examinations {
+        examination.finding.walls.clear();
+    }
     let wall = |wall: &str, verdict| WallVerdict {
         wall: wall.to_owned(),
         verdict,
@@ -57,7 +60,7 @@ fn walls_stand_across_with_the_claims_that_each_meets() {
     let found = "| reproduced: α = 1.1 ± 0.2 | differs: α = 1.1 ± 0.2 | | `--only ";
     assert!(rows[3].contains(found), "{}", rows[3]);
     let met = rows.iter().find(|row| row.starts_with("| claims met"));
-    assert_eq!(met.unwrap(), "| claims met | | 1 of 1 | 0 of 2 | | |");
+    assert_eq!(met.unwrap(), "| claims met | | 1 of 1 | 0 of 1 | | |");
     let text = report.markdown("pictures");
     assert!(text.contains("\n- 24 × 26: **reproduced**; α = 1.1 ± 0.2; so\n"));
 }
