@@ -2,13 +2,13 @@
 
 use peristalsis_analysis::number::plain;
 
+use crate::Examination;
 use crate::contents::{Quantity, ReportTable};
 use crate::finding::{Finding, Statistics, Verdict};
 use crate::report::files::figure_files;
 use crate::report::markdown::table;
 use crate::report::markup::markdown;
 use crate::report::{Report, page};
-use crate::Examination;
 
 /// Numbers and rows of a table that a section shows at most; all are in the page and in the tables of the report.
 const MOST_NUMBERS: usize = 8;
