@@ -7,10 +7,11 @@ use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand};
 use peristalsis_configuration::PRESETS;
 use peristalsis_engine::Instructions;
-use peristalsis_reproduce::Extent;
+use peristalsis_reproduce::textbook::CASES;
+use peristalsis_reproduce::{CLAIMS, Extent};
 use peristalsis_run::{Span, TrajectoryFormat, Window};
 
-use crate::choice::{INSTRUCTIONS, TRAJECTORIES, one_of};
+use crate::choice::{INSTRUCTIONS, Offered, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
 use crate::commands::study::{StudyCommand, WorkArguments, time_span};
@@ -63,7 +64,7 @@ pub(crate) enum Command {
 }
 
 /// Where a configuration comes from.
-#[derive(Clone, Debug, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub(crate) struct ConfigurationArguments {
     /// Configuration in TOML; `-` reads it from standard input.
     #[arg(value_name = "FILE")]
@@ -74,13 +75,30 @@ pub(crate) struct ConfigurationArguments {
     /// Value that goes over preset and file, such as drive.width=2.7; may be repeated.
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+    /// How long to run, in periods of the wave: run.periods. With --resume, where the run is to end, complete or not, to
+    /// the same bits as if it had been asked for so much.
+    #[arg(long, value_name = "N", value_parser = positive)]
+    pub(crate) periods: Option<f64>,
+    /// The same in time [t]: run.duration.
+    #[arg(long, value_name = "T", conflicts_with = "periods", value_parser = positive)]
+    pub(crate) duration: Option<f64>,
+}
+
+impl ConfigurationArguments {
+    /// The length of the run as a setting, if one is asked for.
+    pub(crate) fn length(&self) -> Option<String> {
+        match (self.periods, self.duration) {
+            (Some(periods), _) => Some(format!("run.periods={periods}")),
+            (None, duration) => Some(format!("run.duration={}", duration?)),
+        }
+    }
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct RunArguments {
     #[command(flatten)]
     pub(crate) configuration: ConfigurationArguments,
-    /// Folder for the results; the default is a new one below runs/, NAME-1, NAME-2, ...
+    /// Folder for the results, one that holds no run; the default is a new one below runs/, NAME-1, NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Threads to compute with, for equal smooth grains in a prescribed tube; they pay from some ten thousand grains on.
@@ -93,12 +111,6 @@ pub(crate) struct RunArguments {
     /// in a file, such as Python's `Simulation.save` writes.
     #[arg(long, value_name = "DIR|FILE", conflicts_with_all = ["file", "preset", "overrides", "seeds"])]
     pub(crate) resume: Option<PathBuf>,
-    /// Let the resumed run, complete or not, end after so many periods, to the same bits as if it had been asked for them.
-    #[arg(long, value_name = "N", requires = "resume", value_parser = positive)]
-    pub(crate) periods: Option<f64>,
-    /// The same in time [t].
-    #[arg(long, value_name = "T", requires = "resume", conflicts_with = "periods", value_parser = positive)]
-    pub(crate) duration: Option<f64>,
     /// Run once with each of these seeds, side by side, and show mean and scatter: 1..10, or 1,2,5. Each has a folder,
     /// DIR/seed-K; --resume DIR goes on with all of them.
     #[arg(long, value_name = "SEEDS", value_parser = seeds)]
@@ -278,9 +290,9 @@ pub(crate) struct ReproduceArguments {
     #[arg(long)]
     pub(crate) quick: bool,
     /// Only these claims, such as F3,F6.
-    #[arg(long, value_name = "CLAIMS", value_delimiter = ',')]
+    #[arg(long, value_name = "CLAIMS", value_delimiter = ',', value_parser = claims(), hide_possible_values = true)]
     pub(crate) only: Vec<String>,
-    /// Folder for report and runs.
+    /// Folder for report and runs; an older report in it is replaced.
     #[arg(long, value_name = "DIR", default_value = "reproduction")]
     pub(crate) out: PathBuf,
     /// Tables of finished runs (.csv, .parquet), or folders of them, to begin from. Unless given: the folder
@@ -310,12 +322,12 @@ impl ReproduceArguments {
 )]
 pub(crate) struct ValidateArguments {
     /// Only these cases, such as normal-impact,haff.
-    #[arg(long, value_name = "CASES", value_delimiter = ',')]
+    #[arg(long, value_name = "CASES", value_delimiter = ',', value_parser = cases(), hide_possible_values = true)]
     pub(crate) only: Vec<String>,
     /// Fewer points and replicates, in some twenty seconds.
     #[arg(long)]
     pub(crate) quick: bool,
-    /// Folder for the results.
+    /// Folder for the results; older ones in it are replaced.
     #[arg(long, value_name = "DIR", default_value = "validation-report")]
     pub(crate) out: PathBuf,
     /// Put the results into this document, between the lines `<!-- validate CASE -->` and `<!-- /validate -->`.
@@ -351,6 +363,14 @@ fn extent(text: &str) -> Result<Extent, String> {
         true => Ok(Extent::Part(part / 100.0)),
         false => Err(misread()),
     }
+}
+
+fn claims() -> Offered {
+    Offered(CLAIMS.iter().map(|claim| claim.id).collect())
+}
+
+fn cases() -> Offered {
+    Offered(CASES.iter().map(|case| case.name).collect())
 }
 
 /// A number above 0.

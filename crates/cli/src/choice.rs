@@ -1,6 +1,6 @@
 //! Options of which each value has a name: tables of the values that the crates below know.
 
-use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
 use peristalsis_engine::Instructions;
 use peristalsis_run::Field::{
     AngularVelocity, AxialDisplacement, AxialVelocity, Coordination, Diameter, Phase, Pressure,
@@ -118,4 +118,25 @@ pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
     let names = names.map(|(name, _, meaning)| PossibleValue::new(*name).help(*meaning));
     PossibleValuesParser::new(names)
         .map(|name| value_of(choices, &name).expect("only known names are parsed"))
+}
+
+/// Any text, for which shells offer these names; what is none of them is refused by who looks it up.
+#[derive(Clone)]
+pub(crate) struct Offered(pub(crate) Vec<&'static str>);
+
+impl TypedValueParser for Offered {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<String, clap::Error> {
+        StringValueParser::new().parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.0.iter().copied().map(PossibleValue::new)))
+    }
 }

@@ -191,6 +191,9 @@ fn of_run(error: &RunError) -> Advice {
         RunError::HoldsAnotherRun { .. } => {
             wrong("name another folder with --out, or go on with that run with --resume")
         }
+        RunError::AtWork { .. } => wrong(
+            "wait until it ends or stop it; `peristalsis run DIR/config.toml --out OTHER` begins anew in another folder",
+        ),
         RunError::State { path, source } => wrong(of_state(path, source)),
         RunError::Trajectory { help, .. } => wrong(*help),
         RunError::Picture { help, .. } => wrong(help),

@@ -32,10 +32,12 @@ pub(crate) fn configuration(arguments: &ConfigurationArguments) -> Result<Config
             Some((name, text))
         }
     };
+    let overrides = arguments.overrides.iter().cloned();
+    let overrides: Vec<String> = overrides.chain(arguments.length()).collect();
     Ok(Configuration::from_sources(&Sources {
         file: file.as_ref().map(|(name, text)| SourceFile { name, text }),
         preset: arguments.preset.as_deref(),
-        overrides: &arguments.overrides,
+        overrides: &overrides,
     })?)
 }
 

@@ -3,21 +3,22 @@
 //! send the same signal twice.
 
 use std::process::ExitCode;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
 #[cfg(unix)]
 use signal_hook::consts::{SIGHUP, SIGUSR1};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, say};
 
 /// Watches for signals that ask to stop.
+#[derive(Clone)]
 pub(crate) struct Stop {
     signal: Arc<AtomicUsize>,
-    /// Whether the next signal ends the program at once.
-    at_once: Arc<AtomicBool>,
+    /// Whether there is something that a signal must not lose.
+    keeps: Arc<Mutex<bool>>,
 }
 
 /// Added to a signal's number in an exit code, by convention of the shell.
@@ -28,10 +29,10 @@ const ONE_REQUEST: Duration = Duration::from_secs(1);
 const LOOK: Duration = Duration::from_millis(100);
 
 impl Stop {
-    /// Begins to watch. Until [`Stop::keep_results`] a signal ends the program at once: there is nothing to lose.
+    /// Begins to watch. Until [`Stop::keep_results`] a signal ends the program, which says so: there is nothing to lose.
     pub(crate) fn watch() -> Result<Self, Failure> {
         let signal = Arc::new(AtomicUsize::new(0));
-        let at_once = Arc::new(AtomicBool::new(true));
+        let (at_once, keeps) = (Arc::new(AtomicBool::new(false)), Arc::default());
         for number in signals() {
             let code = i32::from(SIGNAL_BASE) + number;
             // In this order: a signal that is not to end the program is noted.
@@ -41,21 +42,41 @@ impl Stop {
                 })
                 .map_err(Failure::Signals)?;
         }
-        let (noted, armed) = (Arc::clone(&signal), Arc::clone(&at_once));
+        let stop = Self { signal, keeps };
+        let watched = stop.clone();
         // A thread of its own, for whoever asks may be at a long piece of work.
         std::thread::spawn(move || {
-            while noted.load(Ordering::Relaxed) == 0 {
-                std::thread::sleep(LOOK);
+            let code = loop {
+                match watched.requested() {
+                    Some(code) => break code,
+                    None => std::thread::sleep(LOOK),
+                }
+            };
+            let keeps = watched.keeps();
+            if !*keeps {
+                // The lock is held to the end: nothing begins that would have to be kept.
+                say("stopped before there was any result");
+                std::process::exit(code.into());
             }
+            drop(keeps);
             std::thread::sleep(ONE_REQUEST);
-            armed.store(true, Ordering::Relaxed);
+            at_once.store(true, Ordering::Relaxed);
         });
-        Ok(Self { signal, at_once })
+        Ok(stop)
     }
 
     /// From here on the first signal is only noted, so that what there is can be written.
     pub(crate) fn keep_results(&self) {
-        self.at_once.store(false, Ordering::Relaxed);
+        *self.keeps() = true;
+    }
+
+    fn keeps(&self) -> MutexGuard<'_, bool> {
+        self.keeps.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether a signal asked to stop, and did not end the program by itself.
+    pub(crate) fn is_asked_for(&self) -> bool {
+        self.requested().is_some() && *self.keeps()
     }
 
     /// The exit code of the signal that asked to stop, if one did.

@@ -133,6 +133,14 @@ impl Tube {
         u64::from(self.spheres_per_ring) * u64::from(self.rings_per_wave) * u64::from(self.waves)
     }
 
+    /// About how many wall spheres a grain at the wall has within a distance \[d\] along the tube and around it.
+    pub(crate) fn wall_spheres_within(&self, reach: f64) -> f64 {
+        let around = (reach / (PI * self.radius)).min(1.0) * f64::from(self.spheres_per_ring);
+        let along = (2.0 * reach / self.length()).min(1.0);
+        let rings = along * f64::from(self.waves) * f64::from(self.rings_per_wave);
+        around.max(1.0) * rings
+    }
+
     /// Distances of lattice neighbours in the straight tube \[d\]: those in a ring, and those in rings side by side.
     pub fn neighbour_distances(&self) -> [f64; 2] {
         let spacing = self.wavelength / f64::from(self.rings_per_wave);
@@ -362,6 +370,12 @@ impl Configuration {
         let largest = self.grains.diameter_max;
         let volume = PI * self.tube.radius * self.tube.radius * self.tube.length();
         self.grains.number as f64 * largest * largest * largest / volume
+    }
+
+    /// About how many wall spheres a grain at the wall meets at once.
+    pub fn wall_spheres_in_reach(&self) -> f64 {
+        let reach = self.grains.diameter_max.max(self.wall.sphere_diameter);
+        self.tube.wall_spheres_within(reach)
     }
 
     /// Speed of the wave c \[d t^-1\].

@@ -61,6 +61,9 @@ pub enum EngineError {
         /// The allowed values.
         allowed: &'static str,
     },
+    /// It was asked to stop.
+    #[error("stopped while the grains were packed")]
+    Stopped,
     /// The system gives no more threads.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {

@@ -150,6 +150,10 @@ impl Snapshot<'_> {
             let number = decimal(length / self.wavelength, 1);
             number.strip_suffix(".0").unwrap_or(&number).to_owned()
         };
+        if self.length < 0.1 * self.wavelength {
+            let [shown, all] = [self.length, self.period].map(|length| decimal(length, 0));
+            return format!("{shown} of {all} *d* shown");
+        }
         let [shown, all] = [self.length, self.period].map(number);
         format!("{shown} of {all} waves shown")
     }

@@ -4,7 +4,7 @@ use glam::DVec3;
 use peristalsis_configuration::{
     Configuration, Control, InitialState, ScheduledParameter, WaveDirection, Waveform,
 };
-use peristalsis_engine::initial::{Packing, PackingReport, pack};
+use peristalsis_engine::initial::{Packing, PackingReport, pack_unless};
 use peristalsis_engine::wall::{ElasticParameters, ElasticWall, PrescribedWall, Scattered};
 use peristalsis_engine::{Bodies, Parameters, Simulation, Touching, Wall};
 use peristalsis_observe::TubeShape;
@@ -25,6 +25,17 @@ const BYTES_PER_SPHERE: u64 = 1000;
 /// [`RunError::TooManyGrains`] or [`RunError::Engine`] where the grains do not fit, [`RunError::NoMemory`] where there is
 /// no room for them.
 pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingReport), RunError> {
+    assemble_unless(configuration, &|| false)
+}
+
+/// The same; `stop` is asked often, while the grains are packed, whether to stop.
+///
+/// # Errors
+/// As [`assemble`]; [`RunError::Engine`] where it was asked to stop, too.
+pub(crate) fn assemble_unless(
+    configuration: &Configuration,
+    stop: &dyn Fn() -> bool,
+) -> Result<(Simulation, PackingReport), RunError> {
     if configuration.initial.state == InitialState::Placed {
         let reason = "initial.state is \"placed\": a caller of the library has put the grains somewhere, which a \
                       configuration does not say; go on from a checkpoint of that run, or take \"rest\" or \"jammed\"";
@@ -43,7 +54,7 @@ pub fn assemble(configuration: &Configuration) -> Result<(Simulation, PackingRep
         axial_velocity: wall.heading() * configuration.initial.axial_velocity,
         seed: configuration.run.seed,
     };
-    let (bodies, report) = pack(&packing, &wall, configuration.contact.normal)?;
+    let (bodies, report) = pack_unless(&packing, &wall, configuration.contact.normal, stop)?;
     let simulation = Simulation::new(bodies, wall, parameters(configuration));
     Ok((simulation, report))
 }

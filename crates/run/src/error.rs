@@ -43,6 +43,12 @@ pub enum RunError {
         /// The file that shows it.
         found: String,
     },
+    /// Another program works on the run.
+    #[error("{} is being worked on by another program", folder.display())]
+    AtWork {
+        /// Its folder.
+        folder: PathBuf,
+    },
     /// The folder cannot be made or written to.
     #[error("cannot write to {}: {source}", folder.display())]
     Folder {
@@ -138,6 +144,11 @@ impl RunError {
                 found: (*found).to_owned(),
             })
         })
+    }
+
+    /// Whether it was asked to stop, by the question that [`Run::new_unless`](crate::Run::new_unless) takes.
+    pub fn is_stop(&self) -> bool {
+        matches!(self, Self::Engine(EngineError::Stopped))
     }
 
     /// What to do about a run that diverged; `None` for other errors.

@@ -1,8 +1,8 @@
 //! The estimate of a run before it runs: its size, and its time from a short trial.
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
-use peristalsis_configuration::{Configuration, Grains};
+use peristalsis_configuration::{Configuration, Control, Grains};
 use peristalsis_observe::{Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
@@ -10,15 +10,21 @@ use crate::RunError;
 use crate::assemble::{check_number, moving_spheres, newtonian_reference};
 use crate::run::Run;
 use crate::si::SiEstimate;
-use crate::trajectory::{self, TrajectoryEstimate, TrajectoryRequest};
+use crate::trajectory::{self, TrajectoryEstimate, TrajectoryPlan, TrajectoryRequest};
 use crate::warnings::{Warning, contact_time, warnings};
 
 /// Grains of the trial that measures speed.
 const TRIAL_GRAINS: u64 = 20_000;
-/// Length of the trial; its second half is timed, for a packing at rest has fewer contacts than a flow.
-const TRIAL: Duration = Duration::from_millis(800);
-/// Time that a piece of the trial should take.
-const PIECE: Duration = Duration::from_millis(20);
+/// Grains above which it is made in a narrower tube, where a shorter one does not do.
+const MOST_TRIAL_GRAINS: u64 = 10 * TRIAL_GRAINS;
+/// Radius of such a tube at least, in diameters of the largest grains.
+const LEAST_RADII: f64 = 3.0;
+/// Steps of all its grains together: a second or less of one processor.
+const TRIAL_GRAIN_STEPS: f64 = 3e6;
+/// Its steps at least, unless the run has fewer.
+const LEAST_STEPS: u64 = 100;
+/// Wall spheres in reach of a grain that take as long as the grain itself.
+const WALL_SPHERES_OF_A_GRAIN: f64 = 20.0;
 /// Bytes of the program itself with its figures.
 const BYTES_OF_PROGRAM: f64 = 3e7;
 /// Bytes of a smooth grain in a prescribed tube.
@@ -81,6 +87,9 @@ pub fn estimate(
     trajectory: Option<&TrajectoryRequest>,
 ) -> Result<Estimate, RunError> {
     check_number(configuration)?;
+    if let Some(request) = trajectory {
+        TrajectoryPlan::new(request, configuration, 0, configuration.run.steps())?;
+    }
     let mut trial = trial(configuration)?;
     trial.run.follow_orientations();
     let trajectory = trajectory
@@ -166,11 +175,16 @@ struct Trial {
     run: Run,
     /// How many times more grains the configuration has.
     scale: f64,
+    /// Whether the tube is the same but for its length: else what was seen in it says nothing of the other.
+    is_same_tube: bool,
 }
 
 impl Trial {
     /// What was seen in the trial that the configuration does not say by itself.
     fn warnings(&self, configuration: &Configuration) -> Vec<Warning> {
+        if !self.is_same_tube {
+            return Vec::new();
+        }
         let known = warnings(configuration);
         let seen = self.run.warnings().into_iter();
         let seen = seen.filter(|warning| !known.contains(warning));
@@ -179,8 +193,17 @@ impl Trial {
     }
 }
 
-/// Tries a run for at most [`TRIAL`]; a large tube is tried in a shorter one like it.
-fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
+/// Steps of a trial, from the configuration alone, so that it warns of the same on every machine; at most the whole run.
+fn trial_steps(configuration: &Configuration) -> u64 {
+    let met = configuration.wall_spheres_in_reach();
+    let work = moving_spheres(configuration).max(1) as f64 * (1.0 + met / WALL_SPHERES_OF_A_GRAIN);
+    let steps = (TRIAL_GRAIN_STEPS / work).ceil() as u64;
+    steps.clamp(LEAST_STEPS, configuration.run.steps().max(LEAST_STEPS))
+}
+
+/// A tube of fewer grains like that of a configuration, how many times more that has, and whether it is the same tube but
+/// for its length.
+fn smaller(configuration: &Configuration) -> (Configuration, f64, bool) {
     let mut trial = configuration.clone();
     let mut scale = 1.0;
     if trial.grains.number > TRIAL_GRAINS {
@@ -193,17 +216,36 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
         trial.grains.number = (per_wave * f64::from(kept)).round() as u64;
         scale = f64::from(waves) / f64::from(kept);
     }
+    let narrower = (TRIAL_GRAINS as f64 / trial.grains.number.max(1) as f64).sqrt();
+    let Control::Strain { width } = &mut trial.drive.control else {
+        return (trial, scale, true);
+    };
+    let radius = narrower * trial.tube.radius;
+    if trial.grains.number <= MOST_TRIAL_GRAINS || radius < LEAST_RADII * trial.grains.diameter_max
+    {
+        return (trial, scale, true);
+    }
+    *width *= narrower;
+    trial.tube.radius = radius;
+    trial.drive.schedules.clear();
+    trial.grains.number = TRIAL_GRAINS;
+    (trial, scale / (narrower * narrower), false)
+}
+
+/// Tries [`trial_steps`] of a run; of a large tube in a [smaller] one like it.
+fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
+    let (trial, scale, is_same_tube) = smaller(configuration);
+    let steps = trial_steps(&trial);
     let packing = Instant::now();
     let mut run = Run::new(trial)?;
     let packing_seconds = scale * packing.elapsed().as_secs_f64();
-    let mut timed = (0, Duration::ZERO);
+    // The second half is timed, for a packing at rest has fewer contacts than a flow.
+    let (mut start, mut first) = (Instant::now(), 0);
     let mut divergence = None;
-    // Pieces grow until they last long enough to be timed: a single sample may be a billion steps away.
-    let mut piece = 1;
-    let start = Instant::now();
-    while start.elapsed() < TRIAL && !run.is_complete() {
-        let (before, first) = (start.elapsed(), run.simulation().step());
-        if let Err(error) = run.advance_at_most(piece) {
+    for end in [steps / 2, steps] {
+        (start, first) = (Instant::now(), run.simulation().step());
+        let advanced = advance_to(&mut run, end);
+        if let Err(error) = advanced {
             let Some(advice) = error.against_divergence() else {
                 return Err(error);
             };
@@ -211,26 +253,47 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
             divergence = Some(Warning { key, message });
             break;
         }
-        let took = start.elapsed() - before;
-        if took < PIECE {
-            piece = piece.saturating_mul(2);
-        }
-        let steps = run.simulation().step() - first;
-        if before > TRIAL / 2 {
-            timed = (timed.0 + steps, timed.1 + took);
-        }
     }
-    // A trial that ended early is timed as a whole.
-    let (steps, time) = match timed.0 {
-        0 => (run.simulation().step(), start.elapsed()),
-        _ => timed,
-    };
-    let seconds_per_step = time.as_secs_f64() / steps.max(1) as f64;
+    let timed = (run.simulation().step() - first).max(1);
+    let seconds_per_step = start.elapsed().as_secs_f64() / timed as f64;
     Ok(Trial {
         packing_seconds,
         expected_seconds: scale * seconds_per_step * configuration.run.steps() as f64,
         divergence,
         run,
         scale,
+        is_same_tube,
     })
+}
+
+/// Advances to a step, or to the end of the run.
+fn advance_to(run: &mut Run, step: u64) -> Result<(), RunError> {
+    while run.simulation().step() < step && !run.is_complete() {
+        run.advance_at_most(step - run.simulation().step())?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// COMMAND-LINE, low: what a trial saw, and so its warnings, depended on the speed of the machine.
+    #[test]
+    fn a_trial_has_as_many_steps_on_every_machine() {
+        let configuration = |settings: &str| {
+            let text = format!("preset = \"frictionless\"\ntube.waves = 2\n{settings}");
+            Configuration::from_toml("test", &text).expect("a tube that can be")
+        };
+        for (settings, expected) in [
+            ("grains.number = 1000\nrun.periods = 20", None),
+            ("grains.number = 20\nrun.periods = 0.1", Some(())),
+        ] {
+            let configuration = configuration(settings);
+            let steps = trial_steps(&configuration);
+            let tried = trial(&configuration).expect("grains that fit");
+            assert_eq!(tried.run.simulation().step(), steps);
+            assert_eq!(expected.is_some(), steps == configuration.run.steps());
+        }
+    }
 }

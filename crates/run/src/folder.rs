@@ -1,7 +1,9 @@
 //! The folder of a run: configuration, summary, tables, figures, state.
 
+use std::fs::{File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use peristalsis_configuration::Configuration;
 use peristalsis_formats::{FormatError, atomic, csv, parquet};
@@ -37,6 +39,8 @@ const ENDINGS: [&str; 2] = ["svg", "png"];
 #[derive(Clone, Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Held while this program works on the run, and given back by the system when it ends, however it does.
+    lock: Option<Arc<File>>,
 }
 
 /// Which of the optional files are wanted.
@@ -60,14 +64,13 @@ impl RunFolder {
     /// written to. Nothing is changed in either case.
     pub fn create(path: &Path, configuration: &Configuration) -> Result<Self, RunError> {
         Self::check(path)?;
-        let path = path.to_owned();
-        let folder = Self { path };
+        let folder = Self::named(path);
         let make = || std::fs::create_dir_all(&folder.path).map_err(folder.refused());
         or_undone(&folder.path, || {
             make()?;
             folder.begin(configuration)
         })?;
-        Ok(folder)
+        folder.claim()
     }
 
     /// The same in the first free one of the folders `inside/stem-1`, `inside/stem-2`, ..., which no other program gets.
@@ -80,12 +83,11 @@ impl RunFolder {
         configuration: &Configuration,
     ) -> Result<Self, RunError> {
         or_undone(inside, || {
-            let path = next_folder(inside, stem)?;
-            let folder = Self { path };
+            let folder = Self::named(&next_folder(inside, stem)?);
             folder.begin(configuration).inspect_err(|_| {
                 drop(std::fs::remove_dir(&folder.path));
             })?;
-            Ok(folder)
+            folder.claim()
         })
     }
 
@@ -143,19 +145,46 @@ impl RunFolder {
     /// another run's or another version's; errors of the configuration.
     pub fn open(path: &Path) -> Result<(Self, Run), RunError> {
         let folder = Self::named(path);
-        let configuration = folder.configuration()?;
-        let run = folder.state()?;
-        let run = run.under(configuration).map_err(|source| RunError::State {
-            path: folder.file(STATE),
-            source: Box::new(source),
-        })?;
+        let run = folder.run()?;
         Ok((folder, run))
+    }
+
+    /// The run in it, finished or not, with its state.
+    ///
+    /// # Errors
+    /// As [`RunFolder::open`].
+    pub fn run(&self) -> Result<Run, RunError> {
+        let configuration = self.configuration()?;
+        let run = self.state()?;
+        run.under(configuration).map_err(|source| RunError::State {
+            path: self.file(STATE),
+            source: Box::new(source),
+        })
+    }
+
+    /// Takes the folder for work on its run, until this value is dropped or the program ends; other programs may still read
+    /// it. Where the file system knows no locks, nothing is taken. New folders are taken when they are made.
+    ///
+    /// # Errors
+    /// [`RunError::AtWork`] where another program, or another value of this one, has it.
+    pub fn claim(mut self) -> Result<Self, RunError> {
+        // The folder itself: a file of its own would be left behind by a program that is killed.
+        let Ok(opened) = File::open(&self.path) else {
+            return Ok(self);
+        };
+        match opened.try_lock() {
+            Err(TryLockError::WouldBlock) => Err(RunError::AtWork { folder: self.path }),
+            _ => {
+                self.lock = Some(Arc::new(opened));
+                Ok(self)
+            }
+        }
     }
 
     /// A folder that may hold a run.
     pub fn named(path: &Path) -> Self {
-        let path = path.to_owned();
-        Self { path }
+        let (path, lock) = (path.to_owned(), None);
+        Self { path, lock }
     }
 
     /// The configuration in the folder.
@@ -182,6 +211,11 @@ impl RunFolder {
             RunError::Format(FormatError::Io { source, .. }) => self.missing(STATE, &source),
             error => error,
         })
+    }
+
+    /// Whether what the run came to was written, in its summary.
+    pub fn has_summary(&self) -> bool {
+        self.file(SUMMARY).is_file()
     }
 
     /// Whether a state was saved in it.

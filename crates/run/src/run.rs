@@ -12,7 +12,7 @@ use peristalsis_formats::FormatError;
 use peristalsis_formats::checkpoint::{self, CheckpointIdentity};
 use peristalsis_observe::Orientations;
 
-use crate::assemble::{PlacedGrains, assemble, parameters, place, walls};
+use crate::assemble::{PlacedGrains, assemble_unless, parameters, place, walls};
 use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 use crate::stopwatch::Stopwatch;
@@ -84,7 +84,18 @@ impl Run {
     /// # Errors
     /// [`RunError::Engine`] where they do not fit.
     pub fn new(configuration: Configuration) -> Result<Self, RunError> {
-        let (simulation, packing) = assemble(&configuration)?;
+        Self::new_unless(configuration, &|| false)
+    }
+
+    /// The same; `stop` is asked often whether to stop.
+    ///
+    /// # Errors
+    /// As [`Run::new`]; [`EngineError::Stopped`] where it was asked to stop.
+    pub fn new_unless(
+        configuration: Configuration,
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Self, RunError> {
+        let (simulation, packing) = assemble_unless(&configuration, stop)?;
         Ok(Self::beginning(configuration, simulation, packing))
     }
 

@@ -109,6 +109,17 @@ impl Row {
         })
     }
 
+    /// A number of this row that no finished run has, in words.
+    pub(crate) fn impossible(&self) -> Option<String> {
+        let value = |name: &str| Some((name.to_owned(), *self.table.reals(name).ok()?.first()?));
+        let measured = ["time", "periods", "flow_rate", "flow_rate_ratio"];
+        let mut measured = measured.into_iter().filter_map(value);
+        // An empty cell reads as NaN: a quantity that the run does not have. Each has a time.
+        let (name, found) = measured
+            .find(|(name, found)| found.is_infinite() || name == "time" && found.is_nan())?;
+        Some(format!("the run {} has the {name} {found}", self.identity))
+    }
+
     /// As CSV with its header, exact to the bit.
     pub(crate) fn to_csv(&self) -> String {
         csv::encode(&self.table)

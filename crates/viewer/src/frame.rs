@@ -52,7 +52,7 @@ pub(crate) struct Head {
     pub(crate) rows: Vec<Row>,
     /// The last sample.
     pub(crate) sample: Option<Shown>,
-    /// What is doubtful of the run so far; of a recording nothing is said.
+    /// What is doubtful of the run so far; of a recording, of the whole run.
     pub(crate) warnings: Vec<Warning>,
 }
 

@@ -6,12 +6,14 @@ use peristalsis_run::{Estimate, estimate};
 
 use crate::arguments::CheckArguments;
 use crate::commands::trajectory::{request, size};
-use crate::commands::{print_report, rounded, significant, with_words};
+use crate::commands::{counted, print_report, rounded, significant, with_words};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::sources::{configuration, locate};
+use crate::stop::Stop;
 
 pub(crate) fn check(arguments: &CheckArguments) -> Result<ExitCode, Failure> {
+    let _stop = Stop::watch()?;
     let configuration = configuration(&arguments.configuration)?;
     let words = format!(
         "packing grains for a short trial: it takes long for {} grains among {} spheres of the wall; Ctrl-C ends it",
@@ -39,7 +41,8 @@ fn in_words(estimate: &Estimate) -> String {
         match (estimate.period, estimate.periods) {
             (Some(period), Some(periods)) => {
                 let [duration, periods, period] = [duration, periods, period].map(rounded);
-                format!("time              {duration} t: {periods} periods of {period} t")
+                let periods = counted(periods, "period");
+                format!("time              {duration} t: {periods} of {period} t")
             }
             _ => format!(
                 "time              {} t, the wave stands still",
@@ -102,10 +105,11 @@ fn in_words(estimate: &Estimate) -> String {
     ));
     if let Some(trajectory) = &estimate.trajectory {
         for (format, bytes) in &trajectory.bytes {
-            let (name, frames, size) = (format.file_name(), trajectory.frames, size(*bytes));
-            let every = format!("one every {} steps", trajectory.interval_steps);
+            let (name, size) = (format.file_name(), size(*bytes));
+            let frames = counted(trajectory.frames, "frame");
+            let every = format!("one every {}", counted(trajectory.interval_steps, "step"));
             lines.push(format!(
-                "trajectory        {name} of {frames} frames, {every}: about {size}"
+                "trajectory        {name} of {frames}, {every}: about {size}"
             ));
         }
     }

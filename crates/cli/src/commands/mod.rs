@@ -74,6 +74,13 @@ fn say_if_replaced(path: &std::path::Path) {
     }
 }
 
+/// So many of something, in the plural where it is not one: "1 run", "2 finished runs".
+pub(crate) fn counted(number: impl std::fmt::Display, of: &str) -> String {
+    let number = number.to_string();
+    let plural = if number == "1" { "" } else { "s" };
+    format!("{number} {of}{plural}")
+}
+
 /// Prints warnings on standard error, without those that were said before: no progress, so that they are said in quiet runs
 /// as well.
 fn warn_besides(said: &[Warning], warnings: &[Warning]) {
@@ -125,7 +132,17 @@ fn rounded(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{rounded, significant};
+    use super::{counted, rounded, significant};
+
+    #[test]
+    fn one_is_no_plural() {
+        assert_eq!(counted(1, "run"), "1 run");
+        assert_eq!(counted(rounded(1.0), "period"), "1 period");
+        assert_eq!(
+            [0, 2].map(|number| counted(number, "run")),
+            ["0 runs", "2 runs"]
+        );
+    }
 
     #[test]
     fn rounded_numbers_are_as_short_as_they_can_be() {

@@ -14,7 +14,7 @@ use peristalsis_study::{Effort, Ending};
 
 use super::study::progress::{StudyDisplay, overall};
 use crate::arguments::ReproduceArguments;
-use crate::commands::{code_of, print, say_if_replaced, tell};
+use crate::commands::{code_of, counted, print, say_if_replaced, tell};
 use crate::failure::Failure;
 use crate::progress::seconds;
 use crate::stop::Stop;
@@ -44,9 +44,8 @@ pub(crate) fn reproduce(arguments: &ReproduceArguments) -> Result<ExitCode, Fail
     let reproduction = Reproduction::prepare(&arguments.out, size, &claims, STUDIES)?;
     let tell = |text: &str| tell(arguments.quiet, text);
     tell(&format!(
-        "{} claim{}, {} design, in {}",
-        claims.len(),
-        if claims.len() == 1 { "" } else { "s" },
+        "{}, {} design, in {}",
+        counted(claims.len(), "claim"),
         size.name(),
         arguments.out.display()
     ));
@@ -253,13 +252,16 @@ fn is_well(outcome: &Outcome) -> bool {
 
 /// The result of an import, a line a study.
 fn imported(import: &Import) -> String {
-    let mut lines = vec![format!("{} tables of finished runs", import.tables)];
+    let mut lines = vec![format!(
+        "{} of finished runs",
+        counted(import.tables, "table")
+    )];
     for (path, reason) in &import.skipped {
         lines.push(format!("  {} is left out: {reason}", path.display()));
     }
     for study in &import.studies {
-        let (name, found, runs) = (&study.study, study.found, study.runs);
-        lines.push(format!("  {name}: {found} of {runs} runs found"));
+        let (name, found, runs) = (&study.study, study.found, counted(study.runs, "run"));
+        lines.push(format!("  {name}: {found} of {runs} found"));
     }
     lines.join("\n")
 }

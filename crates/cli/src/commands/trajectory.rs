@@ -8,7 +8,7 @@ use peristalsis_run::{
 };
 
 use crate::arguments::{FrameArguments, TrajectoryArguments};
-use crate::commands::print_report;
+use crate::commands::{counted, print_report};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -66,9 +66,9 @@ pub(crate) fn request(arguments: &FrameArguments) -> Option<TrajectoryRequest> {
 pub(crate) fn in_words(report: &TrajectoryReport) -> String {
     let files = report.files.iter().map(|file| file.display().to_string());
     let (files, size) = (files.collect::<Vec<_>>().join(", "), size(report.bytes));
-    let (frames, interval) = (report.frames, report.interval_steps);
-    let plural = if frames == 1 { "" } else { "s" };
-    format!("{frames} frame{plural}, one every {interval} steps, {size}: {files}")
+    let frames = counted(report.frames, "frame");
+    let interval = counted(report.interval_steps, "step");
+    format!("{frames}, one every {interval}, {size}: {files}")
 }
 
 /// Bytes in a unit that suits them.

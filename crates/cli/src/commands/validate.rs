@@ -1,5 +1,6 @@
 //! `peristalsis validate`
 
+use std::cell::{Cell, RefCell};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -7,9 +8,9 @@ use peristalsis_reproduce::textbook::{CASES, Case, Validation, chosen};
 use peristalsis_reproduce::{Examination, ReproduceError, Size};
 
 use crate::arguments::ValidateArguments;
-use crate::commands::{code_of, print, say_if_replaced, tell};
+use crate::commands::{code_of, counted, print, say_if_replaced, tell};
 use crate::failure::Failure;
-use crate::progress::seconds;
+use crate::progress::{LastLine, seconds};
 use crate::stop::Stop;
 
 pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failure> {
@@ -23,27 +24,39 @@ pub(crate) fn validate(arguments: &ValidateArguments) -> Result<ExitCode, Failur
     }
     let tell = |text: &str| tell(arguments.quiet, text);
     tell(&format!(
-        "{} case{}, {}, in {}",
-        cases.len(),
-        if cases.len() == 1 { "" } else { "s" },
+        "{}, {}, in {}",
+        counted(cases.len(), "case"),
         size.name(),
         arguments.out.display()
     ));
     stop.keep_results();
-    let mut began = Instant::now();
-    let outcome = Validation::run(
-        size,
-        &cases,
-        &|| stop.requested().is_some(),
-        &mut |examination| {
-            let took = seconds(began.elapsed().as_secs_f64());
-            tell(&format!("{} ({took})", line(examination)));
-            for failed in failures(examination) {
-                tell(&format!("  {failed}"));
-            }
-            began = Instant::now();
-        },
-    );
+    let began = Cell::new(Instant::now());
+    let (ended, said) = (Cell::new(0), RefCell::new(LastLine::now(0)));
+    // Asked often, and so the one to say what takes long.
+    let stops = || {
+        let is_silent = said.borrow().is_old();
+        if let Some(case) = cases.get(ended.get()).filter(|_| is_silent) {
+            said.replace(LastLine::now(0));
+            let took = seconds(began.get().elapsed().as_secs_f64());
+            let number = ended.get() + 1;
+            let of = cases.len();
+            tell(&format!(
+                "case {number} of {of}, {}, for {took} so far",
+                case.name
+            ));
+        }
+        stop.requested().is_some()
+    };
+    let outcome = Validation::run(size, &cases, &stops, &mut |examination| {
+        let took = seconds(began.get().elapsed().as_secs_f64());
+        tell(&format!("{} ({took})", line(examination)));
+        for failed in failures(examination) {
+            tell(&format!("  {failed}"));
+        }
+        began.set(Instant::now());
+        ended.set(ended.get() + 1);
+        said.replace(LastLine::now(0));
+    });
     let validation = match outcome {
         Err(ReproduceError::Stopped) => {
             tell("stopped, nothing is written");
@@ -73,9 +86,10 @@ fn line(examination: &Examination<Case>) -> String {
     let finding = &examination.finding;
     let passed = examination.passed();
     let verdict = if passed { "passed" } else { "failed" };
-    let (checks, orders) = (finding.checks.len(), finding.convergences.len());
+    let checks = counted(finding.checks.len(), "check");
+    let orders = counted(finding.convergences.len(), "order");
     let name = &examination.experiment.name;
-    format!("{name:<15} {verdict}  {checks} checks, {orders} orders")
+    format!("{name:<15} {verdict}  {checks}, {orders}")
 }
 
 /// The failed parts of a case, a line each.

@@ -14,7 +14,7 @@ fn check(words: &str) -> Value {
     outcome.json()
 }
 
-/// The keys of the warnings besides what a trial saw, to which the speed of the machine leads it or not.
+/// The keys of the warnings besides what a trial saw.
 fn warned(estimate: &Value) -> Vec<&str> {
     let warnings = estimate["warnings"].as_array().unwrap().iter();
     let keys = warnings.filter_map(|warning| {

@@ -342,6 +342,7 @@ fn configuration(keys: Keys, context: &mut Context<'_>) -> Option<Configuration>
     if let Some(grains) = &grains {
         let reach = grains.diameter_max.max(keys.wall.sphere_diameter);
         tube::check_length(&tube, reach, context);
+        tube::check_reach(&tube, reach, context);
     }
     let units = contact.and_then(|contact| units::units(&keys.units, &contact, context));
     let drive = drive::drive(&keys, units.flatten().as_ref(), context);

@@ -65,6 +65,22 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
     context.refuse::<()>(ProblemKind::Inconsistent, keys, message, help);
 }
 
+/// A grain meets each wall sphere within its reach at every step: there must not be more than can be gone through.
+pub(super) fn check_reach(tube: &Tube, reach: f64, context: &mut Context<'_>) {
+    let (met, most) = (
+        tube.wall_spheres_within(reach),
+        limits::MOST_WALL_SPHERES_IN_REACH,
+    );
+    if met > most {
+        context.refuse::<()>(
+            ProblemKind::OutOfRange,
+            &["tube.rings_per_wave", "tube.spheres_per_ring"],
+            format!("a wall so dense that a grain meets {met:.0} of its spheres at once"),
+            format!("at most {most}: take fewer rings a wave or spheres a ring"),
+        );
+    }
+}
+
 /// A sphere must not meet its own periodic image, nor one partner from both sides.
 pub(super) fn check_length(tube: &Tube, reach: f64, context: &mut Context<'_>) {
     let (length, least) = (tube.length(), 2.0 * reach);

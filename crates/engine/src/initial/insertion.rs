@@ -8,6 +8,7 @@ use peristalsis_physics::wall::RadiusWave;
 use rand_chacha::ChaCha8Rng;
 
 use super::packing::{Packing, uniform};
+use crate::error::EngineError;
 use crate::neighbours::cells::Grid;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
@@ -107,11 +108,15 @@ fn belly(wave: &RadiusWave, cycles: f64) -> f64 {
 
 /// Inserts grain by grain: at a random place without overlap, or, where none is found, at a random place. Answers the places
 /// of all grains, and how many were placed without overlap.
+///
+/// # Errors
+/// [`EngineError::Stopped`] where it was asked to stop.
 pub(super) fn insert(
     diameter: &[f64],
     region: &Region<'_>,
     random: &mut ChaCha8Rng,
-) -> (Vec<DVec3>, usize) {
+    stop: &dyn Fn() -> bool,
+) -> Result<(Vec<DVec3>, usize), EngineError> {
     // Without grains any width of the cells will do.
     let largest = diameter.iter().copied().reduce(f64::max).unwrap_or(1.0);
     let mut bins = Bins::new(region, largest, diameter.len());
@@ -119,6 +124,9 @@ pub(super) fn insert(
     let mut without_overlap = 0;
     let mut stalled = 0_usize;
     for (grain, &size) in diameter.iter().enumerate() {
+        if stop() {
+            return Err(EngineError::Stopped);
+        }
         // Once many grains in a row have stalled the tube is full: do not try as long for each of the others.
         let tries = if stalled > 20 { 1 } else { TRIES };
         let mut place = region.place(size, random);
@@ -138,7 +146,7 @@ pub(super) fn insert(
         bins.add(place, grain);
         position.push(place);
     }
-    (position, without_overlap)
+    Ok((position, without_overlap))
 }
 
 /// Grains by cells of a rectangular grid.

@@ -47,6 +47,19 @@ pub fn pack(
     wall: &Wall,
     normal: Normal,
 ) -> Result<(Bodies, PackingReport), EngineError> {
+    pack_unless(packing, wall, normal, &|| false)
+}
+
+/// The same; `stop` is asked often whether to stop.
+///
+/// # Errors
+/// As [`pack`]; [`EngineError::Stopped`] where it was asked to stop.
+pub fn pack_unless(
+    packing: &Packing,
+    wall: &Wall,
+    normal: Normal,
+    stop: &dyn Fn() -> bool,
+) -> Result<(Bodies, PackingReport), EngineError> {
     let mut diameters = random(packing.seed, Stream::Diameters);
     let spread = packing.diameter_max - packing.diameter_min;
     let diameter: Vec<f64> = (0..packing.number)
@@ -54,7 +67,7 @@ pub fn pack(
         .collect();
     let region = insertion::Region::new(packing, wall);
     let mut positions = random(packing.seed, Stream::Positions);
-    let (position, inserted) = insertion::insert(&diameter, &region, &mut positions);
+    let (position, inserted) = insertion::insert(&diameter, &region, &mut positions, stop)?;
 
     // Numbered along the tube: grains that meet then lie close in memory as well.
     let mut grains: Vec<(DVec3, f64)> = position.into_iter().zip(diameter).collect();
@@ -64,7 +77,7 @@ pub fn pack(
     wall.append_spheres(&mut bodies);
     let mut report = PackingReport::default();
     if inserted < packing.number {
-        report = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall)?);
+        report = with_normal_law!(normal, law => relaxation::grow(&law, &mut bodies, wall, stop)?);
     }
     report.inserted = inserted;
     for velocity in &mut bodies.velocity[..packing.number] {

@@ -31,6 +31,7 @@ pub(super) fn grow<N: NormalLaw>(
     normal: &N,
     bodies: &mut Bodies,
     wall: &Wall,
+    stop: &dyn Fn() -> bool,
 ) -> Result<PackingReport, EngineError> {
     let law = ContactLaw {
         normal: normal.undamped(),
@@ -55,14 +56,14 @@ pub(super) fn grow<N: NormalLaw>(
         // The kernel of the last stage makes room first.
         descent.forces = Forces::Listed(Box::new(Contacts::none()));
         descent.forces = Forces::between(&bodies_now, wall);
-        descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS);
+        descent.run(&law, &mut bodies_now, wall, STAGE_ITERATIONS, stop)?;
     }
     let overlap = descent.report.mean_overlap;
     let outside = pressed_out(&bodies_now, wall);
     if overlap > HOPELESS * largest || too_many(outside, grains) {
         return Err(does_not_fit(overlap, outside));
     }
-    descent.run(&law, &mut bodies_now, wall, LAST_ITERATIONS);
+    descent.run(&law, &mut bodies_now, wall, LAST_ITERATIONS, stop)?;
     let report = descent.report;
     let outside = pressed_out(&bodies_now, wall);
     if report.mean_overlap > LARGEST_MEAN_OVERLAP * largest || too_many(outside, grains) {
@@ -173,8 +174,12 @@ impl Descent {
         bodies: &mut Bodies,
         wall: &Wall,
         iterations: usize,
-    ) {
+        stop: &dyn Fn() -> bool,
+    ) -> Result<(), EngineError> {
         for _ in 0..iterations {
+            if stop() {
+                return Err(EngineError::Stopped);
+            }
             let tally = self.forces.evaluate(law, bodies, wall);
             self.report.iterations += 1;
             self.report.stored_energy = tally.contact_energy;
@@ -186,6 +191,7 @@ impl Descent {
             }
             bodies.fold(wall.length());
         }
+        Ok(())
     }
 
     /// One move; `true` where all forces are balanced.

@@ -12,6 +12,9 @@ use crate::spheres::{SeenSphere, seen_spheres};
 
 /// Length of tube that a snapshot shows at most, in wavelengths.
 const WAVES: u32 = 4;
+/// Length that it shows at most, in diameters of the largest grains: the grains of a longer part are too small, or its rows
+/// too many for a page.
+const DIAMETERS: f64 = 1000.0;
 /// How far from the axis a snapshot shows spheres, in radii of the tube.
 const RADII: f64 = 2.5;
 /// How far at most, in lengths of what is shown: a picture of a wider tube would be all height.
@@ -88,6 +91,7 @@ impl SideView {
         // Drawn with the wave running to the right.
         let along = |z: f64| if heading > 0.0 { z } else { tube - z };
         let length = configuration.tube.wavelength * f64::from(configuration.tube.waves.min(WAVES));
+        let length = length.min(DIAMETERS * configuration.grains.diameter_max);
         let farthest = (RADII * configuration.tube.radius).min(LENGTHS * length);
         // A grain that has flown off must not stretch the picture, and those beyond its ends are many.
         let shows = |seen: &SeenSphere| {

@@ -12,6 +12,8 @@ use crate::RunError;
 const FRAMES_PER_PERIOD: f64 = 10.0;
 /// Frames of a run whose wave stands still, unless asked for otherwise.
 const FRAMES_OF_A_STATIC_RUN: u64 = 100;
+/// Most spheres of a frame, which is made in memory: some 2 GB.
+const MOST_SPHERES: u64 = 20_000_000;
 /// Most frames of a trajectory.
 const MOST_FRAMES: u64 = 10_000_000;
 /// What a window is, where one holds no frame.
@@ -133,6 +135,14 @@ impl TrajectoryPlan {
         now: u64,
         end: u64,
     ) -> Result<Self, RunError> {
+        let spheres = configuration.grains.number + configuration.tube.wall_spheres();
+        if spheres > MOST_SPHERES {
+            let reason = format!(
+                "a frame of {spheres} spheres, those of the wall among them, is beyond reach: at most {MOST_SPHERES}"
+            );
+            let help = "take fewer waves (tube.waves) or grains (grains.number)";
+            return Err(RunError::Trajectory { reason, help });
+        }
         let interval = interval(request.every, configuration)?;
         let place = |span: Option<Span>| {
             let steps = span.map(|span| span.steps(configuration)).transpose();

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
 
-use peristalsis_run::{Run, RunError, Status, Summary};
+use peristalsis_run::{Pace, Run, RunError, Status, Summary};
 
 use super::{IDLE, Shared, Working};
 use crate::error::{Result, StudyError};
@@ -102,8 +102,12 @@ fn carry_out(
         ));
         shared.store.quarantine(path, identity, reason).map(|_| ())
     };
-    let mut run = match files.resume(assignment, &mut aside) {
+    let mut run = match files.resume(assignment, &mut aside, &|| shared.is_stopped()) {
         Ok(run) => run,
+        // Nothing is there yet, and it begins anew.
+        Err(StudyError::Run { source, .. }) if source.is_stop() => {
+            return Ok(Some(Entry::new(State::Pending, None)));
+        }
         Err(StudyError::Run {
             source:
                 source @ (RunError::Engine(_)
@@ -124,7 +128,7 @@ fn advance(
     run: &mut Run,
 ) -> Result<Outcome> {
     let identity = assignment.identity;
-    let mut saved = Instant::now();
+    let (mut saved, mut pace) = (Instant::now(), Pace::default());
     while !run.is_complete() {
         let is_stopped = shared.is_stopped();
         if is_stopped || saved.elapsed() >= shared.effort.checkpoint_interval {
@@ -137,7 +141,7 @@ fn advance(
             }
             saved = Instant::now();
         }
-        if let Err(error) = run.advance() {
+        if let Err(error) = pace.advance(run, u64::MAX) {
             // The last state that was whole may show why.
             if shared.holds(identity)? {
                 drop(files.save(run));

@@ -34,6 +34,7 @@ impl Store {
             let contradiction = runs
                 .get(&row.identity())
                 .and_then(|run| row.contradiction(&survey.plan.configuration(run)));
+            let contradiction = contradiction.or_else(|| row.impossible());
             if let Some(reason) = contradiction {
                 return Err(StudyError::NotRows {
                     path: path.to_owned(),

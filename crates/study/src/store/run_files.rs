@@ -168,11 +168,13 @@ impl RunFiles {
         write_if_other(&self.file(STATEPOINT), &statepoint)
     }
 
-    /// The run from its newest whole checkpoint, or from the start. `aside` moves each damaged checkpoint away.
+    /// The run from its newest whole checkpoint, or from the start. `aside` moves each damaged checkpoint away; `stop` is
+    /// asked often whether to stop.
     pub(crate) fn resume(
         &self,
         assignment: &Assignment,
         aside: &mut dyn FnMut(&Path, &str) -> Result<()>,
+        stop: &dyn Fn() -> bool,
     ) -> Result<Run> {
         let configuration = || assignment.configuration.clone();
         let mut run = None;
@@ -192,7 +194,7 @@ impl RunFiles {
         }
         let mut run = match run {
             Some(run) => run,
-            None => Run::new(configuration()).map_err(|source| self.failed(source))?,
+            None => Run::new_unless(configuration(), stop).map_err(|source| self.failed(source))?,
         };
         if let Some(stopping) = assignment.stopping {
             run.stop_when(stopping);

@@ -7,7 +7,7 @@ use peristalsis_engine::Wall;
 use peristalsis_formats::trajectory::Frame;
 use peristalsis_formats::trajectory::gsd::GsdReader;
 use peristalsis_observe::Sample;
-use peristalsis_run::walls;
+use peristalsis_run::{Warning, walls, warnings};
 
 use super::error::ViewerError;
 use crate::frame::{Head, of_recording, of_wall};
@@ -31,6 +31,7 @@ pub struct Recording {
     /// Time of each frame.
     times: Vec<f64>,
     grains: usize,
+    warnings: Vec<Warning>,
 }
 
 impl Recording {
@@ -51,6 +52,7 @@ impl Recording {
             times: Vec::new(),
             grains: first.grains,
             rows: Vec::new(),
+            warnings: warnings(&configuration),
             reader,
             configuration,
             wall,
@@ -60,6 +62,12 @@ impl Recording {
         recording.read_times()?;
         recording.rows = recording.read_rows()?;
         Ok(recording)
+    }
+
+    /// The same with the warnings of the whole run, where its state is known; without them, those of its configuration.
+    pub fn with_warnings(mut self, warnings: Vec<Warning>) -> Self {
+        self.warnings = warnings;
+        self
     }
 
     /// Number of frames.
@@ -123,7 +131,7 @@ impl Recording {
             driven: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
-            warnings: Vec::new(),
+            warnings: self.warnings.clone(),
         };
         let spheres_per_ring = self.configuration.tube.spheres_per_ring as usize;
         Ok(of_recording(&head, &frame, spheres_per_ring))

@@ -252,3 +252,29 @@ fn a_trajectory_that_is_cut_short_plays_as_far_as_it_goes() {
     assert!(message.contains("trajectory.gsd"), "{message}");
     assert_eq!(frame(&mut client, 0).head["number"], 0);
 }
+
+/// COMMAND-LINE, medium 6: the warnings of a played recording were empty.
+#[test]
+fn a_recording_has_the_warnings_of_its_run() {
+    let settings = [
+        "tube.waves=2",
+        "drive.width=2.6",
+        "observe.transition_threshold=1.2",
+    ];
+    let recorded = Recorded::new("frictionless", &settings);
+    let keys = |recording: Recording| {
+        let viewer = Viewer::play(recording, "tube".to_owned(), 0).unwrap();
+        let served = Served::serve(viewer, tempfile::tempdir().unwrap());
+        let (mut client, _) = served.client();
+        let warnings = frame(&mut client, 3).head["warnings"].clone();
+        let warnings = warnings.as_array().unwrap().iter();
+        let keys = warnings.map(|it| it["key"].as_str().unwrap().to_owned());
+        keys.collect::<Vec<_>>()
+    };
+    let recording = recorded.open(&recorded.path()).unwrap();
+    assert_eq!(keys(recording), ["observe.transition_threshold"]);
+    let recording = recorded.open(&recorded.path()).unwrap();
+    let whole = recorded.run.warnings();
+    let expected: Vec<_> = whole.iter().map(|it| it.key.to_owned()).collect();
+    assert_eq!(keys(recording.with_warnings(whole)), expected);
+}

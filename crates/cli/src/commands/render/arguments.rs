@@ -104,7 +104,7 @@ pub(crate) struct RenderArguments {
     /// Frames a second.
     #[arg(long, value_name = "N", default_value_t = 20.0)]
     pub(crate) fps: f64,
-    /// File for the picture or film; the default is DIR/tube-VIEW with the format's ending.
+    /// File for the picture or film, which is replaced; the default is DIR/tube-VIEW with the format's ending.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what was made as JSON.

@@ -17,7 +17,7 @@ use serde_json::json;
 pub(crate) use self::arguments::RenderArguments;
 use self::arguments::{Origin, ViewName};
 use crate::choice::Format;
-use crate::commands::{print, say, say_if_replaced};
+use crate::commands::{counted, print, say, say_if_replaced};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::stop::Stop;
@@ -348,7 +348,10 @@ fn report(
     } else if frames == 1 {
         format!("{width} x {height} pixels: {out}\n")
     } else {
-        format!("{frames} frames of {width} x {height} pixels: {out}\n")
+        format!(
+            "{} of {width} x {height} pixels: {out}\n",
+            counted(frames, "frame")
+        )
     };
     print(&text)
 }

@@ -35,15 +35,14 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
     let stop = Stop::watch()?;
     let (folder, mut run) = match &arguments.resume {
-        Some(source) => go_on(arguments, source)?,
-        None => begin(arguments)?,
+        Some(source) => go_on(arguments, source, &stop)?,
+        None => begin(arguments, &stop)?,
     };
     let said = match &arguments.resume {
         Some(_) => Vec::new(),
         None => run.warnings(),
     };
     compute_with(arguments, &mut run)?;
-    stop.keep_results();
     let work = Work::begin(arguments, folder, run)?;
     let mut display = Display::new(arguments.quiet, work.run.configuration().run.samples);
     let (work, outcome) = work.finish(&stop, &mut |progress| display.update(progress));
@@ -112,15 +111,16 @@ fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> 
 }
 
 /// Reads the configuration, packs the grains, makes the folder.
-fn begin(arguments: &RunArguments) -> Result<(RunFolder, Run), Failure> {
+fn begin(arguments: &RunArguments, stop: &Stop) -> Result<(RunFolder, Run), Failure> {
     let configuration = checked(arguments, configuration(&arguments.configuration)?)?;
     warn_besides(&[], &warnings(&configuration));
     if let Some(path) = &arguments.out {
         // Before the work of packing, and again when the folder is made.
         RunFolder::check(path)?;
     }
-    let run = packed(arguments, configuration)?;
+    let run = packed(arguments, configuration, stop)?;
     warn_besides(&warnings(run.configuration()), &run.warnings());
+    stop.keep_results();
     let folder = new_folder(arguments, &name(&arguments.configuration), &run)?;
     Ok((folder, run))
 }
@@ -136,14 +136,19 @@ fn checked(
     Ok(configuration)
 }
 
-/// A new run with its grains packed.
-fn packed(arguments: &RunArguments, configuration: Configuration) -> Result<Run, Failure> {
+/// A new run with its grains packed, unless it is asked to stop.
+fn packed(
+    arguments: &RunArguments,
+    configuration: Configuration,
+    stop: &Stop,
+) -> Result<Run, Failure> {
     let grains = configuration.grains.number;
     if grains > SLOW_PACKING {
-        let words = format!("packing {grains} grains; Ctrl-C ends at once until they are packed");
+        let words = format!("packing {grains} grains; Ctrl-C stops it");
         tell(arguments.quiet, &words);
     }
-    Run::new(configuration).map_err(|error| locate(error, &arguments.configuration))
+    let run = Run::new_unless(configuration, &|| stop.is_asked_for());
+    run.map_err(|error| locate(error, &arguments.configuration))
 }
 
 /// The folder asked for, or else the first free one runs/NAME-K.
@@ -155,41 +160,51 @@ fn new_folder(arguments: &RunArguments, name: &str, run: &Run) -> Result<RunFold
 }
 
 /// Goes on with the run of a folder in it, or with the state in a file in a new folder.
-fn go_on(arguments: &RunArguments, source: &Path) -> Result<(RunFolder, Run), Failure> {
+fn go_on(
+    arguments: &RunArguments,
+    source: &Path,
+    stop: &Stop,
+) -> Result<(RunFolder, Run), Failure> {
     if !source.is_file() && arguments.out.is_none() {
-        return go_on_in(arguments, source);
+        return go_on_in(arguments, source, stop);
     }
     let run = match source.is_file() {
         true => read_state(source)?,
-        false => RunFolder::open(source)?.1,
+        false => RunFolder::named(source).run()?,
     };
-    let run = lasting(arguments, run, source)?;
+    let run = lasting(arguments, run, source, stop)?;
+    stop.keep_results();
     let name = source.file_stem().unwrap_or_default().to_string_lossy();
     let folder = new_folder(arguments, &name, &run)?;
     Ok((folder, run))
 }
 
 /// Goes on with the run of a folder, in it.
-fn go_on_in(arguments: &RunArguments, path: &Path) -> Result<(RunFolder, Run), Failure> {
-    let (folder, run) = RunFolder::open(path)?;
+fn go_on_in(
+    arguments: &RunArguments,
+    path: &Path,
+    stop: &Stop,
+) -> Result<(RunFolder, Run), Failure> {
+    let folder = RunFolder::named(path).claim()?;
+    let run = folder.run()?;
     let length = run.configuration().run.samples;
-    let run = lasting(arguments, run, path)?;
-    if run.configuration().run.samples != length || arguments.duration.is_some() {
+    let run = lasting(arguments, run, path, stop)?;
+    stop.keep_results();
+    if run.configuration().run.samples != length || arguments.configuration.duration.is_some() {
         folder.change_length(&run)?;
     }
     Ok((folder, run))
 }
 
 /// The run with the length asked for, if one is, and with something left to do.
-fn lasting(arguments: &RunArguments, run: Run, source: &Path) -> Result<Run, Failure> {
-    let length = match (arguments.periods, arguments.duration) {
-        (Some(periods), _) => format!("run.periods={periods}"),
-        (None, Some(duration)) => format!("run.duration={duration}"),
-        (None, None) if run.is_complete() => {
+fn lasting(arguments: &RunArguments, run: Run, source: &Path, stop: &Stop) -> Result<Run, Failure> {
+    let length = match arguments.configuration.length() {
+        Some(length) => length,
+        None if run.is_complete() => {
             let (folder, reason) = (source.to_owned(), "it is complete".to_owned());
             return Err(RunError::NothingToResume { folder, reason }.into());
         }
-        (None, None) => return Ok(run),
+        None => return Ok(run),
     };
     let text = run.configuration().to_toml();
     let name = source.display().to_string();
@@ -221,5 +236,5 @@ fn lasting(arguments: &RunArguments, run: Run, source: &Path) -> Result<Run, Fai
         arguments.quiet,
         "the wave stands still: a longer run is sampled at other times, and is computed from its start",
     );
-    packed(arguments, configuration)
+    packed(arguments, configuration, stop)
 }

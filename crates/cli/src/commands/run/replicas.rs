@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use peristalsis_analysis::mean_and_error;
-use peristalsis_run::{RunFolder, Warning, next_folder, warnings};
+use peristalsis_run::{RunFolder, Status, Summary, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
 use super::words::known;
@@ -15,7 +15,7 @@ use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, packed};
 use crate::arguments::{RunArguments, Seeds};
 use crate::commands::study::processors;
-use crate::commands::{code_of, print, print_json, tell, warn_besides};
+use crate::commands::{code_of, counted, print, print_json, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
 use crate::sources::{configuration, name};
@@ -26,8 +26,9 @@ const STEM: &str = "seed-";
 
 /// The folders of replicas.
 pub(super) struct Replicas {
-    folder: PathBuf,
-    each: Vec<(u64, RunFolder)>,
+    /// Taken, so that no other program goes on with them; that of each is taken when its turn comes.
+    folder: RunFolder,
+    each: Vec<(u64, PathBuf)>,
     /// The warnings that were said already.
     said: Vec<Warning>,
 }
@@ -54,13 +55,16 @@ pub(super) fn replicas(arguments: &RunArguments) -> Result<Option<Replicas>, Fai
             .strip_prefix(STEM)?
             .parse()
             .ok()?;
-        Some((seed, RunFolder::named(&path)))
+        Some((seed, path))
     };
     let mut each: Vec<_> = below.filter_map(|entry| replica(entry.path())).collect();
     each.sort_by_key(|(seed, _)| *seed);
-    let folder = folder.clone();
+    if each.is_empty() {
+        return Ok(None);
+    }
+    let folder = RunFolder::named(folder).claim()?;
     let said = Vec::new();
-    Ok((!each.is_empty()).then_some(Replicas { folder, each, said }))
+    Ok(Some(Replicas { folder, each, said }))
 }
 
 /// Makes a folder for each seed; where one cannot be made, none is.
@@ -85,13 +89,15 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
         let mut own = configuration.clone();
         own.run.seed = seed;
         match RunFolder::create(&folder.join(format!("{STEM}{seed}")), &own) {
-            Ok(made) => each.push((seed, made)),
+            Ok(made) => each.push((seed, made.path().to_owned())),
             Err(error) => {
-                each.into_iter().for_each(|(_, made)| made.abandon());
+                let made = each.iter().map(|(_, path)| RunFolder::named(path));
+                made.for_each(RunFolder::abandon);
                 return Err(error.into());
             }
         }
     }
+    let folder = RunFolder::named(&folder).claim()?;
     Ok(Replicas { folder, each, said })
 }
 
@@ -112,17 +118,20 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
         Some(_) => None,
     };
     let work = || {
-        while let Some((index, (seed, folder))) = next() {
-            let path = folder.path().to_owned();
+        while let Some((index, (seed, path))) = next() {
             let mut show = |part: f64| {
                 let (display, parts) = &mut *locked(&display);
                 parts[index] = part;
                 let done = 1000.0 * parts.iter().sum::<f64>() / number as f64;
                 let ended = parts.iter().filter(|part| **part >= 1.0).count();
-                let words = || format!("{ended} of {number} seeds");
+                let words = || format!("{ended} of {}", counted(number, "seed"));
                 display.show([done as u64, 1000], begin.elapsed(), words);
             };
-            let outcome = replica(arguments, folder, &stop, &mut show);
+            let outcome = replica(arguments, &path, &stop, &mut show);
+            if matches!(&outcome, Err(Failure::Run(error)) if error.is_stop()) {
+                // It has not begun.
+                continue;
+            }
             if let Ok(outcome) = &outcome {
                 locked(&display).0.tell(&line(seed, outcome));
             }
@@ -138,7 +147,7 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     let mut worked = worked.into_inner().unwrap_or_default();
     worked.sort_by_key(|(seed, ..)| *seed);
     warn_besides(&[], &seen(&worked, &replicas.said));
-    conclude(arguments, &replicas.folder, worked, &stop)
+    conclude(arguments, replicas.folder.path(), worked, &stop)
 }
 
 /// What a lock guards: a thread that panicked ends the program anyway.
@@ -151,17 +160,31 @@ fn locked<T>(guarded: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 /// Begins or goes on with one replica.
 fn replica(
     arguments: &RunArguments,
-    folder: RunFolder,
+    path: &Path,
     stop: &Stop,
     show: &mut dyn FnMut(f64),
 ) -> Result<Outcome, Failure> {
+    let folder = RunFolder::named(path).claim()?;
     let is_begun = folder.has_state();
     let mut run = match is_begun {
-        true => RunFolder::open(folder.path())?.1,
-        false => packed(arguments, folder.configuration()?)?,
+        true => folder.run()?,
+        false => packed(arguments, folder.configuration()?, stop)?,
     };
-    if arguments.periods.is_some() || arguments.duration.is_some() {
-        run = lasting(arguments, run, folder.path())?;
+    let length = run.configuration().run.samples;
+    if arguments.resume.is_some() && arguments.configuration.length().is_some() {
+        run = lasting(arguments, run, folder.path(), stop)?;
+    }
+    let is_as_asked = run.configuration().run.samples == length;
+    if is_as_asked && run.is_complete() && folder.has_summary() && !asks_for_files(arguments) {
+        // Nothing is left to do, and nothing is written again.
+        let summary = Summary::of(&run, Status::Complete, None);
+        return Ok(Outcome {
+            ending: Ending::Complete,
+            summary,
+            finished: Ok(()),
+        });
+    }
+    if !is_as_asked || arguments.configuration.duration.is_some() {
         folder.change_length(&run)?;
     }
     compute_with(arguments, &mut run)?;
@@ -169,6 +192,11 @@ fn replica(
     let total = work.run.configuration().run.samples as f64;
     let (_, outcome) = work.finish(stop, &mut |progress| show(progress.samples as f64 / total));
     Ok(outcome)
+}
+
+/// Whether files are asked for besides those that every run leaves.
+fn asks_for_files(arguments: &RunArguments) -> bool {
+    arguments.csv || !arguments.frames.trajectory.is_empty()
 }
 
 /// What a replica came to, in a line.
@@ -254,18 +282,21 @@ fn conclude(
         let lines = worked
             .iter()
             .filter_map(|(seed, _, outcome)| Some(line(*seed, outcome.as_ref().ok()?)));
-        let mut text = lines.collect::<Vec<_>>().join("\n") + "\n";
+        let mut text: String = lines.map(|line| line + "\n").collect();
         if let Some(flow) = &flow {
             text += &format!("J/Jmax = {}\n", flow.in_words(4));
         }
         match (&transition, complete.len()) {
             (Some(times), _) => text += &format!("transition at t = {}\n", times.in_words(1)),
             (None, 0) => {}
-            (None, number) => text += &format!("transition in {transitions} of {number} runs\n"),
+            (None, number) => {
+                let runs = counted(number, "run");
+                text += &format!("transition in {transitions} of {runs}\n");
+            }
         }
         print(&text)?;
     }
-    let (place, complete) = (folder.display(), complete.len());
+    let (place, complete) = (folder.display(), counted(complete.len(), "seed"));
     let mut is_well = true;
     for (seed, _, outcome) in worked {
         let failure = match outcome {
@@ -286,7 +317,7 @@ fn conclude(
     }
     if let Some(code) = stop.requested() {
         let again = format!(
-            "stopped with {complete} seeds complete; what there is is in {place}\ngo on with: peristalsis run --resume {place}"
+            "stopped with {complete} complete; what there is is in {place}\ngo on with: peristalsis run --resume {place}"
         );
         tell(arguments.quiet, &again);
         return Ok(ExitCode::from(code));

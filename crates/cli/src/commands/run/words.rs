@@ -4,14 +4,18 @@ use peristalsis_analysis::number::known_error;
 use peristalsis_configuration::Units;
 use peristalsis_run::{Pumping, Run, Summary};
 
-use crate::commands::significant;
+use crate::commands::{counted, significant};
 use crate::progress::seconds;
 
 /// How far a run came: in periods, or in time where the wave stands still.
 pub(super) fn how_far(run: &Run, summary: &Summary) -> String {
     let extent = run.configuration().run;
     match extent.periods {
-        Some(periods) => format!("after {} of {periods} periods", tenths(summary.periods)),
+        Some(periods) => format!(
+            "after {} of {}",
+            tenths(summary.periods),
+            counted(periods, "period")
+        ),
         None => format!("at t = {:.1} of {}", summary.time, extent.duration),
     }
 }
@@ -69,13 +73,13 @@ pub(super) fn in_words(run: &Run, summary: &Summary) -> String {
         ));
     }
     let mut text = format!(
-        "{transition}\n{flow}\n{} grains, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} steps in {}: \
+        "{transition}\n{flow}\n{}, {} escaped; largest overlap {:.2} d; energy residual {:.1e}\n{} in {}: \
          {:.2} million grain-steps/s\n",
-        configuration.grains.number,
+        counted(configuration.grains.number, "grain"),
         summary.escaped,
         summary.largest_overlap,
         summary.energy_residual,
-        summary.steps,
+        counted(summary.steps, "step"),
         seconds(summary.seconds),
         summary.grain_steps_per_second() / 1e6
     );

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use peristalsis_run::{
-    Progress, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
+    Pace, Progress, Run, RunError, RunFolder, Status, Summary, Trajectory, TrajectoryPlan, Written,
 };
 
 use crate::arguments::RunArguments;
@@ -12,9 +12,6 @@ use crate::commands::say;
 use crate::commands::trajectory::request;
 use crate::failure::Failure;
 use crate::stop::Stop;
-
-/// Steps after which signals are looked for and the state is saved at the latest, far fewer than some samples are apart.
-const MOST_STEPS: u64 = 50_000;
 
 /// How the advance of a run ended.
 pub(super) enum Ending {
@@ -97,13 +94,13 @@ impl Work {
     }
 
     fn advance(&mut self, stop: &Stop, show: &mut dyn FnMut(&Progress)) -> Ending {
-        let mut saved = Instant::now();
+        let (mut saved, mut pace) = (Instant::now(), Pace::default());
         while !self.run.is_complete() {
             if let Some(code) = stop.requested() {
                 return Ending::Stopped(code);
             }
-            let most = self.steps_to_next().min(MOST_STEPS);
-            if let Err(error) = self.run.advance_at_most(most) {
+            let most = self.steps_to_next();
+            if let Err(error) = pace.advance(&mut self.run, most) {
                 return Ending::Failed(error);
             }
             if let Err(error) = self.observe() {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use peristalsis_study::{Identity, Specification, State, Store, Verification};
 
 use super::{ExportArguments, ImportArguments, PackArguments, RetryArguments, StoreArguments};
-use crate::commands::{code_of, print, say, say_if_replaced};
+use crate::commands::{code_of, counted, print, say, say_if_replaced};
 use crate::failure::Failure;
 
 pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
@@ -31,7 +31,10 @@ pub(crate) fn retry(arguments: &RetryArguments) -> Result<ExitCode, Failure> {
             ));
         }
     }
-    print(&format!("{begun} runs will be computed again\n"))?;
+    print(&format!(
+        "{} will be computed again\n",
+        counted(begun, "run")
+    ))?;
     Ok(code_of(begun == runs.len()))
 }
 
@@ -47,8 +50,11 @@ pub(crate) fn scan(arguments: &StoreArguments) -> Result<ExitCode, Failure> {
 
 fn in_words(found: &Verification) -> String {
     let mut text = format!(
-        "{} finished runs whose hashes check, {} imported, {} with a checkpoint, {} failed\n",
-        found.whole, found.imported, found.checkpointed, found.failed
+        "{} whose hashes check, {} imported, {} with a checkpoint, {} failed\n",
+        counted(found.whole, "finished run"),
+        found.imported,
+        found.checkpointed,
+        found.failed
     );
     text.extend(moved_aside(&found.quarantined).map(|line| line + "\n"));
     text
@@ -74,7 +80,7 @@ pub(crate) fn export(arguments: &ExportArguments) -> Result<ExitCode, Failure> {
     }
     let missing = exported.missing;
     if missing > 0 {
-        say(&format!("{missing} runs of the study are not finished"));
+        say(&format!("not finished yet: {}", counted(missing, "run")));
     }
     for file in &exported.files {
         print(&format!("{}\n", file.display()))?;
@@ -93,7 +99,10 @@ pub(crate) fn pack(arguments: &PackArguments) -> Result<ExitCode, Failure> {
     say_if_replaced(&arguments.archive);
     let packed = store.pack(&arguments.archive)?;
     let archive = arguments.archive.display();
-    print(&format!("{} finished runs in {archive}\n", packed.runs))
+    print(&format!(
+        "{} in {archive}\n",
+        counted(packed.runs, "finished run")
+    ))
 }
 
 pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
@@ -105,11 +114,15 @@ pub(crate) fn import(arguments: &ImportArguments) -> Result<ExitCode, Failure> {
     for file in &arguments.files {
         if is_archive(file) {
             let packed = store.import_archive(file)?;
-            let (taken, runs, file) = (packed.taken, packed.runs, file.display());
-            print(&format!("{taken} of {runs} runs taken from {file}\n"))?;
+            let (taken, runs, file) = (packed.taken, counted(packed.runs, "run"), file.display());
+            print(&format!("{taken} of {runs} taken from {file}\n"))?;
         } else {
             let rows = store.import_table(file)?;
-            print(&format!("{rows} rows taken from {}\n", file.display()))?;
+            print(&format!(
+                "{} taken from {}\n",
+                counted(rows, "row"),
+                file.display()
+            ))?;
         }
     }
     Ok(ExitCode::SUCCESS)

@@ -131,7 +131,7 @@ pub(crate) struct SubmitArguments {
     /// A further option of sbatch, such as --option=--mem-per-cpu=1G; may be given several times.
     #[arg(long = "option", value_name = "OPTION", allow_hyphen_values = true)]
     options: Vec<String>,
-    /// Script to write, - for standard output; the default is NAME.sbatch.
+    /// Script to write, - for standard output; the default is NAME.sbatch. One that is there is replaced.
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -188,7 +188,7 @@ pub(crate) struct RetryArguments {
 pub(crate) struct ExportArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Folder for the tables.
+    /// Folder for the tables; those in it are replaced.
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
     /// Write J/Jmax in time of every run, too.
@@ -200,7 +200,7 @@ pub(crate) struct ExportArguments {
 pub(crate) struct PackArguments {
     #[command(flatten)]
     store: StoreArguments,
-    /// Archive to write (tar).
+    /// Archive to write (tar); one that is there is replaced.
     #[arg(value_name = "ARCHIVE")]
     archive: PathBuf,
 }

@@ -6,7 +6,7 @@ use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estima
 use serde_json::json;
 
 use super::{PlanArguments, processors, store_path};
-use crate::commands::print_report;
+use crate::commands::{counted, print_report};
 use crate::failure::Failure;
 use crate::progress::seconds;
 
@@ -47,13 +47,15 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
         lines.push(format!("                  {}", study.title));
     }
     lines.push(format!(
-        "runs              {}: {} points, {} replicates each",
-        estimate.runs, estimate.points, study.replicates
+        "runs              {}: {}, {} each",
+        estimate.runs,
+        counted(estimate.points, "point"),
+        counted(study.replicates, "replicate")
     ));
     if estimate.refinement_runs > 0 {
         lines.push(format!(
-            "refinement        up to {} runs more, where each change lies within one gap",
-            estimate.refinement_runs
+            "refinement        up to {} more, where each change lies within one gap",
+            counted(estimate.refinement_runs, "run")
         ));
     }
     if finished > 0 {
@@ -76,7 +78,11 @@ fn in_words(study: &Specification, estimate: &StudyEstimate, finished: usize) ->
     lines.push(format!("disk              {}", bytes(estimate.bytes)));
     for warning in &estimate.warnings {
         let (key, message) = (&warning.warning.key, &warning.warning.message);
-        let place = format!("{} of {} points", warning.points, estimate.points);
+        let place = format!(
+            "{} of {}",
+            warning.points,
+            counted(estimate.points, "point")
+        );
         let first = &warning.first;
         lines.push(format!(
             "warning: {key}: at {place}, the first at {first}: {message}"

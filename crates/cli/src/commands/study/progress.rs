@@ -5,7 +5,7 @@ use std::time::Duration;
 use peristalsis_study::{Board, Working};
 
 use super::status::estimate;
-use crate::commands::say;
+use crate::commands::{counted, say};
 use crate::progress::{Display, LastLine, seconds};
 
 /// Estimates that are shown on a terminal.
@@ -81,7 +81,7 @@ fn below(board: &Board) -> Vec<String> {
     if lines.len() > ESTIMATES_SHOWN {
         let more = lines.len() - ESTIMATES_SHOWN + 1;
         lines.truncate(ESTIMATES_SHOWN - 1);
-        lines.push(format!("and {more} estimates more"));
+        lines.push(format!("and {} more", counted(more, "estimate")));
     }
     let workers = board.workers.iter().take(WORKERS_SHOWN);
     lines.extend(workers.map(|it| it.as_ref().map_or_else(|| "idle".to_owned(), in_words)));
@@ -90,7 +90,7 @@ fn below(board: &Board) -> Vec<String> {
 
 /// How far a study is; `part` is said of the work, of which so much time is left.
 pub(crate) fn overall(board: &Board, part: &str, left: Option<Duration>) -> String {
-    let mut text = format!("{} of {} runs done", board.done, board.total);
+    let mut text = format!("{} of {} done", board.done, counted(board.total, "run"));
     if board.failed > 0 {
         text.push_str(&format!(", {} failed", board.failed));
     }

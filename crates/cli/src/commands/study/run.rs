@@ -7,7 +7,7 @@ use peristalsis_study::{Ending, Specification, Store, work_on};
 use super::progress::StudyDisplay;
 use super::status::print_status;
 use super::{RunArguments, store_path};
-use crate::commands::tell;
+use crate::commands::{counted, tell};
 use crate::failure::Failure;
 use crate::stop::Stop;
 
@@ -38,7 +38,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
             let failed = survey.counts().get("failed").copied().unwrap_or(0);
             if failed > 0 {
                 tell(format!(
-                    "{failed} runs failed; see: peristalsis study why {place} RUN"
+                    "{} failed; see: peristalsis study why {place} RUN",
+                    counted(failed, "run")
                 ));
                 return Ok(ExitCode::FAILURE);
             }

@@ -7,7 +7,7 @@ use peristalsis_study::{Bracket, Identity, State, Store, Survey, brackets};
 use serde_json::{Value, json};
 
 use super::{StatusArguments, WhyArguments};
-use crate::commands::{print, print_report};
+use crate::commands::{counted, print, print_report};
 use crate::failure::Failure;
 
 /// Runs that are named in words; more are counted.
@@ -78,8 +78,8 @@ fn in_words(store: &Store, survey: &Survey) -> String {
     let mut text = format!("{} in {}\n", survey.study.name, store.path().display());
     let in_state = |(state, number)| format!("{number} {state}");
     let counts: Vec<String> = survey.counts().into_iter().map(in_state).collect();
-    let (runs, counts) = (survey.plan.runs().len(), counts.join(", "));
-    text.push_str(&format!("{runs} runs: {counts}\n"));
+    let (runs, counts) = (counted(survey.plan.runs().len(), "run"), counts.join(", "));
+    text.push_str(&format!("{runs}: {counts}\n"));
     let planned: HashSet<Identity> = survey.plan.runs().iter().map(|run| run.identity).collect();
     let others = survey
         .entries
@@ -87,7 +87,10 @@ fn in_words(store: &Store, survey: &Survey) -> String {
         .filter(|(identity, entry)| entry.state == State::Done && !planned.contains(identity));
     let others = others.count();
     if others > 0 {
-        text += &format!("{others} finished runs are not part of the study as it stands\n");
+        text += &format!(
+            "not part of the study as it stands: {}\n",
+            counted(others, "finished run")
+        );
     }
     for bracket in estimates(survey) {
         text += &format!("{}\n", estimate(&bracket));

@@ -7,7 +7,7 @@ use std::time::Duration;
 use peristalsis_study::{Specification, Store};
 
 use super::{SubmitArguments, store_path};
-use crate::commands::print;
+use crate::commands::{counted, print, say_if_replaced};
 use crate::failure::Failure;
 
 /// Time before the end of a task at which Slurm asks it to stop, where it has not stopped by itself.
@@ -48,17 +48,18 @@ pub(crate) fn submit(arguments: &SubmitArguments) -> Result<ExitCode, Failure> {
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.sbatch", study.name)),
     };
+    say_if_replaced(&path);
     std::fs::write(&path, script).map_err(|source| Failure::Write {
         path: path.clone(),
         source,
     })?;
     print(&format!(
-        "{} asks for {} tasks of {} processors for {}\n\
+        "{} asks for {} of {} for {}\n\
          submit it with: sbatch {}\n\
          see how far it is: peristalsis study status {}\n",
         path.display(),
-        arguments.tasks,
-        arguments.processors,
+        counted(arguments.tasks, "task"),
+        counted(arguments.processors, "processor"),
         slurm_time(arguments.time),
         quoted(&path),
         quoted(&store),

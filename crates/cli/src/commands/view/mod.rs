@@ -90,19 +90,24 @@ fn play(path: &Path, port: u16) -> Result<Viewer, Failure> {
         ));
     };
     // What a kill left has no state, and a trajectory tells J/Jmax itself.
-    let (configuration, samples) = match RunFolder::open(folder) {
+    let (configuration, known) = match RunFolder::open(folder) {
         Ok((_, run)) => {
             let samples = run.recorder().samples().to_vec();
-            (run.configuration().clone(), samples)
+            (run.configuration().clone(), Some((samples, run.warnings())))
         }
         Err(_) => {
             let path = folder.join(CONFIGURATION);
             let text = std::fs::read_to_string(&path).map_err(Failure::read(&path))?;
             let name = path.display().to_string();
-            (Configuration::from_toml(&name, &text)?, Vec::new())
+            (Configuration::from_toml(&name, &text)?, None)
         }
     };
-    let recording = Recording::open(&place, configuration, samples)?;
+    let recording = match known {
+        Some((samples, warnings)) => {
+            Recording::open(&place, configuration, samples)?.with_warnings(warnings)
+        }
+        None => Recording::open(&place, configuration, Vec::new())?,
+    };
     let lost = recording.lost_frames();
     if lost > 0 {
         let whole = recording.frames();
@@ -141,6 +146,7 @@ fn open(arguments: &ViewArguments) -> Result<(Run, Options), Failure> {
         file: named.is_none().then(|| arguments.source.clone()),
         preset: named.map(str::to_owned),
         overrides: arguments.overrides.clone(),
+        ..ConfigurationArguments::default()
     };
     let title = sources::name(&configuration);
     let run = Run::new(sources::configuration(&configuration)?)

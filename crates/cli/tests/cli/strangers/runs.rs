@@ -454,7 +454,13 @@ fn names_that_are_given_in_the_wrong_place_are_put_right() {
         &["study.toml is a study", "study run study.toml"],
     );
     let completions = place.does("completions bash").stdout;
-    assert!(completions.contains("frictionless frictionless-source frictionless-fine frictional"));
+    for offered in [
+        "frictionless frictionless-source frictionless-fine frictional",
+        "F1 F2",
+        "slip-to-roll",
+    ] {
+        assert!(completions.contains(offered), "{offered}");
+    }
     let help = place.does("run --help").stdout;
     assert!(help.contains("--checkpoint-every"));
 }

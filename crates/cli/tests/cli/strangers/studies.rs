@@ -49,6 +49,48 @@ fn files_that_cannot_be_imported_are_named_as_bad_input() {
     }
 }
 
+/// COMMAND-LINE, low: `nan` was taken, in study files and in tables of finished runs.
+#[test]
+fn values_that_are_no_numbers_are_refused_with_their_place() {
+    let place = finished();
+    for value in ["nan", "-inf"] {
+        let text = quick().replace("2.9]", &format!("\n{value}]"));
+        place.write("wrong.toml", &text);
+        let line = text.lines().position(|line| line.contains(value)).unwrap();
+        let at = format!("wrong.toml:{}:1", line + 1);
+        place.refuses("study plan wrong.toml", &[&at, "is not a finite number"]);
+    }
+    place.does("study export kept --out tables");
+    let table = std::fs::read_dir(place.path("tables")).unwrap();
+    let mut paths = table.map(|entry| entry.unwrap().path());
+    let is_rows = |path: &std::path::PathBuf| {
+        let name = path.file_name().unwrap().to_string_lossy();
+        name.ends_with(".csv") && !name.contains("timing")
+    };
+    let text = std::fs::read_to_string(paths.find(is_rows).unwrap()).unwrap();
+    let mut lines = text.lines().map(str::to_owned).collect::<Vec<_>>();
+    let header = lines.iter().position(|line| line.contains(",identity,"));
+    let header = header.unwrap();
+    let names: Vec<&str> = text.lines().nth(header).unwrap().split(',').collect();
+    for (name, value) in [("time", "nan"), ("flow_rate_ratio", "inf")] {
+        let column = names.iter().position(|it| *it == name).unwrap();
+        let before = lines[header + 1].clone();
+        let mut cells: Vec<&str> = before.split(',').collect();
+        cells[column] = value;
+        lines[header + 1] = cells.join(",");
+        place.write("edited.csv", lines.join("\n") + "\n");
+        let import = "study import other edited.csv --study study.toml";
+        place.refuses(
+            import,
+            &[
+                "edited.csv",
+                &format!("has the {name} {}", value.replace("nan", "NaN")),
+            ],
+        );
+        lines[header + 1] = before;
+    }
+}
+
 /// COMMAND-LINE, low: archives, tables and pictures were overwritten without a word.
 #[test]
 fn what_is_replaced_is_said() {
@@ -62,6 +104,31 @@ fn what_is_replaced_is_said() {
     place.does("render r --out r.png --width 200 --quiet");
     let line = "render r --out r.png --width 200 --quiet";
     place.does(line).says(&["replaces r.png"]);
+    let validate = "validate --quick --only chain --out checked";
+    let submit = "study submit study.toml --slurm --tasks 1 --time 1h";
+    for (line, replaced) in [
+        (validate, "checked/validation.json"),
+        (
+            "reproduce --only F3 --for 1s --out report",
+            "report/report.html",
+        ),
+        (submit, "tested.sbatch"),
+    ] {
+        let said = place.call(line).message();
+        assert!(!said.contains("replaces"), "{said}");
+        place.call(line).says(&["replaces", replaced]);
+    }
+    for line in [
+        "study pack",
+        "study export",
+        "study submit",
+        "render",
+        "validate",
+        "reproduce",
+    ] {
+        let help = place.does(&format!("{line} --help")).stdout;
+        assert!(help.contains("replaced"), "{line}: {help}");
+    }
 }
 
 /// COMMAND-LINE, low: the last frame was drawn for an instant beyond the end; a film was written under the name of a
