@@ -7,7 +7,7 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use peristalsis_analysis::mean_and_error;
-use peristalsis_run::{RunFolder, Status, Summary, Warning, next_folder, warnings};
+use peristalsis_run::{RunError, RunFolder, Status, Summary, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
 use super::words::known;
@@ -90,15 +90,19 @@ fn begin(arguments: &RunArguments, seeds: &Seeds) -> Result<Replicas, Failure> {
         own.run.seed = seed;
         match RunFolder::create(&folder.join(format!("{STEM}{seed}")), &own) {
             Ok(made) => each.push((seed, made.path().to_owned())),
-            Err(error) => {
-                let made = each.iter().map(|(_, path)| RunFolder::named(path));
-                made.for_each(RunFolder::abandon);
-                return Err(error.into());
-            }
+            Err(error) => return Err(none_of(&each, error)),
         }
     }
-    let folder = RunFolder::named(&folder).claim()?;
+    let folder = RunFolder::named(&folder).claim();
+    let folder = folder.map_err(|error| none_of(&each, error))?;
     Ok(Replicas { folder, each, said })
+}
+
+/// Takes the folders of new replicas away again, for an error.
+fn none_of(each: &[(u64, PathBuf)], error: RunError) -> Failure {
+    let made = each.iter().map(|(_, path)| RunFolder::named(path));
+    made.for_each(RunFolder::abandon);
+    error.into()
 }
 
 /// Runs as many replicas at a time as there are processors for, and says what they came to.

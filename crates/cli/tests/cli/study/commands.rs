@@ -268,13 +268,16 @@ fn the_schema_is_printed() {
     assert!(schema["properties"]["base"]["properties"]["drive"].is_object());
 }
 
-/// Starts a study that takes minutes, and sends a signal when its runs have begun.
+/// Starts a study that takes minutes, and sends a signal when a run has been saved.
 #[cfg(unix)]
 fn interrupted(place: &Place, signal: &str) -> Outcome {
-    let child = place.start("study run study.toml --store store");
-    while !place.path("store/runs").exists()
-        || std::fs::read_dir(place.path("store/runs")).unwrap().count() == 0
-    {
+    let child = place.start("study run study.toml --store store --checkpoint-every 20ms");
+    let is_saved = || {
+        let runs = std::fs::read_dir(place.path("store/runs"));
+        let mut runs = runs.into_iter().flatten().flatten();
+        runs.any(|run| run.path().join("state.checkpoint").is_file())
+    };
+    while !is_saved() {
         std::thread::sleep(std::time::Duration::from_millis(10));
     }
     crate::send(signal, &child);
