@@ -135,10 +135,10 @@ impl Tube {
 
     /// About how many wall spheres a grain at the wall has within a distance \[d\] along the tube and around it.
     pub(crate) fn wall_spheres_within(&self, reach: f64) -> f64 {
-        let around = (reach / (PI * self.radius)).min(1.0) * f64::from(self.spheres_per_ring);
+        let one_of_a_ring = 1.0 / f64::from(self.spheres_per_ring);
+        let around = (reach / (PI * self.radius)).min(1.0).max(one_of_a_ring);
         let along = (2.0 * reach / self.length()).min(1.0);
-        let rings = along * f64::from(self.waves) * f64::from(self.rings_per_wave);
-        around.max(1.0) * rings
+        self.wall_spheres() as f64 * along * around
     }
 
     /// Distances of lattice neighbours in the straight tube \[d\]: those in a ring, and those in rings side by side.
