@@ -48,7 +48,7 @@ fn nested_relative_folders_are_made_and_filled() {
     ];
     assert_labels(&place.path("a/b/c/flow.svg"), &flow);
     let phase = "position in the wave frame, (z − ct)/λ";
-    let profile = ["r/d", "n1 d", "vz/c", "Tg", "(d)", phase];
+    let profile = ["r/d", "n1 d", "vz/c", "Tg/mc2", "(d)", phase];
     assert_labels(&place.path("a/b/c/profile.svg"), &profile);
 }
 

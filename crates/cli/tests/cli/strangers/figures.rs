@@ -12,7 +12,7 @@ fn one_sample_is_seen_in_the_figure_of_the_flow() {
         ));
         let svg = std::fs::read_to_string(place.path(&format!("p{periods}/flow.svg"))).unwrap();
         // The marks of a series are filled, its line is not.
-        svg.matches("fill=\"#56B4E9\"").count()
+        svg.matches("fill=\"#56b4e9\"").count()
     };
     assert!(colour("0.05") > 0 && colour("0.1") == 0);
 }
@@ -23,8 +23,7 @@ fn a_profile_names_its_units_and_no_symbol_twice() {
     let place = Place::new();
     let settings = "grains.number=20 tube.waves=1 run.periods=0.1 run.late_fraction=1";
     place.does(&format!(
-        "run --preset frictional --set {} --out r --quiet",
-        settings.replace(' ', " --set ")
+        "run --preset frictional {settings} --out r --quiet"
     ));
     let svg = std::fs::read_to_string(place.path("r/profile.svg")).unwrap();
     for label in ["Tg/mc2", "p/Y", "σ/Y"] {
@@ -37,7 +36,7 @@ fn a_profile_names_its_units_and_no_symbol_twice() {
 #[test]
 fn a_report_has_the_folders_that_it_promises() {
     let place = Place::new();
-    place.does("reproduce --only F3 --for 1s --out report --quiet");
+    place.does("reproduce --quick --only F3 --for 1s --out report --quiet");
     for folder in ["figures", "tables"] {
         assert!(place.path("report").join(folder).is_dir(), "{folder}");
     }

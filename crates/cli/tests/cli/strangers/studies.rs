@@ -109,7 +109,7 @@ fn what_is_replaced_is_said() {
     for (line, replaced) in [
         (validate, "checked/validation.json"),
         (
-            "reproduce --only F3 --for 1s --out report",
+            "reproduce --quick --only F3 --for 1s --out report",
             "report/report.html",
         ),
         (submit, "tested.sbatch"),
