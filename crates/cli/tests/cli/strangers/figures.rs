@@ -21,7 +21,7 @@ fn one_sample_is_seen_in_the_figure_of_the_flow() {
 #[test]
 fn a_profile_names_its_units_and_no_symbol_twice() {
     let place = Place::new();
-    let settings = "grains.number=20 tube.waves=1 run.periods=0.1 observe.late_fraction=1";
+    let settings = "grains.number=20 tube.waves=2 run.periods=0.1 observe.late_fraction=1";
     place.does(&format!(
         "run --preset frictional {settings} --out r --quiet"
     ));
