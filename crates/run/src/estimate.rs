@@ -285,15 +285,15 @@ mod tests {
             let text = format!("preset = \"frictionless\"\ntube.waves = 2\n{settings}");
             Configuration::from_toml("test", &text).expect("a tube that can be")
         };
-        for (settings, expected) in [
-            ("grains.number = 1000\nrun.periods = 20", None),
-            ("grains.number = 20\nrun.periods = 0.1", Some(())),
+        for (settings, is_whole_run) in [
+            ("grains.number = 60\nrun.periods = 400", false),
+            ("grains.number = 20\nrun.periods = 5", true),
         ] {
             let configuration = configuration(settings);
             let steps = trial_steps(&configuration);
             let tried = trial(&configuration).expect("grains that fit");
             assert_eq!(tried.run.simulation().step(), steps);
-            assert_eq!(expected.is_some(), steps == configuration.run.steps());
+            assert_eq!(is_whole_run, steps == configuration.run.steps());
         }
     }
 }
