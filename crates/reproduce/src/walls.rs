@@ -23,9 +23,9 @@ pub(crate) struct Wall {
 
 /// All walls that are examined, in the order of the report: the one place where a wall is named.
 pub(crate) const WALLS: &[Wall] = &[
+    Wall::new("12x16", 12, 16, STAGGERED),
     Wall::new("fine", 24, 26, STAGGERED),
     Wall::new("coarse", 12, 14, STAGGERED),
-    Wall::new("12x16", 12, 16, STAGGERED),
 ];
 
 /// The arrangement that a name leaves out.
