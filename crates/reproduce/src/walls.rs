@@ -3,11 +3,11 @@
 use crate::branch::{Branch, Branches, Control, leak};
 use crate::critical::{Thresholds, crossing};
 use crate::error::Result;
-use crate::evidence::Evidence;
+use crate::evidence::{Evidence, StudyResults};
 use crate::finding::Statistics;
 use crate::judgement::{Part, Rates};
 use crate::row::{Row, Start, grouped, longest};
-use crate::studies::{STUDIES, StudyFile};
+use crate::studies::STUDIES;
 use crate::thresholds::MOST_ESCAPED;
 
 /// A wall of spheres of the grains' diameter. Its studies are `branches-NAME`, `divergence-NAME`, `near-NAME` and
@@ -67,13 +67,12 @@ impl Wall {
             && arrangement == self.arrangement
     }
 
-    /// The runs of one of its studies; none where it has no such study.
-    pub(crate) fn rows<'a>(&self, kind: &str, evidence: &'a Evidence) -> Result<Vec<Row<'a>>> {
+    /// The runs of one of its studies; none where there is no such study, or a claim that does without it came before it.
+    pub(crate) fn rows<'a>(&self, kind: &str, evidence: &'a Evidence) -> Vec<Row<'a>> {
         let name = format!("{kind}-{}", self.study);
-        match (evidence.study(&name), StudyFile::named(&name)) {
-            (Err(_), None) => Ok(Vec::new()),
-            (study, _) => Ok(study?.rows()),
-        }
+        evidence
+            .study(&name)
+            .map_or_else(|_| Vec::new(), StudyResults::rows)
     }
 }
 
@@ -124,10 +123,10 @@ impl<'a> Runs<'a> {
 
     /// All strain rates of a wall, ascending; the runs on it in the studies `also` count among the transitions.
     fn all(wall: &Wall, evidence: &'a Evidence, also: &[&str]) -> Result<Vec<Self>> {
-        let branches = wall.rows("branches", evidence)?;
+        let branches = wall.rows("branches", evidence);
         let thresholds = Thresholds::of(branches.iter().copied());
-        let mut times = wall.rows("divergence", evidence)?;
-        times.extend(wall.rows("near", evidence)?);
+        let mut times = wall.rows("divergence", evidence);
+        times.extend(wall.rows("near", evidence));
         for study in also {
             let rows = evidence.study(study)?.rows().into_iter();
             times.extend(rows.filter(|row| wall.is_of(row)));
@@ -253,6 +252,7 @@ impl<'a, T: AtRate<'a>> OnWall<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::studies::StudyFile;
 
     #[test]
     fn every_study_of_a_wall_has_its_wall() {
