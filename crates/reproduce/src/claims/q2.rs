@@ -130,12 +130,13 @@ impl Candidate {
             let Some(critical) = crossing(&rows).map(|crossing| crossing.width) else {
                 continue;
             };
-            let distance = |row: &Row<'_>| critical.value - row.width();
-            let near = rows
-                .iter()
-                .filter(|row| distance(row).abs() < ESCAPED_WITHIN);
-            escaped = near.map(Row::escaped_fraction).fold(escaped, f64::max);
+            let outside = leak(&rows, Some(critical.value));
+            escaped = escaped.max(outside);
+            if outside > MOST_ESCAPED {
+                continue;
+            }
             widths.push((rate, critical));
+            let distance = |row: &Row<'_>| critical.value - row.width();
             let claimed =
                 |row: &&Row<'_>| WHERE_CLAIMED.contains(&(distance(row) * rate.powf(-1.5)));
             let claimed: Vec<Row<'_>> = rows.iter().filter(claimed).copied().collect();
