@@ -65,13 +65,14 @@ fn check_rings(tube: &Tube, control: &Control, context: &mut Context<'_>) {
     context.refuse::<()>(ProblemKind::Inconsistent, keys, message, help);
 }
 
-/// A grain meets each wall sphere within its reach at every step: there must not be more than can be gone through.
+/// A grain meets each wall sphere within its reach at every step: there must not be more than can be gone through. Walls of too
+/// many spheres are refused already.
 pub(super) fn check_reach(tube: &Tube, reach: f64, context: &mut Context<'_>) {
     let (met, most) = (
         tube.wall_spheres_within(reach),
         limits::MOST_WALL_SPHERES_IN_REACH,
     );
-    if met > most {
+    if met > most && tube.wall_spheres() <= limits::MOST_WALL_SPHERES {
         context.refuse::<()>(
             ProblemKind::OutOfRange,
             &["tube.rings_per_wave", "tube.spheres_per_ring"],
