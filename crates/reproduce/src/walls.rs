@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::evidence::{Evidence, StudyResults};
 use crate::finding::Statistics;
 use crate::judgement::{Part, Rates};
-use crate::row::{Row, Start, grouped, longest};
+use crate::row::{Lattice, Row, Start, grouped, longest};
 use crate::studies::STUDIES;
 use crate::thresholds::MOST_ESCAPED;
 
@@ -16,8 +16,7 @@ use crate::thresholds::MOST_ESCAPED;
 pub(crate) struct Wall {
     /// What the names of its studies end with.
     pub(crate) study: &'static str,
-    spheres_per_ring: u32,
-    rings_per_wave: u32,
+    lattice: Lattice,
     arrangement: &'static str,
 }
 
@@ -34,37 +33,29 @@ const STAGGERED: &str = "staggered";
 impl Wall {
     const fn new(
         study: &'static str,
-        spheres_per_ring: u32,
-        rings_per_wave: u32,
+        spheres_per_ring: i64,
+        rings_per_wave: i64,
         arrangement: &'static str,
     ) -> Self {
-        Self {
-            study,
+        let lattice = Lattice {
             spheres_per_ring,
             rings_per_wave,
+        };
+        Self {
+            study,
+            lattice,
             arrangement,
         }
     }
 
-    /// Its name for readers, such as "24 × 26" or "12 × 14 aligned": spheres a ring, rings a wave, and how they stand.
+    /// Its name for readers.
     pub(crate) fn name(&self) -> String {
-        let lattice = format!("{} × {}", self.spheres_per_ring, self.rings_per_wave);
-        match self.arrangement {
-            STAGGERED => lattice,
-            arrangement => format!("{lattice} {arrangement}"),
-        }
+        wall_name(self.lattice, self.arrangement)
     }
 
-    /// Whether a run has this wall; a table without the column knows staggered walls only.
+    /// Whether a run has this wall.
     fn is_of(&self, row: &Row<'_>) -> bool {
-        let lattice = row.lattice();
-        let arrangement = match row.text("arrangement") {
-            "" => STAGGERED,
-            arrangement => arrangement,
-        };
-        (lattice.spheres_per_ring, lattice.rings_per_wave)
-            == (self.spheres_per_ring.into(), self.rings_per_wave.into())
-            && arrangement == self.arrangement
+        row.lattice() == self.lattice && arrangement(row) == self.arrangement
     }
 
     /// The runs of one of its studies; none where there is no such study, or a claim that does without it came before it.
@@ -73,6 +64,27 @@ impl Wall {
         evidence
             .study(&name)
             .map_or_else(|_| Vec::new(), StudyResults::rows)
+    }
+}
+
+/// A wall's name for readers, such as "24 × 26" or "12 × 14 aligned": spheres a ring, rings a wave, and how they stand.
+pub(crate) fn wall_name(lattice: Lattice, arrangement: &str) -> String {
+    let Lattice {
+        spheres_per_ring,
+        rings_per_wave,
+    } = lattice;
+    let lattice = format!("{spheres_per_ring} × {rings_per_wave}");
+    match arrangement {
+        STAGGERED => lattice,
+        arrangement => format!("{lattice} {arrangement}"),
+    }
+}
+
+/// How the wall spheres of a run stand; a table without the column knows staggered walls only.
+pub(crate) fn arrangement<'a>(row: &Row<'a>) -> &'a str {
+    match row.text("arrangement") {
+        "" => STAGGERED,
+        arrangement => arrangement,
     }
 }
 

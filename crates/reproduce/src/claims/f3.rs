@@ -11,7 +11,7 @@ pub(super) const CLAIM: Claim = Claim::new("F3", PROSE, TRANSITIONS, examine);
 /// Powers of the strain rate that the source gives: of the time, and of the distance; and that of tau (w_c − w), which
 /// follows from them where f(x) ~ 1/x.
 const EXPONENTS: [f64; 2] = [3.5, 1.5];
-const AMPLITUDE: f64 = EXPONENTS[1] - EXPONENTS[0];
+pub(super) const AMPLITUDE: f64 = EXPONENTS[1] - EXPONENTS[0];
 
 fn examine(evidence: &Evidence) -> Result<Finding> {
     let needed = Statistics::FOR_A_VERDICT;

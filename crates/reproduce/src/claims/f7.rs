@@ -8,8 +8,8 @@ const PROSE: Prose = Prose::new(include_str!("f7.md"));
 
 pub(super) const CLAIM: Claim = Claim::new("F7", PROSE, TRANSITIONS, examine);
 
-/// What the source says.
-const SLOPE: f64 = -3.75;
+/// What the source says of dw_c/depsdot.
+pub(super) const SLOPE: f64 = -3.75;
 /// Strain rates with their critical widths, ascending.
 type Critical = Vec<(f64, Uncertain)>;
 

@@ -1,7 +1,9 @@
 //! Q2: roughness of the wall.
 
-use peristalsis_analysis::{fit_line, power_exponent};
+use peristalsis_analysis::fit_line;
 
+use super::f3::AMPLITUDE;
+use super::f7::SLOPE;
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
@@ -117,10 +119,6 @@ struct Candidate {
 /// Distances from w_c, in units of epsdot^(3/2), at which tau (w_c - w) is read: where the source claims its law.
 const WHERE_CLAIMED: core::ops::RangeInclusive<f64> = 0.7..=5.0;
 
-/// What the source says of dw_c/depsdot, and what its scaling says of the power.
-const SLOPE: f64 = -3.75;
-const POWER: f64 = -2.0;
-
 impl Candidate {
     fn of(arrangement: &str, rows: &[Row<'_>]) -> Option<Self> {
         let first = rows.first()?;
@@ -148,17 +146,12 @@ impl Candidate {
         }
         let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&rate, &width, &error).ok();
-        let [rate, amplitude, error] = columns(amplitudes, 0.0);
-        let power = power_exponent(&rate, &amplitude, &error).ok();
         let area = core::f64::consts::TAU * first.radius() * first.wavelength();
         Some(Self {
-            name: match arrangement {
-                "" | "staggered" => lattice.name(),
-                other => format!("{} {other}", lattice.name()),
-            },
+            name: wall_name(lattice, arrangement),
             density: (lattice.spheres_per_ring * lattice.rings_per_wave) as f64 / area,
             slope: line.map(|line| slope(&line)),
-            power: power.map(|line| slope(&line)),
+            power: power_of_rate(&amplitudes),
             escaped,
         })
     }
@@ -176,7 +169,7 @@ impl Candidate {
 
 /// The walls that the source could have had, side by side.
 fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
-    let groups = grouped(rows, |row| (row.text("arrangement"), row.lattice()));
+    let groups = grouped(rows, |row| (arrangement(row), row.lattice()));
     let found = groups
         .iter()
         .filter_map(|((arrangement, _), rows)| Candidate::of(arrangement, rows));
@@ -193,7 +186,7 @@ fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
         let power = power.map(|ours| PROSE.quantity("power", values!(wall), ours));
         let quantities = &mut draft.finding.quantities;
         quantities.extend(slope.map(|slope| slope.sourced(SLOPE)));
-        quantities.extend(power.map(|power| power.sourced(POWER)));
+        quantities.extend(power.map(|power| power.sourced(AMPLITUDE)));
     }
     let agreeing = |number: fn(&Candidate) -> Option<Uncertain>, source| -> String {
         let agrees =
@@ -206,7 +199,7 @@ fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
         }
     };
     let slopes = agreeing(|one| one.slope, SLOPE);
-    let powers = agreeing(|one| one.power, POWER);
+    let powers = agreeing(|one| one.power, AMPLITUDE);
     draft.table("candidates", &[], found.iter().map(Candidate::row));
     let all = found.iter().filter_map(|one| one.power);
     let [least, most] = all.fold(
