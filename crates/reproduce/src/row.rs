@@ -206,6 +206,29 @@ impl<'a> Row<'a> {
         self.number("radius")
     }
 
+    /// k_n of two grains; that of the presets, 1, where the study does not vary it.
+    pub(crate) fn stiffness(&self) -> f64 {
+        self.number_or("contact.normal_stiffness", 1.0)
+    }
+
+    /// eta_n of two grains; that of the presets, 0.00548, where the study does not vary it.
+    pub(crate) fn damping(&self) -> f64 {
+        self.number_or("contact.normal_damping", 0.00548)
+    }
+
+    /// e = exp(-pi eta/(2 m k - eta^2)^{1/2}) of two equal grains.
+    pub(crate) fn restitution(&self) -> f64 {
+        let (stiffness, damping) = (self.stiffness(), self.damping());
+        (-core::f64::consts::PI * damping / (2.0 * stiffness - damping * damping).sqrt()).exp()
+    }
+
+    /// Wall spheres per area of the straight tube \[1/d^2\].
+    pub(crate) fn wall_density(&self) -> f64 {
+        let lattice = self.lattice();
+        let area = core::f64::consts::TAU * self.radius() * self.wavelength();
+        (lattice.spheres_per_ring * lattice.rings_per_wave) as f64 / area
+    }
+
     /// Time reached \[t\].
     pub(crate) fn time(&self) -> f64 {
         self.number("time")

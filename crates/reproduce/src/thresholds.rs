@@ -194,6 +194,13 @@ pub(crate) const EXCLUDED: f64 = 1e-3;
 /// For an answer of Q11: one strain rate, five replicates, since each method is computed anew.
 pub(crate) const Q11_NEEDED: Statistics = Statistics::of(1, 7, 5, 150);
 
+/// For an answer to Q12, of each tube: widths and replicates at one strain rate. The number of tubes is asked for apart.
+pub(crate) const Q12_NEEDED: Statistics = Statistics::of(1, 7, 3, 150);
+/// Tubes whose critical widths were not known when the predictions were made.
+pub(crate) const LEAST_TESTS: usize = 6;
+/// Part of the measured value by which a prediction without the tube's details may miss it.
+pub(crate) const PREDICTED_WITHIN: f64 = 0.2;
+
 // Q6 to Q10.
 
 /// For an answer to Q6: six values of the friction, three replicates.

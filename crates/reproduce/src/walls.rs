@@ -28,7 +28,7 @@ pub(crate) const WALLS: &[Wall] = &[
 ];
 
 /// The arrangement that a name leaves out.
-const STAGGERED: &str = "staggered";
+pub(crate) const STAGGERED: &str = "staggered";
 
 impl Wall {
     const fn new(

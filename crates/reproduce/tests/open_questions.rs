@@ -409,3 +409,66 @@ fn the_method_is_judged_by_smaller_steps_and_other_integrators() {
     assert_says(&finding.summary, "0.020 ±");
     assert_eq!(finding.tables[0].rows.len(), 10);
 }
+
+/// Tubes of unlike stiffness and speed of the wave in which 2 a − w_c is what a law says of both.
+fn tubes(number: i32, narrowing: impl Fn(f64, f64) -> f64) -> Rows {
+    let common = [
+        ("radius", 1.5),
+        ("wavelength", 10.0),
+        ("waves", 10.0),
+        ("spheres_per_ring", 24.0),
+        ("rings_per_wave", 26.0),
+        ("grains", 200.0),
+        ("time", 1e3),
+    ];
+    let mut rows = Rows::with(&common);
+    for tube in 0..number {
+        let (stiffness, speed) = (f64::from(1 << tube), 0.5 + 0.1 * f64::from(tube % 3));
+        for place in [-4, -3, -2, -1, 1, 2, 3, 4] {
+            for replicate in 0..3 {
+                let width = 3.0 - narrowing(stiffness, speed) + 1e-3 * f64::from(place);
+                let time = if place < 0 { 100.0 } else { f64::NAN };
+                rows.add(
+                    &[("initial_state", "rest")],
+                    &[
+                        ("contact.normal_stiffness", stiffness),
+                        ("contact.normal_damping", 0.00548 * stiffness.sqrt()),
+                        ("strain_rate", 0.1 * speed),
+                        ("width", width),
+                        ("transition_time", time),
+                        ("replicate", f64::from(replicate)),
+                    ],
+                );
+            }
+        }
+    }
+    rows
+}
+
+#[test]
+fn the_law_of_the_critical_width_is_told_from_others() {
+    let area: f64 = 24.0 * 26.0 / (core::f64::consts::TAU * 15.0);
+    let by_stiffness = |k: f64, c: f64| 0.1 * c * (15.0 / (k * area)).sqrt();
+    let by_energy =
+        |k: f64, c: f64| 0.4 * (1.5 * c * c / (core::f64::consts::PI * area * k)).cbrt();
+    let studies = |law: &dyn Fn(f64, f64) -> f64, tests: i32| {
+        let (known, tests) = (tubes(5, law), tubes(tests, law));
+        examine("Q12", &[("softness", &known), ("wall-stiffness", &tests)])
+    };
+    let stiff = studies(&by_stiffness, 7);
+    assert_verdict(&stiff, Verdict::Answered);
+    assert_says(
+        &stiff.summary,
+        "5 of 5 and 7 of 7 by the stiffness of the wall",
+    );
+    assert!(
+        !stiff.summary.contains("7 of 7 by the energy"),
+        "{}",
+        stiff.summary
+    );
+    assert!((value(&stiff, "constant of the stiffness of the wall") - 0.1).abs() < 1e-3);
+    let held = studies(&by_energy, 7);
+    assert_says(&held.summary, "5 of 5 and 7 of 7 by the energy");
+    assert!((value(&held, "constant of the energy") - 0.4).abs() < 4e-3);
+    assert_verdict(&studies(&by_stiffness, 3), Verdict::Open);
+}

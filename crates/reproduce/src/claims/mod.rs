@@ -14,6 +14,7 @@ mod prelude;
 mod q1;
 mod q10;
 mod q11;
+mod q12;
 mod q2;
 mod q3;
 mod q4;
@@ -59,4 +60,5 @@ pub const CLAIMS: &[Claim] = &[
     q9::CLAIM,
     q10::CLAIM,
     q11::CLAIM,
+    q12::CLAIM,
 ];

@@ -146,10 +146,9 @@ impl Candidate {
         }
         let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&rate, &width, &error).ok();
-        let area = core::f64::consts::TAU * first.radius() * first.wavelength();
         Some(Self {
             name: wall_name(lattice, arrangement),
-            density: (lattice.spheres_per_ring * lattice.rings_per_wave) as f64 / area,
+            density: first.wall_density(),
             slope: line.map(|line| slope(&line)),
             power: power_of_rate(&amplitudes),
             escaped,

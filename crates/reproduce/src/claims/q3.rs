@@ -31,7 +31,7 @@ const VARIED: [Varied; 4] = [
         name: "restitution",
         axis: "restitution, *e*",
         scale: Scale::Linear,
-        value: restitution,
+        value: |row| row.restitution(),
         series: ALL,
     },
     Varied {
@@ -57,14 +57,8 @@ const VARIED: [Varied; 4] = [
     },
 ];
 
-/// e = exp(-pi eta/(2 m k - eta^2)^{1/2}), two equal grains.
-fn restitution(row: &Row<'_>) -> f64 {
-    let damping = row.number_or("contact.normal_damping", 0.00548);
-    (-core::f64::consts::PI * damping / (2.0 - damping * damping).sqrt()).exp()
-}
-
 fn softness(row: &Row<'_>) -> f64 {
-    row.wave_speed() / row.number_or("contact.normal_stiffness", 1.0).sqrt()
+    row.wave_speed() / row.stiffness().sqrt()
 }
 
 /// A critical width with what belongs to it.

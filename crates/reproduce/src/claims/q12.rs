@@ -1,0 +1,284 @@
+//! Q12: why the critical width falls as the wave gets faster.
+
+use core::f64::consts::PI;
+
+use super::f7::SLOPE;
+use super::prelude::*;
+
+const PROSE: Prose = Prose::new(include_str!("q12.md"));
+
+/// Those that were there before the predictions.
+const KNOWN: [&str; 6] = [
+    "restitution",
+    "softness",
+    "wavelength",
+    "radius",
+    "roughness",
+    "walls",
+];
+
+/// Tubes that were computed after the predictions, to test them.
+const TEST: &str = "wall-stiffness";
+/// The last two are of waves so slow that grains feel each sphere of the wall.
+const STUDIES: &[&str] = &[
+    "restitution",
+    "softness",
+    "wavelength",
+    "radius",
+    "roughness",
+    "walls",
+    TEST,
+    "small-strain-rate-fine",
+    "small-strain-rate-coarse",
+];
+
+pub(super) const CLAIM: Claim = Claim::new("Q12", PROSE, STUDIES, examine);
+
+/// A tube with its grains, in units of m and d, and what was measured in it.
+struct Tube {
+    radius: f64,
+    wavelength: f64,
+    wave_speed: f64,
+    stiffness: f64,
+    damping: f64,
+    restitution: f64,
+    /// Wall spheres per area.
+    density: f64,
+    /// 2 a − w_c.
+    narrowing: Uncertain,
+}
+
+impl Tube {
+    /// The tubes of a study that hold their grains at the critical width, where this is known.
+    fn all_of(rows: Vec<Row<'_>>) -> Vec<Self> {
+        let tube = |row: &Row<'_>| {
+            let Lattice {
+                spheres_per_ring,
+                rings_per_wave,
+            } = row.lattice();
+            let lattice = [spheres_per_ring, rings_per_wave].map(|number| number as f64);
+            let shape = [row.radius(), row.wavelength(), row.strain_rate()];
+            let is_staggered = arrangement(row) == STAGGERED;
+            (
+                is_staggered,
+                lattice,
+                shape,
+                [row.stiffness(), row.damping()],
+            )
+        };
+        let groups = grouped(rows, tube).into_iter();
+        groups.filter_map(|(_, rows)| Self::of(&rows)).collect()
+    }
+
+    fn of(rows: &[Row<'_>]) -> Option<Self> {
+        let critical = crossing(rows)?.width;
+        let first = &rows[0];
+        (leak(rows, Some(critical.value)) <= MOST_ESCAPED).then(|| Self {
+            radius: first.radius(),
+            wavelength: first.wavelength(),
+            wave_speed: first.wave_speed(),
+            stiffness: first.stiffness(),
+            damping: first.damping(),
+            restitution: first.restitution(),
+            density: first.wall_density(),
+            narrowing: Uncertain::normal(2.0 * first.radius() - critical.value, critical.error),
+        })
+    }
+
+    /// How deep a grain as fast as the wave sinks into a wall of so many spheres per area: m c^2/2 = pi sigma k d h^3/3.
+    fn depth_of_energy(&self) -> f64 {
+        let Self {
+            wave_speed,
+            stiffness,
+            density,
+            ..
+        } = self;
+        (1.5 * wave_speed * wave_speed / (PI * density * stiffness)).cbrt()
+    }
+
+    /// c (m lambda a/(k sigma))^(1/2)/d^2.
+    fn stiffness_of_wall(&self) -> f64 {
+        let Self {
+            wave_speed,
+            stiffness,
+            density,
+            ..
+        } = self;
+        wave_speed * (self.wavelength * self.radius / (stiffness * density)).sqrt()
+    }
+
+    /// (lambda/pi) s_c with s_c = 2 eta c/(k d (1 − e^2)^(1/2)); NaN without dissipation.
+    fn two_drags(&self) -> f64 {
+        let loss = 1.0 - self.restitution * self.restitution;
+        let slope = 2.0 * self.damping * self.wave_speed / (self.stiffness * loss.sqrt());
+        self.wavelength / PI * slope
+    }
+}
+
+/// A prediction of 2 a − w_c.
+struct Prediction {
+    name: &'static str,
+    axis: &'static str,
+    /// Without its constant.
+    shape: fn(&Tube) -> f64,
+    /// Fitted to the known tubes, with its scatter over them, or exact.
+    constant: Uncertain,
+}
+
+impl Prediction {
+    /// All, their constants fitted to these tubes.
+    fn all_from(known: &[&Tube]) -> [Self; 3] {
+        let fitted = |shape: fn(&Tube) -> f64| {
+            let ratios = sorted(known.iter().map(|tube| tube.narrowing.value / shape(tube)));
+            let at = |part: f64| ratios[(part * (ratios.len() - 1) as f64).round() as usize];
+            Uncertain::normal(at(0.5), 0.5 * (at(0.84) - at(0.16)))
+        };
+        let of = |name, axis, shape, constant| Self {
+            name,
+            axis,
+            shape,
+            constant,
+        };
+        [
+            of(
+                "the energy",
+                "*C* *h*/*d*, energy",
+                Tube::depth_of_energy,
+                fitted(Tube::depth_of_energy),
+            ),
+            of(
+                "the stiffness of the wall",
+                "*C* *c*(*mλa*/*kσ*)^{1/2}/*d*^3, stiffness of the wall",
+                Tube::stiffness_of_wall,
+                fitted(Tube::stiffness_of_wall),
+            ),
+            of(
+                "two drags",
+                "*λs*_{c}/(*πd*), two drags",
+                Tube::two_drags,
+                Uncertain::normal(1.0, 0.0),
+            ),
+        ]
+    }
+
+    fn of(&self, tube: &Tube) -> f64 {
+        self.constant.value * (self.shape)(tube)
+    }
+
+    /// Measured over predicted, ascending.
+    fn ratios<'a>(&self, tubes: impl IntoIterator<Item = &'a Tube>) -> Vec<f64> {
+        let ratios = tubes
+            .into_iter()
+            .map(|tube| tube.narrowing.value / self.of(tube));
+        sorted(ratios)
+    }
+
+    /// How many of some tubes lie near it, of those for which it says something.
+    fn within<'a>(&self, tubes: impl IntoIterator<Item = &'a Tube>) -> String {
+        let ratios = self.ratios(tubes);
+        let near = ratios
+            .iter()
+            .filter(|ratio| (*ratio - 1.0).abs() <= PREDICTED_WITHIN);
+        format!("{} of {}", near.count(), ratios.len())
+    }
+
+    /// Median, least and largest of measured over predicted.
+    fn cell(&self, tubes: &[Tube]) -> String {
+        let ratios = self.ratios(tubes);
+        let Some((least, most)) = ends(ratios.iter().copied()) else {
+            return cell_of(ratios.first(), |only| number(*only, 2));
+        };
+        let [median, least, most] =
+            [ratios[ratios.len() / 2], least, most].map(|ratio| number(ratio, 2));
+        format!("{median} ({least}–{most})")
+    }
+
+    /// Measured against predicted.
+    fn panel(&self, groups: &[Group]) -> ChartPanel {
+        let points = groups.iter().map(|group| {
+            let told = group.tubes.iter().filter(|tube| self.of(tube).is_finite());
+            let points = points(
+                group.study,
+                told.map(|tube| (self.of(tube), tube.narrowing)),
+            )?;
+            let known = KNOWN.contains(&group.study);
+            Some(if known { points } else { points.open() })
+        });
+        ChartPanel::new(self.axis, "measured, (2*a* − *w*_{c})/*d*")
+            .x_scale(Scale::Logarithmic)
+            .y_scale(Scale::Logarithmic)
+            .with(Curve::new("as predicted", &DIAGONAL, &DIAGONAL).tint(Tint::Black))
+            .with_all(numbered(points))
+    }
+}
+
+/// Finite numbers, ascending.
+fn sorted(numbers: impl Iterator<Item = f64>) -> Vec<f64> {
+    let mut numbers: Vec<f64> = numbers.filter(|one| one.is_finite()).collect();
+    numbers.sort_by(f64::total_cmp);
+    numbers
+}
+
+/// Ends of the line on which predictions come true \[d\].
+const DIAGONAL: [f64; 2] = [0.02, 1.5];
+
+/// The tubes of one study.
+struct Group {
+    study: &'static str,
+    tubes: Vec<Tube>,
+}
+
+fn examine(evidence: &Evidence) -> Result<Finding> {
+    let (mut groups, mut all) = (Vec::new(), Vec::new());
+    for study in STUDIES {
+        let rows = evidence.study(study)?.rows();
+        if !rows.is_empty() {
+            all.push(behind(&rows, Row::width));
+        }
+        let tubes = Tube::all_of(rows);
+        groups.push(Group { study, tubes });
+    }
+    groups.retain(|group| !group.tubes.is_empty());
+    let of = |studies: &[&str]| -> Vec<&Tube> {
+        let those = groups.iter().filter(|group| studies.contains(&group.study));
+        those.flat_map(|group| &group.tubes).collect()
+    };
+    let (known, tests) = (of(&KNOWN), of(&[TEST]));
+    let statistics = Statistics::weakest_at_one_rate(all.into_iter());
+    if known.is_empty() {
+        return Ok(PROSE.nothing(statistics, &Q12_NEEDED));
+    }
+    let predictions = Prediction::all_from(&known);
+    let mut draft = Draft::of(PROSE);
+    let density = density_of_the_source(&predictions[1].constant, known[0]);
+    draft.quantity("density of the source", &[], density);
+    let mut told = Vec::new();
+    for one in &predictions {
+        let name = one.name;
+        let [known, tests] = [&known, &tests].map(|tubes| one.within(tubes.iter().copied()));
+        told.push(PROSE.text("told", values!(known, tests, name)));
+        if one.constant.error > 0.0 {
+            draft.quantity("constant", values!(name), one.constant);
+        }
+    }
+    let rows = groups.iter().map(|group| {
+        let first = [group.study.to_owned(), group.tubes.len().to_string()];
+        let cells = predictions.iter().map(|one| one.cell(&group.tubes));
+        first.into_iter().chain(cells).collect()
+    });
+    draft.table("predictions", &[], rows);
+    let panels = predictions.iter().map(|one| one.panel(&groups));
+    let chart = grid(3, panels).share_y().legend(LegendPlace::Below);
+    draft.chart("predictions", &[], chart)?;
+    let summary = PROSE.text("summary", values!(density, told = told.join("; ")));
+    let verdict = Verdict::answered_if(tests.len() >= LEAST_TESTS);
+    Ok(draft.concluded(verdict, summary, statistics, &Q12_NEEDED))
+}
+
+/// Wall spheres per area at which the stiffness of the wall gives the slope of the source, in a tube of the presets' lengths
+/// and grains: slope = −C lambda (m lambda a/(k sigma))^(1/2)/d^2.
+fn density_of_the_source(constant: &Uncertain, tube: &Tube) -> Uncertain {
+    let slope = constant.scaled(tube.wavelength / SLOPE);
+    let density = slope.value * slope.value * tube.wavelength * tube.radius / tube.stiffness;
+    Uncertain::normal(density, 2.0 * density * constant.error / constant.value)
+}
