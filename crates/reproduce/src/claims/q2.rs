@@ -8,7 +8,8 @@ use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("q2.md"));
 
-pub(super) const CLAIM: Claim = Claim::new("Q2", PROSE, &["roughness", "walls"], examine);
+pub(super) const CLAIM: Claim =
+    Claim::new("Q2", PROSE, &["roughness", "walls", "wavelength"], examine);
 
 /// How deep a grain sinks between three wall spheres \[d\], all of one diameter: d − (d² − s²)^{1/2}, s the circumradius of
 /// the triangle that two neighbours of a ring make with one of the next. Larger spacings than d let a grain through.
@@ -97,8 +98,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         let (lattice, rate) = (wall.lattice.name(), wall.strain_rate);
         draft.quantity("critical width", values!(lattice, rate), wall.critical);
     }
+    let of_one_speed = |row: &Row<'_>| (row.wave_speed() - 1.0).abs() < 1e-6;
+    let mut waves = evidence.study("wavelength")?.rows();
+    waves.retain(of_one_speed);
+    candidates(&mut draft, evidence.study("walls")?.rows(), &waves);
     draft.table("lattices", &[], walls.iter().map(Wall::row));
-    candidates(&mut draft, evidence.study("walls")?.rows())?;
     draft.chart("roughness", &[], ChartFigure::new(panel))?;
     Ok(draft.concluded(verdict, summary, statistics, &Q2_NEEDED))
 }
@@ -120,9 +124,8 @@ struct Candidate {
 const WHERE_CLAIMED: core::ops::RangeInclusive<f64> = 0.7..=5.0;
 
 impl Candidate {
-    fn of(arrangement: &str, rows: &[Row<'_>]) -> Option<Self> {
+    fn of(name: String, rows: &[Row<'_>]) -> Option<Self> {
         let first = rows.first()?;
-        let lattice = first.lattice();
         let (mut widths, mut amplitudes, mut escaped) = (Vec::new(), Vec::new(), 0.0_f64);
         for (rate, rows) in by_strain_rate(rows.iter().copied()) {
             let Some(critical) = crossing(&rows).map(|crossing| crossing.width) else {
@@ -147,7 +150,7 @@ impl Candidate {
         let [rate, width, error] = columns(widths, LEAST_ERROR_OF_A_WIDTH);
         let line = fit_line(&rate, &width, &error).ok();
         Some(Self {
-            name: wall_name(lattice, arrangement),
+            name,
             density: first.wall_density(),
             slope: line.map(|line| slope(&line)),
             power: power_of_rate(&amplitudes),
@@ -166,15 +169,16 @@ impl Candidate {
     }
 }
 
-/// The walls that the source could have had, side by side.
-fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
-    let groups = grouped(rows, |row| (arrangement(row), row.lattice()));
-    let found = groups
-        .iter()
-        .filter_map(|((arrangement, _), rows)| Candidate::of(arrangement, rows));
+/// The walls that the source could have had, side by side, and waves of one speed, of which the strain rate follows from their
+/// lengths.
+fn candidates(draft: &mut Draft, walls: Vec<Row<'_>>, waves: &[Row<'_>]) {
+    let groups = grouped(walls, |row| (arrangement(row), row.lattice()));
+    let found = groups.iter().filter_map(|((arrangement, lattice), rows)| {
+        Candidate::of(wall_name(*lattice, arrangement), rows)
+    });
     let mut found: Vec<Candidate> = found.collect();
     if found.is_empty() {
-        return Ok(());
+        return;
     }
     found.sort_by(|one, other| one.density.total_cmp(&other.density));
     for one in &found {
@@ -199,7 +203,6 @@ fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
     };
     let slopes = agreeing(|one| one.slope, SLOPE);
     let powers = agreeing(|one| one.power, AMPLITUDE);
-    draft.table("candidates", &[], found.iter().map(Candidate::row));
     let all = found.iter().filter_map(|one| one.power);
     let [least, most] = all.fold(
         [f64::INFINITY, f64::NEG_INFINITY],
@@ -207,5 +210,11 @@ fn candidates(draft: &mut Draft, rows: Vec<Row<'_>>) -> Result<()> {
     );
     let [least, most] = [least, most].map(|power| number(power, 1));
     draft.paragraph("candidates", values!(slopes, powers, least, most));
-    Ok(())
+    let by_length = Candidate::of(PROSE.text("by length", &[]), waves);
+    if let Some(one) = &by_length {
+        let [slope, power] = [cell(one.slope), cell(one.power)];
+        draft.paragraph("waves", values!(slope, power));
+    }
+    let rows = found.iter().chain(&by_length).map(Candidate::row);
+    draft.table("candidates", &[], rows);
 }
