@@ -38,6 +38,10 @@ else
 fi
 
 if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
+    step "spelling"
+    "$scratch/venv/bin/pip" install --quiet --no-cache-dir 'typos>=1.52,<2'
+    "$scratch/venv/bin/typos"
+
     step "tables, as pyarrow reads them"
     cargo run --locked --quiet -- run --quiet --preset frictional --set grains.number=100 --set run.periods=0.2 \
         --out "$scratch/elastic" --csv
@@ -53,7 +57,7 @@ if python3 -m venv "$scratch/venv" >"$scratch/venv.log" 2>&1; then
     cp target/debug/lib_core.so "$scratch/python/peristalsis/_core.abi3.so"
     PYTHONPATH=$scratch/python "$scratch/venv/bin/python" scripts/run_snippets.py --only python README.md crates/python/README.md
 else
-    step "skipped: tables, as pyarrow reads them, and the README's Python (python3 makes no virtual environment here)"
+    step "skipped: spelling, tables, as pyarrow reads them, and the README's Python (python3 makes no virtual environment here)"
 fi
 
 step "all checks passed"
