@@ -69,7 +69,7 @@ python:
 web:
     bash scripts/web.sh
 
-# The films of the README, docs/images/*.gif.
+# The films of the book, docs/images/*.gif.
 films:
     bash scripts/films.sh
 

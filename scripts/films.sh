@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The films of the README (docs/images/*.gif), from runs of a few seconds.
+# The films of the book (docs/images/*.gif), from runs of a few seconds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
