@@ -8,13 +8,25 @@ test:
 
 # The checks, the long validation runs, the audit of unsafe code, the clients of trajectories and the Python package (about three quarters of
 # an hour on two cores).
-full-check: check deny audit clients check-viewer python slurm book
+full-check: check deny audit check-arm check-wasm check-windows clients check-viewer python slurm book
     cargo test --workspace --release --tests -- --ignored
     cargo bench --workspace --no-run
 
 # Miri, AddressSanitizer and memcheck over the module with unsafe code, as far as this machine has them.
 audit:
     bash scripts/audit_unsafe.sh
+
+# The bits on record on 64-bit ARM (NEON), under qemu.
+check-arm:
+    bash scripts/check_arm.sh
+
+# The bits on record as WebAssembly (SIMD128), in Node.js.
+check-wasm:
+    bash scripts/check_wasm.sh
+
+# The program for Windows under wine, and what of macOS can be checked elsewhere.
+check-windows:
+    bash scripts/check_windows.sh
 
 # Licences, duplicates and sources of every crate against deny.toml, where cargo-deny is installed.
 deny:
@@ -80,6 +92,10 @@ count-instructions *options:
 # Speed of the kernels (see BENCHMARKS.md).
 bench:
     cargo bench -p peristalsis-engine
+
+# Speed as WebAssembly against native on one core, in turn.
+bench-wasm *options:
+    python3 scripts/bench_wasm.py {{options}}
 
 # The same work for this program and for LAMMPS, in turn (see benchmarks/peers/README.md): --quick, --runs N, --cases NAME ...
 bench-peers *options:

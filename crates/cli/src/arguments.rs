@@ -11,7 +11,7 @@ use peristalsis_reproduce::textbook::CASES;
 use peristalsis_reproduce::{CLAIMS, Extent};
 use peristalsis_run::{Span, TrajectoryFormat, Window};
 
-use crate::choice::{INSTRUCTIONS, Offered, TRAJECTORIES, one_of};
+use crate::choice::{Offered, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
 use crate::commands::schema::SchemaArguments;
 use crate::commands::study::{StudyCommand, WorkArguments, time_span};
@@ -105,7 +105,7 @@ pub(crate) struct RunArguments {
     #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: u16,
     /// Instructions to compute with; the default is the widest that the machine has.
-    #[arg(long, value_name = "SET", value_parser = one_of(INSTRUCTIONS))]
+    #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
     pub(crate) instructions: Option<Instructions>,
     /// Go on with the run of a folder, to the same bits as if it had not been stopped; or, in a new folder, with the state
     /// in a file, such as Python's `Simulation.save` writes.

@@ -1,7 +1,6 @@
 //! Options of which each value has a name: tables of the values that the crates below know.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, StringValueParser, TypedValueParser};
-use peristalsis_engine::Instructions;
 use peristalsis_run::Field::{
     AngularVelocity, AxialDisplacement, AxialVelocity, Coordination, Diameter, Phase, Pressure,
     Speed,
@@ -95,14 +94,6 @@ pub(crate) const TRAJECTORIES: &[Choice<TrajectoryFormat>] = &[
     ("lammps", Lammps, "LAMMPS dump text: OVITO, VMD"),
 ];
 const GENERAL: &str = "General Simulation Data: OVITO, freud, Python's gsd";
-
-/// Instructions that the fast kernels can be held to; the results are the same bits.
-pub(crate) const INSTRUCTIONS: &[Choice<Instructions>] = &[
-    ("avx512", Instructions::Avx512, "512-bit registers"),
-    ("avx2", Instructions::Avx2, "256-bit registers"),
-    ("plain", Instructions::Plain, EVERYWHERE),
-];
-const EVERYWHERE: &str = "what every processor of the kind has";
 
 /// The value of a name, if it is one.
 pub fn value_of<T: Copy>(choices: &[Choice<T>], name: &str) -> Option<T> {

@@ -17,7 +17,7 @@ fn kernels(criterion: &mut Criterion) {
             .sampling_mode(SamplingMode::Flat)
             .warm_up_time(Duration::from_millis(500))
             .measurement_time(Duration::from_secs(2));
-        for path in Path::ALL {
+        for path in Path::all() {
             if !path.instructions.available() {
                 continue;
             }

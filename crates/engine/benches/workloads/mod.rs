@@ -3,6 +3,8 @@
 #[path = "../../tests/common/mod.rs"]
 mod common;
 
+use std::iter;
+
 use self::common::*;
 
 const TIME_STEP: f64 = 0.05;
@@ -20,23 +22,17 @@ pub(crate) struct Path {
 }
 
 impl Path {
-    pub(crate) const ALL: [Self; 4] = [
-        Self {
-            name: "reference",
-            kernel: Kernel::Reference,
-            instructions: Instructions::Plain,
-        },
-        Self::fast("plain", Instructions::Plain),
-        Self::fast("avx2", Instructions::Avx2),
-        Self::fast("avx512", Instructions::Avx512),
-    ];
-
-    const fn fast(name: &'static str, instructions: Instructions) -> Self {
-        Self {
-            name,
-            kernel: Kernel::Fast,
-            instructions,
-        }
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        let reference = ("reference", Kernel::Reference, Instructions::Plain);
+        let fast = Instructions::ALL.iter();
+        let fast = fast.map(|&(name, instructions, _)| (name, Kernel::Fast, instructions));
+        iter::once(reference)
+            .chain(fast)
+            .map(|(name, kernel, instructions)| Self {
+                name,
+                kernel,
+                instructions,
+            })
     }
 }
 

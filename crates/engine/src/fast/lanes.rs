@@ -211,7 +211,7 @@ impl<M: Machine> Mask<M> {
     /// Whether it holds anywhere.
     #[inline(always)]
     pub(crate) fn any(self) -> bool {
-        self.to_bits() != 0
+        self.0.any()
     }
 
     /// Number of lanes where it holds.

@@ -28,6 +28,12 @@ pub(crate) trait Truths:
 {
     fn from_bits(bits: u8) -> Self;
     fn to_bits(self) -> u8;
+
+    /// Whether any is true.
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.to_bits() != 0
+    }
 }
 
 impl Truths for u8 {

@@ -25,19 +25,7 @@ macro_rules! both {
     };
 }
 
-/// Operations on two vectors of numbers, each an instruction.
-macro_rules! operations {
-    ($numbers:ty: $($operation:ident $instruction:ident),+ $(,)?) => {$(
-        #[inline(always)]
-        fn $operation(a: $numbers, b: $numbers) -> $numbers {
-            // SAFETY: as above.
-            unsafe { $instruction(a, b) }
-        }
-    )+};
-}
-pub(super) use operations;
-
-/// The same, each an instruction for both registers.
+/// Operations on two vectors of numbers, each an instruction for both registers.
 macro_rules! operations_of_both {
     ($($operation:ident $instruction:ident),+ $(,)?) => {$(
         #[inline(always)]
@@ -66,7 +54,7 @@ impl Arithmetic<4> for Four {
         unsafe { _mm256_storeu_pd(to.as_mut_ptr(), values) }
     }
 
-    operations! { __m256d:
+    operations! { __m256d => __m256d:
         add _mm256_add_pd,
         sub _mm256_sub_pd,
         mul _mm256_mul_pd,

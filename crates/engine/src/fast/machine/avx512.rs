@@ -3,7 +3,7 @@
 use core::arch::x86_64::*;
 
 use super::arithmetic::{Arithmetic, LANES, Machine};
-use super::avx2::{Four, operations};
+use super::avx2::Four;
 
 /// AVX-512 (F, VL, DQ, BW).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -28,7 +28,7 @@ impl Arithmetic<LANES> for Avx512 {
         unsafe { _mm512_storeu_pd(to.as_mut_ptr(), values) }
     }
 
-    operations! { __m512d:
+    operations! { __m512d => __m512d:
         add _mm512_add_pd,
         sub _mm512_sub_pd,
         mul _mm512_mul_pd,
@@ -41,7 +41,7 @@ impl Machine for Avx512 {
     type Quads = Four;
     type Truths = __mmask8;
 
-    operations! { __m512d: div _mm512_div_pd }
+    operations! { __m512d => __m512d: div _mm512_div_pd }
 
     #[inline(always)]
     fn sqrt(a: __m512d) -> __m512d {

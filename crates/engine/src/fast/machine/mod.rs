@@ -1,27 +1,49 @@
 //! Sets of instructions, and the choice of the widest that the machine has, at run time.
 //!
 //! A kernel is written once, for any [`Machine`]: how eight numbers are held in registers and what one instruction does
-//! with them. It is compiled for AVX-512, for AVX2 and for plain code, as the [`Work`] that [`Instructions::run`] is
-//! given. Every operation follows IEEE 754, lane by lane, so that all machines give the same bits.
+//! with them. It is compiled for each of [`Instructions::ALL`] that the target can have, as the [`Work`] that
+//! [`Instructions::run`] is given. Every operation follows IEEE 754, lane by lane, so that all machines give the same bits.
 //!
 //! This is the only module with unsafe code besides the tests. What makes it sound: the types `Avx512` and `Avx2` can be
 //! named nowhere else, so that code for them is reached only through [`Instructions::run`], which has looked for the
-//! instructions before.
+//! instructions before. NEON and SIMD128 are compiled only for targets that have them.
 #![allow(unsafe_code)]
+
+/// Operations on two registers, each an instruction.
+macro_rules! operations {
+    ($arguments:ty => $answer:ty: $($operation:ident $instruction:expr),+ $(,)?) => {$(
+        #[inline(always)]
+        #[allow(unused_unsafe, reason = "WebAssembly's are safe")]
+        fn $operation(a: $arguments, b: $arguments) -> $answer {
+            // SAFETY: see the module above.
+            unsafe { $instruction(a, b) }
+        }
+    )+};
+}
 
 mod arithmetic;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(any(target_arch = "aarch64", target_feature = "simd128"))]
+mod pairs;
 mod plain;
+#[cfg(target_feature = "simd128")]
+mod simd128;
 
 pub(crate) use self::arithmetic::{Arithmetic, LANES, Machine, Truths};
 #[cfg(target_arch = "x86_64")]
 use self::avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 use self::avx512::Avx512;
+#[cfg(target_arch = "aarch64")]
+use self::neon::Neon;
 use self::plain::Plain;
+#[cfg(target_feature = "simd128")]
+use self::simd128::Simd128;
 
 /// Work that is compiled for each set of instructions. `run` must be `#[inline(always)]`, as must be all that it calls
 /// with the machine as a type.
@@ -33,10 +55,14 @@ pub(crate) trait Work {
 /// Instructions that the fast kernels are compiled for; all give the same bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Instructions {
-    /// 512-bit registers.
+    /// 512-bit registers of x86-64.
     Avx512,
-    /// 256-bit registers.
+    /// 256-bit registers of x86-64.
     Avx2,
+    /// 128-bit registers of 64-bit ARM.
+    Neon,
+    /// 128-bit registers of WebAssembly, for which it must be compiled.
+    Simd128,
     /// The instructions that every machine of its kind has.
     Plain,
 }
@@ -48,50 +74,62 @@ impl Default for Instructions {
 }
 
 impl Instructions {
+    /// Each with its name and its meaning in a few words, the widest first.
+    pub const ALL: &[(&str, Self, &str)] = &[
+        ("avx512", Self::Avx512, "512-bit registers of x86-64"),
+        ("avx2", Self::Avx2, "256-bit registers of x86-64"),
+        ("neon", Self::Neon, "128-bit registers of 64-bit ARM"),
+        ("simd128", Self::Simd128, "128-bit registers of WebAssembly"),
+        ("plain", Self::Plain, "what every processor of the kind has"),
+    ];
+
+    /// Those that this machine has, the widest first.
+    pub fn here() -> impl Iterator<Item = Self> {
+        let all = Self::ALL.iter().map(|&(_, instructions, _)| instructions);
+        all.filter(|instructions| instructions.available())
+    }
+
     /// The widest that this machine has.
     pub fn widest() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            let has_avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt");
-            let has_avx512 = has_avx2
-                && is_x86_feature_detected!("avx512f")
-                && is_x86_feature_detected!("avx512vl")
-                && is_x86_feature_detected!("avx512dq")
-                && is_x86_feature_detected!("avx512bw");
-            if has_avx512 {
-                return Self::Avx512;
-            }
-            if has_avx2 {
-                return Self::Avx2;
-            }
-        }
-        Self::Plain
+        Self::here().next().unwrap_or(Self::Plain)
     }
 
     /// Whether this machine has them.
     pub fn available(self) -> bool {
-        match Self::widest() {
-            Self::Avx512 => true,
-            Self::Avx2 => self != Self::Avx512,
-            Self::Plain => self == Self::Plain,
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => {
+                Self::Avx2.available()
+                    && is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512vl")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512bw")
+            }
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 => is_x86_feature_detected!("avx2") && is_x86_feature_detected!("popcnt"),
+            Self::Neon => cfg!(target_arch = "aarch64"),
+            Self::Simd128 => cfg!(target_feature = "simd128"),
+            Self::Plain => true,
+            #[cfg(not(target_arch = "x86_64"))]
+            Self::Avx512 | Self::Avx2 => false,
         }
     }
 
     /// Does the work with these instructions, or with the widest that there are if the machine lacks them.
     pub(crate) fn run<W: Work>(self, work: W) -> W::Answer {
-        #[cfg(target_arch = "x86_64")]
-        match (self, Self::widest()) {
-            (Self::Avx512, Self::Avx512) => {
-                // SAFETY: the features that the function is compiled for have just been detected.
-                return unsafe { with_avx512(work) };
-            }
-            (Self::Avx512 | Self::Avx2, Self::Avx512 | Self::Avx2) => {
-                // SAFETY: AVX2 has just been detected; a processor with AVX-512 has it too.
-                return unsafe { with_avx2(work) };
-            }
-            _ => {}
+        match self {
+            // SAFETY: the features that the functions are compiled for have just been detected.
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 if self.available() => unsafe { with_avx512(work) },
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx2 if self.available() => unsafe { with_avx2(work) },
+            #[cfg(target_arch = "aarch64")]
+            Self::Neon => work.run::<Neon>(),
+            #[cfg(target_feature = "simd128")]
+            Self::Simd128 => work.run::<Simd128>(),
+            Self::Plain => work.run::<Plain>(),
+            _ => Self::widest().run(work),
         }
-        work.run::<Plain>()
     }
 }
 
