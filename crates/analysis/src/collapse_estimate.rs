@@ -61,16 +61,17 @@ impl<'a> Collapse<'a> {
     /// risen by 1 or by 1.96^2; the noise is the error of each point, stretched by a common factor of 1 or more, fitted too.
     /// A side that the points leave open is infinite.
     ///
-    /// `start`, `steps`, `starts` and `seed` as for [`fit`](Self::fit), which minimises S instead. Without a correction
-    /// the errors hold only where there is none: a small one hides in the exponents and fits well. The fit is therefore
-    /// compared with those that allow for c = -1 and 1, and not trusted where one of them may take a parameter out of its
+    /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of it,
+    /// by random numbers of `seed`. Without a correction the errors hold only where there is none: a small one hides in the
+    /// exponents and fits well. The fit is therefore compared with those that allow for c = -1 and 1, and not trusted where one of them may take a parameter out of its
     /// interval of 95 per cent. Look at [`doubts`](CollapseEstimate::doubts). Compare Harada, Phys. Rev. E 84, 056704
     /// (2011).
     ///
     /// # Errors
-    /// Those of [`fit`](Self::fit); [`Error::TooFew`] with fewer points than curve and parameters need,
-    /// [`Error::NotPositive`] for a parameter of a curve with a correction, [`Error::Undetermined`] where the search
-    /// does not settle.
+    /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves, without
+    /// starts or with fewer points than curve and parameters need, [`Error::LengthMismatch`], [`Error::NonFinite`],
+    /// [`Error::NotPositive`] for a step, or for a parameter of a curve with a correction, [`Error::Fraction`],
+    /// [`Error::Undetermined`] where the search does not settle.
     ///
     /// ```
     /// use peristalsis_analysis::{Collapse, Curve, CurvePoint};

@@ -1,22 +1,12 @@
-//! The scaling under which curves collapse best, with errors.
+//! Curves with a scaling to try on them, and what every search of its parameters needs.
 
-use crate::bootstrap::{Bootstrap, Randomness, Resampled, summarise};
+use crate::bootstrap::Randomness;
 use crate::collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality, overlap};
 use crate::error::{Error, checked, checked_positive, enough, ensure, same_length};
-use crate::numerics::simplex::{Lowest, nelder_mead};
-use serde::{Deserialize, Serialize};
 
 /// Value of the objective where the overlap falls short; it grows with the missing overlap, so that a search finds its way
 /// back.
 pub(crate) const SHORT: f64 = 1e6;
-/// Tolerance of the search, relative to its first steps.
-const TOLERANCE: f64 = 1e-3;
-/// Most fresh beginnings of a search, the number without gain that ends it, and what counts as gain.
-const MOST_ROUNDS: u32 = 12;
-const IDLE_ROUNDS: u32 = 3;
-const GAIN: f64 = 1e-3;
-/// Most evaluations of one search, for each parameter.
-const EVALUATIONS: usize = 300;
 
 /// A scaling: parameters, place of the curve among all, its own value, and a point, to the scaled point.
 pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 'a;
@@ -42,8 +32,8 @@ pub type Transform<'a> = dyn Fn(&[f64], usize, f64, CurvePoint) -> CurvePoint + 
 ///     },
 ///     least_overlap: 0.5,
 /// };
-/// let fit = collapse.fit(&[0.5], &[0.2], 1, 0)?;
-/// assert!((fit.parameters[0] - 1.0).abs() < 1e-3);
+/// // S falls to its least where the exponent is right.
+/// assert!(collapse.quality(&[1.0])?.quality < 1e-9 && collapse.quality(&[0.5])?.quality > 1.0);
 /// # Ok::<(), peristalsis_analysis::Error>(())
 /// ```
 #[derive(Clone, Copy)]
@@ -55,22 +45,6 @@ pub struct Collapse<'a> {
     /// Least fraction of points that must be compared, 0 to 1; 0.5 is a good choice. At 0 a search is free to win by
     /// pulling the curves apart.
     pub least_overlap: f64,
-}
-
-/// Best parameters of a scaling.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct CollapseFit {
-    /// Parameters, in the order of the scaling.
-    pub parameters: Vec<f64>,
-    /// Quality and overlap of the collapse.
-    pub quality: CollapseQuality,
-    /// Starts whose search ended at this minimum to within 1 per cent of S, of all starts: few say that there are
-    /// others.
-    pub agreeing: usize,
-    /// Searches made.
-    pub starts: usize,
-    /// Whether the best search converged.
-    pub converged: bool,
 }
 
 impl Collapse<'_> {
@@ -119,117 +93,6 @@ impl Collapse<'_> {
             }
             Ok(found) => found.quality,
         }
-    }
-
-    fn search(&self, start: &[f64], steps: &[f64]) -> Lowest {
-        let objective = |parameters: &[f64]| self.objective(parameters);
-        let evaluations = EVALUATIONS * start.len();
-        let mut best = nelder_mead(objective, start, steps, TOLERANCE, evaluations);
-        // S jumps wherever a point passes one of another curve, so that it has many shallow minima: a search begins
-        // afresh, to either side and in other proportions, until that no longer helps.
-        let mut idle = 0;
-        for round in 0..MOST_ROUNDS {
-            let fresh = |(axis, step): (usize, &f64)| {
-                let is_back = (round >> (axis % 2)) & 1 == 0;
-                let sign = if is_back { -1.0 } else { 1.0 };
-                sign * step / f64::from(1 + round / 4)
-            };
-            let fresh: Vec<f64> = steps.iter().enumerate().map(fresh).collect();
-            let again = nelder_mead(objective, &best.place, &fresh, TOLERANCE, evaluations);
-            let gains = again.value < best.value * (1.0 - GAIN);
-            idle = if gains { 0 } else { idle + 1 };
-            if again.value < best.value {
-                best = again;
-            }
-            if idle == IDLE_ROUNDS {
-                break;
-            }
-        }
-        best
-    }
-
-    /// Parameters of the smallest S with enough overlap, by downhill simplex from several starts.
-    ///
-    /// `start` with `steps`, the lengths in which to explore each parameter; further `starts` begin within two steps of
-    /// it, by random numbers of `seed`. Collapses with less than `least_overlap`, and ones in which groups of curves
-    /// part, are rejected. Look at the overlap and at `agreeing` beside S.
-    ///
-    /// # Errors
-    /// [`Error::NoOverlap`] with the best overlap where no start finds enough, [`Error::TooFew`] below 2 curves or
-    /// without starts, [`Error::LengthMismatch`], [`Error::NonFinite`], [`Error::NotPositive`] for a step,
-    /// [`Error::Fraction`].
-    pub fn fit(
-        &self,
-        start: &[f64],
-        steps: &[f64],
-        starts: usize,
-        seed: u64,
-    ) -> Result<CollapseFit, Error> {
-        self.check(start, steps, starts)?;
-        let search = |number: u64| self.search(&place_of_start(start, steps, seed, number), steps);
-        let mut found: Vec<Lowest> = (0..starts as u64).map(search).collect();
-        // Stable: of equal ones the first search comes first.
-        found.sort_by(|a, b| a.value.total_cmp(&b.value));
-        let Lowest {
-            place: parameters,
-            value,
-            converged,
-        } = found[0].clone();
-        ensure(value < SHORT, self.no_overlap(&parameters))?;
-        Ok(CollapseFit {
-            quality: self.quality(&parameters)?,
-            parameters,
-            agreeing: found.partition_point(|other| other.value <= value * 1.01),
-            starts,
-            converged,
-        })
-    }
-
-    /// Errors of the best parameters from their scatter when every ordinate is moved by its error.
-    ///
-    /// Each resample adds a normal number times the error to every y and searches anew from the best parameters, with
-    /// half of the steps: a parametric bootstrap, right where the errors are normal, independent and S is near 1. A
-    /// scaling that does not hold (S well above 1) has errors beyond these. Resamples that do not overlap enough count
-    /// as failed.
-    ///
-    /// # Errors
-    /// [`Error::TooFewResamples`], [`Error::LengthMismatch`], [`Error::NotPositive`] for a step.
-    pub fn bootstrap(
-        &self,
-        fit: &CollapseFit,
-        steps: &[f64],
-        bootstrap: Bootstrap,
-    ) -> Result<Resampled, Error> {
-        same_length(fit.parameters.len(), steps.len())?;
-        let steps = checked_positive(steps)?.iter();
-        let steps: Vec<f64> = steps.map(|step| 0.5 * step).collect();
-        let estimates = bootstrap.streams()?.map(|mut randomness| {
-            let mut curves = self.curves.to_vec();
-            for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
-                point.y += point.error * randomness.normal();
-            }
-            let curves = &curves;
-            let found = Collapse { curves, ..*self }.search(&fit.parameters, &steps);
-            (found.value < SHORT).then_some(found.place)
-        });
-        summarise(&fit.parameters, estimates)
-    }
-
-    /// Fits with one curve left out in turn, in the order of the curves: exponents that hang on one curve move.
-    ///
-    /// Arguments as for [`fit`](Self::fit). A parameter that belongs to the curve left out keeps whatever value the
-    /// search began with.
-    ///
-    /// # Errors
-    /// [`Error::TooFew`] below 3 curves; those of [`fit`](Self::fit) for any of the fits.
-    pub fn leave_one_out(
-        &self,
-        start: &[f64],
-        steps: &[f64],
-        starts: usize,
-        seed: u64,
-    ) -> Result<Vec<CollapseFit>, Error> {
-        self.without_each(|rest| rest.fit(start, steps, starts, seed))
     }
 
     /// An answer for the curves without each in turn.

@@ -14,7 +14,7 @@
 //! | how does the flow rate fluctuate? | [`ensemble_moments`], [`second_moment`], [`second_moment_peak`] |
 //! | do the curves collapse? | [`Collapse`], [`Scaling`], [`collapse_quality`] |
 //! | is the transition of first order? | [`dip_test`], [`two_peaks`], [`jump_height`], [`fraction_crossing`], [`hysteresis`] |
-//! | how does w_c depend on the strain rate? | [`fit_line`], [`fit_parabola`] |
+//! | how does w_c depend on the strain rate? | [`fit_line`], [`fit_line_to_scatter`], [`fit_parabola`] |
 //!
 //! Numbers with uncertainties are [`Uncertain`]: value, standard error, and intervals of 68 and 95 per cent. They display
 //! themselves as `2.794 ± 0.003`; [`number`] writes other numbers in the same way.
@@ -68,7 +68,7 @@ pub use blocks::{Estimate, mean_with_error};
 pub use bootstrap::{Bootstrap, Resampled};
 pub use collapse::{CollapseQuality, Curve, CurvePoint, collapse_quality};
 pub use collapse_estimate::{CollapseEstimate, JointTest};
-pub use collapse_fit::{Collapse, CollapseFit, Transform};
+pub use collapse_fit::{Collapse, Transform};
 pub use dip::{DipTest, dip_test};
 pub use divergence::{LawEvidence, compare_laws, compare_laws_with_scatter};
 pub use ensemble::{Moments, ensemble_moments, mean_and_error};
@@ -82,7 +82,9 @@ pub use law::Law;
 pub use law_fit::{LawFit, NearestFit, fit_law, fit_law_to_nearest};
 pub use law_runs::{LawRunsFit, WindowRunsFit, fit_law_to_runs, fit_law_to_runs_in_windows};
 pub use lifetime::{LifetimeFit, fit_lifetime};
-pub use line::{CurveFit, LineFit, fit_line, fit_parabola, power_exponent};
+pub use line::{
+    CurveFit, LineFit, ScatteredLine, fit_line, fit_line_to_scatter, fit_parabola, power_exponent,
+};
 pub use logistic::{FractionCrossing, fraction_crossing};
 pub use mixture::{Histogram, Peak, TwoPeaks, histogram, two_peaks};
 pub use scaling::Scaling;

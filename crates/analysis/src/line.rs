@@ -4,7 +4,8 @@ use crate::columns::distinct;
 use crate::error::{Error, check_points, checked_positive, enough_places};
 use crate::numerics::gamma::{chi_squared_tail, two_sided_tail};
 use crate::numerics::linear::{LeastSquares, error_of, least_squares};
-use crate::uncertain::Uncertain;
+use crate::numerics::student::{quantile, two_sided_tail as student_tail};
+use crate::uncertain::{Interval, NARROW_TAIL, Uncertain, WIDE_TAIL};
 use serde::{Deserialize, Serialize};
 
 /// A straight line through points with errors.
@@ -43,6 +44,18 @@ pub struct CurveFit {
     pub line: LineFit,
     /// Probability of a quadratic term at least as large, of either sign, if the points lie on a line.
     pub linearity: f64,
+}
+
+/// A straight line through points whose scatter about it is the only error known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ScatteredLine {
+    /// The line; its errors are those of the scatter, the intervals of intercept and slope Student's.
+    pub line: LineFit,
+    /// R^2, the part of the variance of y that the line explains.
+    pub determination: f64,
+    /// Probability of a quadratic term at least as large if the points scatter about a line: F-test of line against
+    /// parabola; `None` with three places, through which every parabola goes.
+    pub linearity: Option<f64>,
 }
 
 impl LineFit {
@@ -157,6 +170,65 @@ pub fn fit_parabola(x: &[f64], y: &[f64], error: &[f64]) -> Result<CurveFit, Err
     })
 }
 
+/// Straight line through points of unknown errors, all alike, as one draws it by least squares.
+///
+/// The variance of the points is `chi^2/(n - 2)` about the line, so that intercept and slope follow Student's distribution
+/// of n - 2 degrees of freedom; whether the points bend is asked in the same way, by the F-test of the quadratic term with
+/// n - 3. Source: Bevington & Robinson, Data Reduction and Error Analysis (2003), chapters 6 and 11.
+///
+/// # Errors
+/// [`Error::TooFewPlaces`] below 3 distinct x, else as for [`fit_line`].
+///
+/// ```
+/// use peristalsis_analysis::fit_line_to_scatter;
+/// let fit = fit_line_to_scatter(&[0.0, 1.0, 2.0], &[1.0, 2.0, 6.0])?;
+/// // chi^2 = 3/2 with one degree of freedom: the slope's variance is 3/4, Student's 95 per cent are 12.7 errors.
+/// assert!((fit.line.slope.error - 0.75_f64.sqrt()).abs() < 1e-12);
+/// assert!((fit.line.slope.interval_95.length() / fit.line.slope.error - 2.0 * 12.706).abs() < 1e-3);
+/// assert!((fit.determination - (1.0 - 1.5 / 14.0)).abs() < 1e-12 && fit.linearity.is_none());
+/// # Ok::<(), peristalsis_analysis::Error>(())
+/// ```
+pub fn fit_line_to_scatter(x: &[f64], y: &[f64]) -> Result<ScatteredLine, Error> {
+    let alike = vec![1.0; x.len()];
+    check_points(x, y, &alike)?;
+    enough_places(distinct(x).len(), 3)?;
+    let through = fit_line(x, y, &alike)?;
+    let freedom = through.degrees_of_freedom;
+    // Points on a line have no scatter, but errors must be positive.
+    let scatter = (through.chi_squared / freedom as f64).sqrt().max(1e-100);
+    let mut line = fit_line(x, y, &vec![scatter; x.len()])?;
+    let student = |one: Uncertain| {
+        let within = |tail| {
+            let reach = one.error * quantile(tail, freedom);
+            Interval::new(one.value - reach, one.value + reach)
+        };
+        Uncertain {
+            interval_68: within(NARROW_TAIL),
+            interval_95: within(WIDE_TAIL),
+            ..one
+        }
+    };
+    (line.intercept, line.slope) = (student(line.intercept), student(line.slope));
+    let mean = y.iter().sum::<f64>() / y.len() as f64;
+    let all: f64 = y.iter().map(|y| (y - mean) * (y - mean)).sum();
+    let linearity = (distinct(x).len() > 3).then(|| {
+        let bent = fit_parabola(x, y, &alike)?;
+        let gain = (through.chi_squared - bent.chi_squared).max(0.0);
+        let variance = bent.chi_squared.max(1e-200) / bent.degrees_of_freedom as f64;
+        let score = (gain / variance).sqrt();
+        Ok(student_tail(score, bent.degrees_of_freedom))
+    });
+    Ok(ScatteredLine {
+        line,
+        determination: if all > 0.0 {
+            1.0 - through.chi_squared / all
+        } else {
+            0.0
+        },
+        linearity: linearity.transpose()?,
+    })
+}
+
 /// Exponent of a power law y = A x^slope, as a line through the logarithms.
 ///
 /// `ln y = intercept + slope ln x`, the error of ln y being error/y; `intercept` is ln A. For errors above some 20 per
@@ -237,6 +309,35 @@ mod tests {
         let difference = found.line.chi_squared - found.chi_squared;
         let score = found.quadratic.deviations_from(0.0);
         assert!((difference - score * score).abs() < 1e-8 * difference);
+    }
+
+    #[test]
+    fn a_line_through_scatter_covers_and_bends_are_told() {
+        let trials = 1000;
+        let (mut covered, mut bent) = ([0; 2], [0; 2]);
+        for seed in 0..trials {
+            let noise = white_noise(seed, 5);
+            let [straight, curved] = [0.0, 40.0].map(|bend| {
+                let y =
+                    |i: usize| 3.0 - 3.75 * RATES[i] + bend * RATES[i].powi(2) + 0.01 * noise[i];
+                let y: Vec<f64> = (0..5).map(y).collect();
+                fit_line_to_scatter(&RATES[..5], &y).unwrap()
+            });
+            covered[0] += usize::from(straight.line.slope.interval_68.contains(-3.75));
+            covered[1] += usize::from(straight.line.slope.interval_95.contains(-3.75));
+            for (fit, bent) in [straight, curved].iter().zip(&mut bent) {
+                *bent += usize::from(fit.linearity.unwrap() < 0.05);
+            }
+        }
+        let trials = trials as usize;
+        assert_coverage(covered[0], trials, 0.6827, 0.0, "slope");
+        assert_coverage(covered[1], trials, 0.95, 0.0, "slope");
+        assert_coverage(bent[0], trials, 0.05, 0.0, "false bends");
+        assert!(bent[1] > trials / 2, "{bent:?}");
+        assert_refused!(
+            fit_line_to_scatter(&[1.0, 2.0, 2.0], &[1.0; 3]) =>
+            TooFewPlaces { needed: 3, found: 2 }
+        );
     }
 
     #[test]

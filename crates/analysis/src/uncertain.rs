@@ -9,9 +9,9 @@ pub(crate) const NARROW: f64 = 1.0;
 /// Standard deviations of the wide interval: 95 per cent.
 pub(crate) const WIDE: f64 = 1.959_963_984_540_054;
 /// Probability to either side of the narrow interval.
-const NARROW_TAIL: f64 = 0.158_655_253_931_457;
+pub(crate) const NARROW_TAIL: f64 = 0.158_655_253_931_457;
 /// Probability to either side of the wide interval.
-const WIDE_TAIL: f64 = 0.025;
+pub(crate) const WIDE_TAIL: f64 = 0.025;
 
 /// Confidence interval; a side that the data leave open is infinite.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

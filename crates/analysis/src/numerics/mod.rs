@@ -8,3 +8,4 @@ pub(crate) mod linear;
 pub(crate) mod minimum;
 pub(crate) mod quasi_newton;
 pub(crate) mod simplex;
+pub(crate) mod student;
