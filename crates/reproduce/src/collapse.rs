@@ -2,45 +2,47 @@
 
 use peristalsis_analysis::number::decimal as number;
 use peristalsis_analysis::{
-    Bootstrap, Collapse, CollapseFit, Curve, CurvePoint, Scaling, Uncertain, WidthEnsemble,
+    Collapse, CollapseEstimate, Curve, CurvePoint, JointTest, Scaling, Uncertain, WidthEnsemble,
 };
 use peristalsis_figures::Scale;
 use peristalsis_figures::chart::{ChartFigure, ChartPanel, Line as Drawn, Pattern, Tint};
 
 use crate::critical::Line;
-use crate::exhibit::{cell_of, coloured, ends, grid, points, rate_colours};
+use crate::exhibit::{cell_of, coloured, ends, grid, points, probability, rate_colours};
 use crate::finding::{Quantity, ReportTable};
-use crate::thresholds::{OVERLAP, RESOLVED};
+use crate::thresholds::{BY_CHANCE, MOST_STRETCH, OVERLAP, RESOLVED};
 use crate::walls::OnWall;
 
-/// Searches for the best collapse, resamples for its errors, and the seed of both.
-const STARTS: usize = 12;
-const RESAMPLES: usize = 200;
+/// Searches for the best collapse, and the seed of their starts.
+const STARTS: usize = 8;
 const SEED: u64 = 20_120_331;
 /// First steps of the exponents.
 const STEPS: [f64; 2] = [0.3, 0.15];
 
-/// Exponents of the source, and S with the overlap there, where curves can be compared at all.
-type Claimed = ([f64; 2], Option<(f64, f64)>);
+/// What the source says of a collapse.
+#[derive(Clone, Debug)]
+struct Claimed {
+    exponents: [f64; 2],
+    /// S and the overlap there, where curves can be compared at all.
+    quality: Option<(f64, f64)>,
+    /// Both exponents at once against those found, with their covariance.
+    joint: Option<JointTest>,
+}
 
 /// Curves of several strain rates, and how well they collapse.
 #[derive(Clone, Debug)]
 pub(crate) struct Collapsed {
-    /// Fitted critical width of each curve.
-    critical: Vec<f64>,
     curves: Vec<Curve>,
-    /// Exponents of the source, if it gives any, and S with the overlap there.
+    /// Exponents of the source, if it gives any.
     claimed: Option<Claimed>,
-    fit: CollapseFit,
-    exponents: Vec<Uncertain>,
-    left_out: Vec<(f64, Vec<f64>)>,
+    /// Both exponents, then the critical width of each curve, which is known within its error.
+    found: CollapseEstimate,
 }
 
-/// Collapses a quantity of the transition times, mean or variance, that goes about as (w_c - w)^-slope; `None` where too few strain rates have it.
+/// Collapses a quantity of the transition times, mean or variance; `None` where too few strain rates have it.
 pub(crate) fn collapse(
     wall: &OnWall<Line<'_>>,
     claimed: [f64; 2],
-    slope: f64,
     quantity: impl Fn(&WidthEnsemble) -> Option<Uncertain>,
 ) -> Option<Collapsed> {
     let mut curves = Curves::default();
@@ -53,7 +55,7 @@ pub(crate) fn collapse(
         };
         let points = line.ensembles.iter().filter(known);
         let points = points.filter_map(|one| Some((one.width, quantity(one)?)));
-        curves.add(line.strain_rate, &fit.critical_width, slope, points);
+        curves.add(line.strain_rate, fit.critical_width, points);
     }
     curves.collapse(claimed, Some(claimed))
 }
@@ -61,34 +63,27 @@ pub(crate) fn collapse(
 /// Curves of known critical widths.
 #[derive(Default)]
 pub(crate) struct Curves {
-    critical: Vec<f64>,
+    critical: Vec<Uncertain>,
     curves: Vec<Curve>,
 }
 
 impl Curves {
-    /// Adds a quantity that goes about as (w_c - w)^-slope, where three positive points or more have an error.
+    /// Adds a quantity, where three positive points or more have an error.
     pub(crate) fn add(
         &mut self,
         parameter: f64,
-        critical: &Uncertain,
-        slope: f64,
+        critical: Uncertain,
         points: impl Iterator<Item = (f64, Uncertain)>,
     ) {
-        let points: Vec<CurvePoint> = points
-            .filter(|(_, found)| found.value > 0.0 && found.error > 0.0)
-            .map(|(x, found)| {
-                // A critical width that is off by its error moves a point along the curve.
-                let steepness = slope * found.value / (critical.value - x);
-                let error = found.error.hypot(steepness * critical.error);
-                CurvePoint {
-                    x,
-                    y: found.value,
-                    error,
-                }
-            })
-            .collect();
-        if points.len() >= 3 {
-            self.critical.push(critical.value);
+        let known = points.filter(|(_, found)| found.value > 0.0 && found.error > 0.0);
+        let point = |(x, found): (f64, Uncertain)| CurvePoint {
+            x,
+            y: found.value,
+            error: found.error,
+        };
+        let points: Vec<CurvePoint> = known.map(point).collect();
+        if points.len() >= 3 && critical.error > 0.0 {
+            self.critical.push(critical);
             self.curves.push(Curve { parameter, points });
         }
     }
@@ -99,7 +94,7 @@ impl Curves {
         if curves.len() < 3 {
             return None;
         }
-        let scaling = Scaling::CriticalKnown(critical.clone());
+        let scaling = Scaling::CriticalEach;
         let transform = |parameters: &[f64], curve: usize, parameter: f64, point: CurvePoint| {
             scaling.apply(parameters, curve, parameter, point)
         };
@@ -108,73 +103,68 @@ impl Curves {
             transform: &transform,
             least_overlap: OVERLAP,
         };
-        let fit = collapse.fit(&start, &STEPS, STARTS, SEED).ok()?;
-        let bootstrap = Bootstrap::new(RESAMPLES, SEED);
-        let left_out: Vec<(f64, Vec<f64>)> = collapse
-            .leave_one_out(&fit.parameters, &STEPS, 3, SEED)
-            .map(|fits| {
-                curves
-                    .iter()
-                    .zip(fits)
-                    .map(|(curve, fit)| (curve.parameter, fit.parameters))
-                    .collect()
-            })
-            .unwrap_or_default();
-        // Curves that differ by more than their errors leave the exponents that much less certain.
-        let stretch = fit.quality.quality.max(1.0).sqrt();
-        let exponents = collapse
-            .bootstrap(&fit, &STEPS, bootstrap)
-            .ok()?
-            .estimates
-            .iter()
-            .enumerate()
-            .map(|(place, exponent)| {
-                let fits: Vec<f64> = left_out.iter().map(|(_, fit)| fit[place]).collect();
-                Uncertain::normal(
-                    exponent.value,
-                    (stretch * exponent.error).max(jackknife(&fits)),
-                )
-            })
-            .collect();
-        let claimed = claimed.map(|claimed| {
-            let quality = collapse.quality(&claimed).ok();
-            (claimed, quality.map(|found| (found.quality, found.overlap)))
+        // The error of one w_c moves all points of its curve together.
+        let known: Vec<(usize, Uncertain)> = (2..).zip(critical.iter().copied()).collect();
+        let with = |exponents: [f64; 2], of: fn(&Uncertain) -> f64| -> Vec<f64> {
+            exponents
+                .into_iter()
+                .chain(critical.iter().map(of))
+                .collect()
+        };
+        let (start, steps) = (with(start, |one| one.value), with(STEPS, |one| one.error));
+        let found = collapse.estimate_knowing(&known, &start, &steps, STARTS, SEED, None);
+        let found = found.ok()?;
+        let claimed = claimed.map(|exponents| {
+            let quality = collapse.quality(&with(exponents, |one| one.value)).ok();
+            let both = [(0, exponents[0]), (1, exponents[1])];
+            Claimed {
+                exponents,
+                quality: quality.map(|found| (found.quality, found.overlap)),
+                joint: collapse.joint_test(&known, &found, &steps, &both).ok(),
+            }
         });
         Some(Collapsed {
-            critical,
-            claimed,
-            fit,
-            exponents,
-            left_out,
             curves,
+            claimed,
+            found,
         })
     }
 }
 
-/// Standard error from estimates that leave out one of n curves each, [(n - 1)/n sum (t_i - mean)^2]^(1/2); 0 without any.
-/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
-pub(crate) fn jackknife(estimates: &[f64]) -> f64 {
-    let number = estimates.len().max(1) as f64;
-    let mean = estimates.iter().sum::<f64>() / number;
-    let squares: f64 = estimates.iter().map(|one| (one - mean).powi(2)).sum();
-    (squares * (number - 1.0) / number).sqrt()
-}
-
 impl Collapsed {
+    /// Both exponents.
+    fn exponents(&self) -> [Uncertain; 2] {
+        [self.found.parameters[0], self.found.parameters[1]]
+    }
+
+    /// Whether both exponents of the source together are possible; `None` where that cannot be told.
+    pub(crate) fn agrees(&self) -> Option<bool> {
+        let joint = self.claimed.as_ref()?.joint?;
+        Some(joint.probability >= BY_CHANCE)
+    }
+
+    /// Probability of the source's exponents, both at once.
+    pub(crate) fn chance(&self) -> String {
+        let joint = self.claimed.as_ref().and_then(|claimed| claimed.joint);
+        cell_of(joint, |joint| probability(joint.probability))
+    }
+
     /// The exponents, S and the overlap as text.
     fn best(&self) -> [String; 4] {
-        [
-            self.exponents[0].to_string(),
-            self.exponents[1].to_string(),
-            number(self.fit.quality.quality, 1),
-            number(self.fit.quality.overlap, 2),
-        ]
+        let [a, b] = self.exponents().map(|exponent| exponent.to_string());
+        let quality = self.found.quality;
+        [a, b, number(quality.quality, 1), number(quality.overlap, 2)]
     }
 
     /// The exponents with the quality of the collapse.
     pub(crate) fn in_words(&self) -> String {
         let [a, b, quality, overlap] = self.best();
-        format!("*a* = {a}, *b* = {b} with *S* = {quality} at an overlap of {overlap}")
+        let stretch = self.found.stretch;
+        let what = match stretch <= MOST_STRETCH {
+            true => "collapsed".to_owned(),
+            false => format!("no collapse, points {stretch:.0} times as far as their errors"),
+        };
+        format!("{what} at *a* = {a}, *b* = {b} (*S* = {quality}, overlap {overlap})")
     }
 
     /// The exponents as quantities.
@@ -188,43 +178,49 @@ impl Collapsed {
                 name: format!("{}, {of}", words[place]),
                 symbol: symbols[place].to_owned(),
                 unit: String::new(),
-                source: self.claimed.map(|(claimed, _)| claimed[place]),
-                ours: Some(self.exponents[place]),
-                method: format!("collapse of {} curves, resampled points", self.curves.len()),
+                source: self
+                    .claimed
+                    .as_ref()
+                    .map(|claimed| claimed.exponents[place]),
+                ours: Some(self.exponents()[place]),
+                method: format!(
+                    "collapse of {} curves, profile likelihood",
+                    self.curves.len()
+                ),
             })
             .collect()
     }
 
-    /// Quality at the exponents of the source and at the best, and the fits without one curve.
+    /// Quality at the exponents of the source and at the best.
     pub(crate) fn table(&self, of: &str) -> ReportTable {
-        let row = |name: String, cells: [String; 4]| [vec![name], cells.to_vec()].concat();
-        let source = self.claimed.map(|(claimed, quality)| {
-            let [a, b] = claimed.map(|exponent| number(exponent, 2));
-            let overlap = cell_of(quality, |found| number(found.1, 2));
-            let quality = cell_of(quality, |found| number(found.0, 1));
-            row("source".to_owned(), [a, b, quality, overlap])
+        let row = |name: &str, cells: [String; 4], chance: String| {
+            [vec![name.to_owned()], cells.to_vec(), vec![chance]].concat()
+        };
+        let source = self.claimed.as_ref().map(|claimed| {
+            let [a, b] = claimed.exponents.map(|exponent| number(exponent, 2));
+            let overlap = cell_of(claimed.quality, |found| number(found.1, 2));
+            let quality = cell_of(claimed.quality, |found| number(found.0, 1));
+            row("source", [a, b, quality, overlap], self.chance())
         });
-        let left_out = self.left_out.iter().map(|(rate, parameters)| {
-            let [a, b] = [0, 1].map(|place| number(parameters[place], 2));
-            let name = format!("without *ε̇* = {rate}");
-            row(name, [a, b, String::new(), String::new()])
-        });
-        let best = row("best".to_owned(), self.best());
+        let best = row("best", self.best(), String::new());
         ReportTable::new(
             &format!(
-                "Collapse, {of}: exponents, Houdayer and Hartmann's *S*, overlap of the curves."
+                "Collapse, {of}: exponents, Houdayer and Hartmann's *S*, overlap of the curves, probability of the \
+                 source's exponents, both at once."
             ),
-            ["", "*a*", "*b*", "*S*", "overlap"],
-            source.into_iter().chain([best]).chain(left_out),
+            ["", "*a*", "*b*", "*S*", "overlap", "chance"],
+            source.into_iter().chain([best]),
         )
     }
 
     /// The scaled points of every curve by its strain rate: abscissa and ordinate.
-    fn scaled(&self, exponents: &[f64]) -> Vec<(f64, Vec<(f64, Uncertain)>)> {
-        let scaling = Scaling::CriticalKnown(self.critical.clone());
+    fn scaled(&self, exponents: [f64; 2]) -> Vec<(f64, Vec<(f64, Uncertain)>)> {
+        let widths = self.found.parameters[2..].iter().map(|width| width.value);
+        let parameters: Vec<f64> = exponents.into_iter().chain(widths).collect();
         let scaled = |(place, curve): (usize, &Curve)| {
             let points = curve.points.iter().map(|point| {
-                let point = scaling.apply(exponents, place, curve.parameter, *point);
+                let point =
+                    Scaling::CriticalEach.apply(&parameters, place, curve.parameter, *point);
                 // The scaling works in logarithms.
                 let (x, y) = (point.x.exp(), point.y.exp());
                 (x, Uncertain::normal(y, y * point.error))
@@ -235,7 +231,7 @@ impl Collapsed {
     }
 
     /// The curves in a panel, beside a line of the given slope through their middle.
-    fn panel(&self, exponents: &[f64], title: &str, labels: [&str; 2], slope: f64) -> ChartPanel {
+    fn panel(&self, exponents: [f64; 2], title: &str, labels: [&str; 2], slope: f64) -> ChartPanel {
         let panel = ChartPanel::new(labels[0], labels[1])
             .title(title)
             .x_scale(Scale::Logarithmic)
@@ -270,11 +266,11 @@ pub(crate) fn chart(
 ) -> ChartFigure {
     let mut panels = Vec::new();
     for (of, collapsed) in found {
-        if let Some((claimed, _)) = collapsed.claimed {
+        if let Some(claimed) = &collapsed.claimed {
             let title = format!("{of}, exponents of the source");
-            panels.push(collapsed.panel(&claimed, &title, claimed_labels, slope));
+            panels.push(collapsed.panel(claimed.exponents, &title, claimed_labels, slope));
         }
-        let best = &collapsed.fit.parameters;
+        let best = collapsed.exponents().map(|exponent| exponent.value);
         let title = format!("{of}, {} and {}", number(best[0], 2), number(best[1], 2));
         let labels = ["(*w*_{c} − *w*)/*ε̇*^{*b*}", best_label];
         panels.push(collapsed.panel(best, &title, labels, slope));

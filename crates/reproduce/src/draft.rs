@@ -47,6 +47,20 @@ impl Draft {
         self.finding.quantities.extend(found);
     }
 
+    /// The same beside the value of the source.
+    pub(crate) fn compared(
+        &mut self,
+        name: &str,
+        values: &Values<'_>,
+        ours: impl Into<Option<Uncertain>>,
+        source: f64,
+    ) {
+        if let Some(ours) = ours.into() {
+            let found = self.prose.quantity(name, values, ours);
+            self.finding.quantities.push(found.sourced(source));
+        }
+    }
+
     /// Adds the table of a section `table: name`.
     pub(crate) fn table(
         &mut self,

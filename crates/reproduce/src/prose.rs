@@ -354,6 +354,7 @@ mod tests {
                 ("figure", "figure: "),
                 ("chart", "figure: "),
                 ("quantity", "quantity: "),
+                ("compared", "quantity: "),
             ] {
                 for (at, _) in code.match_indices(&format!("PROSE.{method}(")) {
                     let call = code[at..]

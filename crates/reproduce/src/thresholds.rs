@@ -45,6 +45,9 @@ pub(crate) const AGREES_WITHIN: f64 = 2.0;
 /// Error beyond which a value says nothing of the source's, as a fraction of the latter: hardly any value would disagree.
 pub(crate) const LARGE_ERROR: f64 = 0.25;
 
+/// Probability below which what a claim says is excluded: that of two errors.
+pub(crate) const BY_CHANCE: f64 = 0.05;
+
 /// Strain rates at which a claim can be told, at least, for a wall to have a verdict.
 pub(crate) const LEAST_RATES: usize = 3;
 /// Part of them at which it must hold for the wall to reproduce it; where it fails at that part, the wall differs. One of
@@ -92,13 +95,11 @@ pub(crate) const PASSED: f64 = 0.5;
 
 // What differs between two flows.
 
-/// Differences of velocities, in parts of c, and of densities, in parts of the mean, count from here on: less can come from
-/// the tubes, which are not quite alike.
-pub(crate) const LEAST_DIFFERENCE: f64 = 0.05;
-/// Temperatures differ from this ratio on: they vary over decades.
-pub(crate) const LEAST_RATIO: f64 = 2.0;
-/// Part of the pairs of flows of one model that may differ by a measure which is to tell two models apart.
-pub(crate) const MOST_WITHIN: f64 = 0.5;
+/// Distance of two bottlenecks, in parts of the tube's diameter, within which flows are compared: over it the flow of one
+/// model hardly changes.
+pub(crate) const MATCHED: f64 = 0.01;
+/// Part of the pairs of flows of one model that are no farther apart than what counts as a difference.
+pub(crate) const WITHIN_A_MODEL: f64 = 0.95;
 /// Pressure on the wall, as a fraction of its largest, below which grains fly freely.
 pub(crate) const FREE_FLIGHT: f64 = 0.01;
 
@@ -106,6 +107,9 @@ pub(crate) const FREE_FLIGHT: f64 = 0.01;
 
 /// Fraction of the points that must be compared: with less a search wins by pulling the curves apart.
 pub(crate) const OVERLAP: f64 = 0.75;
+/// Distance of the points from one curve, in their errors, from which on there is no collapse.
+pub(crate) const MOST_STRETCH: f64 = 3.0;
+
 // F1: two kinds of flow.
 
 /// J/Jmax below which a flow is slow: half of the jammed flow.
@@ -134,8 +138,6 @@ pub(crate) const LEAST_RUNS_OF_A_MOMENT: usize = 8;
 /// Distance from the jump \[d\] of the widths whose runs make the histogram: near enough for both flows.
 pub(crate) const NEAR_THE_JUMP: f64 = 0.05;
 
-/// R^2 of a line through critical widths from which on they lie on one, as it is drawn through points.
-pub(crate) const A_LINE: f64 = 0.98;
 /// Least error of a critical width \[d\] in a fit: half of the spacing of the widths about it.
 pub(crate) const LEAST_ERROR_OF_A_WIDTH: f64 = 0.003;
 

@@ -5,6 +5,8 @@
 
 mod rows;
 
+use std::collections::BTreeMap;
+
 use peristalsis_reproduce::{CLAIMS, Evidence, Finding, Lattice, STUDIES, Size, Start, Verdict};
 use peristalsis_study::Specification;
 
@@ -342,6 +344,17 @@ fn leaking_strain_rates_are_left_out_everywhere() {
         let found = examine(id, &evidence);
         assert_eq!(found.statistics.strain_rates, RATES.len() - 1, "{id}");
     }
+    // The densest grains leave: three densities are too few.
+    let densities = SOURCE.density(Lattice::FINE);
+    let is_dense = |numbers: &BTreeMap<String, f64>| numbers["volume_fraction"] == 0.6;
+    let mut leaking = densities.only(|_, numbers| is_dense(numbers));
+    leaking.set("escaped", 100.0);
+    let mut all = densities.only(|_, numbers| !is_dense(numbers));
+    all.extend(&leaking);
+    evidence.add_table("density-fine", all.table()).unwrap();
+    let found = examine("F8", &evidence);
+    assert_verdict(&found, Verdict::Open);
+    assert_says(&found.walls[0].why, "left out for leaks: *ρ* = 0.6");
 }
 
 /// Runs next to w_c, of a study of their own, are read with those of the divergence.

@@ -8,10 +8,6 @@ pub(super) use crate::thresholds::FOR_A_VERDICT_ON_FORCES as NEEDED;
 /// Strain rate of the source's pictures.
 pub(super) const SOURCE_RATE: f64 = 4.01e-3;
 
-/// What counts for a verdict, a sentence for reports.
-const WHAT_COUNTS: &str = "What a verdict takes is counted in runs that average over 50 periods of a flow which no longer drifts, at forces that have \
-     such runs from both starts; tables and figures show all stationary flows.";
-
 /// The studies that [`branch_rows`] reads.
 pub(super) const BRANCHES: &[&str] = &["elastic-branches", "elastic-extremes"];
 
@@ -59,12 +55,9 @@ pub(super) fn with_branches(mut panel: ChartPanel, lines: &[&ForceLine<'_>]) -> 
     panel
 }
 
-/// A finding on forces, with what counts for its verdict.
+/// A finding on forces.
 pub(super) fn draft(prose: Prose) -> Draft {
-    let mut draft = Draft::of(prose).varying("force");
-    let paragraphs = &mut draft.finding.paragraphs;
-    paragraphs.insert(0, WHAT_COUNTS.to_owned());
-    draft
+    Draft::of(prose).varying("force")
 }
 
 /// A finding on forces without runs.

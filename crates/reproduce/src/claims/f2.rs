@@ -52,10 +52,8 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
     let exponents: Vec<Uncertain> = one.near().filter_map(|near| near.exponent).collect();
     let mean = weighted_mean(&exponents);
     let (wall, count) = (&one.name, exponents.len());
-    if let Some(mean) = mean {
-        let found = PROSE.quantity("exponent", values!(wall, count, widths = STRAIGHT), mean);
-        draft.finding.quantities.push(found.sourced(EXPONENT));
-    }
+    let widths = STRAIGHT;
+    draft.compared("exponent", values!(wall, count, widths), mean, EXPONENT);
     let sum = |of: fn(&Near) -> Option<f64>| -> f64 { one.near().filter_map(of).sum() };
     let curved = sum(|near| near.power.and(near.curved).map(|fit| fit.chi_squared));
     let power = sum(|near| near.curved.and(near.power).map(|fit| fit.chi_squared));

@@ -20,23 +20,25 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut rows, mut amplitudes) = (Vec::new(), Vec::new());
     for one in OnWall::<Line<'_>>::all(evidence)? {
         let mean = |ensemble: &WidthEnsemble| Some(ensemble.fit?.mean);
-        let collapsed = collapse(&one, EXPONENTS, 1.0, mean);
+        let collapsed = collapse(&one, EXPONENTS, mean);
         let known = at_rates(one.near(), Near::amplitude);
         let power = power_of_rate(&known);
         let wall = &one.name;
-        if let Some(power) = power {
-            let found = PROSE.quantity("amplitude", values!(wall, rates = known.len()), power);
-            draft.finding.quantities.push(found.sourced(AMPLITUDE));
-        }
+        let rates = known.len();
+        draft.compared("amplitude", values!(wall, rates), power, AMPLITUDE);
         let row = |(rate, found): &(f64, Uncertain)| {
             vec![wall.clone(), number(*rate, 3), found.to_string()]
         };
         rows.extend(known.iter().map(row));
         let words = PROSE.text("number", values!(power = cell(power)));
         let why = cell_of(collapsed.as_ref(), |collapsed| {
-            PROSE.text("collapse", values!(found = collapsed.in_words()))
+            let (found, chance) = (collapsed.in_words(), collapsed.chance());
+            PROSE.text("collapse", values!(found, chance))
         });
-        let holds = power.and_then(|power| agrees(&power, AMPLITUDE));
+        let holds = all_hold(&[
+            power.and_then(|power| agrees(&power, AMPLITUDE)),
+            collapsed.as_ref().and_then(Collapsed::agrees),
+        ]);
         parts.push(one.part(holds, words, why));
         amplitudes.push((one.name.clone(), known));
         found.extend(collapsed.map(|collapsed| (one.name, collapsed)));

@@ -21,10 +21,11 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     let (mut draft, mut parts) = (Draft::of(PROSE), Vec::new());
     let (mut rows, mut collapses) = (Vec::new(), Vec::new());
     for one in &walls {
-        parts.push(part(&mut draft, one));
-        rows.extend(one.tight().filter_map(|shown| row(&one.name, shown)));
         let variance = |ensemble: &WidthEnsemble| Some(ensemble.fit?.variance);
-        if let Some(collapsed) = collapse(one, SCALING, EXPONENT, variance) {
+        let collapsed = collapse(one, SCALING, variance);
+        parts.push(part(&mut draft, one, collapsed.as_ref()));
+        rows.extend(one.tight().filter_map(|shown| row(&one.name, shown)));
+        if let Some(collapsed) = collapsed {
             let of = format!("variance, wall {}", one.name);
             let exponents = collapsed.quantities(&of, ["*a_{χ}*", "*b_{χ}*"]);
             draft.finding.quantities.extend(exponents);
@@ -51,7 +52,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 }
 
 /// What one wall says of both halves: the exponent, and the scaling with the strain rate.
-fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
+fn part(draft: &mut Draft, one: &OnWall<Line<'_>>, collapsed: Option<&Collapsed>) -> Part {
     let wall = &one.name;
     let agrees_at = |line: &Line<'_>| agrees(&line.near.as_ref()?.variance_exponent()?, EXPONENT);
     let rates = one.rates(agrees_at);
@@ -60,15 +61,24 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
     let mean = weighted_mean(&exponents);
     let amplitudes = at_rates(one.near(), |near| near.variance_amplitude(EXPONENT));
     let power = power_of_rate(&amplitudes);
-    let scales = power.and_then(|power| agrees(&power, AMPLITUDE));
-    if let Some(mean) = mean {
-        let found = PROSE.quantity("exponent", values!(wall, rates = exponents.len()), mean);
-        draft.finding.quantities.push(found.sourced(EXPONENT));
-    }
-    if let Some(power) = power {
-        let found = PROSE.quantity("amplitude", values!(wall, rates = amplitudes.len()), power);
-        draft.finding.quantities.push(found.sourced(AMPLITUDE));
-    }
+    let scales = all_hold(&[
+        power.and_then(|power| agrees(&power, AMPLITUDE)),
+        collapsed.and_then(Collapsed::agrees),
+    ]);
+    let number_of_rates = exponents.len();
+    draft.compared(
+        "exponent",
+        values!(wall, rates = number_of_rates),
+        mean,
+        EXPONENT,
+    );
+    let number_of_rates = amplitudes.len();
+    draft.compared(
+        "amplitude",
+        values!(wall, rates = number_of_rates),
+        power,
+        AMPLITUDE,
+    );
     let (exponent, power) = (cell(mean), cell(power));
     let said = |holds: Option<bool>| match holds {
         Some(true) => "holds",
@@ -76,7 +86,8 @@ fn part(draft: &mut Draft, one: &OnWall<Line<'_>>) -> Part {
         None => "cannot be told",
     };
     let (words, scaling) = (rates.in_words(), said(scales));
-    let why = PROSE.text("why", values!(half = said(rates.hold()), words, scaling));
+    let (half, chance) = (said(rates.hold()), cell_of(collapsed, Collapsed::chance));
+    let why = PROSE.text("why", values!(half, words, scaling, chance));
     let number = PROSE.text("number", values!(exponent, power));
     one.part(all_hold(&[rates.hold(), scales]), number, why)
 }
@@ -90,8 +101,6 @@ fn row(wall: &str, shown: &Shown<Line<'_>>) -> Option<Vec<String>> {
         cell(near.variance_exponent()),
         cell(near.variance_amplitude(EXPONENT)),
         cell(scatter.map(|fit| fit.variance_exponent)),
-        cell(scatter.map(|fit| fit.scatter_exponent)),
-        cell_of(scatter, |fit| probability(fit.chance_probability)),
     ])
 }
 

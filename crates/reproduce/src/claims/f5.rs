@@ -109,6 +109,15 @@ fn passages(row: &Row<'_>) -> Vec<f64> {
     passages.map(|time| time * row.strain_rate()).collect()
 }
 
+/// Standard error from estimates that leave out one of n runs each, [(n - 1)/n sum (t_i - mean)^2]^(1/2).
+/// Source: Efron & Tibshirani, An Introduction to the Bootstrap (1993), chapter 11.
+fn jackknife(estimates: &[f64]) -> f64 {
+    let number = estimates.len().max(1) as f64;
+    let mean = estimates.iter().sum::<f64>() / number;
+    let squares: f64 = estimates.iter().map(|one| (one - mean).powi(2)).sum();
+    (squares * (number - 1.0) / number).sqrt()
+}
+
 fn integral(times: &[f64], moments: &[peristalsis_analysis::SecondMoment]) -> f64 {
     let spans = times.windows(2).zip(moments);
     spans
@@ -174,6 +183,12 @@ impl Moments {
         Some(fit.exponent)
     }
 
+    /// Whether the moment integrated over time, which nothing bounds, grows towards w_c.
+    fn grows_without_bound(&self) -> Option<bool> {
+        let exponent = self.exponent(WINDOW, |moment| moment.integral)?;
+        Some(exponent.value > AGREES_WITHIN * exponent.error)
+    }
+
     /// Whether the peak still grows next to w_c, and has room to; not, where it is as high as two flows allow.
     fn diverges(&self) -> Option<bool> {
         if self.rising().last()?.is_saturated()? {
@@ -222,14 +237,15 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         return Ok(PROSE.nothing(judgement.statistics, &needed));
     }
     let lengths = against_length(&evidence.study("length")?.rows());
-    draft.quantity(
-        "length",
-        &[],
-        lengths.map(|power| Uncertain::normal(2.0 + power.value, power.error)),
-    );
+    // The moment of J itself is that of J/Jmax times the square of the length.
+    let length = lengths.map(|power| Uncertain::normal(2.0 + power.value, power.error));
+    draft.quantity("length", &[], length);
     let summary = PROSE.text("summary", &[]);
     let saturated = number(100.0 * SATURATED, 0);
     draft.finding.paragraphs = PROSE.paragraphs("method", values!(saturated));
+    if let Some(length) = length {
+        draft.paragraph("extensive", values!(length));
+    }
     draft.table("peaks", &[], rows);
     draft.chart("second-moment-peak", &[], against_distance(&walls))?;
     let middle = walls
@@ -250,6 +266,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
 
 fn part(one: &OnWall<Moments>) -> Part {
     let rates = one.rates(Moments::diverges);
+    let integrals = one.rates(Moments::grows_without_bound);
     let nearest = one
         .tight()
         .filter_map(|shown| Some(shown.found.rising().last()?.height()));
@@ -264,8 +281,9 @@ fn part(one: &OnWall<Moments>) -> Part {
     let integral = exponent(|moment| moment.integral, WINDOW);
     let highest = number(highest, 2);
     let words = PROSE.text("number", values!(peak, highest));
-    let why = PROSE.text("why", values!(rates = rates.in_words(), integral));
-    one.part(rates.hold(), words, why)
+    let (rates_of_peak, grows) = (rates.in_words(), integrals.count());
+    let why = PROSE.text("why", values!(rates = rates_of_peak, grows, integral));
+    one.part(all_hold(&[rates.hold(), integrals.hold()]), words, why)
 }
 
 /// Power of the number of waves with which the peak of the moment of J/Jmax goes, over the widths that most runs jam at.
@@ -288,7 +306,7 @@ fn scaling(one: &OnWall<Moments>) -> Option<Collapsed> {
     for shown in one.tight() {
         let rising = shown.found.rising().into_iter();
         let rising = rising.map(|moment| (moment.width, moment.height()));
-        curves.add(shown.strain_rate, &shown.found.critical?, 1.0, rising);
+        curves.add(shown.strain_rate, shown.found.critical?, rising);
     }
     curves.collapse([0.0, 1.0], None)
 }

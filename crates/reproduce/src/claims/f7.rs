@@ -1,6 +1,6 @@
 //! F7: how the critical width depends on the strain rate.
 
-use peristalsis_analysis::{LineFit, fit_line, fit_parabola};
+use peristalsis_analysis::{LineFit, ScatteredLine, fit_line_to_scatter, fit_parabola};
 
 use super::prelude::*;
 
@@ -26,7 +26,7 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
         panel = panel.with_all(drawn.map(|points| points.series(place)));
         let line = straight(&critical);
         if let Some(line) = &line {
-            panel = with_line(panel, line, &critical, place);
+            panel = with_line(panel, &line.line, &critical, place);
         }
         parts.push(part(&mut draft, one, &critical, line.as_ref()));
     }
@@ -41,35 +41,25 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             .pattern(Pattern::Dotted),
     );
     let summary = PROSE.text("summary", &[]);
-    draft.finding.paragraphs = PROSE.paragraphs("method", values!(periods));
-    draft.table("critical widths", &[], rows);
+    draft.table("critical widths", values!(periods), rows);
     draft.chart("critical-width", &[], ChartFigure::new(panel))?;
     Ok(draft.judged(judgement, &summary))
 }
 
-/// A line by least squares, every strain rate with the same weight, as one draws it through points; its errors are those of
-/// the scatter about it. `None` with too few strain rates.
-fn straight(critical: &Critical) -> Option<LineFit> {
+/// A line by least squares, every strain rate with the same weight, as one draws it through points. `None` with too few
+/// strain rates.
+fn straight(critical: &Critical) -> Option<ScatteredLine> {
     let [rate, width, _] = columns(critical.iter().copied(), 0.0);
-    let alike = vec![1.0; rate.len()];
-    let line = fit_line(&rate, &width, &alike).ok()?;
-    let scatter = (line.chi_squared / line.degrees_of_freedom.max(1) as f64).sqrt();
-    let line = fit_line(&rate, &width, &vec![scatter; rate.len()]).ok()?;
+    let line = fit_line_to_scatter(&rate, &width).ok()?;
     (rate.len() >= LEAST_RATES).then_some(line)
 }
 
-/// Part of the variance of the critical widths that the line explains.
-fn determination(line: &LineFit, width: &[f64]) -> f64 {
-    let number = width.len() as f64;
-    let mean = width.iter().sum::<f64>() / number;
-    let all: f64 = width.iter().map(|width| (width - mean).powi(2)).sum();
-    // The slope's error is that of the scatter: t^2 = R^2/(1 − R^2) times the degrees of freedom.
-    let score = line.slope.deviations_from(0.0).powi(2);
-    if all > 0.0 {
-        score / (score + number - 2.0)
-    } else {
-        0.0
-    }
+/// Whether the source's slope lies in the interval of 95 per cent; `None` where that is so wide that it says little.
+fn has_the_slope(line: &ScatteredLine) -> Option<bool> {
+    let interval = line.line.slope.interval_95;
+    let within = interval.contains(SLOPE);
+    let is_wide = interval.length() > 2.0 * AGREES_WITHIN * LARGE_ERROR * SLOPE.abs();
+    (!within || !is_wide).then_some(within)
 }
 
 /// What one wall says, by the slope of the line.
@@ -77,41 +67,41 @@ fn part(
     draft: &mut Draft,
     one: &OnWall<Line<'_>>,
     critical: &Critical,
-    line: Option<&LineFit>,
+    line: Option<&ScatteredLine>,
 ) -> Part {
     let (wall, rates) = (&one.name, critical.len());
-    let mut quantities = Vec::new();
-    if let Some(line) = line {
-        let found = PROSE.quantity("slope", values!(wall, rates), line.slope);
-        quantities.push(found.sourced(SLOPE));
-        quantities.push(PROSE.quantity("intercept", values!(wall, rates), line.intercept));
+    if let Some(ScatteredLine { line, .. }) = line {
+        draft.compared("slope", values!(wall, rates), line.slope, SLOPE);
+        draft.quantity("intercept", values!(wall, rates), line.intercept);
     }
     let [rate, width, error] = columns(critical.iter().copied(), 0.0);
     let mut why = rates_in_words(one);
+    // By the scatter of the points alone, and by their errors.
+    let mut linearity = [line.and_then(|line| line.linearity), None];
     if let Ok(curve) = fit_parabola(&rate, &width, &error) {
         let weighted = slope(&curve.line);
         let (chi_squared, freedom) = (curve.line.chi_squared, curve.line.degrees_of_freedom);
         let chi_squared = number(chi_squared, 1);
-        let weighted_slope = PROSE.quantity(
+        draft.compared(
             "weighted slope",
             values!(wall, rates, chi_squared, freedom),
             weighted,
+            SLOPE,
         );
-        quantities.push(weighted_slope.sourced(SLOPE));
-        let probability = probability(curve.linearity);
-        let curvature = PROSE.quantity("curvature", values!(wall, probability), curve.quadratic);
-        quantities.push(curvature.sourced(0.0));
-        let bend = PROSE.text("bend", values!(weighted, probability));
+        linearity[1] = Some(curve.linearity);
+        let [scatter, errors] = linearity.map(|one| cell_of(one, probability));
+        let bend = curve.quadratic;
+        draft.compared("curvature", values!(wall, scatter, errors), bend, 0.0);
+        let bend = PROSE.text("bend", values!(weighted, scatter, errors));
         why = format!("{why}; {bend}");
     }
-    draft.finding.quantities.extend(quantities);
-    let slope = line.map(|line| line.slope);
-    let determination = line.map(|line| determination(line, &width));
-    let holds = all_hold(&[
-        determination.map(|found| found >= A_LINE),
-        slope.and_then(|slope| agrees(&slope, SLOPE)),
-    ]);
-    let determination = cell_of(determination, |found| number(found, 3));
+    // Points that scatter more than their errors say bend where even that scatter does not hide it.
+    let bends = |one: f64| one < BY_CHANCE;
+    let is_straight = linearity.iter().all(Option::is_some);
+    let is_straight = is_straight.then(|| !linearity.into_iter().flatten().all(bends));
+    let holds = all_hold(&[is_straight, line.and_then(has_the_slope)]);
+    let slope = line.map(|line| line.line.slope);
+    let determination = cell_of(line, |line| number(line.determination, 3));
     let words = PROSE.text("number", values!(slope = cell(slope), determination));
     one.part(holds, words, why)
 }
@@ -125,7 +115,7 @@ fn rates_in_words(one: &OnWall<Line<'_>>) -> String {
     let through = rates(true);
     let left_out = match rates(false) {
         none if none.is_empty() => none,
-        leaking => PROSE.text("left out", values!(leaking)),
+        leaking => format!(" {}", PROSE.text("left out", values!(leaking))),
     };
     PROSE.text("rates", values!(through, left_out))
 }

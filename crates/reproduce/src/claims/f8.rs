@@ -21,6 +21,8 @@ struct Density<'a> {
     near: Option<Near>,
     /// J/Jmax at [`COMPARED_WIDTH`].
     flow: Option<Uncertain>,
+    /// Fraction of the grains outside the tube near w_c.
+    escaped: f64,
     statistics: Statistics,
 }
 
@@ -30,9 +32,11 @@ impl<'a> Density<'a> {
         let is_compared = |point: &&Point<'_>| (point.control - COMPARED_WIDTH).abs() < 1e-9;
         let bracket = || branch.step().map(|step| step.place());
         let compared = branch.points.iter().find(is_compared);
+        let critical = crossing(rows).map(|found| found.width).or_else(bracket);
         Self {
-            fraction: rows[0].number("volume_fraction"),
-            critical: crossing(rows).map(|found| found.width).or_else(bracket),
+            fraction: (rows[0].number("volume_fraction") * 100.0).round() / 100.0,
+            critical,
+            escaped: leak(rows, critical.map(|width| width.value)),
             near: Line::at_own_threshold(rows).and_then(|line| Near::of(&line)),
             flow: compared.map(|point| point.flow),
             statistics: branch.statistics(rows.len()),
@@ -56,6 +60,11 @@ impl<'a> Density<'a> {
         groups.map(|(_, rows)| Self::of(&rows)).collect()
     }
 
+    /// Whether the tube holds its grains, so that it counts.
+    fn is_tight(&self) -> bool {
+        self.escaped <= MOST_ESCAPED
+    }
+
     /// alpha next to w_c.
     fn exponent(&self) -> Option<Uncertain> {
         self.near.as_ref()?.exponent
@@ -73,6 +82,7 @@ impl<'a> Density<'a> {
                     .map(|width| Uncertain::normal(diameter - width.value, width.error)),
             ),
             cell(self.exponent()),
+            number(self.escaped, 2),
         ]
     }
 }
@@ -108,7 +118,7 @@ impl Judged {
         let linear = densities.iter().map(|density| {
             let near = density.near.as_ref();
             let holds = near.and_then(|near| near.is_linear(|one| agrees(one, EXPONENT)));
-            ((density.fraction * 100.0).round() / 100.0, holds)
+            (density.fraction, holds)
         });
         let exponents = densities.iter().filter_map(Density::exponent);
         Self {
@@ -165,19 +175,27 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
             continue;
         }
         let wall = wall.name();
-        let judged = Judged::of(&densities);
-        let is_enough = densities.len() >= LEAST_DENSITIES;
-        let each = densities.iter().map(|density| density.statistics);
+        rows.extend(densities.iter().map(|density| density.row(&wall)));
+        panels.extend(panels_of(&wall, &densities));
+        let (tight, leaking): (Vec<_>, Vec<_>) = densities.into_iter().partition(Density::is_tight);
+        if tight.is_empty() {
+            continue;
+        }
+        let judged = Judged::of(&tight);
+        let is_enough = tight.len() >= LEAST_DENSITIES;
+        let each = tight.iter().map(|density| density.statistics);
+        let left_out = match listed(leaking.iter().map(|density| density.fraction)) {
+            none if none.is_empty() => none,
+            leaking => PROSE.text("left out", values!(leaking)),
+        };
         parts.push(Part {
             wall: wall.clone(),
             holds: judged.all().filter(|_| is_enough),
             statistics: Statistics::weakest_at_one_rate(each),
             number: judged.number(),
-            why: judged.why(),
+            why: judged.why() + &left_out,
         });
         draft.finding.quantities.extend(judged.quantities(&wall));
-        rows.extend(densities.iter().map(|density| density.row(&wall)));
-        panels.extend(panels_of(&wall, &densities));
     }
     let judgement = Judgement::of(parts, &F8_NEEDED);
     if rows.is_empty() {

@@ -90,12 +90,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     for one in &walls {
         let exponents = one.scattered().map(|(_, fit)| fit.scatter_exponent);
         let exponents: Vec<Uncertain> = exponents.collect();
-        let quantities = &mut draft.finding.quantities;
-        quantities.extend(weighted_mean(&exponents).map(|mean| {
-            let (wall, rates) = (&one.name, exponents.len());
-            let found = PROSE.quantity("exponent", values!(wall, rates), mean);
-            found.sourced(1.0)
-        }));
+        let (wall, rates) = (&one.name, exponents.len());
+        let mean = weighted_mean(&exponents);
+        draft.compared("exponent", values!(wall, rates), mean, 1.0);
         all += exponents.len();
         let is_excluded = |fit: ScatterLawFit| fit.chance_probability < EXCLUDED;
         excluded += one.scattered().filter(|(_, fit)| is_excluded(*fit)).count();

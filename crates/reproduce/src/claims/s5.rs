@@ -9,6 +9,8 @@ const STUDIES: &[&str] = &[
     "elastic-frictionless",
     "elastic-branches",
     "elastic-extremes",
+    "two-by-two-strain",
+    "branches-*",
 ];
 
 pub(super) const CLAIM: Claim = Claim::new("S5", PROSE, STUDIES, examine);
@@ -47,6 +49,9 @@ fn examine(evidence: &Evidence) -> Result<Finding> {
     }
     draft.table("flows", &[], pairs.iter().flat_map(cells));
     draft.paragraph("method", values!(least = LEAST_BACK_FLOW));
+    if let Some(flows) = between_prescribed_walls(evidence)? {
+        draft.weakness("prescribed", values!(flows));
+    }
     draft.chart("frictionless", &[], figure(&lines, &pairs))?;
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
 }
@@ -66,6 +71,27 @@ fn summary(tight: &[&ForceLine<'_>], flows_back: bool) -> String {
             PROSE.text("summary", values!(place, means, smallest, force, rate))
         },
     )
+}
+
+/// The smallest flow of frictionless grains in each tube of a prescribed wall in which one is negative, in words.
+fn between_prescribed_walls(evidence: &Evidence) -> Result<Option<String>> {
+    let mut tubes = vec![("Q7".to_owned(), evidence.study("two-by-two-strain")?.rows())];
+    tubes[0].1.retain(is_frictionless);
+    let walls = WALLS.iter();
+    tubes.extend(walls.map(|wall| (wall.name(), wall.rows("branches", evidence))));
+    let smallest = |(tube, rows): (String, Vec<Row<'_>>)| {
+        let flows = by_strain_rate(rows).into_iter().filter_map(|(rate, rows)| {
+            let branches = Branches::of(&rows, Control::Width);
+            Some((rate, branches.lowest()?.clone()))
+        });
+        let (rate, point) =
+            flows.min_by(|one, other| one.1.flow.value.total_cmp(&other.1.flow.value))?;
+        let is_negative = point.flow.value < -NO_BACK_FLOW_BY * point.flow.error;
+        let (flow, width) = (point.flow, point.control);
+        is_negative.then(|| PROSE.text("smallest", values!(flow, width, rate, tube)))
+    };
+    let found: Vec<String> = tubes.into_iter().filter_map(smallest).collect();
+    Ok((!found.is_empty()).then(|| found.join("; ")))
 }
 
 /// The flows from rest without and with friction at each force that has both, and the strain rate.

@@ -2,58 +2,46 @@
 
 mod figures;
 
-use std::ops::Range;
+use peristalsis_analysis::mean_and_error;
 
 use super::elastic::*;
 use super::prelude::*;
 
 const PROSE: Prose = Prose::new(include_str!("s6.md"));
-const STUDIES: &[&str] = &["elastic-flow", "elastic-branches", "unjammed-frictionless"];
+const STUDIES: &[&str] = &[
+    "elastic-flow",
+    "elastic-branches",
+    "unjammed-frictionless",
+    "two-by-two-strain",
+    "two-by-two-stress",
+];
 
 pub(super) const CLAIM: Claim = Claim::new("S6", PROSE, STUDIES, examine);
 
-/// Name and symbol of a number, and its value in a run.
-type Number = (&'static str, &'static str, fn(&Row<'_>) -> f64);
+/// Symbol of a number, and its value in a run.
+type Number = (&'static str, fn(&Row<'_>) -> f64);
 
-/// The numbers that are compared, each of one run, free of units.
+/// Axial velocity in the throat over c: back flow where it is negative.
+const VELOCITY: Number = ("*v*_{throat}/*c*", |row| {
+    row.number("throat_axial_velocity") / row.wave_speed()
+});
+/// What is shown of each flow, free of units.
 const NUMBERS: [Number; 6] = [
-    (
-        "grains per length in the throat over those in the belly",
-        "*n*_{1,throat}/*n*_{1,belly}",
-        |row| row.number("throat_density") / row.number("belly_density"),
-    ),
-    ("axial velocity in the throat", "*v*_{throat}/*c*", |row| {
-        row.number("throat_axial_velocity") / row.wave_speed()
-    }),
-    ("axial velocity in the belly", "*v*_{belly}/*c*", |row| {
+    VELOCITY,
+    ("*v*_{belly}/*c*", |row| {
         row.number("belly_axial_velocity") / row.wave_speed()
     }),
-    (
-        "temperature in the throat",
-        "*T*_{throat}/*mc*^{2}",
-        |row| row.number("throat_granular_temperature") / row.wave_speed().powi(2),
-    ),
-    ("temperature in the belly", "*T*_{belly}/*mc*^{2}", |row| {
+    ("*n*_{1,throat}/*n*_{1,belly}", |row| {
+        row.number("throat_density") / row.number("belly_density")
+    }),
+    ("*T*_{throat}/*mc*^{2}", |row| {
+        row.number("throat_granular_temperature") / row.wave_speed().powi(2)
+    }),
+    ("*T*_{belly}/*mc*^{2}", |row| {
         row.number("belly_granular_temperature") / row.wave_speed().powi(2)
     }),
-    ("flow rate", "*J*/*J*_{max}", |row| row.flow_rate_ratio()),
+    ("*J*/*J*_{max}", |row| row.flow_rate_ratio()),
 ];
-/// Those that decide by their difference whether two flows differ, density and velocities, and by their ratio, temperatures.
-const BY_DIFFERENCE: Range<usize> = 0..3;
-const BY_RATIO: Range<usize> = 3..5;
-
-/// In what two flows differ.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    /// In density or velocity.
-    Differ,
-    /// In temperature only.
-    DifferInTemperature,
-    /// In none of them.
-    Agree,
-    /// The errors do not allow to say, or are not known.
-    Unknown,
-}
 
 /// One flow: the runs of one point.
 struct Flow<'a> {
@@ -61,52 +49,24 @@ struct Flow<'a> {
     rows: Vec<Row<'a>>,
 }
 
+/// Whether a run is unjammed and stationary and holds its grains.
+fn counts(row: &Row<'_>) -> bool {
+    row.is_stationary()
+        && row.flow_rate_ratio() < UNJAMMED
+        && row.escaped_fraction() <= MOST_ESCAPED
+        && row.number("throat_density").is_finite()
+}
+
 impl<'a> Flow<'a> {
-    /// The flow of some runs as far as they are unjammed, stationary and hold their grains; `None` without one.
+    /// The flow of those of some runs that count; `None` without one.
     fn of(name: String, rows: impl IntoIterator<Item = Row<'a>>) -> Option<Self> {
-        let counts = |row: &Row<'_>| {
-            row.is_stationary()
-                && row.flow_rate_ratio() < UNJAMMED
-                && row.escaped_fraction() <= MOST_ESCAPED
-                && row.number("throat_density").is_finite()
-        };
         let rows: Vec<Row<'a>> = rows.into_iter().filter(counts).collect();
         (!rows.is_empty()).then_some(Self { name, rows })
     }
 
-    fn mean(&self, value: fn(&Row<'_>) -> f64) -> Uncertain {
-        scattered(&self.rows, value)
-    }
-
-    /// In what it differs from another flow.
-    fn beside(&self, other: &Self) -> Outcome {
-        let mut known = true;
-        let mut any = |numbers: Range<usize>, scale: fn(f64) -> f64, least: f64| {
-            NUMBERS[numbers].iter().any(|(_, _, value)| {
-                let (one, two) = (self.mean(*value), other.mean(*value));
-                let difference = (scale(one.value) - scale(two.value)).abs();
-                // To first order; the error of a logarithm is the relative error.
-                let scaled =
-                    |mean: &Uncertain| (scale(mean.value + mean.error) - scale(mean.value)).abs();
-                let error = scaled(&one).hypot(scaled(&two));
-                known &= error.is_finite() && error < least;
-                error.is_finite() && difference > least.max(CLEAR * error)
-            })
-        };
-        if any(BY_DIFFERENCE, |value| value, LEAST_DIFFERENCE) {
-            Outcome::Differ
-        } else if any(BY_RATIO, f64::ln, LEAST_RATIO.ln()) {
-            Outcome::DifferInTemperature
-        } else if known {
-            Outcome::Agree
-        } else {
-            Outcome::Unknown
-        }
-    }
-
     fn row(&self) -> Vec<String> {
-        let means = NUMBERS.iter().map(|(_, _, value)| {
-            let mean = self.mean(*value);
+        let means = NUMBERS.iter().map(|(_, value)| {
+            let mean = scattered(&self.rows, value);
             if mean.error.is_finite() {
                 mean.to_string()
             } else {
@@ -120,28 +80,17 @@ impl<'a> Flow<'a> {
     }
 }
 
-/// The unjammed flows of frictional grains: from rest along the branches, and of the pictures, which began jammed, where no
-/// flow from rest is there.
-fn frictional<'a>(lines: &[ForceLine<'a>], pictures: &[Row<'a>]) -> Vec<Flow<'a>> {
-    let name = |rate: f64, force: f64| format!("frictional, *f*^{{P}} = {force}, *ε̇* = {rate}");
-    let mut flows: Vec<Flow<'a>> = Vec::new();
-    for line in lines {
-        flows.extend(line.flow.rest.points.iter().filter_map(|point| {
-            let name = name(line.strain_rate, point.control);
-            Flow::of(name, point.rows.iter().copied())
-        }));
-    }
-    for row in pictures {
-        let name = name(row.strain_rate(), row.force());
-        if flows.iter().all(|flow| flow.name != name) {
-            let here = pictures
-                .iter()
-                .copied()
-                .filter(|other| other.force() == row.force() && !is_frictionless(other));
-            flows.extend(Flow::of(name, here));
-        }
-    }
-    flows
+/// The unjammed flows of frictional grains from rest.
+fn frictional<'a>(lines: &[ForceLine<'a>]) -> Vec<Flow<'a>> {
+    let points = lines.iter().flat_map(|line| {
+        let points = line.flow.rest.points.iter();
+        points.map(move |point| (line.strain_rate, point))
+    });
+    let flow = |(rate, point): (f64, &Point<'a>)| {
+        let name = format!("frictional, *f*^{{P}} = {}, *ε̇* = {rate}", point.control);
+        Flow::of(name, point.rows.iter().copied())
+    };
+    points.filter_map(flow).collect()
 }
 
 /// The unjammed flows of frictionless grains between prescribed walls.
@@ -156,83 +105,149 @@ fn frictionless<'a>(rows: &[Row<'a>]) -> Vec<Flow<'a>> {
         .collect()
 }
 
+/// The unjammed runs of both models at one strain rate and one bottleneck.
+struct Matched {
+    strain_rate: f64,
+    /// In parts of the tube's diameter.
+    bottleneck: f64,
+    /// Axial velocity in the throat over c of each run, frictional and frictionless.
+    velocities: [Vec<f64>; 2],
+}
+
+/// The bottleneck in parts of the tube's diameter.
+fn reduced(row: &Row<'_>) -> f64 {
+    row.number("bottleneck") / (2.0 * row.radius())
+}
+
+impl Matched {
+    /// For each flow of frictionless grains between prescribed walls the frictional runs, at the same strain rate, whose
+    /// bottleneck is that one within [`MATCHED`].
+    fn all(frictional: &[Row<'_>], frictionless: &[Row<'_>]) -> Vec<Self> {
+        let (_, velocity) = VELOCITY;
+        let flows = grouped(frictionless.iter().copied(), |row| {
+            (row.strain_rate(), row.width())
+        });
+        let matched = flows.into_iter().filter_map(|((strain_rate, _), here)| {
+            let bottleneck = scattered(&here, reduced).value;
+            let is_matched = |row: &&Row<'_>| {
+                let apart = (reduced(row) - bottleneck).abs();
+                row.strain_rate() == strain_rate && apart <= MATCHED
+            };
+            let there: Vec<f64> = frictional.iter().filter(is_matched).map(velocity).collect();
+            (!there.is_empty()).then(|| Self {
+                strain_rate,
+                bottleneck,
+                velocities: [there, here.iter().map(velocity).collect()],
+            })
+        });
+        matched.collect()
+    }
+
+    /// Distance that [`WITHIN_A_MODEL`] of the pairs of runs of one model do not exceed; `None` without a pair.
+    fn within(&self) -> Option<f64> {
+        let pairs = self.velocities.iter().flat_map(|those| {
+            let others = |place: usize| those[place + 1..].iter();
+            let each = those.iter().enumerate();
+            each.flat_map(move |(place, one)| others(place).map(move |other| (one - other).abs()))
+        });
+        let distances = ascending(pairs);
+        let last = distances.len().checked_sub(1)?;
+        Some(distances[(WITHIN_A_MODEL * last as f64).ceil() as usize])
+    }
+
+    /// Pairs of runs of both models in which the frictional grains are the slower by more than that, and all pairs.
+    fn beyond(&self) -> Option<(usize, usize)> {
+        let within = self.within()?;
+        let [frictional, frictionless] = &self.velocities;
+        let slower = |one: &f64| {
+            frictionless
+                .iter()
+                .filter(|other| **other - one > within)
+                .count()
+        };
+        let beyond = frictional.iter().map(slower).sum();
+        Some((beyond, frictional.len() * frictionless.len()))
+    }
+
+    /// Whether most pairs of both models are.
+    fn differs(&self) -> Option<bool> {
+        let (beyond, pairs) = self.beyond()?;
+        Some(2 * beyond > pairs)
+    }
+
+    /// Mean velocities of both models.
+    fn means(&self) -> [Uncertain; 2] {
+        self.velocities.each_ref().map(|those| {
+            let (mean, error) = mean_and_error(those);
+            Uncertain::normal(mean, error)
+        })
+    }
+
+    fn row(&self) -> Vec<String> {
+        let [frictional, frictionless] = self.means().map(|mean| mean.to_string());
+        let beyond = |(beyond, pairs): (usize, usize)| format!("{beyond} of {pairs}");
+        vec![
+            self.strain_rate.to_string(),
+            number(self.bottleneck, 3),
+            frictional,
+            frictionless,
+            cell_of(self.within(), |within| number(within, 4)),
+            cell_of(self.beyond(), beyond),
+        ]
+    }
+}
+
 fn examine(evidence: &Evidence) -> Result<Finding> {
-    let branches = evidence.study("elastic-branches")?.rows();
     let elastic = evidence.study("elastic-flow")?;
     let prescribed = evidence.study("unjammed-frictionless")?;
+    let branches = evidence.study("elastic-branches")?.rows();
     let lines = ForceLine::all_of(&branches);
-    let frictional = frictional(&lines, &elastic.rows());
-    let frictionless = frictionless(&prescribed.rows());
-    if frictional.is_empty() || frictionless.is_empty() {
+    let flows = [frictional(&lines), frictionless(&prescribed.rows())];
+    if flows.iter().any(Vec::is_empty) {
         return Ok(nothing(&PROSE));
     }
-    let pairs: Vec<(&Flow<'_>, &Flow<'_>, Outcome)> = frictional
+    let mut with_friction = evidence.study("two-by-two-stress")?.rows();
+    with_friction.retain(|row| !is_frictionless(row));
+    with_friction.extend(branches);
+    let mut without = evidence.study("two-by-two-strain")?.rows();
+    without.retain(is_frictionless);
+    without.extend(prescribed.rows());
+    for rows in [&mut with_friction, &mut without] {
+        rows.retain(counts);
+    }
+    let matched = Matched::all(&with_friction, &without);
+    let places = matched
         .iter()
-        .flat_map(|one| {
-            let others = frictionless.iter();
-            others.map(move |other| (one, other, one.beside(other)))
-        })
-        .collect();
-    let number_of = |outcome| pairs.iter().filter(|pair| pair.2 == outcome).count();
-    let differ = number_of(Outcome::Differ);
-    let warmer = number_of(Outcome::DifferInTemperature);
-    let agree = number_of(Outcome::Agree);
-    // The same measure among the flows of one model says whether it tells models apart, or any two flows.
-    let own = frictional.iter().enumerate().flat_map(|(place, one)| {
-        let others = frictional[place + 1..].iter();
-        others.map(move |other| one.beside(other))
-    });
-    let own: Vec<Outcome> = own.collect();
-    let differs =
-        |outcome: &&Outcome| matches!(outcome, Outcome::Differ | Outcome::DifferInTemperature);
-    let within = own.iter().filter(differs).count();
-    let is_specific = within as f64 <= MOST_WITHIN * own.len() as f64;
-    let verdict = if differ + warmer == pairs.len() && is_specific {
-        Verdict::Reproduced
-    } else if agree == pairs.len() {
-        Verdict::Differs
-    } else {
-        Verdict::Open
+        .map(|one| (rounded(one.bottleneck), one.differs()));
+    let places = Rates::of(places);
+    let verdict = match places.hold() {
+        Some(true) => Verdict::Reproduced,
+        Some(false) => Verdict::Differs,
+        None => Verdict::Open,
     };
-    let number = pairs.len();
-    let own = own.len();
-    let summary = PROSE.text(
-        "summary",
-        values!(differ, pairs = number, warmer, agree, within, own),
-    );
+    let (count, least) = (places.count(), LEAST_RATES);
+    let summary = PROSE.text("summary", values!(count, least));
     let mut draft = draft(PROSE);
-    let alike = pairs.iter().filter_map(|(one, other, outcome)| {
-        let alike = match outcome {
-            Outcome::DifferInTemperature => "differ in temperature only",
-            Outcome::Agree => "agree",
-            Outcome::Differ | Outcome::Unknown => return None,
-        };
-        let (one, other) = (&one.name, &other.name);
-        Some(PROSE.text("alike", values!(alike, one, other)))
-    });
-    draft.finding.weaknesses.splice(0..0, alike);
-    // The first, at the smallest force, of the source's strain rate where there is one.
-    let shown = frictional
-        .iter()
-        .find(|flow| flow.rows[0].strain_rate() == SOURCE_RATE)
-        .unwrap_or(&frictional[0]);
-    let shown = [shown].into_iter().chain(&frictionless);
-    for flow in shown {
-        for (name, symbol, value) in &NUMBERS[..5] {
-            let (runs, mean) = (flow.rows.len(), flow.mean(*value));
-            let flow = &flow.name;
-            draft.quantity("mean", values!(name, flow, symbol, runs), mean);
+    for one in &matched {
+        let (rate, bottleneck) = (one.strain_rate, rounded(one.bottleneck));
+        for (grains, mean) in ["frictional", "frictionless"].iter().zip(one.means()) {
+            draft.quantity("velocity", values!(grains, bottleneck, rate), mean);
         }
     }
-    let flows = frictional.iter().chain(&frictionless);
-    let mut table = PROSE.table("flows", &[], flows.map(Flow::row));
-    let symbols = NUMBERS.iter().map(|(_, symbol, _)| (*symbol).to_owned());
+    draft.table("matched", &[], matched.iter().map(Matched::row));
+    let mut table = PROSE.table("flows", &[], flows.iter().flatten().map(Flow::row));
+    let symbols = NUMBERS.iter().map(|(symbol, _)| (*symbol).to_owned());
     table.head.extend(symbols);
     draft.finding.tables.push(table);
     draft.paragraph("tubes", &[]);
-    let (difference, ratio, errors) = (LEAST_DIFFERENCE, LEAST_RATIO, CLEAR);
-    draft.paragraph("method", values!(difference, ratio, errors));
+    let (apart, within) = (100.0 * MATCHED, 100.0 * WITHIN_A_MODEL);
+    draft.paragraph("method", values!(apart, within));
     figures::profiles(&mut draft, elastic, prescribed)?;
     let statistics = together(judged(&lines));
     Ok(draft.concluded(verdict, summary, statistics, &NEEDED))
+}
+
+/// To three digits behind the point.
+fn rounded(number: f64) -> f64 {
+    (1000.0 * number).round() / 1000.0
 }

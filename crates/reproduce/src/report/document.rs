@@ -10,7 +10,7 @@ use crate::report::markdown::table;
 use crate::report::markup::markdown;
 use crate::report::{Report, page};
 
-/// Numbers and rows of a table that a section shows at most; all are in the page and in the tables of the report.
+/// Numbers and rows of a table that a section shows at most; all are in the page and in `claims.json`.
 const MOST_NUMBERS: usize = 8;
 const MOST_ROWS: usize = 15;
 
@@ -31,8 +31,10 @@ pub(crate) fn text(report: &Report, figures: &str) -> String {
         Verdict::Answered,
         Verdict::Open,
     ];
+    let quick = report.size.choose(" --quick", "");
+    let command = format!("peristalsis reproduce{quick}{}", page::only(report));
     let mut text = OPENING
-        .replace("{command}", &command(report, None))
+        .replace("{command}", &command)
         .replace("{count}", &verdicts.map(count).join(", "))
         .replace("{strain_rates}", &needed.strain_rates.to_string())
         .replace("{widths}", &needed.widths.to_string())
@@ -41,17 +43,9 @@ pub(crate) fn text(report: &Report, figures: &str) -> String {
     let files = figure_files(&report.examinations);
     for (examination, places) in report.examinations.iter().zip(&files.places) {
         let file = places.first().map(|place| files.files[*place].0.as_str());
-        text.push_str(&section(report, examination, file, figures));
+        text.push_str(&section(examination, file, figures));
     }
     text
-}
-
-/// The command that gives these findings, or that on one claim.
-fn command(report: &Report, claim: Option<&str>) -> String {
-    let quick = report.size.choose(" --quick", "");
-    let only = claim.map(|claim| format!(" --only {claim}"));
-    let only = only.unwrap_or_else(|| page::only(report));
-    format!("peristalsis reproduce{quick}{only}")
 }
 
 /// Claims down, walls across: the verdicts, the number of each, and the option that asks for the claim.
@@ -107,12 +101,7 @@ fn number_of(quantity: &Quantity) -> String {
 }
 
 /// What is said of a claim.
-fn section(
-    report: &Report,
-    examination: &Examination,
-    file: Option<&str>,
-    figures: &str,
-) -> String {
+fn section(examination: &Examination, file: Option<&str>, figures: &str) -> String {
     let (claim, finding) = (&examination.experiment, &examination.finding);
     let (id, prose) = (claim.id, &claim.prose);
     let mut text = format!(
@@ -150,7 +139,7 @@ fn section(
     let weaknesses = finding.weaknesses.iter();
     let weaknesses = weaknesses.map(|weakness| format!("- {}\n", markdown(weakness)));
     add_list(&mut text, "Weaknesses:", weaknesses.collect());
-    text + &format!("\n`{}`\n", command(report, Some(id)))
+    text
 }
 
 /// Adds a list below a line, unless it is empty.
@@ -160,7 +149,8 @@ fn add_list(text: &mut String, line: &str, list: String) {
     }
 }
 
-/// The most important numbers beside those of the source, and the first table.
+/// The first table, unless it is large, and the numbers of which the source gives a value; without a table the most important
+/// numbers.
 fn numbers(finding: &Finding) -> String {
     let row = |quantity: &Quantity| {
         let ours = quantity.ours.as_ref();
@@ -175,20 +165,17 @@ fn numbers(finding: &Finding) -> String {
         ];
         cells.map(|cell| markdown(&cell)).to_vec()
     };
+    let small = |one: &&ReportTable| !one.head.is_empty() && one.rows.len() <= MOST_ROWS;
+    let shown = finding.tables.first().filter(small);
+    let quantities = finding.quantities.iter();
+    let quantities = quantities.filter(|one| shown.is_none() || one.source.is_some());
+    let rows: Vec<Vec<String>> = quantities.take(MOST_NUMBERS).map(row).collect();
     let mut text = String::new();
-    let all = finding.quantities.len();
-    if all > 0 {
-        let rows = finding.quantities.iter().take(MOST_NUMBERS).map(row);
+    if !rows.is_empty() {
         let head = ["number", "ours", "source"];
         text.push_str(&format!("\n{}", table(&ReportTable::new("", head, rows))));
-        if all > MOST_NUMBERS {
-            text.push_str(&format!(
-                "\n{MOST_NUMBERS} of {all} numbers; all are in `claims.json`.\n"
-            ));
-        }
     }
-    let small = |one: &&ReportTable| !one.head.is_empty() && one.rows.len() <= MOST_ROWS;
-    if let Some(first) = finding.tables.first().filter(small) {
+    if let Some(first) = shown {
         let marked = |cells: &[String]| cells.iter().map(|cell| markdown(cell)).collect();
         let rows = first.rows.iter().map(|cells| marked(cells));
         let head: Vec<String> = marked(&first.head);

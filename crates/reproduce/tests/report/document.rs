@@ -21,7 +21,7 @@ fn every_claim_has_a_row_and_a_section() {
         for part in [
             format!("| [{id}](#{small}) "),
             format!("<a id=\"{small}\"></a>\n\n## {id}. "),
-            format!(" --only {id}`\n"),
+            format!(" `--only {id}` |\n"),
         ] {
             assert!(text.contains(&part), "{part}");
         }
