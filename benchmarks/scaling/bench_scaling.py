@@ -63,8 +63,8 @@ class Program:
             sys.exit(f"{' '.join(map(str, process.args))}\n{complaint}")
         return json.loads(answer), usage.ru_maxrss * 1024
 
-    def run(self, arguments):
-        return self.finish(self.start(arguments))
+    def run(self, arguments, threads=1):
+        return self.finish(self.start([*arguments, "--threads", str(threads)]))
 
 
 def speed(summary):
@@ -74,6 +74,12 @@ def speed(summary):
 def tube(waves, periods, *more):
     settings = [f"tube.waves={waves}", f"run.periods={periods}", "observe.samples_per_period=4", *more]
     return ["--preset", "frictionless", *(word for setting in settings for word in ("--set", setting))]
+
+
+def rough(waves, periods):
+    """The frictional tube, n 0.71."""
+    settings = [f"tube.waves={waves}", f"run.periods={periods}", "drive.force_amplitude=0.005"]
+    return ["--preset", "frictional", *(word for setting in settings for word in ("--set", setting))]
 
 
 def report(name, ratios, more=""):
@@ -101,17 +107,22 @@ def ensemble(program, runs, quick):
 
 
 def threads(program, runs, quick):
-    """One run of 100,000 grains."""
+    """Runs of smooth grains, and of rough ones in an elastic tube, few and many."""
     waves, periods = (500, 1) if quick else (5000, 3)
-    arguments = tube(waves, periods, "drive.width=2.7")
-    ratios, speeds, grains = [], [], 0
-    for _ in range(runs):
-        one, _ = program.run([*arguments, "--threads", "1"])
-        two, _ = program.run([*arguments, "--threads", "2"])
-        grains = one["grains"]
-        ratios.append(speed(two) / speed(one))
-        speeds.append(speed(one) / 1e6)
-    report(f"{grains} grains, two threads against one", ratios, f"one: {statistics.median(speeds):.1f} M/s")
+    for name, arguments in [
+        ("smooth", tube(waves, periods, "drive.width=2.7")),
+        ("frictional", rough(6, 0.05 if quick else 0.5)),
+        ("frictional", rough(18 if quick else 184, 0.005 if quick else 0.02)),
+    ]:
+        ratios, speeds, grains = [], [], 0
+        for _ in range(runs):
+            one, _ = program.run(arguments)
+            two, _ = program.run(arguments, threads=2)
+            grains = one["grains"]
+            ratios.append(speed(two) / speed(one))
+            speeds.append(speed(one) / 1e6)
+        one = f"one: {statistics.median(speeds):.1f} M/s"
+        report(f"{grains} {name} grains, two threads against one", ratios, one)
 
 
 def size(program, runs, quick):

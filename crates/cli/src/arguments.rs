@@ -9,7 +9,7 @@ use peristalsis_configuration::PRESETS;
 use peristalsis_engine::Instructions;
 use peristalsis_reproduce::textbook::CASES;
 use peristalsis_reproduce::{CLAIMS, Extent};
-use peristalsis_run::{Span, TrajectoryFormat, Window};
+use peristalsis_run::{Run, Span, TrajectoryFormat, Window};
 
 use crate::choice::{Offered, TRAJECTORIES, one_of};
 use crate::commands::render::RenderArguments;
@@ -101,9 +101,9 @@ pub(crate) struct RunArguments {
     /// Folder for the results, one that holds no run; the default is a new one below runs/, NAME-1, NAME-2, ...
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Threads to compute with, for equal smooth grains in a prescribed tube; they pay from some ten thousand grains on.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: u16,
+    /// Threads to compute with, or auto: as many as pay for the number of grains. They change no bit.
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
+    pub(crate) threads: Threads,
     /// Instructions to compute with; the default is the widest that the machine has.
     #[arg(long, value_name = "SET", value_parser = one_of(Instructions::ALL))]
     pub(crate) instructions: Option<Instructions>,
@@ -204,9 +204,9 @@ pub(crate) struct ViewArguments {
     /// Folder for the states that are saved.
     #[arg(long, value_name = "DIR", default_value = "saved-states")]
     pub(crate) saves: PathBuf,
-    /// Threads to compute with; they pay from some ten thousand grains on.
-    #[arg(long, value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: u16,
+    /// Threads to compute with, or auto: as many as pay for the number of grains. They change no bit.
+    #[arg(long, value_name = "N|auto", default_value = "auto", value_parser = threads)]
+    pub(crate) threads: Threads,
 }
 
 #[derive(Debug, Args)]
@@ -386,6 +386,32 @@ pub(crate) struct Seeds(pub(crate) Vec<u64>);
 
 /// Most replicas of one call.
 const MOST_SEEDS: usize = 10_000;
+
+/// Threads that compute a run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Threads {
+    /// As many as pay.
+    Auto,
+    Number(u16),
+}
+
+impl Threads {
+    /// How many compute `run` where so many processors are free for it.
+    pub(crate) fn of(self, run: &Run, processors: usize) -> usize {
+        match self {
+            Self::Auto => run.simulation().threads_that_pay(processors),
+            Self::Number(threads) => usize::from(threads),
+        }
+    }
+}
+
+fn threads(text: &str) -> Result<Threads, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Threads::Auto),
+        Ok(threads @ 1..=1024) => Ok(Threads::Number(threads)),
+        _ => Err("from 1 to 1024, or auto".to_owned()),
+    }
+}
 
 fn seeds(text: &str) -> Result<Seeds, String> {
     let misread = || "seeds such as 1..10, both ends among them, or 1,2,5".to_owned();

@@ -3,6 +3,7 @@
 use peristalsis_physics::contact::{CundallStrack, TangentialHistory};
 
 use crate::bodies::Bodies;
+use crate::fast::threads::Threads;
 use crate::neighbours::{Neighbours, PairRule};
 use crate::wall::Wall;
 use crate::wall::memory::WallMemory;
@@ -14,7 +15,7 @@ pub(crate) struct Contacts<H> {
     pub(crate) wall: WallMemory<H>,
 }
 
-impl<H: Copy + Default + PartialEq> Contacts<H> {
+impl<H: Copy + Default + PartialEq + Sync> Contacts<H> {
     pub(crate) fn none() -> Self {
         Self {
             pairs: Neighbours::empty(),
@@ -29,12 +30,12 @@ impl<H: Copy + Default + PartialEq> Contacts<H> {
             .pairs
             .outdated(&bodies.position, &bodies.turns, length, skin)
         {
-            self.rebuild(bodies, wall, skin);
+            self.rebuild(bodies, wall, skin, &Threads::default());
         }
     }
 
     /// Makes the neighbour list anew.
-    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64) {
+    pub(crate) fn rebuild(&mut self, bodies: &Bodies, wall: &Wall, skin: f64, threads: &Threads) {
         let grains = bodies.grains;
         let rule = PairRule {
             diameter: &bodies.diameter,
@@ -44,7 +45,8 @@ impl<H: Copy + Default + PartialEq> Contacts<H> {
             admits_all_below: grains,
             admits: |i: usize, j: usize| wall.may_touch(i - grains, j - grains),
         };
-        self.pairs.rebuild(&bodies.position, &bodies.turns, &rule);
+        self.pairs
+            .rebuild(&bodies.position, &bodies.turns, &rule, threads);
     }
 }
 

@@ -23,6 +23,7 @@ mod wall_contacts;
 pub use bodies::{Bodies, Sphere};
 pub use error::EngineError;
 pub use fast::machine::Instructions;
+pub use fast::threads::{processors, threads_that_pay};
 pub use integrate::Past;
 pub use ledger::{Ledger, Tally};
 pub use parameters::{Integrator, Kernel, Parameters};

@@ -9,14 +9,15 @@ pub(crate) mod cells;
 use glam::DVec3;
 
 pub(crate) use self::cells::PairRule;
-use self::cells::{Cells, Grid, Rows, Search};
+use self::cells::{Cells, Grid, Piece, Rows, Search};
 use crate::fast::machine::Instructions;
+use crate::fast::threads::Threads;
 
 /// Rows of partners with a value of type `H` beside each pair.
 #[derive(Clone, Debug)]
 pub(crate) struct Neighbours<H> {
     rows: Rows<H>,
-    /// Room for the list to come.
+    /// Room for the list to come; no history but fresh ones.
     next: Rows<H>,
     /// Unfolded positions when the list was made.
     origin: Vec<DVec3>,
@@ -24,8 +25,13 @@ pub(crate) struct Neighbours<H> {
     skin: f64,
     cells: Cells,
     late_cells: Cells,
-    remembered: Vec<(u32, u32)>,
+    pieces: Vec<Piece>,
+    /// Places of the histories that moved when the list was made.
+    moved: Vec<u32>,
 }
+
+/// Rows that a thread searches at a time, of so many for each thread.
+const PIECES_PER_THREAD: usize = 4;
 
 impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// A list without pairs, which the first [`Neighbours::rebuild`] fills.
@@ -40,7 +46,8 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
             skin: 0.0,
             cells: Cells::default(),
             late_cells: Cells::default(),
-            remembered: Vec::new(),
+            pieces: Vec::new(),
+            moved: Vec::new(),
         }
     }
 
@@ -83,6 +90,11 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
     /// The histories of all pairs, row after row.
     pub(crate) fn histories_mut(&mut self) -> &mut [H] {
         &mut self.rows.history
+    }
+
+    /// Places in [`Neighbours::histories`] of all that were no fresh ones when the list was made, in order.
+    pub(crate) fn moved(&self) -> &[u32] {
+        &self.moved
     }
 
     /// All pairs with their histories, in order.
@@ -146,37 +158,55 @@ impl<H: Copy + Default + PartialEq> Neighbours<H> {
 
     /// Makes the list anew: all admitted pairs closer than (d_i + d_j)/2 + skin, and those that still remember a
     /// contact, in a time that grows linearly with the number of spheres. Histories move with their pairs.
-    pub(crate) fn rebuild<F: Fn(usize, usize) -> bool>(
+    pub(crate) fn rebuild<F: Fn(usize, usize) -> bool + Sync>(
         &mut self,
         position: &[DVec3],
         turns: &[i32],
         rule: &PairRule<'_, F>,
-    ) {
+        threads: &Threads,
+    ) where
+        H: Sync,
+    {
         let grid = Grid::of(position, rule);
         self.cells.sort(grid, position, rule.diameter, 0);
         let late = rule.admits_all_below.min(position.len());
         self.late_cells.sort(grid, position, rule.diameter, late);
-        self.remembered.clear();
-        Instructions::widest().run(Search {
-            cells: &self.cells,
-            late_cells: &self.late_cells,
-            position,
-            rule,
-            old: &self.rows,
-            new: &mut self.next,
-            remembered: &mut self.remembered,
+        let pieces = match threads.number() {
+            1 => 1,
+            threads => PIECES_PER_THREAD * threads,
+        };
+        let rows = |piece: usize| piece * position.len() / pieces;
+        self.pieces.resize_with(pieces, Piece::default);
+        for (number, piece) in self.pieces.iter_mut().enumerate() {
+            piece.rows = rows(number)..rows(number + 1);
+        }
+        let (cells, late_cells, old) = (&self.cells, &self.late_cells, &self.rows);
+        threads.each(&mut self.pieces, (), &|_| 0, &|piece, ()| {
+            Instructions::widest().run(Search {
+                cells,
+                late_cells,
+                position,
+                rule,
+                old,
+                piece,
+            });
         });
-        // Only histories of contacts need be moved.
-        self.next.history.clear();
-        self.next
-            .history
-            .resize(self.next.partner.len(), H::default());
-        for &(row, at) in &self.remembered {
-            let to = self
-                .next
-                .place(row as usize, self.rows.partner[at as usize]);
-            self.next.history[to.expect("a pair with a history is listed")] =
-                self.rows.history[at as usize];
+        let Self {
+            rows,
+            next,
+            pieces,
+            moved,
+            ..
+        } = self;
+        next.join(pieces);
+        // Only histories of contacts need be moved; the old list keeps fresh ones alone.
+        next.history.resize(next.partner.len(), H::default());
+        moved.clear();
+        for &(row, at) in pieces.iter().flat_map(|piece| &piece.remembered) {
+            let to = next.place(row as usize, rows.partner[at as usize]);
+            let to = to.expect("a pair with a history is listed");
+            next.history[to] = core::mem::take(&mut rows.history[at as usize]);
+            moved.push(to as u32);
         }
         core::mem::swap(&mut self.rows, &mut self.next);
         self.skin = rule.skin;

@@ -1,7 +1,5 @@
 //! A simulation: spheres, wall, laws and clock, advanced step by step.
 
-use std::sync::Arc;
-
 use peristalsis_physics::contact::TangentialHistory;
 use peristalsis_physics::with_normal_law;
 
@@ -11,6 +9,7 @@ use crate::error::EngineError;
 use crate::fast::listed;
 use crate::fast::machine::Instructions;
 use crate::fast::sorted::{Sorted, Sorting};
+use crate::fast::threads::{Threads, threads_that_pay};
 use crate::forces::{Reference, add_body_force, evaluate};
 use crate::integrate::Past;
 use crate::ledger::{Ledger, Tally};
@@ -148,8 +147,6 @@ impl Simulation {
     /// Computes with the given instructions (or the widest that the machine has, if it lacks them) and so many threads
     /// from now on, where a fast kernel runs; neither changes a bit of the results.
     ///
-    /// Threads serve equal smooth grains in a prescribed tube, and pay from some ten thousand grains on.
-    ///
     /// # Errors
     /// [`EngineError::Threads`] where the system gives no more threads.
     pub fn compute_with(
@@ -157,23 +154,24 @@ impl Simulation {
         instructions: Instructions,
         threads: usize,
     ) -> Result<(), EngineError> {
+        if threads != self.scratch.threads.number() {
+            self.scratch.threads = Threads::new(threads)?;
+        }
         self.scratch.instructions = instructions;
         if let Some(sorted) = &mut self.sorted {
-            let pool = (threads > 1)
-                .then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build())
-                .transpose()
-                .map_err(|error| EngineError::Threads {
-                    threads,
-                    reason: error.to_string(),
-                })?;
-            sorted.compute_with(instructions, pool.map(Arc::new));
+            sorted.compute_with(instructions, self.scratch.threads.clone());
         }
         Ok(())
     }
 
-    /// Whether its kernel computes with several threads: that of equal smooth grains in a prescribed tube.
+    /// Whether several threads serve it: not where the reference kernel computes.
     pub fn takes_threads(&self) -> bool {
-        self.sorted.is_some()
+        self.parameters.kernel == Kernel::Fast
+    }
+
+    /// How many threads pay for it on a machine with so many processors.
+    pub fn threads_that_pay(&self, processors: usize) -> usize {
+        threads_that_pay(self.parameters.kernel, self.bodies.number(), processors)
     }
 
     /// Lets the drive take another course from now on: `wall` is this wall with other schedules, which have the values
@@ -292,9 +290,9 @@ impl Simulation {
         add: impl Fn(&mut S, WallContact) + Sync,
     ) -> Vec<S> {
         if let (0, Memory::Smooth(_)) = (self.wall().mobile_spheres(), &self.memory) {
-            let pool = self.sorted.as_ref().and_then(|sorted| sorted.pool());
+            let threads = &self.scratch.threads;
             return with_normal_law!(self.parameters().contact.normal, law => {
-                add_up_smooth_contacts(law, self.bodies(), self.wall(), pool, begin, add)
+                add_up_smooth_contacts(law, self.bodies(), self.wall(), threads, begin, add)
             });
         }
         let mut sums = begin(0);

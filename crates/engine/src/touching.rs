@@ -5,6 +5,7 @@ use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw
 
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
+use crate::fast::threads::Threads;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
 
@@ -41,7 +42,7 @@ pub(crate) fn touching<N: NormalLaw, T: TangentialLaw>(
     wall: &Wall,
     contacts: &mut Contacts<T::History<f64>>,
 ) -> Vec<Touching> {
-    contacts.rebuild(bodies, wall, 0.0);
+    contacts.rebuild(bodies, wall, 0.0, &Threads::default());
     let mut found = Vec::new();
     for first in 0..bodies.number() {
         let here = bodies.sphere(first);

@@ -4,11 +4,11 @@ use core::ops::Range;
 
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, Frictionless, NormalLaw, TangentialLaw};
-use rayon::ThreadPool;
 use rayon::prelude::*;
 
 use crate::bodies::Bodies;
 use crate::contacts::Contacts;
+use crate::fast::threads::Threads;
 use crate::neighbours::periodic;
 use crate::wall::Wall;
 
@@ -62,7 +62,7 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
     normal: N,
     bodies: &Bodies,
     wall: &Wall,
-    pool: Option<&ThreadPool>,
+    threads: &Threads,
     begin: impl Fn(usize) -> S + Sync,
     add: impl Fn(&mut S, WallContact) + Sync,
 ) -> Vec<S> {
@@ -76,13 +76,13 @@ pub(crate) fn add_up_smooth_contacts<N: NormalLaw, S: Send>(
         sums
     };
     let pieces = 0..bodies.grains.div_ceil(PIECE).max(1);
-    match pool {
-        Some(pool) => pool.install(|| {
+    threads.install(|| match threads.several() {
+        true => {
             let pieces = pieces.into_par_iter().with_max_len(1);
             pieces.map(of_piece).collect()
-        }),
-        None => pieces.map(of_piece).collect(),
-    }
+        }
+        false => pieces.map(of_piece).collect(),
+    })
 }
 
 /// Calls `visit` for each contact of some grains with what of the wall no force moves; `history` answers the history of a

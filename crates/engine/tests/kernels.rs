@@ -303,23 +303,68 @@ fn a_jump_does_the_same_work() {
     }
 }
 
-/// Those that the machine lacks are replaced by the widest that it has.
+/// Those that the machine lacks are replaced by the widest that it has; and any number of threads.
 #[test]
 fn all_instructions_give_the_same_bits() {
     for (seed, row) in (0..).zip(all_rows()) {
         for number in [9, 60] {
             let state = random(row, number, seed);
-            let end = |instructions| {
+            let end = |instructions, threads| {
                 let mut simulation = state.start(Kernel::Fast);
-                simulation.compute_with(instructions, 1).unwrap();
+                simulation.compute_with(instructions, threads).unwrap();
                 let outcome = simulation.advance(100);
                 (outcome, simulation.snapshot())
             };
-            let plain = end(Instructions::Plain);
+            let plain = end(Instructions::Plain, 1);
             assert_eq!(plain.0, Ok(()));
             for &(name, instructions, _) in Instructions::ALL {
-                assert!(end(instructions) == plain, "{name}, {row:?}");
+                assert!(end(instructions, 1) == plain, "{name}, {row:?}");
             }
+            assert!(end(Instructions::Plain, 2) == plain, "two threads, {row:?}");
+            let three = end(Instructions::widest(), 3);
+            assert!(three == plain, "three threads, {row:?}");
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+    /// From any state on, in pieces, and also where a run diverges.
+    #[test]
+    fn threads_change_no_bit(
+        row in prop::sample::select(all_rows()), number in number(), seed: u64, steps in 0..20_u64, threads in 2..6_usize,
+    ) {
+        let state = random(row, number, seed);
+        let prepared = prepare(&state, steps);
+        let go_on = |threads| {
+            let mut simulation = state.go_on(&prepared, Kernel::Fast);
+            simulation.compute_with(Instructions::widest(), threads).unwrap();
+            let outcome = [1, 7, 20].into_iter().try_for_each(|steps| simulation.advance(steps));
+            (outcome, simulation.snapshot())
+        };
+        let (one, several) = (go_on(1), go_on(threads));
+        prop_assert_eq!(&one.0, &several.0);
+        prop_assert!(one.0.is_err() || one.1 == several.1);
+    }
+}
+
+/// A wall that jumps while threads keep what its contacts remember.
+#[test]
+fn threads_change_no_bit_of_a_jump() {
+    let amplitude = Schedule::through(vec![(0.0, 0.2), (1.01, 0.2), (1.01, 0.3)]).unwrap();
+    for row in rows(Tube::Narrow) {
+        let mut state = lively(row);
+        let (amplitude, frequency) = (amplitude.clone(), Schedule::constant(0.1));
+        state.wall = waving(coarse(2), 1.5, Waveform::Sine, -1.0, amplitude, frequency);
+        let [one, several] = [1, 3].map(|threads| {
+            let mut simulation = state.start(Kernel::Fast);
+            simulation
+                .compute_with(Instructions::widest(), threads)
+                .unwrap();
+            simulation.advance(40).unwrap();
+            simulation.snapshot()
+        });
+        assert!(one == several, "{row:?}");
     }
 }

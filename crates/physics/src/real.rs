@@ -12,6 +12,8 @@ use glam::DVec3;
 /// A real number, or several side by side. Every operation follows IEEE 754 in double precision, lane by lane.
 pub trait Real:
     Copy
+    + Send
+    + Sync
     + Debug
     + Default
     + PartialEq
@@ -23,6 +25,8 @@ pub trait Real:
 {
     /// A truth value for each lane.
     type Mask: Copy
+        + Send
+        + Sync
         + Debug
         + Default
         + PartialEq
@@ -78,6 +82,8 @@ pub trait Real:
 /// A vector in space whose components are of type `R`.
 pub trait Vector<R: Real<Vector = Self>>:
     Copy
+    + Send
+    + Sync
     + Debug
     + Default
     + PartialEq

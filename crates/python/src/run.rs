@@ -8,7 +8,7 @@ use glam::DVec3;
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use parking_lot::Mutex;
 use peristalsis_configuration::ScheduledParameter;
-use peristalsis_engine::{Bodies, Instructions};
+use peristalsis_engine::{Bodies, Instructions, processors};
 use peristalsis_observe::View;
 use peristalsis_run::{
     PlacedGrains, RunError, RunFolder, Status, Summary, profile_table, read_state,
@@ -203,10 +203,13 @@ impl Run {
         Ok(self.look(py, |run| run.driven(parameter)))
     }
 
-    /// Computes with so many threads from now on.
-    fn compute_with(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
-        self.look(py, |run| run.compute_with(Instructions::widest(), threads))
-            .map_err(of_run)
+    /// Computes with so many threads from now on; without a number with as many as pay.
+    fn compute_with(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<()> {
+        let outcome = self.look(py, |run| match threads {
+            Some(threads) => run.compute_with(Instructions::widest(), threads),
+            None => run.compute_with_threads_that_pay(processors()),
+        });
+        outcome.map_err(of_run)
     }
 
     /// What looks doubtful about the configuration and what was seen, as (key, message).

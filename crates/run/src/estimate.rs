@@ -3,6 +3,7 @@
 use std::time::Instant;
 
 use peristalsis_configuration::{Configuration, Control, Grains};
+use peristalsis_engine::{Instructions, processors, threads_that_pay};
 use peristalsis_observe::{Sample, WaveFlow};
 use peristalsis_physics::contact::{Impact, NormalLaw};
 
@@ -69,6 +70,8 @@ pub struct Estimate {
     pub packing_seconds: f64,
     /// Expected seconds after that, from a short trial on this machine.
     pub expected_seconds: f64,
+    /// Threads that pay on this machine, with which the trial was computed.
+    pub threads: usize,
     /// Bytes of memory, about.
     pub memory_bytes: f64,
     /// The size of the trajectory, if one is wanted.
@@ -126,6 +129,7 @@ pub fn estimate(
         si: si.map(|units| SiEstimate::of(configuration, units)),
         packing_seconds: trial.packing_seconds,
         expected_seconds: trial.expected_seconds,
+        threads: threads(configuration),
         memory_bytes: memory(configuration),
         trajectory,
         warnings,
@@ -163,6 +167,12 @@ fn memory(configuration: &Configuration) -> f64 {
         + of_sphere * moving_spheres(configuration) as f64
         + (size_of::<Sample>() as f64) * samples
         + (size_of::<WaveFlow>() as f64) * waves
+}
+
+/// Threads that pay for a configuration on this machine.
+fn threads(configuration: &Configuration) -> usize {
+    let spheres = moving_spheres(configuration) as usize;
+    threads_that_pay(configuration.run.kernel, spheres, processors())
 }
 
 /// The outcome of a trial.
@@ -239,6 +249,7 @@ fn trial(configuration: &Configuration) -> Result<Trial, RunError> {
     let packing = Instant::now();
     let mut run = Run::new(trial)?;
     let packing_seconds = scale * packing.elapsed().as_secs_f64();
+    run.compute_with(Instructions::widest(), threads(configuration))?;
     // The second half is timed, for a packing at rest has fewer contacts than a flow.
     let (mut start, mut first) = (Instant::now(), 0);
     let mut divergence = None;

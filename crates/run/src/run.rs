@@ -238,6 +238,15 @@ impl Run {
         Ok(self.simulation.compute_with(instructions, threads)?)
     }
 
+    /// Computes with the widest instructions and as many threads as pay, of so many processors, from now on.
+    ///
+    /// # Errors
+    /// [`RunError::Engine`] where the system gives no more threads.
+    pub fn compute_with_threads_that_pay(&mut self, processors: usize) -> Result<(), RunError> {
+        let threads = self.simulation.threads_that_pay(processors);
+        self.compute_with(Instructions::widest(), threads)
+    }
+
     /// Follows how the grains turn from now on, where there is friction to turn them.
     pub fn follow_orientations(&mut self) {
         if self.orientations.is_none() && self.configuration.contact.friction.is_some() {

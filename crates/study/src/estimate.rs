@@ -68,9 +68,8 @@ pub fn study_estimate(study: &Specification, plan: &Plan) -> Result<StudyEstimat
     let (mut seconds, mut tried) = (0.0, 0.0);
     for trial in trials {
         let configuration = &points[trial].configuration;
-        seconds += estimate(configuration, None)
-            .map_err(StudyError::Trial)?
-            .expected_seconds;
+        let estimate = estimate(configuration, None).map_err(StudyError::Trial)?;
+        seconds += estimate.expected_seconds * estimate.threads as f64;
         tried += work(configuration);
     }
     let replicates = f64::from(study.replicates);

@@ -100,6 +100,10 @@ fn in_words(estimate: &Estimate) -> String {
         "expected time     {expected}, after {packing} of packing"
     ));
     lines.push(format!(
+        "threads           {}, as many as pay here for its size",
+        estimate.threads
+    ));
+    lines.push(format!(
         "memory            about {}",
         size(estimate.memory_bytes as u64)
     ));

@@ -6,3 +6,4 @@ pub(crate) mod listed;
 pub(crate) mod machine;
 pub(crate) mod sorted;
 mod sums;
+pub(crate) mod threads;

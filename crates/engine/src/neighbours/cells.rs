@@ -46,6 +46,37 @@ impl<H> Rows<H> {
     }
 }
 
+impl<H> Rows<H> {
+    /// Takes the rows of all pieces, without values.
+    pub(super) fn join(&mut self, pieces: &[Piece]) {
+        self.start.clear();
+        self.start.push(0);
+        self.partner.clear();
+        let partners = pieces.iter().map(|piece| piece.partner.len()).sum();
+        if self.partner.capacity() < partners {
+            // Room for later lists, so that they seldom ask for more.
+            self.partner.reserve(2 * partners);
+        }
+        for piece in pieces {
+            let end = self.partner.len() as u32;
+            self.start
+                .extend(piece.ends.iter().map(|of_row| end + of_row));
+            self.partner.extend_from_slice(&piece.partner);
+        }
+    }
+}
+
+/// Some rows of a list that is being made.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Piece {
+    pub(super) rows: core::ops::Range<usize>,
+    /// Where each row ends in `partner`.
+    ends: Vec<u32>,
+    partner: Vec<u32>,
+    /// Row and place of each pair of the list before that remembers a contact.
+    pub(super) remembered: Vec<(u32, u32)>,
+}
+
 /// Rectangular cells of a tube, at least `cutoff` wide; beyond the outermost cells across the tube a sphere belongs to
 /// the nearest, so that one that has escaped is still found.
 #[derive(Clone, Copy, Debug, Default)]
@@ -192,7 +223,7 @@ impl Cells {
     }
 }
 
-/// The search for the pairs of a rule, row by row.
+/// The search for the pairs of a rule in some rows, row by row.
 pub(super) struct Search<'a, H, F: Fn(usize, usize) -> bool> {
     /// All spheres.
     pub(super) cells: &'a Cells,
@@ -202,9 +233,7 @@ pub(super) struct Search<'a, H, F: Fn(usize, usize) -> bool> {
     pub(super) rule: &'a PairRule<'a, F>,
     /// The list before.
     pub(super) old: &'a Rows<H>,
-    pub(super) new: &'a mut Rows<H>,
-    /// Row and place of each pair of the list before that remembers a contact.
-    pub(super) remembered: &'a mut Vec<(u32, u32)>,
+    pub(super) piece: &'a mut Piece,
 }
 
 impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H, F> {
@@ -218,16 +247,22 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
             position,
             rule,
             old,
-            new: Rows { start, partner, .. },
-            remembered,
+            piece,
         } = self;
-        start.clear();
-        start.push(0);
+        let Piece {
+            rows,
+            ends,
+            partner,
+            remembered,
+        } = piece;
+        ends.clear();
+        remembered.clear();
         partner.clear();
         let grid = &cells.grid;
         partner.resize(partner.capacity().max(64 * LANES), 0);
         let mut end = 0;
-        for (i, &centre) in position.iter().enumerate() {
+        for i in rows.clone() {
+            let centre = position[i];
             let begin = end;
             // Partners have larger numbers.
             let cells = if i < rule.admits_all_below {
@@ -301,7 +336,7 @@ impl<H: Default + PartialEq, F: Fn(usize, usize) -> bool> Work for Search<'_, H,
                 }
             }
             sort(&mut partner[begin..end]);
-            start.push(end as u32);
+            ends.push(end as u32);
         }
         partner.truncate(end);
     }

@@ -6,6 +6,7 @@ use glam::DVec3;
 use proptest::prelude::*;
 
 use super::{Neighbours, PairRule};
+use crate::fast::threads::Threads;
 
 #[derive(Clone, Debug)]
 struct Spheres {
@@ -45,7 +46,10 @@ impl Spheres {
             admits_all_below: 4,
             admits,
         };
-        list.rebuild(&self.position, &vec![0; self.position.len()], &rule);
+        // The list is the same for any number of threads.
+        let number = self.position.len();
+        let threads = Threads::new(1 + number % 3).unwrap();
+        list.rebuild(&self.position, &vec![0; number], &rule, &threads);
     }
 }
 

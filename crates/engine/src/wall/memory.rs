@@ -72,6 +72,33 @@ impl<H: Copy + Default> WallMemory<H> {
         })
     }
 
+    /// The memory of some of the grains, counted from 0.
+    pub(crate) fn part(&self, grains: core::ops::Range<usize>) -> Self {
+        let ranges = grains.map(|grain| self.range(grain));
+        let entries = ranges.clone().flat_map(|range| &self.entries[range]);
+        let lengths = ranges.map(|range| range.len() as u32);
+        let ends = lengths.scan(0, |end, length| {
+            *end += length;
+            Some(*end)
+        });
+        Self {
+            start: core::iter::once(0).chain(ends).collect(),
+            entries: entries.copied().collect(),
+            ..Self::default()
+        }
+    }
+
+    /// Takes the memory of the grains that follow its own.
+    pub(crate) fn append(&mut self, behind: &Self) {
+        if self.start.is_empty() {
+            self.start.push(0);
+        }
+        let end = self.entries.len() as u32;
+        let starts = behind.start.iter().skip(1);
+        self.start.extend(starts.map(|start| end + start));
+        self.entries.extend_from_slice(&behind.entries);
+    }
+
     /// Memory that holds the given histories, in order of the grains.
     pub(crate) fn from_entries(grains: usize, histories: &[(u32, u32, H)]) -> Self {
         let mut start = Vec::with_capacity(grains + 1);

@@ -3,18 +3,21 @@
 mod elastic;
 pub(crate) mod memory;
 mod prescribed;
+pub(crate) mod sums;
 
 pub use elastic::{ElasticParameters, ElasticWall};
 pub use peristalsis_physics::wall::{DriveAngle, ElasticNetwork, NetForce, Tethers};
 pub use prescribed::{PrescribedWall, Scattered};
+
+use core::ops::Range;
 
 use glam::DVec3;
 use peristalsis_physics::contact::{Contact, ContactLaw, NormalLaw, TangentialLaw};
 use peristalsis_physics::wall::{Lattice, RadiusWave};
 
 use self::memory::WallMemory;
+use self::sums::{WallSums, WallTerms};
 use crate::bodies::{Bodies, Sphere};
-use crate::ledger::Tally;
 
 /// The wall of a simulation.
 #[derive(Clone, Debug)]
@@ -245,14 +248,14 @@ impl Wall {
         }
     }
 
-    /// Adds the forces and torques on the grains of what of the wall no force moves.
+    /// Adds the forces and torques on some grains of what of the wall no force moves; `memory` counts these grains from 0.
     pub(crate) fn add_forces<N: NormalLaw, T: TangentialLaw>(
         &self,
         law: &ContactLaw<N, T>,
         grains: &mut impl Grains,
         memory: &mut WallMemory<T::History<f64>>,
         time_step: f64,
-        tally: &mut Tally,
+        sums: &mut impl WallSums,
     ) {
         if self.mobile_spheres() > 0 {
             return;
@@ -260,7 +263,9 @@ impl Wall {
         if T::ROTATES {
             memory.begin();
         }
-        for grain in 0..grains.grains() {
+        let numbers = grains.grains();
+        for grain in numbers.clone() {
+            let remembered = grain - numbers.start;
             let sphere = grains.sphere(grain);
             let (mut force, mut torque) = grains.force(grain);
             self.for_each_contact(&sphere, |number, mut contact, wall_velocity| {
@@ -268,7 +273,7 @@ impl Wall {
                 let mut history = T::History::<f64>::default();
                 if T::ROTATES {
                     contact.rotation = arm * sphere.angular_velocity;
-                    history = memory.take(grain, number);
+                    history = memory.take(remembered, number);
                 }
                 let answer = law.force(&contact, &mut history, time_step);
                 if T::ROTATES {
@@ -276,15 +281,16 @@ impl Wall {
                     torque += arm * answer.torque_per_arm;
                 }
                 force += answer.force;
-                tally.add_contact(&answer, contact.overlap);
-                tally.wall_contacts += 1;
-                tally.wall_power += answer.force.dot(wall_velocity);
-                tally.wall_axial_force += answer.force.z;
+                sums.add(&WallTerms {
+                    answer,
+                    overlap: contact.overlap,
+                    wall_velocity,
+                });
             });
             grains.set_force(grain, force, torque);
             if T::ROTATES {
-                for ended in memory.end_grain(grain) {
-                    tally.history_reset += law.tangential.stored_energy(ended);
+                for ended in memory.end_grain(remembered) {
+                    sums.add_ended(law.tangential.stored_energy(ended));
                 }
             }
         }
@@ -296,8 +302,8 @@ impl Wall {
 
 /// Grains, as a kernel keeps them, with the forces and torques on them.
 pub(crate) trait Grains {
-    /// How many there are.
-    fn grains(&self) -> usize;
+    /// Their numbers.
+    fn grains(&self) -> Range<usize>;
     /// One of them.
     fn sphere(&self, grain: usize) -> Sphere;
     /// Force and torque on one of them.
@@ -308,8 +314,8 @@ pub(crate) trait Grains {
 
 /// Until all forces are known accelerations stand for them.
 impl Grains for Bodies {
-    fn grains(&self) -> usize {
-        self.grains
+    fn grains(&self) -> Range<usize> {
+        0..self.grains
     }
 
     #[inline(always)]

@@ -187,9 +187,9 @@ impl Elasticity {
 }
 
 /// A force in the plane of contact.
-pub trait TangentialLaw: Copy {
+pub trait TangentialLaw: Copy + Sync {
     /// What a contact remembers from one step to the next.
-    type History<R: Real>: Copy + Default + PartialEq + core::fmt::Debug;
+    type History<R: Real>: Copy + Default + PartialEq + core::fmt::Debug + Send + Sync;
 
     /// Whether this law turns grains: `false` lets a kernel skip everything about rotation.
     const ROTATES: bool;

@@ -94,7 +94,7 @@ class Simulation(Made):
         writers : iterable of Writer, optional
             Files that get frames during this run; those of `add_writer` get theirs as well.
         threads : int, optional
-            Threads of the engine from now on; they change no bit.
+            Threads of the engine; as many as pay for the number of grains unless given. They change no bit.
 
         Raises
         ------
@@ -186,8 +186,7 @@ class Simulation(Made):
         if not self._running.acquire(blocking=False):
             raise RuntimeError("this simulation is running already")
         try:
-            if threads is not None:
-                self._run.compute_with(int(threads))
+            self._run.compute_with(None if threads is None else int(threads))
             files = list(dict.fromkeys([*self._writers, *writers]))
             called: list[Trigger | Writer] = [*triggers(callback, each, self.steps), *files]
             for writer in files:

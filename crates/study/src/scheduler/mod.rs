@@ -32,7 +32,7 @@ const IDLE: Duration = Duration::from_millis(300);
 /// How a process works on a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Runs at a time.
+    /// Runs at a time, a processor each; what fewer runs leave free, their threads take.
     pub workers: usize,
     /// Time between two checkpoints of a run.
     pub checkpoint_interval: Duration,

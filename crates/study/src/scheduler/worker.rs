@@ -131,6 +131,10 @@ fn advance(
     let (mut saved, mut pace) = (Instant::now(), Pace::default());
     while !run.is_complete() {
         let is_stopped = shared.is_stopped();
+        let runs = shared.working().iter().flatten().count();
+        let free = shared.effort.workers / runs.max(1);
+        // Where the system gives no more threads, those that it has go on.
+        drop(run.compute_with_threads_that_pay(free));
         if is_stopped || saved.elapsed() >= shared.effort.checkpoint_interval {
             if !shared.holds(identity)? {
                 return Ok(None);

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::Once;
 
 use peristalsis_configuration::{Configuration, SourceFile, Sources};
-use peristalsis_engine::Instructions;
+use peristalsis_engine::{Instructions, processors};
 use peristalsis_run::{Run, RunError, RunFolder, TrajectoryPlan, read_state, warnings};
 
 use crate::arguments::RunArguments;
@@ -42,7 +42,7 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
         Some(_) => Vec::new(),
         None => run.warnings(),
     };
-    compute_with(arguments, &mut run)?;
+    compute_with(arguments, &mut run, processors())?;
     let work = Work::begin(arguments, folder, run)?;
     let mut display = Display::new(arguments.quiet, work.run.configuration().run.samples);
     let (work, outcome) = work.finish(&stop, &mut |progress| display.update(progress));
@@ -85,8 +85,8 @@ pub(crate) fn run(arguments: &RunArguments) -> Result<ExitCode, Failure> {
     }
 }
 
-/// Takes the instructions and threads asked for.
-fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> {
+/// Takes the instructions and threads asked for, where so many processors are free.
+fn compute_with(arguments: &RunArguments, run: &mut Run, processors: usize) -> Result<(), Failure> {
     let instructions = match arguments.instructions {
         None => Instructions::widest(),
         Some(wanted) if wanted.available() => wanted,
@@ -97,17 +97,17 @@ fn compute_with(arguments: &RunArguments, run: &mut Run) -> Result<(), Failure> 
             ));
         }
     };
-    if arguments.threads > 1 && !run.simulation().takes_threads() {
+    let threads = arguments.threads.of(run, processors);
+    if threads > 1 && !run.simulation().takes_threads() {
         // Once, however many replicas there are.
         static SAID: Once = Once::new();
         SAID.call_once(|| {
             say(
-                "--threads changes nothing here: only equal smooth grains in a prescribed tube are computed by several \
-                 threads",
+                "--threads changes nothing here: the reference kernel (run.kernel) computes with one",
             );
         });
     }
-    Ok(run.compute_with(instructions, usize::from(arguments.threads))?)
+    Ok(run.compute_with(instructions, threads)?)
 }
 
 /// Reads the configuration, packs the grains, makes the folder.

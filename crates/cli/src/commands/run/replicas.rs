@@ -7,14 +7,14 @@ use std::sync::Mutex;
 use std::time::Instant;
 
 use peristalsis_analysis::mean_and_error;
+use peristalsis_engine::processors;
 use peristalsis_run::{RunError, RunFolder, Status, Summary, Warning, next_folder, warnings};
 use serde_json::{Value, json};
 
 use super::words::known;
 use super::work::{Ending, Outcome, Work};
 use super::{RUNS, checked, compute_with, lasting, packed};
-use crate::arguments::{RunArguments, Seeds};
-use crate::commands::study::processors;
+use crate::arguments::{RunArguments, Seeds, Threads};
 use crate::commands::{code_of, counted, print, print_json, tell, warn_besides};
 use crate::failure::Failure;
 use crate::progress::Display;
@@ -111,7 +111,13 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
     // Every replica has its folder, and can be gone on with from the first moment.
     stop.keep_results();
     let number = replicas.each.len();
-    let at_once = (processors() / usize::from(arguments.threads)).clamp(1, number);
+    let each = match arguments.threads {
+        Threads::Auto => 1,
+        Threads::Number(threads) => usize::from(threads),
+    };
+    let at_once = (processors() / each).clamp(1, number);
+    // What the replicas leave free, the threads of each may take.
+    let free = processors() / at_once;
     let begin = Instant::now();
     let display = Mutex::new((Display::new(arguments.quiet, 1000), vec![0.0; number]));
     let waiting: Mutex<VecDeque<_>> = Mutex::new(replicas.each.into_iter().enumerate().collect());
@@ -131,7 +137,7 @@ pub(super) fn run(arguments: &RunArguments, replicas: Replicas) -> Result<ExitCo
                 let words = || format!("{ended} of {}", counted(number, "seed"));
                 display.show([done as u64, 1000], begin.elapsed(), words);
             };
-            let outcome = replica(arguments, &path, &stop, &mut show);
+            let outcome = replica(arguments, &path, free, &stop, &mut show);
             if matches!(&outcome, Err(Failure::Run(error)) if error.is_stop()) {
                 // It has not begun.
                 continue;
@@ -165,6 +171,7 @@ fn locked<T>(guarded: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
 fn replica(
     arguments: &RunArguments,
     path: &Path,
+    free: usize,
     stop: &Stop,
     show: &mut dyn FnMut(f64),
 ) -> Result<Outcome, Failure> {
@@ -191,7 +198,7 @@ fn replica(
     if !is_as_asked || arguments.configuration.duration.is_some() {
         folder.change_length(&run)?;
     }
-    compute_with(arguments, &mut run)?;
+    compute_with(arguments, &mut run, free)?;
     let work = Work::begin(arguments, folder, run)?;
     let total = work.run.configuration().run.samples as f64;
     let (_, outcome) = work.finish(stop, &mut |progress| show(progress.samples as f64 / total));

@@ -12,6 +12,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{Args, Subcommand};
+use peristalsis_engine::processors;
 use peristalsis_study::{Effort, Specification};
 
 use crate::commands::schema::{SchemaArguments, study_schema};
@@ -83,7 +84,8 @@ pub(crate) struct RunArguments {
 /// How much work is done at a time, and for how long.
 #[derive(Debug, Args)]
 pub(crate) struct WorkArguments {
-    /// Runs at a time; the default is the number of processors.
+    /// Runs at a time, a processor each; the default is the number of processors. What fewer runs leave free, their threads
+    /// take.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     workers: Option<u16>,
     /// Stop after this time, every run saved, such as 90s, 30m, 2h.
@@ -242,10 +244,6 @@ fn store_path(named: &Option<PathBuf>, study: &Specification) -> PathBuf {
 }
 
 /// Processors of this machine.
-pub(crate) fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, |number| number.get())
-}
-
 /// Reads a time such as 30m, 1.5h, 90s or 250ms.
 pub(crate) fn time_span(text: &str) -> Result<Duration, String> {
     let letters = text.find(|letter: char| letter.is_ascii_alphabetic());

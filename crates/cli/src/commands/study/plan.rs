@@ -2,10 +2,11 @@
 
 use std::process::ExitCode;
 
+use peristalsis_engine::processors;
 use peristalsis_study::{Specification, State, Store, StudyEstimate, study_estimate};
 use serde_json::json;
 
-use super::{PlanArguments, processors, store_path};
+use super::{PlanArguments, store_path};
 use crate::commands::{counted, print_report};
 use crate::failure::Failure;
 use crate::progress::seconds;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use peristalsis_configuration::{Configuration, preset};
-use peristalsis_engine::Instructions;
+use peristalsis_engine::{Instructions, processors};
 use peristalsis_run::{Run, RunFolder, TrajectoryFormat};
 use peristalsis_viewer::{Options, Recording, Viewer};
 
@@ -30,7 +30,8 @@ pub(crate) fn view(arguments: &ViewArguments) -> Result<ExitCode, Failure> {
         (None, Some(path)) => play(&path, arguments.port)?,
         (None, None) => {
             let (mut run, options) = open(arguments)?;
-            run.compute_with(Instructions::widest(), usize::from(arguments.threads))?;
+            let threads = arguments.threads.of(&run, processors());
+            run.compute_with(Instructions::widest(), threads)?;
             Viewer::open(run, options)?
         }
     };

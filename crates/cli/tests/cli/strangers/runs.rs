@@ -437,9 +437,15 @@ fn what_would_write_into_a_run_or_go_on_with_a_damaged_one_is_refused() {
     assert_eq!(place.inventory(), before);
     place.write("one/trajectory.gsd", "damaged");
     place.refuses("run --resume one --periods 6", &["trajectory.gsd"]);
+    let frictional = "run --preset frictional --threads 2 grains.number=20 run.periods=0.05";
     place
-        .does("run --preset frictional --threads 2 --out frictional grains.number=20 run.periods=0.05")
+        .does(&format!(
+            "{frictional} --out reference run.kernel=reference"
+        ))
         .says(&["--threads changes nothing here"]);
+    let threads = place.does(&format!("{frictional} --out frictional"));
+    assert!(!threads.stderr.contains("--threads"), "{}", threads.stderr);
+    place.refuses("run SMALL --threads none", &["auto"]);
 }
 
 /// COMMAND-LINE, low: messages.

@@ -1,37 +1,54 @@
 //! The fast kernel for everything that has a neighbour list: rotating grains, elastic walls, wide tubes.
 //!
 //! For as long as an advance lasts the spheres live in records ([`spheres`]); a step is one pass over the listed pairs
-//! ([`pairs`]), one over the wall ([`network`]) and one over the spheres ([`motion`]).
+//! ([`pairs`], [`contacts`]), one over the wall ([`network`]) and one over the spheres ([`motion`]).
+//!
+//! One thread adds forces as it finds them. Several work out the contacts of a stretch of the list each and keep the
+//! answers ([`answers`]); then they add up the forces on a stretch of the spheres each. Every sphere adds in the order of
+//! the list, and every sum has the order that one thread gives it ([`book`]): the bits are the same.
 
+mod answers;
+mod book;
+mod contacts;
+mod forces;
 mod history;
 mod motion;
 mod network;
 mod pairs;
 mod record;
 mod spheres;
+mod stretch;
 
 use peristalsis_physics::contact::NormalLaw;
 
 use self::history::PackedHistory;
-use self::motion::{Motion, Stage, Travel};
-use self::network::{Rows, WallForces};
-use self::pairs::{PairForces, Pairs, Prune};
+use self::motion::{Motion, Moved, Stage, Travel};
+use self::pairs::{Pairs, Prune};
 use self::record::Record;
 use self::spheres::Spheres;
+use self::stretch::{BesideWall, Stretch, share_out};
+use crate::contacts::Contacts;
 use crate::fast::machine::Instructions;
+use crate::fast::threads::Threads;
 use crate::forces::{Reference, evaluate};
 use crate::integrate::{Past, Runaway};
 use crate::ledger::Tally;
 use crate::steps::{Course, Stepper};
 use crate::wall::Wall;
+use crate::wall::memory::WallMemory;
+use crate::wall::sums::Waiting;
 
 /// Room to work in, kept from advance to advance.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Scratch {
     pub(crate) instructions: Instructions,
+    pub(crate) threads: Threads,
     spheres: Spheres,
-    pairs: Pairs,
-    rows: Rows,
+    stretches: Vec<Stretch>,
+    /// Which stretch each sphere is in.
+    stretch_of: Vec<u16>,
+    /// The listed pairs of each stretch.
+    pairs: Vec<Pairs>,
 }
 
 /// The list is made for so many skins.
@@ -49,32 +66,18 @@ pub(crate) fn advance<N: NormalLaw, T: PackedHistory>(
     if steps == 0 {
         return Ok(());
     }
-    let Reference {
-        contacts,
-        bodies,
-        past,
-        ..
-    } = &reference;
-    scratch.spheres.load(bodies, past);
-    scratch.pairs.load::<T>(&contacts.pairs, bodies);
-    let mut listed = Listed {
-        reference,
-        scratch,
-        stage: Stage::First,
-        mean_wall_force: Record::ZERO,
-        // The list may have been made long ago, and nothing is chosen from it yet.
-        travelled: Travel {
-            axial: f64::INFINITY,
-            lateral: 0.0,
-        },
-    };
-    let outcome = course.advance(&mut listed, steps);
-    let Listed {
-        reference, scratch, ..
-    } = listed;
-    scratch.pairs.store::<T>(&mut reference.contacts.pairs);
-    scratch.spheres.store(reference.bodies, reference.past);
-    outcome
+    let threads = scratch.threads.clone();
+    threads.install(|| {
+        let mut listed = Listed::begin(reference, scratch, &course.wall);
+        let outcome = course.advance(&mut listed, steps);
+        let Reference { contacts, .. } = &mut listed.reference;
+        listed
+            .scratch
+            .store_histories::<T>(contacts, &listed.beside_wall);
+        let Reference { bodies, past, .. } = listed.reference;
+        listed.scratch.spheres.store(bodies, past);
+        outcome
+    })
 }
 
 /// The kernel for one advance.
@@ -87,41 +90,153 @@ struct Listed<'a, N, T: PackedHistory> {
     mean_wall_force: Record,
     /// Since pairs were last chosen from the list.
     travelled: Travel,
+    /// The stretches of grains, where several threads serve a prescribed wall.
+    beside_wall: Vec<BesideWall<T::History<f64>>>,
 }
 
-impl<N: NormalLaw, T: PackedHistory> Listed<'_, N, T> {
+impl Scratch {
+    /// Makes the flat lists from the rows; `held` are the places of all histories but fresh ones, where they are known.
+    fn load_pairs<N, T: PackedHistory>(
+        &mut self,
+        reference: &Reference<'_, N, T>,
+        held: Option<&[u32]>,
+    ) {
+        let Reference {
+            contacts, bodies, ..
+        } = reference;
+        let (list, bodies) = (&contacts.pairs, &**bodies);
+        self.threads
+            .each(&mut self.pairs, (), &|_| 0, &|pairs, ()| {
+                pairs.load::<T>(list, bodies, held);
+            });
+    }
+
+    /// Writes the histories back to where they came from.
+    fn store_histories<T: PackedHistory>(
+        &self,
+        contacts: &mut Contacts<T::History<f64>>,
+        beside_wall: &[BesideWall<T::History<f64>>],
+    ) {
+        for pairs in &self.pairs {
+            pairs.store::<T>(&mut contacts.pairs);
+        }
+        if !beside_wall.is_empty() {
+            contacts.wall = WallMemory::default();
+            for stretch in beside_wall {
+                contacts.wall.append(&stretch.memory);
+            }
+        }
+    }
+}
+
+impl<'a, N: NormalLaw, T: PackedHistory> Listed<'a, N, T> {
+    fn begin(reference: Reference<'a, N, T>, scratch: &'a mut Scratch, wall: &Wall) -> Self {
+        let list = &reference.contacts.pairs;
+        let Scratch {
+            threads,
+            spheres,
+            stretches,
+            stretch_of,
+            pairs,
+            ..
+        } = &mut *scratch;
+        spheres.load(reference.bodies, reference.past);
+        share_out(stretches, spheres, list, wall, threads);
+        pairs.resize_with(stretches.len(), Pairs::default);
+        stretch_of.clear();
+        for (number, (stretch, pairs)) in (0..).zip(stretches.iter().zip(pairs)) {
+            stretch_of.resize(stretch.spheres.end, number);
+            pairs.rows = stretch.spheres.clone();
+        }
+        let mut beside_wall = Vec::new();
+        if threads.several() && wall.elastic().is_none() {
+            let memory = &reference.contacts.wall;
+            let stretches = stretches.iter().enumerate();
+            beside_wall.extend(stretches.map(|(number, stretch)| BesideWall {
+                stretch: number,
+                grains: stretch.length(),
+                memory: memory.part(stretch.spheres.clone()),
+                sums: Waiting::default(),
+            }));
+        }
+        scratch.load_pairs(&reference, None);
+        Self {
+            reference,
+            scratch,
+            stage: Stage::First,
+            mean_wall_force: Record::ZERO,
+            // The list may have been made long ago, and nothing is chosen from it yet.
+            travelled: Travel {
+                axial: f64::INFINITY,
+                lateral: 0.0,
+            },
+            beside_wall,
+        }
+    }
+
     fn pass(&mut self) -> Result<Travel, Runaway> {
+        let Scratch {
+            instructions,
+            threads,
+            spheres,
+            stretches,
+            ..
+        } = &mut *self.scratch;
         let parameters = self.reference.parameters;
-        self.scratch.instructions.run(Motion {
-            spheres: &mut self.scratch.spheres,
-            integrator: parameters.integrator,
-            stage: self.stage,
-            mean_wall_force: self.mean_wall_force,
-            rotates: T::ROTATES,
-            body_force: parameters.body_force,
-            time_step: parameters.time_step,
-            limit: self.reference.limit,
-            length: self.reference.length,
-        })
+        let (stage, mean_wall_force) = (self.stage, self.mean_wall_force);
+        let (limit, length) = (self.reference.limit, self.reference.length);
+        let integrator = spheres.prepare_to_move(parameters.integrator, stage);
+        threads.each(
+            stretches,
+            spheres.all_mut(),
+            &Stretch::length,
+            &|stretch, spheres| {
+                stretch.moved = instructions.run(Motion {
+                    spheres,
+                    of_grains: stretch.of_grains,
+                    integrator,
+                    stage,
+                    mean_wall_force,
+                    rotates: T::ROTATES,
+                    body_force: parameters.body_force,
+                    time_step: parameters.time_step,
+                    limit,
+                    length,
+                });
+            },
+        );
+        Moved::travel(stretches.iter().map(|stretch| stretch.moved))
     }
 
     /// Chooses the pairs that may touch in the steps to come; makes the list anew where it does not hold them all.
     fn choose_pairs(&mut self, wall: &Wall) {
         let (skin, length) = (self.reference.parameters.skin, self.reference.length);
-        let (contacts, bodies) = (&mut *self.reference.contacts, &mut *self.reference.bodies);
-        let (spheres, pairs) = (&self.scratch.spheres, &mut self.scratch.pairs);
-        spheres.store_places(bodies);
+        let Reference {
+            contacts, bodies, ..
+        } = &mut self.reference;
+        self.scratch.spheres.store_places(bodies);
         let (places, turns) = (&bodies.position, &bodies.turns);
         if !contacts.pairs.covers(places, turns, length, CHOSEN * skin) {
-            pairs.store::<T>(&mut contacts.pairs);
-            contacts.rebuild(bodies, wall, LISTED * skin);
-            pairs.load::<T>(&contacts.pairs, bodies);
+            self.scratch.store_histories::<T>(contacts, &[]);
+            contacts.rebuild(bodies, wall, LISTED * skin, &self.scratch.threads);
+            let held = Some(self.reference.contacts.pairs.moved());
+            self.scratch.load_pairs(&self.reference, held);
         }
-        self.scratch.instructions.run(Prune {
-            pairs,
+        let Scratch {
+            instructions,
+            threads,
             spheres,
-            length,
-            skin: CHOSEN * skin,
+            pairs,
+            ..
+        } = &mut *self.scratch;
+        let position = &spheres.position[..];
+        threads.each(pairs, (), &|_| 0, &|pairs, ()| {
+            instructions.run(Prune {
+                pairs,
+                position,
+                length,
+                skin: CHOSEN * skin,
+            });
         });
         self.travelled = Travel::default();
     }
@@ -139,10 +254,10 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         let reference = &self.reference;
         let (mut bodies, mut contacts) = (reference.bodies.clone(), reference.contacts.clone());
         // With their velocities: contacts that slide store less.
-        self.scratch
-            .spheres
-            .store(&mut bodies, &mut Past::default());
-        self.scratch.pairs.store::<T>(&mut contacts.pairs);
+        let spheres = &self.scratch.spheres;
+        spheres.store(&mut bodies, &mut Past::default());
+        let scratch = &*self.scratch;
+        scratch.store_histories::<T>(&mut contacts, &self.beside_wall);
         contacts.refresh(&bodies, wall, reference.parameters.skin);
         evaluate(reference.law, &mut bodies, wall, &mut contacts, 0.0).contact_energy
     }
@@ -154,31 +269,10 @@ impl<N: NormalLaw, T: PackedHistory> Stepper for Listed<'_, N, T> {
         {
             self.choose_pairs(wall);
         }
-        let (law, time_step) = (self.reference.law, self.reference.parameters.time_step);
-        let Scratch {
-            instructions,
-            spheres,
-            pairs,
-            rows,
-        } = &mut *self.scratch;
         let mut tally = Tally::default();
-        instructions.run(PairForces {
-            law,
-            pairs,
-            spheres,
-            length: self.reference.length,
-            time_step,
-            tally: &mut tally,
-        });
-        let memory = &mut self.reference.contacts.wall;
-        wall.add_forces(law, spheres, memory, time_step, &mut tally);
-        if let Some(wall) = wall.elastic() {
-            self.mean_wall_force = instructions.run(WallForces {
-                wall,
-                rows,
-                spheres,
-                tally: &mut tally,
-            });
+        match self.scratch.threads.several() {
+            false => self.add_forces(wall, &mut tally),
+            true => self.share_forces(wall, &mut tally),
         }
         tally
     }

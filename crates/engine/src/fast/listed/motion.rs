@@ -3,7 +3,7 @@
 use peristalsis_physics::method::Integrator;
 
 use super::record::Record;
-use super::spheres::Spheres;
+use super::spheres::{Spheres, SpheresMut};
 use crate::bodies::fold;
 use crate::fast::lanes::Quad;
 use crate::fast::machine::{Machine, Work};
@@ -43,9 +43,77 @@ impl Travel {
     }
 }
 
-/// A pass over all spheres.
+/// What a pass did to a stretch of spheres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moved {
+    /// Least and largest displacement along each axis.
+    least: Record,
+    largest: Record,
+    /// The first that moved too far, and stayed where it was.
+    runaway: Option<Runaway>,
+}
+
+impl Default for Moved {
+    fn default() -> Self {
+        Self {
+            least: Record([f64::INFINITY; 4]),
+            largest: Record([f64::NEG_INFINITY; 4]),
+            runaway: None,
+        }
+    }
+}
+
+impl Moved {
+    /// The same of all stretches, in their order.
+    pub(super) fn travel(stretches: impl Iterator<Item = Self>) -> Result<Travel, Runaway> {
+        let mut all = Self::default();
+        for moved in stretches {
+            for axis in 0..3 {
+                all.least.0[axis] = all.least.0[axis].min(moved.least.0[axis]);
+                all.largest.0[axis] = all.largest.0[axis].max(moved.largest.0[axis]);
+            }
+            all.runaway = all.runaway.or(moved.runaway);
+        }
+        if let Some(runaway) = all.runaway {
+            return Err(runaway);
+        }
+        let [least_x, least_y, least_z, _] = all.least.0;
+        let [largest_x, largest_y, largest_z, _] = all.largest.0;
+        if least_z > largest_z {
+            return Ok(Travel::default());
+        }
+        let x = largest_x.max(-least_x);
+        let y = largest_y.max(-least_y);
+        Ok(Travel {
+            lateral: (x * x + y * y).sqrt(),
+            axial: largest_z - least_z,
+        })
+    }
+}
+
+impl Spheres {
+    /// Makes ready for a pass; answers by which formulas it moves.
+    pub(super) fn prepare_to_move(&mut self, integrator: Integrator, stage: Stage) -> Integrator {
+        let number = self.number();
+        if stage != Stage::Last {
+            self.acceleration_before.resize(number, Record::ZERO);
+            self.angular_acceleration_before
+                .resize(number, Record::ZERO);
+        }
+        if integrator == Integrator::AdamsBashforth && self.velocity_before.len() != number {
+            // Without a past: the first step moves as velocity Verlet does.
+            self.velocity_before.clone_from(&self.velocity);
+            self.turning_before.clone_from(&self.turning);
+            return Integrator::Verlet;
+        }
+        integrator
+    }
+}
+
+/// A pass over a stretch of spheres, all grains or all of the wall.
 pub(super) struct Motion<'a> {
-    pub(super) spheres: &'a mut Spheres,
+    pub(super) spheres: SpheresMut<'a>,
+    pub(super) of_grains: bool,
     pub(super) integrator: Integrator,
     pub(super) stage: Stage,
     /// Taken off the force on each sphere of the wall.
@@ -59,38 +127,21 @@ pub(super) struct Motion<'a> {
 }
 
 impl Work for Motion<'_> {
-    type Answer = Result<Travel, Runaway>;
+    type Answer = Moved;
 
     #[inline(always)]
-    fn run<M: Machine>(self) -> Self::Answer {
-        let verlet = Verlet::with_step(self.time_step);
-        let spheres = &mut *self.spheres;
-        let number = spheres.number();
-        if self.stage != Stage::Last {
-            let before = &mut spheres.acceleration_before;
-            before.resize(number, Record::ZERO);
-            let before = &mut spheres.angular_acceleration_before;
-            before.resize(number, Record::ZERO);
-        }
+    fn run<M: Machine>(self) -> Moved {
+        let step = self.time_step;
         match self.integrator {
-            Integrator::Verlet => self.at_stage::<M, _>(verlet),
-            Integrator::AdamsBashforth if spheres.velocity_before.len() != number => {
-                // Without a past: the first step moves as velocity Verlet does.
-                spheres.velocity_before.clone_from(&spheres.velocity);
-                spheres.turning_before.clone_from(&spheres.turning);
-                self.at_stage::<M, _>(verlet)
-            }
-            Integrator::AdamsBashforth => {
-                let step = self.time_step;
-                self.at_stage::<M, _>(AdamsBashforth { step })
-            }
+            Integrator::Verlet => self.at_stage::<M, _>(Verlet::with_step(step)),
+            Integrator::AdamsBashforth => self.at_stage::<M, _>(AdamsBashforth { step }),
         }
     }
 }
 
 impl Motion<'_> {
     #[inline(always)]
-    fn at_stage<M: Machine, S: Scheme<Quad<M>>>(mut self, scheme: S) -> Result<Travel, Runaway> {
+    fn at_stage<M: Machine, S: Scheme<Quad<M>>>(mut self, scheme: S) -> Moved {
         match self.stage {
             Stage::First => self.pass::<M, S, true, true>(scheme),
             Stage::Between => self.pass::<M, S, false, true>(scheme),
@@ -103,28 +154,33 @@ impl Motion<'_> {
     fn pass<M: Machine, S: Scheme<Quad<M>>, const FIRST: bool, const MOVES: bool>(
         &mut self,
         scheme: S,
-    ) -> Result<Travel, Runaway> {
-        let grains = self.spheres.grains;
-        let number = self.spheres.number();
+    ) -> Moved {
         let mut extremes = Extremes::<M>::none();
-        let mean = self.mean_wall_force;
-        // Nothing added leaves even the sign of a zero as it is.
-        let pushed = (self.body_force != 0.0).then_some(self.body_force);
-        let (on_grains, on_wall) = ((Record::ZERO, pushed), (mean, None));
-        self.go_on::<M, S, FIRST, MOVES, false>(&scheme, 0..grains, on_grains, &mut extremes)?;
-        self.go_on::<M, S, FIRST, MOVES, false>(&scheme, grains..number, on_wall, &mut extremes)?;
-        if self.rotates {
-            let torque = (Record::ZERO, None);
-            self.go_on::<M, S, FIRST, MOVES, true>(&scheme, 0..grains, torque, &mut extremes)?;
+        if self.of_grains {
+            // Nothing added leaves even the sign of a zero as it is.
+            let pushed = (self.body_force != 0.0).then_some(self.body_force);
+            let on_grains = (Record::ZERO, pushed);
+            self.go_on::<M, S, FIRST, MOVES, false>(&scheme, on_grains, &mut extremes);
+            if self.rotates {
+                let torque = (Record::ZERO, None);
+                self.go_on::<M, S, FIRST, MOVES, true>(&scheme, torque, &mut extremes);
+            }
+        } else {
+            let on_wall = (self.mean_wall_force, None);
+            self.go_on::<M, S, FIRST, MOVES, false>(&scheme, on_wall, &mut extremes);
+            if !MOVES {
+                // The spheres of a wall do not rotate, whatever torques contacts wrote there.
+                self.spheres.spin.force.fill(Record::ZERO);
+            }
         }
-        if !MOVES {
-            // The spheres of a wall do not rotate, whatever torques contacts wrote there.
-            self.spheres.torque[grains..].fill(Record::ZERO);
+        Moved {
+            least: extremes.least.record(),
+            largest: extremes.largest.record(),
+            runaway: extremes.runaway,
         }
-        Ok(extremes.travel())
     }
 
-    /// Moves a range of spheres, or turns them: `mean` taken off the force (or torque) on each and `body_force` added to its
+    /// Moves the spheres, or turns them: `mean` taken off the force (or torque) on each and `body_force` added to its
     /// acceleration.
     #[inline(always)]
     fn go_on<
@@ -136,40 +192,26 @@ impl Motion<'_> {
     >(
         &mut self,
         scheme: &S,
-        range: core::ops::Range<usize>,
         (mean, body_force): (Record, Option<f64>),
         extremes: &mut Extremes<M>,
-    ) -> Result<(), Runaway> {
+    ) {
         let (limit_squared, length) = (self.limit * self.limit, self.length);
-        let (count, body) = (range.len(), range.start);
         let mean = mean.quad::<M::Quads>();
         let push = body_force.map(|push| Record([0.0, 0.0, push, 0.0]));
         let push = push.as_ref().map(Record::quad);
-        let spheres = &mut *self.spheres;
-        let position = &mut spheres.position[range.clone()][..count];
-        let (velocity, force, inverse_mass, before, velocity_before) = if TURNS {
-            (
-                &mut spheres.turning,
-                &mut spheres.torque,
-                &spheres.inverse_inertia,
-                &mut spheres.angular_acceleration_before,
-                &mut spheres.turning_before,
-            )
-        } else {
-            (
-                &mut spheres.velocity,
-                &mut spheres.force,
-                &spheres.inverse_mass,
-                &mut spheres.acceleration_before,
-                &mut spheres.velocity_before,
-            )
+        let body = self.spheres.first;
+        let count = self.spheres.position.len();
+        let position = &mut self.spheres.position[..count];
+        let degrees = match TURNS {
+            true => &mut self.spheres.spin,
+            false => &mut self.spheres.line,
         };
-        let velocity = &mut velocity[range.clone()][..count];
-        let force = &mut force[range.clone()][..count];
-        let inverse_mass = &inverse_mass[range.clone()][..count];
-        let before = &mut before[range.clone()][..count];
+        let velocity = &mut degrees.velocity[..count];
+        let force = &mut degrees.force[..count];
+        let inverse_mass = &degrees.inverse[..count];
+        let before = &mut degrees.acceleration_before[..count];
         let velocity_before = match S::TWO_STEP && MOVES {
-            true => &mut velocity_before[range][..count],
+            true => &mut degrees.velocity_before[..count],
             false => &mut [],
         };
         for k in 0..count {
@@ -199,10 +241,11 @@ impl Motion<'_> {
                 // A comparison with NaN is false: written so that NaN is caught.
                 let in_reach = squared <= limit_squared;
                 if !in_reach {
-                    return Err(Runaway {
+                    extremes.runaway = extremes.runaway.or(Some(Runaway {
                         body: body + k,
                         displacement: squared.sqrt(),
-                    });
+                    }));
+                    continue;
                 }
                 extremes.add(by);
                 position[k] = (position[k].quad() + by).record();
@@ -221,15 +264,15 @@ impl Motion<'_> {
             before[k] = acceleration.record();
             force[k] = Record::ZERO;
         }
-        Ok(())
     }
 }
 
-/// Least and largest displacement along each axis.
+/// Least and largest displacement along each axis, and the first sphere that would go too far.
 #[derive(Clone, Copy)]
 struct Extremes<M: Machine> {
     least: Quad<M>,
     largest: Quad<M>,
+    runaway: Option<Runaway>,
 }
 
 impl<M: Machine> Extremes<M> {
@@ -238,6 +281,7 @@ impl<M: Machine> Extremes<M> {
         Self {
             least: Quad::<M>::splat(f64::INFINITY),
             largest: Quad::<M>::splat(f64::NEG_INFINITY),
+            runaway: None,
         }
     }
 
@@ -245,20 +289,5 @@ impl<M: Machine> Extremes<M> {
     fn add(&mut self, by: Quad<M>) {
         self.least = self.least.min(by);
         self.largest = self.largest.max(by);
-    }
-
-    #[inline(always)]
-    fn travel(&self) -> Travel {
-        let [least_x, least_y, least_z, _] = self.least.record().0;
-        let [largest_x, largest_y, largest_z, _] = self.largest.record().0;
-        if least_z > largest_z {
-            return Travel::default();
-        }
-        let x = largest_x.max(-least_x);
-        let y = largest_y.max(-least_y);
-        Travel {
-            lateral: (x * x + y * y).sqrt(),
-            axial: largest_z - least_z,
-        }
     }
 }

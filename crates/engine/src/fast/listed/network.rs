@@ -5,8 +5,9 @@
 
 use peristalsis_physics::real::{Real, Vector};
 
+use super::book::{Book, Terms};
 use super::record::{self, Record};
-use super::spheres::Spheres;
+use super::spheres::{ForcesMut, Moving};
 use crate::fast::columns::Columns;
 use crate::fast::lanes::{LANES, LaneVector, Lanes, Mask, Quad};
 use crate::fast::machine::{Machine, Work};
@@ -96,63 +97,92 @@ impl Rows {
     }
 }
 
-/// Adds all forces on the spheres of the wall except contact forces, which must be there already; answers the mean force
-/// that is still to be taken off each sphere.
+/// Room for a stretch of rings, and what their forces and velocities come to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Rings {
+    rows: Rows,
+    /// Sums of the forces on the spheres of each ring, and of their velocities.
+    of_rings: Vec<[Record; 2]>,
+    /// Where there are threads.
+    pub(super) terms: Terms,
+}
+
+/// Adds all forces on the spheres of a stretch of rings except contact forces, which must be there already, and the mean
+/// force that is taken off all.
 pub(super) struct WallForces<'a> {
     pub(super) wall: &'a ElasticWall,
-    pub(super) rows: &'a mut Rows,
-    pub(super) spheres: &'a mut Spheres,
-    pub(super) tally: &'a mut Tally,
+    pub(super) rings: &'a mut Rings,
+    pub(super) spheres: Moving<'a>,
+    pub(super) forces: ForcesMut<'a>,
+    /// Where the sums go at once; without it they become the terms of the rings.
+    pub(super) tally: Option<&'a mut Tally>,
 }
 
 impl Work for WallForces<'_> {
-    type Answer = Record;
+    type Answer = ();
 
     #[inline(always)]
-    fn run<M: Machine>(self) -> Record {
-        let Self {
-            wall,
-            rows,
-            spheres,
-            tally,
-        } = self;
+    fn run<M: Machine>(mut self) {
+        self.rings.terms.clear();
+        match self.tally.take() {
+            Some(tally) => {
+                let mut sums = Sums::<M>::default();
+                self.add::<M>(&mut sums);
+                sums.add_to(tally);
+            }
+            None => {
+                let mut terms = core::mem::take(&mut self.rings.terms);
+                self.add::<M>(&mut terms);
+                self.rings.terms = terms;
+            }
+        }
+    }
+}
+
+impl WallForces<'_> {
+    #[inline(always)]
+    fn add<M: Machine>(&mut self, book: &mut impl Book<M>) {
+        let wall = self.wall;
+        let Rings { rows, of_rings, .. } = &mut *self.rings;
+        let Moving {
+            grains,
+            position,
+            velocity,
+            ..
+        } = self.spheres;
         let lattice = wall.lattice();
-        let (per_ring, rings) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
-        let first = spheres.grains;
+        let (per_ring, all) = (lattice.spheres_per_ring as usize, lattice.rings() as usize);
         if rows.cos[0].len() != per_ring.next_multiple_of(LANES) || rows.place.x.is_empty() {
             rows.resize(wall);
         }
-        let net_force = wall.parameters().network.tethers.net_force;
-        let mut sums = Sums::<M>::default();
         let nothing = Quad::<M>::splat(0.0);
-        let (mut total_force, mut total_velocity) = (nothing, nothing);
-        let range = |ring: usize| first + ring * per_ring..first + (ring + 1) * per_ring;
+        let range = |ring: usize| grains + ring * per_ring..grains + (ring + 1) * per_ring;
+        let first = (self.forces.first - grains) / per_ring;
+        of_rings.clear();
 
-        // Forces of the bonds of the last ring on the first.
-        let last = range(rings - 1);
-        rows.place.fill_ring::<M>(&spheres.position[last.clone()]);
-        rows.velocity.fill_ring::<M>(&spheres.velocity[last]);
-        rows.place_above.fill_ring::<M>(&spheres.position[range(0)]);
-        rows.velocity_above
-            .fill_ring::<M>(&spheres.velocity[range(0)]);
-        bonds(wall, rows, 1, &mut Sums::<M>::default());
-        for ring in 0..rings {
+        // Forces of the bonds of the ring below on the first.
+        let below = range((first + all - 1) % all);
+        rows.place.fill_ring::<M>(&position[below.clone()]);
+        rows.velocity.fill_ring::<M>(&velocity[below]);
+        rows.place_above.fill_ring::<M>(&position[range(first)]);
+        rows.velocity_above.fill_ring::<M>(&velocity[range(first)]);
+        bonds(wall, rows, (first + 1) % 2, &mut Sums::<M>::default());
+        let rings = self.forces.force.chunks_exact_mut(per_ring);
+        for (ring, forces) in (first..).zip(rings) {
             core::mem::swap(&mut rows.place, &mut rows.place_above);
             core::mem::swap(&mut rows.velocity, &mut rows.velocity_above);
-            let above = range(if ring + 1 == rings { 0 } else { ring + 1 });
-            rows.place_above
-                .fill_ring::<M>(&spheres.position[above.clone()]);
-            rows.velocity_above.fill_ring::<M>(&spheres.velocity[above]);
+            let above = range((ring + 1) % all);
+            rows.place_above.fill_ring::<M>(&position[above.clone()]);
+            rows.velocity_above.fill_ring::<M>(&velocity[above]);
             let here = range(ring);
-            for (turns, place) in rows.turns.iter_mut().zip(&spheres.position[here.clone()]) {
+            for (turns, place) in rows.turns.iter_mut().zip(&position[here.clone()]) {
                 *turns = place.0[3];
             }
             carry::<M>(rows, ring % 2, per_ring);
-            bonds(wall, rows, ring % 2, &mut sums);
-            tethers_and_drive(wall, rows, ring, &mut sums);
+            bonds(wall, rows, ring % 2, book);
+            tethers_and_drive(wall, rows, ring, book);
             let (mut ring_force, mut ring_velocity) = (nothing, nothing);
-            let forces = &mut spheres.force[here.clone()];
-            let velocities = &spheres.velocity[here];
+            let velocities = &velocity[here];
             for (k, (force, velocity)) in forces.iter_mut().zip(velocities).enumerate() {
                 let more = &rows.force;
                 let more = Record([more.x[k + 1], more.y[k + 1], more.z[k + 1], 0.0]);
@@ -161,29 +191,51 @@ impl Work for WallForces<'_> {
                 ring_force = ring_force + whole;
                 ring_velocity = ring_velocity + velocity.quad();
             }
-            if net_force == NetForce::RemovedPerRing {
+            if wall.parameters().network.tethers.net_force == NetForce::RemovedPerRing {
                 let mean = ring_force * (1.0 / per_ring as f64);
                 for force in forces.iter_mut() {
                     *force = (force.quad() - mean).record();
                 }
-                tally.keep_power -= dot::<M>(mean, ring_velocity);
             }
-            total_force = total_force + ring_force;
-            total_velocity = total_velocity + ring_velocity;
+            of_rings.push([ring_force.record(), ring_velocity.record()]);
         }
-        sums.add_to(tally);
-        if net_force != NetForce::Removed {
-            return Record::ZERO;
-        }
-        let mean = total_force * (1.0 / (rings * per_ring) as f64);
-        tally.keep_power -= dot::<M>(mean, total_velocity);
-        mean.record()
     }
 }
 
-#[inline(always)]
-fn dot<M: Machine>(one: Quad<M>, other: Quad<M>) -> f64 {
-    one.record().vector().dot(other.record().vector())
+/// Adds the power of the mean force that is taken off the spheres of the wall; answers what of it is still to be taken off
+/// each.
+pub(super) fn mean_force<'a>(
+    wall: &ElasticWall,
+    stretches: impl Iterator<Item = &'a Rings>,
+    tally: &mut Tally,
+) -> Record {
+    let lattice = wall.lattice();
+    let net_force = wall.parameters().network.tethers.net_force;
+    let spheres = match net_force {
+        NetForce::Free => return Record::ZERO,
+        NetForce::RemovedPerRing => lattice.spheres_per_ring as usize,
+        NetForce::Removed => lattice.spheres(),
+    };
+    let mean = |force: Record| Record(force.0.map(|force| force * (1.0 / spheres as f64)));
+    let mut remove = |force: Record, velocity: Record| {
+        tally.keep_power -= mean(force).vector().dot(velocity.vector());
+    };
+    let rings = stretches.flat_map(|stretch| &stretch.of_rings);
+    if net_force == NetForce::RemovedPerRing {
+        rings.for_each(|[force, velocity]| remove(*force, *velocity));
+        return Record::ZERO;
+    }
+    let mut total = [Record::ZERO; 2];
+    for of_ring in rings {
+        for (total, of_ring) in total.iter_mut().zip(of_ring) {
+            for (total, of_ring) in total.0.iter_mut().zip(of_ring.0) {
+                *total += of_ring;
+            }
+        }
+    }
+    let [force, velocity] = total;
+    remove(force, velocity);
+    mean(force)
 }
 
 /// Turns the forces of the last ring's bonds into forces on this ring, whose parity is `parity`.
@@ -216,7 +268,7 @@ impl<M: Machine> Bond<M> {
         (place, velocity): (LaneVector<M>, LaneVector<M>),
         (place_there, velocity_there): (LaneVector<M>, LaneVector<M>),
         valid: Mask<M>,
-        sums: &mut Sums<M>,
+        [energy, dissipation]: &mut [Lanes<M>; 2],
     ) -> LaneVector<M> {
         let zero = Lanes::splat(0.0);
         let separation = record::periodic(place - place_there, self.length);
@@ -224,12 +276,11 @@ impl<M: Machine> Bond<M> {
         let inverse = Lanes::splat(1.0) / distance;
         let stretch = distance - self.natural_length;
         let mut pull = self.stiffness * stretch;
-        let energy = Lanes::splat(0.5) * (pull * stretch);
-        sums.network_energy += Lanes::select(valid, energy, zero);
+        *energy = Lanes::select(valid, Lanes::splat(0.5) * (pull * stretch), zero);
         if let Some(damping) = self.damping {
             let rate = (velocity - velocity_there).dot(separation) * inverse;
             pull += damping * rate;
-            sums.network_dissipation += Lanes::select(valid, damping * (rate * rate), zero);
+            *dissipation = Lanes::select(valid, damping * (rate * rate), zero);
         }
         separation * (-(pull * inverse))
     }
@@ -237,7 +288,7 @@ impl<M: Machine> Bond<M> {
 
 /// Forces of the bonds of a ring of parity `parity`.
 #[inline(always)]
-fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &mut Sums<M>) {
+fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, book: &mut impl Book<M>) {
     let parameters = wall.parameters();
     let per_ring = parameters.lattice.spheres_per_ring as usize;
     let network = &parameters.network;
@@ -260,9 +311,11 @@ fn bonds<M: Machine>(wall: &ElasticWall, rows: &mut Rows, parity: usize, sums: &
             rows.place_above.load(start + parity + 1),
             rows.velocity_above.load(start + parity + 1),
         );
-        let along = bond.force(here, next, valid, sums);
-        let first = bond.force(here, first, valid, sums);
-        let second = bond.force(here, second, valid, sums);
+        let mut terms = [[Lanes::splat(0.0); 2]; 3];
+        let along = bond.force(here, next, valid, &mut terms[0]);
+        let first = bond.force(here, first, valid, &mut terms[1]);
+        let second = bond.force(here, second, valid, &mut terms[2]);
+        book.bonds(terms);
         rows.along.store(start + 1, along);
         rows.first.store(start + 1, first);
         rows.second.store(start + 1, second);
@@ -276,7 +329,7 @@ fn tethers_and_drive<M: Machine>(
     wall: &ElasticWall,
     rows: &mut Rows,
     ring: usize,
-    sums: &mut Sums<M>,
+    book: &mut impl Book<M>,
 ) {
     let parameters = wall.parameters();
     let lattice = &parameters.lattice;
@@ -318,7 +371,6 @@ fn tethers_and_drive<M: Machine>(
                 + azimuthal * away_across * away_across
                 + axial * away_axial * away_axial)
             - balance * away_radial;
-        sums.keep_energy += Lanes::select(valid, keep_energy, zero);
         let phase = Lanes::splat(parameters.heading) * place.z / Lanes::splat(wavelength)
             - Lanes::splat(wall.cycles);
         let push = Lanes::splat(wall.amplitude) * parameters.waveform.value_by_series(phase);
@@ -335,8 +387,12 @@ fn tethers_and_drive<M: Machine>(
         };
         let (drive_x, drive_y) = (push * drive_cos, push * drive_sin);
         let drive_power = drive_x * velocity.x + drive_y * velocity.y;
-        sums.drive_power += Lanes::select(valid, drive_power, zero);
-        sums.drag_dissipation += Lanes::select(valid, drag * velocity.squared(), zero);
+        let dissipation = drag * velocity.squared();
+        book.tethers([
+            Lanes::select(valid, keep_energy, zero),
+            Lanes::select(valid, drive_power, zero),
+            Lanes::select(valid, dissipation, zero),
+        ]);
         let tethers_and_drive = LaneVector::new(
             drive_x + (outward * cos - across * sin),
             drive_y + (outward * sin + across * cos),

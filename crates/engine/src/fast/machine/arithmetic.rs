@@ -8,7 +8,7 @@ pub(crate) const LANES: usize = 8;
 
 /// N double precision numbers in registers, and the instructions for them.
 pub(crate) trait Arithmetic<const N: usize>: Copy + Debug + Send + Sync + 'static {
-    type Numbers: Copy;
+    type Numbers: Copy + Send + Sync;
 
     fn splat(value: f64) -> Self::Numbers;
     fn load(values: &[f64; N]) -> Self::Numbers;
@@ -24,7 +24,7 @@ pub(crate) trait Arithmetic<const N: usize>: Copy + Debug + Send + Sync + 'stati
 
 /// Eight truth values; bit l is that of lane l.
 pub(crate) trait Truths:
-    Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
+    Copy + Send + Sync + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self>
 {
     fn from_bits(bits: u8) -> Self;
     fn to_bits(self) -> u8;

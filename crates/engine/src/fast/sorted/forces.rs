@@ -36,7 +36,7 @@ impl Sorted {
         };
         let (tiles, of_tiles) = (&self.tiles, &mut self.of_tiles);
         let mut tally = Tally::default();
-        if self.pool.is_some() {
+        if self.threads.several() {
             let work = of_tiles.par_iter_mut().zip(tiles);
             work.with_max_len(AT_A_TIME).for_each(one);
             let stretches = self.force.par_tiles().zip(&self.reached_by).enumerate();
@@ -73,13 +73,13 @@ impl Sorted {
 
     /// Finds out which stretches of places the tiles reach, so that threads can add up a stretch each.
     pub(super) fn share_out(&mut self) {
-        let number = if self.pool.is_some() {
+        let number = if self.threads.several() {
             self.tiles.len()
         } else {
             1
         };
         self.of_tiles.resize_with(number, OfTile::default);
-        if self.pool.is_none() {
+        if !self.threads.several() {
             return;
         }
         let stretches = self.origin.len().div_ceil(TILE);

@@ -26,7 +26,7 @@ impl Sorted {
             position,
             tiles,
             instructions,
-            pool,
+            threads,
             ..
         } = self;
         let mut used = 0;
@@ -56,7 +56,7 @@ impl Sorted {
                 cutoff,
             });
         };
-        if pool.is_some() {
+        if threads.several() {
             let tiles = tiles[..used].par_iter_mut();
             tiles.with_max_len(AT_A_TIME).for_each(one);
         } else {

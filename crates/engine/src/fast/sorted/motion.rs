@@ -51,7 +51,7 @@ impl Sorted {
             motion,
             per_mass,
         };
-        if self.pool.is_some() {
+        if self.threads.several() {
             let stretches = self.moved.par_iter_mut().zip(self.position.par_tiles());
             stretches
                 .zip(self.velocity.par_tiles())

@@ -176,7 +176,7 @@ impl Sorted {
 
     /// Makes the order anew.
     pub(super) fn sort(&mut self) {
-        let parallel = self.pool.is_some();
+        let parallel = self.threads.several();
         if parallel && !self.strips.several() {
             self.note_row_in_pieces();
         } else {
@@ -221,7 +221,7 @@ impl Sorted {
             rows: &self.rows,
             keys: &self.scratch.keys,
             places,
-            parallel: self.pool.is_some(),
+            parallel: self.threads.several(),
         };
         for columns in [
             &mut self.position,

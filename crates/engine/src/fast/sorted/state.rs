@@ -1,9 +1,6 @@
 //! The grains in their order, and whether this kernel serves them.
 
-use std::sync::Arc;
-
 use peristalsis_physics::method::Integrator;
-use rayon::ThreadPool;
 
 use super::candidates::MOST_RINGS;
 use super::pairs::PairConstants;
@@ -14,6 +11,7 @@ use super::wall::{WallTable, rings_in_reach};
 use crate::bodies::Bodies;
 use crate::fast::columns::Columns;
 use crate::fast::machine::Instructions;
+use crate::fast::threads::Threads;
 use crate::parameters::Parameters;
 use crate::wall::Wall;
 
@@ -50,8 +48,7 @@ pub(crate) struct Sorted {
     pub(super) moved: Vec<Moved>,
     pub(super) scratch: Scratch,
     pub(super) instructions: Instructions,
-    /// Where there is to be more than one thread.
-    pub(super) pool: Option<Arc<ThreadPool>>,
+    pub(super) threads: Threads,
 }
 
 impl Sorted {
@@ -94,18 +91,9 @@ impl Sorted {
     }
 
     /// Computes with the given instructions and threads from now on; neither changes a bit of the results.
-    pub(crate) fn compute_with(
-        &mut self,
-        instructions: Instructions,
-        pool: Option<Arc<ThreadPool>>,
-    ) {
+    pub(crate) fn compute_with(&mut self, instructions: Instructions, threads: Threads) {
         self.instructions = instructions;
-        self.pool = pool;
+        self.threads = threads;
         self.share_out();
-    }
-
-    /// The threads, where there is to be more than one.
-    pub(crate) fn pool(&self) -> Option<&ThreadPool> {
-        self.pool.as_deref()
     }
 }

@@ -80,17 +80,14 @@ impl Sorted {
             body_force,
             limit,
         };
-        let pool = self.pool.clone();
+        let threads = self.threads.clone();
         let mut stepping = Stepping {
             sorted: self,
             law,
             motion,
             phase: Phase::Drift,
         };
-        let outcome = match pool {
-            Some(pool) => pool.install(|| course.advance(&mut stepping, steps)),
-            None => course.advance(&mut stepping, steps),
-        };
+        let outcome = threads.install(|| course.advance(&mut stepping, steps));
         self.store(bodies);
         outcome
     }

@@ -1,0 +1,64 @@
+//! Sums over the contacts of grains with what of the wall no force moves, at once or later.
+
+use glam::DVec3;
+use peristalsis_physics::contact::ContactForce;
+
+use crate::ledger::Tally;
+
+/// What a contact of a grain with the wall adds to the sums.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct WallTerms {
+    pub(crate) answer: ContactForce,
+    pub(crate) overlap: f64,
+    pub(crate) wall_velocity: DVec3,
+}
+
+/// Takes the terms of the sums, contact after contact.
+pub(crate) trait WallSums {
+    fn add(&mut self, terms: &WallTerms);
+    /// The energy of a tangential spring whose contact has ended.
+    fn add_ended(&mut self, energy: f64);
+}
+
+impl WallSums for Tally {
+    #[inline(always)]
+    fn add(&mut self, terms: &WallTerms) {
+        let force = terms.answer.force;
+        self.add_contact(&terms.answer, terms.overlap);
+        self.wall_contacts += 1;
+        self.wall_power += force.dot(terms.wall_velocity);
+        self.wall_axial_force += force.z;
+    }
+
+    #[inline(always)]
+    fn add_ended(&mut self, energy: f64) {
+        self.history_reset += energy;
+    }
+}
+
+/// Terms that wait for those of the grains before.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Waiting {
+    terms: Vec<WallTerms>,
+    ended: Vec<f64>,
+}
+
+impl Waiting {
+    /// Adds all terms, and forgets them.
+    pub(crate) fn add_to(&mut self, tally: &mut Tally) {
+        self.terms.drain(..).for_each(|terms| tally.add(&terms));
+        self.ended
+            .drain(..)
+            .for_each(|energy| tally.add_ended(energy));
+    }
+}
+
+impl WallSums for Waiting {
+    fn add(&mut self, terms: &WallTerms) {
+        self.terms.push(*terms);
+    }
+
+    fn add_ended(&mut self, energy: f64) {
+        self.ended.push(energy);
+    }
+}
