@@ -8,9 +8,9 @@ use super::plain::Plain;
 
 /// Two numbers in one register, and the instructions for them.
 pub(crate) trait Pair: Copy + Debug + Default + PartialEq + Send + Sync + 'static {
-    type Two: Copy;
+    type Two: Copy + Send + Sync;
     /// All bits of a lane are its truth value.
-    type Truth: Copy;
+    type Truth: Copy + Send + Sync;
 
     fn splat(value: f64) -> Self::Two;
     fn load(values: &[f64; 2]) -> Self::Two;
