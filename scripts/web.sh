@@ -19,11 +19,12 @@ npm run check
 npm run web
 cd ..
 assets=crates/viewer/assets
-cp "$assets/viewer.css" "$assets/icon.svg" target/web/
-# What the server says in a header, the page says itself.
-policy="default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self'; connect-src 'self'; \
-img-src 'self' data: blob:; base-uri 'none'; form-action 'none'"
-sed -e "s|<body>|<body data-engine=\"page\">|" \
-    -e "s|<meta charset=\"utf-8\">|&\n<meta http-equiv=\"Content-Security-Policy\" content=\"$policy\">|" \
-    "$assets/tube.html" >target/web/index.html
+cp "$assets/viewer.css" "$assets/icon.svg" README.md VALIDATION.md CITATION.cff LICENSE-MIT docs/images/space-time.png target/web/
+cp crates/python/README.md target/web/python.md
+cp docs/images/viewer.jpg target/web/share.jpg
+# Where nothing can be drawn in space there is a film.
+cp docs/images/jamming.gif target/web/film.gif
+if [ -d target/book ]; then cp -r target/book target/web/book; fi
+# Its address is not known here: SOURCE=https://… just web
+node viewer/web.mjs ${SOURCE:+"$SOURCE"}
 echo "target/web: open it with any static server, such as: python3 -m http.server --directory target/web --bind 127.0.0.1"

@@ -12,6 +12,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
+import { moreChecks } from "./check-more.mjs";
 
 const { values, positionals } = parseArgs({
   allowPositionals: true,
@@ -19,7 +20,7 @@ const { values, positionals } = parseArgs({
 });
 const [program] = positionals;
 const { pictures, only } = values;
-assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,web,many]");
+assert(program, "usage: node check.mjs PROGRAM [--pictures DIR] [--only driving,playing,looks,study,web,many,more,studies,front]");
 const saves = mkdtempSync(join(tmpdir(), "peristalsis-viewer-"));
 const runs = mkdtempSync(join(tmpdir(), "peristalsis-runs-"));
 const desk = { viewport: { width: 1440, height: 900 } };
@@ -32,7 +33,7 @@ async function serve(...view) {
     served.stdout.once("data", (text) => found(String(text).trim()));
     served.once("exit", (code) => lost(new Error(`the program ended with ${code}`)));
   });
-  return { address, end: () => served.kill("SIGINT") };
+  return { address, pid: served.pid, end: () => served.kill("SIGINT") };
 }
 
 /** A run with its trajectory. */
@@ -48,7 +49,7 @@ function record(name, preset, every, ...settings) {
 
 /** A page of it; whatever it complains of is a failure. */
 async function open(browser, address, options, ready = () => window.viewer?.measured.pictures > 0) {
-  const context = await browser.newContext(options);
+  const context = await browser.newContext({ reducedMotion: "reduce", ...options });
   const page = await context.newPage();
   // Without a graphics card a picture may take seconds where others use the machine as well.
   page.setDefaultTimeout(120000);
@@ -111,7 +112,8 @@ async function checkDriving(browser) {
 
   await page.selectOption("#speed", "");
   await page.click("#play");
-  await until(page, () => window.viewer.measured.clock > 3);
+  const { pictures: drawn } = await measured(page);
+  await until(page, (drawn) => window.viewer.measured.clock > 3 && window.viewer.measured.pictures > drawn + 2, drawn);
   const moved = await pixels(page);
   assert.notEqual(moved.sum, still.sum);
 
@@ -134,10 +136,12 @@ async function checkDriving(browser) {
   await page.keyboard.press("Home");
   await until(page, () => document.getElementById("live").dataset.live === "false");
   await page.click("#onward");
+  await page.click("#confirm-yes");
   await until(page, (clock) => window.viewer.measured.clock < clock, newest.clock / 2);
 
   // The grain in the middle, by hand.
   await pick(page, (x, y) => page.mouse.click(x, y));
+  await looks(page);
   await page.check("#marks");
   await shoot(page, "picked");
   await page.keyboard.press("Escape");
@@ -151,6 +155,8 @@ async function checkDriving(browser) {
   end();
 }
 
+/** Opens the menu of looks. */
+const looks = (page) => page.evaluate(() => (document.querySelector("details.more").open = true));
 const isTooWide = (page) => page.evaluate(() => document.documentElement.scrollWidth > innerWidth);
 
 async function checkPlaying(browser) {
@@ -187,7 +193,7 @@ async function checkPlaying(browser) {
   await until(page, () => Math.abs(window.viewer.measured.number - 60) <= 1);
   const ratio = Number((await page.textContent("#ratio")).replace("−", "-"));
   assert(Number.isFinite(ratio), "no flow rate beside the frame");
-  assert.match(await page.textContent("#numbers"), /bottleneck[0-9.]+ d/);
+  assert.match(await page.textContent("#numbers"), /narrowest place w[0-9.]+ d/);
   await pick(page, (x, y) => page.mouse.click(x, y));
   await shoot(page, "recording");
 
@@ -279,6 +285,7 @@ async function checkLooks(browser) {
     assert((await pixels(page)).edges > 0.005);
     await page.locator("#play").click();
     await page.waitForTimeout(3000);
+    await looks(page);
     for (const look of ["glass", "closed", "hidden", "cut open"]) {
       await page.selectOption("#wall", look);
       await page.waitForTimeout(300);
@@ -428,14 +435,14 @@ async function checkStudy(browser) {
 
 /** Where `just web` puts the page that computes by itself. */
 const WEB = new URL("../target/web/", import.meta.url);
-const KINDS = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", wasm: "application/wasm" };
+const KINDS = { html: "text/html", js: "text/javascript", css: "text/css", svg: "image/svg+xml", png: "image/png", jpg: "image/jpeg", gif: "image/gif", wasm: "application/wasm" };
 
 /** Its files on any static server. */
 async function serveFiles() {
   const server = createServer((request, response) => {
     const name = request.url === "/" ? "index.html" : request.url.slice(1);
     const file = new URL(name, WEB);
-    if (!/^[a-z.]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
+    if (!/^[A-Za-z.-]+$/.test(name) || !existsSync(file)) return response.writeHead(404).end();
     response.writeHead(200, { "content-type": KINDS[name.split(".").at(-1)] });
     response.end(readFileSync(file));
   });
@@ -481,13 +488,14 @@ async function checkWeb(browser) {
     const { clock } = await measured(page);
     await until(page, (clock) => window.viewer.measured.clock > clock + 0.5, clock);
     assert.notEqual((await pixels(page)).sum, still.sum);
+    await until(page, () => document.getElementById("pace").textContent !== "");
+    const pace = await page.textContent("#pace");
     const key = preset === "frictional" ? "force_amplitude" : "width";
     const before = await page.inputValue(`#number-${key}`);
     await page.fill(`#number-${key}`, String(0.9 * Number(before)));
     await page.press(`#number-${key}`, "Enter");
     await until(page, ({ key, before }) => Math.abs(window.viewer.driven[key] / before - 0.9) < 1e-3, { key, before: Number(before) });
     await page.click("#play");
-    const pace = await page.textContent("#pace");
     console.log(`${preset} in the browser itself: ${pace}`);
     await shoot(page, `web-${preset}`);
 
@@ -572,7 +580,8 @@ const browser = await chromium.launch({
   executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
   args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
 });
-const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, web: checkWeb, many: measureMany };
+const checks = { driving: checkDriving, playing: checkPlaying, looks: checkLooks, study: checkStudy, web: checkWeb, many: measureMany,
+  ...moreChecks({ serve, open, measured, until, shoot, pixels, serveFiles, desk, phone, WEB }) };
 try {
   for (const [name, check] of Object.entries(checks)) if (only === undefined || only.split(",").includes(name)) await check(browser);
   console.log("the viewer works");

@@ -20,10 +20,18 @@ export interface Ink {
   stageEdge: string;
 }
 
+let known: Ink | null = null;
+
+/** Reads the colours of the page anew at the next look. */
+export function forgetInk(): void {
+  known = null;
+}
+
 export function ink(): Ink {
+  if (known) return known;
   const style = getComputedStyle(document.documentElement);
   const read = (name: string) => style.getPropertyValue(`--${name}`).trim();
-  return {
+  known = {
     text: read("text"),
     faint: read("faint"),
     line: read("hairline"),
@@ -35,6 +43,7 @@ export function ink(): Ink {
     stageMiddle: read("stage-middle"),
     stageEdge: read("stage-edge"),
   };
+  return known;
 }
 
 /** A linear or logarithmic axis. */
@@ -102,6 +111,17 @@ export interface Layout {
   logarithmic?: boolean;
   /** Whether the vertical axis has a scale. */
   scaled?: boolean;
+  /** What the curves are, above them. */
+  legend?: Entry[];
+}
+
+/** A curve of a legend. */
+export interface Entry {
+  text: string;
+  colour: string;
+  dash?: number[];
+  /** A mark in place of a line, filled or not. */
+  mark?: "full" | "open";
 }
 
 /** A canvas with two axes. */
@@ -111,8 +131,9 @@ export class Chart {
   x = new Axis(0, 1, 0, 1);
   y = new Axis(0, 1, 0, 1);
 
-  constructor(readonly canvas: HTMLCanvasElement) {
-    const context = canvas.getContext("2d");
+  /** `instead` takes the place of the canvas's own context, to draw into a file. */
+  constructor(readonly canvas: HTMLCanvasElement, private readonly instead?: CanvasRenderingContext2D) {
+    const context = instead ?? canvas.getContext("2d");
     if (!context) throw new Error("this browser draws no canvas");
     this.context = context;
   }
@@ -122,13 +143,16 @@ export class Chart {
     const { canvas, context } = this;
     const density = Math.min(3, devicePixelRatio);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight];
-    if (canvas.width !== Math.round(width * density)) canvas.width = Math.round(width * density);
-    if (canvas.height !== Math.round(height * density)) canvas.height = Math.round(height * density);
-    context.setTransform(density, 0, 0, density, 0, 0);
-    context.clearRect(0, 0, width, height);
+    if (!this.instead) {
+      if (canvas.width !== Math.round(width * density)) canvas.width = Math.round(width * density);
+      if (canvas.height !== Math.round(height * density)) canvas.height = Math.round(height * density);
+      context.setTransform(density, 0, 0, density, 0, 0);
+      context.clearRect(0, 0, width, height);
+    }
     context.font = "11px system-ui, sans-serif";
     const left = layout.left ?? 38;
-    this.box = { left, top: 20, width: width - left - 12, height: height - 50 };
+    const above = this.legend(layout.legend ?? [], labels[1], width, colours);
+    this.box = { left, top: above, width: width - left - 12, height: height - above - 30 };
     const { top, width: across, height: high } = this.box;
     this.x = new Axis(...x, left, left + across);
     this.y = new Axis(...y, top + high, top, layout.logarithmic);
@@ -153,6 +177,36 @@ export class Chart {
     context.fillText(labels[1], 2, 8);
     context.textAlign = "right";
     context.fillText(labels[0], left + across, top + high + 24);
+  }
+
+  /** Writes what the curves are beside the name of the vertical axis, in as many lines as it takes; answers where they end. */
+  private legend(entries: Entry[], name: string, width: number, colours: Ink): number {
+    const { context } = this;
+    context.textAlign = "left";
+    context.textBaseline = "middle";
+    let [x, y] = [context.measureText(name).width + 18, 8];
+    for (const { text, colour, dash, mark } of entries) {
+      const room = 24 + context.measureText(text).width;
+      if (x + room > width && x > 2) [x, y] = [2, y + 15];
+      context.strokeStyle = context.fillStyle = colour;
+      context.lineWidth = 2;
+      if (mark) {
+        context.beginPath();
+        context.arc(x + 9, y, 3.2, 0, 2 * Math.PI);
+        if (mark === "full") context.fill();
+        context.lineWidth = 1.2;
+        context.stroke();
+      } else {
+        context.setLineDash(dash ?? []);
+        this.line(x, y, x + 18, y);
+        context.setLineDash([]);
+      }
+      context.fillStyle = colours.text;
+      context.fillText(text, x + 22, y);
+      x += room + 12;
+    }
+    context.lineWidth = 1;
+    return y + 12;
   }
 
   line(x0: number, y0: number, x1: number, y1: number): void {
@@ -194,6 +248,15 @@ export class Chart {
     context.strokeStyle = rim;
     context.lineWidth = 1.5;
     context.stroke();
+  }
+
+  /** Words beside an upright line, below the top. */
+  label(x: number, text: string, side: "left" | "right", colour: string): void {
+    const { context } = this;
+    context.fillStyle = colour;
+    context.textAlign = side === "right" ? "right" : "left";
+    context.textBaseline = "middle";
+    context.fillText(text, this.x.at(x) + (side === "right" ? -4 : 4), this.box.top + 0.35 * this.box.height);
   }
 
   upright(x: number, colour: string): void {

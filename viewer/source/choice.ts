@@ -14,6 +14,11 @@ export interface Choice {
   fixed: Map<string, Value>;
 }
 
+/** Nothing chosen yet. */
+export const untouched = (): Choice => ({
+  study: 0, view: "curves", value: "", x: "", other: "", start: "both", logarithmic: false, fixed: new Map(),
+});
+
 /** The choice that the address keeps; what it does not say is empty. */
 export function read(): Choice {
   const parts = new URLSearchParams(location.hash.slice(1));

@@ -3,7 +3,8 @@ import { type Command, decode, type Frame, type Told } from "./protocol";
 export interface Listener {
   told(message: Told): void;
   frame(frame: Frame): void;
-  lost(): void;
+  /** There is nobody to talk to, for a reason in words. */
+  lost(reason: string): void;
 }
 
 /** The way to what computes the run or reads its recording. */
@@ -30,10 +31,20 @@ export class Server implements Connection {
     socket.binaryType = "arraybuffer";
     socket.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => hear(this.listener, data);
     socket.onclose = () => {
-      this.listener.lost();
+      void this.ask().then((reason) => this.listener.lost(reason));
       setTimeout(() => this.open(), 2000);
     };
     this.socket = socket;
+  }
+
+  /** Why there is no connection: the program is gone, or it says why. */
+  private async ask(): Promise<string> {
+    try {
+      const answer = await fetch("live", { cache: "no-store" });
+      return answer.status === 503 ? await answer.text() : "The connection broke off; it is tried again every two seconds.";
+    } catch {
+      return "The program has ended. What is here can still be looked at; start it again to go on.";
+    }
   }
 }
 
@@ -41,23 +52,31 @@ export class Server implements Connection {
 export interface Wanted {
   preset: string;
   settings: string[];
+  /** Periods a second to begin with. */
+  speed?: number;
 }
 
 /** What the worker is told. */
-export type Asked = { open: Wanted } | { command: Command } | "next";
+export type Asked = { open: Omit<Wanted, "speed"> } | { command: Command } | "next";
 
 /** The engine itself, as WebAssembly in a worker of the page. */
 export class Engine implements Connection {
   private readonly worker = new Worker(new URL("worker.js", import.meta.url), { type: "module" });
 
-  constructor(listener: Listener, wanted: Wanted) {
+  constructor(private readonly listener: Listener, wanted: Wanted) {
     this.worker.onmessage = ({ data }: MessageEvent<string | ArrayBuffer>) => {
-      hear(listener, data);
+      hear(this.listener, data);
       // Frames come one by one, so that a page which is slow to draw does not hold a heap of them.
       if (typeof data !== "string") requestAnimationFrame(() => this.ask("next"));
     };
     this.worker.onerror = ({ message }) => listener.told({ type: "problem", message: message || "the engine cannot be loaded" });
-    this.ask({ open: wanted });
+    this.open(wanted);
+  }
+
+  /** Another tube in place of the one before. */
+  open({ preset, settings, speed }: Wanted): void {
+    this.ask({ open: { preset, settings } });
+    if (speed) this.send({ type: "speed", periods_per_second: speed });
   }
 
   send(command: Command): void {

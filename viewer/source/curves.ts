@@ -90,7 +90,8 @@ export function drawCurves(chart: Chart, curves: Curve[], chosen: Point | null, 
   const places = new Map<Point, [number, number]>();
   const { context } = chart;
   for (const { points, style } of curves)
-    chart.curve(points.map(({ x, value }) => [x, value]), style.colour, 1.6, style.open ? [5, 4] : []);
+    // A lower limit is no place that the curve goes through.
+    chart.curve(points.map(({ x, value, atLeast }) => [x, atLeast ? NaN : value]), style.colour, 1.6, style.open ? [5, 4] : []);
   for (const { points, style } of curves) {
     for (const point of points) {
       const [x, y] = [chart.x.at(point.x), chart.y.at(point.value)];

@@ -1,13 +1,21 @@
-import { colourAt, css, type Field, stops } from "./fields";
+import { FORCE } from "./bands";
+import { written } from "./charts";
+import { type Colour, colourAt, css, type Field, stops } from "./fields";
 import { element } from "./page";
 
-/** The colours of the grains: by lightness alone, or with marks for the sign. */
-export function showField(field: Field, lightness: boolean, marks: boolean): void {
-  const scale = stops(field, lightness);
-  const parts = Array.from({ length: 9 }, (_, k) => css(colourAt(scale, k / 8)));
-  element("bar").style.background = `linear-gradient(90deg, ${parts.join(",")})`;
+/** The colours of the grains, by lightness alone or with marks for the sign, and those of the forces up to the largest. */
+export function showField(field: Field, lightness: boolean, marks: boolean, force: number | null): void {
+  element("bar").style.background = gradient(stops(field, lightness));
+  element("bar-name").textContent = field.name;
   element("bar-from").textContent = field.ends[0];
   element("bar-to").textContent = field.ends[1];
   element("bar-middle").textContent = field.diverging ? "0" : "";
   element("key").hidden = !marks || !field.diverging;
+  element("force-legend").hidden = force === null;
+  element("force-bar").style.background = gradient(FORCE);
+  element("force-to").textContent = force === null ? "" : `${written(force, 2)} m d/t²`;
+}
+
+function gradient(scale: Colour[]): string {
+  return `linear-gradient(90deg, ${Array.from({ length: 9 }, (_, k) => css(colourAt(scale, k / 8))).join(",")})`;
 }

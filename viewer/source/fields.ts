@@ -1,3 +1,4 @@
+import { written } from "./charts";
 import type { Frame, Welcome } from "./protocol";
 
 /** A quantity that colours grains. */
@@ -6,6 +7,10 @@ export interface Field {
   /** Ends of the scale as they are written below it. */
   ends: [string, string];
   diverging: boolean;
+  /** Whether its last value is its first again. */
+  cyclic?: boolean;
+  /** Whether it is made of the contacts, which are sent where they are asked for. */
+  ofContacts?: boolean;
   /** From -1 to 1 where it diverges, from 0 to 1 otherwise. */
   values(frame: Frame, tube: Welcome, into: Float32Array): void;
 }
@@ -14,8 +19,8 @@ const speed = (frame: Frame) => frame.wave_speed || NaN;
 
 export const FIELDS: Record<string, Field> = {
   axial: {
-    name: "axial velocity",
-    ends: ["−c", "c"],
+    name: "axial velocity v_z",
+    ends: ["−c against", "c along"],
     diverging: true,
     values(frame, tube, into) {
       const scale = tube.heading / speed(frame);
@@ -46,6 +51,7 @@ export const FIELDS: Record<string, Field> = {
     name: "place in the wave",
     ends: ["0", "λ"],
     diverging: false,
+    cyclic: true,
     values(frame, tube, into) {
       for (let i = 0; i < into.length; i++) into[i] = inWave(frame, tube, frame.position[3 * i + 2]);
     },
@@ -58,6 +64,31 @@ export const FIELDS: Record<string, Field> = {
       for (let i = 0; i < into.length; i++) into[i] = (frame.diameter[i] - 0.8) / 0.2;
     },
   },
+  coordination: {
+    name: "contacts of a grain",
+    ends: ["0", "12"],
+    diverging: false,
+    ofContacts: true,
+    values(frame, _, into) {
+      into.fill(0);
+      eachContact(frame, (grain) => (into[grain] += 1 / 12));
+    },
+  },
+  pressure: {
+    name: "pressure on a grain",
+    ends: ["0", "p"],
+    diverging: false,
+    ofContacts: true,
+    values(frame, _, into) {
+      // Sum of f r/(3 V), V = pi d^3/6 and r = d/2: f/(pi d^2).
+      into.fill(0);
+      eachContact(frame, (grain, force) => (into[grain] += force / (Math.PI * frame.diameter[grain] ** 2)));
+      const largest = Float32Array.from(into).sort()[Math.floor(0.98 * (into.length - 1))];
+      usual += 0.05 * (largest - usual) || largest;
+      this.ends[1] = `${written(usual, 2)} m/(d t²)`;
+      for (let i = 0; i < into.length; i++) into[i] /= usual || 1;
+    },
+  },
   number: {
     name: "number (to follow mixing)",
     ends: ["first", "last"],
@@ -67,6 +98,18 @@ export const FIELDS: Record<string, Field> = {
     },
   },
 };
+
+/** The pressure that the colours reach to, which follows slowly. */
+let usual = 0;
+
+/** Each contact from the side of each of its grains. */
+function eachContact({ touching, contacts }: Frame, see: (grain: number, force: number) => void): void {
+  for (let k = 0; k < contacts; k++) {
+    const force = touching[6 * k + 5];
+    see(touching[6 * k], force);
+    if (touching[6 * k + 1] >= 0) see(touching[6 * k + 1], force);
+  }
+}
 
 /** Position in the frame of the wave, in wavelengths from 0 to 1. */
 export function inWave(frame: Frame, tube: Welcome, z: number): number {
@@ -80,9 +123,12 @@ const BLUE_RED: Colour[] = [[20, 70, 160], [110, 165, 215], [246, 244, 240], [24
 /** Light rises from end to end, for every eye. */
 const BLUE_YELLOW: Colour[] = [[0, 34, 88], [64, 82, 108], [123, 123, 120], [187, 169, 108], [253, 234, 95]];
 const SEQUENTIAL: Colour[] = [[48, 18, 90], [38, 92, 150], [36, 150, 140], [130, 200, 90], [250, 230, 60]];
+/** Its end is its begin. */
+const ROUND: Colour[] = [[226, 217, 226], [98, 118, 186], [47, 20, 54], [178, 84, 82], [226, 217, 226]];
 
 /** The scale of colours of a field. */
 export function stops(field: Field, lightness: boolean): Colour[] {
+  if (field.cyclic) return ROUND;
   if (lightness) return BLUE_YELLOW;
   return field.diverging ? BLUE_RED : SEQUENTIAL;
 }

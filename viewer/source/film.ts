@@ -1,5 +1,8 @@
 import type { Frame, Row } from "./protocol";
 
+/** Rows that are kept, at most. */
+const ROWS = 8000;
+
 /** Frames in the order of time, and the time series beside them. */
 export abstract class Film {
   rows: Row[] = [];
@@ -42,21 +45,37 @@ export abstract class Film {
     return frames;
   }
 
-  addRows(rows: Row[]): void {
+  /** Takes rows that are new, each with the mean over the period before it. */
+  addRows(rows: Row[], friction: number | null = null): void {
     const newest = this.rows.at(-1)?.number ?? -1;
-    this.rows.push(...rows.filter((row) => row.number > newest));
+    for (const row of rows) {
+      if (row.number <= newest) continue;
+      this.rows.push({ ...row, friction, average: 0 });
+      this.average(this.rows.length - 1);
+    }
+    // Every second of the older half goes.
+    const half = this.rows.length >> 1;
+    if (this.rows.length > ROWS) this.rows = this.rows.filter((_, index) => index >= half || index % 2 === 0);
   }
 
-  /** J/Jmax averaged over the last period before each row. */
-  averages(): number[] {
-    const averages: number[] = [];
-    let first = 0;
-    let sum = 0;
-    this.rows.forEach((row, last) => {
-      sum += row.flow_rate_ratio ?? 0;
-      while (this.rows[first].clock < row.clock - 0.999) sum -= this.rows[first++].flow_rate_ratio ?? 0;
-      averages.push(sum / (last - first + 1));
-    });
-    return averages;
+  private average(last: number): void {
+    let [sum, number] = [0, 0];
+    const begin = this.rows[last].clock - 0.999;
+    for (let k = last; k >= 0 && this.rows[k].clock > begin; k--) {
+      sum += this.rows[k].flow_rate_ratio ?? 0;
+      number += 1;
+    }
+    this.rows[last].average = sum / number;
+  }
+
+  /** The last row that is not after a time, or -1. */
+  rowAt(clock: number): number {
+    let [low, high] = [0, this.rows.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (this.rows[middle].clock <= clock + 1e-9) low = middle + 1;
+      else high = middle;
+    }
+    return low - 1;
   }
 }

@@ -8,7 +8,7 @@ const ROOM = 256e6;
 export class History extends Film {
   private frames: Frame[] = [];
   private bytes = 0;
-  private epoch = 0;
+  private epoch: number | null = null;
 
   get count(): number {
     return this.frames.length;
@@ -28,13 +28,19 @@ export class History extends Film {
 
   /** Takes a frame; what came after it on a course that was left is forgotten. */
   add(frame: Frame): void {
+    if (frame.past) {
+      this.frames.push(frame);
+      this.bytes += frame.bytes;
+      return;
+    }
+    this.epoch ??= frame.epoch;
     if (frame.epoch !== this.epoch) {
       this.epoch = frame.epoch;
       this.frames = this.frames.filter((known) => known.clock < frame.clock);
       this.bytes = this.frames.reduce((sum, known) => sum + known.bytes, 0);
       this.rows = this.rows.filter((row) => row.clock <= frame.clock);
     }
-    this.addRows(frame.rows);
+    this.addRows(frame.rows, frame.driven.friction);
     const last = this.frames.at(-1);
     if (last && last.step === frame.step) {
       this.frames[this.frames.length - 1] = frame;

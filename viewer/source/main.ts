@@ -1,34 +1,48 @@
-import { Chart, ink, written } from "./charts";
-import { type Connection, Engine, type Listener, Server } from "./connection";
+import { forgetInk, ink } from "./charts";
+import { type Connection, Engine, type Listener, Server, type Wanted } from "./connection";
 import { FIELDS } from "./fields";
 import { showField } from "./field-legend";
 import type { Film } from "./film";
 import { History } from "./history";
-import { element, fill, listenToLook } from "./page";
-import { drawBottleneck, drawFlow, drawLoop, drawMap, drawProfile } from "./plots";
+import { listenToKeys } from "./keys";
+import { element, isStillAsked, listenToLook, listenToSizes, say } from "./page";
+import { listenToLooks } from "./looks";
+import { giveLoop } from "./loop";
+import { listenToPointers } from "./pointers";
 import type { Driven, Frame, Told, Welcome } from "./protocol";
-import { digest, extent, factsOfDrive, factsOfGrain, factsOfSample } from "./readings";
+import { extent, measuredOf } from "./readings";
+import { isSteady, Readout, showGrain } from "./readout";
 import { Recording } from "./recording";
 import { showSaved } from "./saved";
-import { Scene, WALLS, type WallLook } from "./scene";
+import { Scene, WALLS } from "./scene";
+import { Address, keepTube, listenToShare, readLink } from "./share";
 import { Sliders } from "./sliders";
-import { choice, wanted } from "./tubes";
+import { SpaceTime } from "./space-time";
+import { type Chapter, givesUp, listenToChapters } from "./story";
+import { Sweep } from "./sweep";
+import { choice, named, wanted } from "./tubes";
+import { showWithin } from "./within";
 
 /** Milliseconds between two drawings of the charts. */
 const CHARTS = 120;
 
-/** The page. */
 class Page {
   private tube: Welcome | null = null;
   private scene: Scene | null = null;
   /** What is shown: a run that goes on, or a recording. */
   private film: Film = new History();
   private readonly connection: Connection;
-  private readonly charts = {
-    flow: new Chart(element<HTMLCanvasElement>("flow")),
-    loop: new Chart(element<HTMLCanvasElement>("loop")),
-    profile: new Chart(element<HTMLCanvasElement>("profile")),
-  };
+  /** The engine in the page, where it computes the tube itself. */
+  private readonly engine: Engine | null = null;
+  private readonly sweep: Sweep;
+  /** What the address asked for when the page was opened; done once. */
+  private asked = readLink();
+  private readonly address: Address;
+  private chapter: Chapter | null = null;
+  /** Whether the tube that comes is to be swept there and back. */
+  private sweeps = false;
+  /** Milliseconds of the page's own work for a picture. */
+  private work = 0;
   /** Number of the frame that is shown; the newest where it is null, which no recording has. */
   private cursor: number | null = null;
   /** Whether kept frames are played from the cursor on. */
@@ -50,20 +64,30 @@ class Page {
   private chartsDrawn = 0;
   private chartsStale = true;
   private readonly sliders = new Sliders((parameter, value) => {
+    this.sweep.end();
     this.goLive();
     this.connection.send({ type: "steer", parameter, value });
   });
+  private readonly readout = new Readout(this.sliders);
 
   constructor() {
     const listener: Listener = {
       told: (message) => this.told(message),
       frame: (frame) => this.receive(frame),
-      lost: () => this.status("connection lost: is the program still running?", true),
+      lost: (reason) => this.lost(reason),
     };
     // The page that is put on any server computes its tube itself.
     const alone = document.body.dataset.engine === "page";
-    this.connection = alone ? new Engine(listener, wanted()) : new Server(listener);
-    if (alone) element("tubes").replaceChildren(choice());
+    if (alone) this.engine = new Engine(listener, wanted());
+    this.connection = this.engine ?? new Server(listener);
+    this.address = new Address(this.connection, alone, () => ({
+      eye: this.scene?.eye ?? [], middle: this.scene?.middle ?? 0, field: this.field, wall: this.scene?.wall ?? WALLS[0],
+      clock: this.shownFrame?.clock ?? 0, playing: this.shownFrame?.playing ?? false,
+    }));
+    this.sweep = new Sweep(this.connection, () => this.connection.send({ type: "play", playing: false }));
+    if (new URLSearchParams(location.hash.slice(1)).has("embed")) document.body.dataset.embed = "true";
+    if (alone) element("tubes").replaceChildren(choice(wanted(), (tube) => this.openTube(tube)));
+    listenToChapters((chapter) => this.begin(chapter));
     this.listen();
     requestAnimationFrame((now) => this.tick(now));
   }
@@ -72,67 +96,92 @@ class Page {
     if (message.type === "welcome") this.welcome(message);
     else if (message.type === "saved") showSaved(message);
     else if (message.type === "missing") this.missing(message.number, message.message);
+    else if (message.type === "course") this.address.take(message);
     else {
-      this.status(message.message, true);
+      say(message.message, true);
       if (!this.tube) element("facts").textContent = message.message;
     }
   }
 
+  /** Another tube, computed by the page. */
+  private openTube(tube: Wanted): void {
+    this.sweeps = false;
+    this.sweep.end();
+    keepTube(tube.preset, tube.settings);
+    this.asked = {};
+    this.engine?.open(tube);
+    element("tubes").replaceChildren(choice(tube, (other) => this.openTube(other)));
+  }
+
+  private lost(reason: string): void {
+    document.body.dataset.lost = "true";
+    if (!this.tube) element("facts").textContent = "not connected";
+    say(reason, true, true);
+  }
+
   private welcome(tube: Welcome): void {
-    this.status("", false);
+    say("", false);
+    delete document.body.dataset.lost;
     this.tube = tube;
     this.open(tube);
-    this.scene ??= new Scene(element<HTMLCanvasElement>("stage"), tube);
+    this.stage(tube);
     document.title = `${tube.title} – peristalsis`;
     element("title").textContent = tube.title;
     element("facts").textContent =
-      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"} · ${tube.control} control${extent(tube)}`;
+      `${tube.grains.toLocaleString("en")} grains · ${tube.waves} ${tube.waves === 1 ? "wave" : "waves"}, periodic · ${tube.control} control${extent(tube)}`;
     this.sliders.make(tube);
-    this.showWithin(tube);
+    showWithin(tube);
+    this.contactsWanted();
+    if (this.asked.step) {
+      this.connection.send({ type: "follow", turns: this.asked.turns ?? [], step: this.asked.step });
+    } else if (this.asked.jump && !tube.recorded && tube.rows.length === 0) {
+      this.connection.send({ type: "seek", period: this.asked.jump });
+    } else if (!tube.recorded && tube.rows.length === 0 && !isStillAsked()) {
+      // The first picture moves, but for who asks for stillness.
+      this.connection.send({ type: "play", playing: true });
+    }
+    if (this.sweeps) this.sweep.begin(tube);
     document.body.dataset.ready = "true";
   }
 
+  /** The stage; without the means to draw in space the charts and the map have to do. */
+  private stage(tube: Welcome): void {
+    if (this.scene) return this.scene.open(tube);
+    if (document.body.dataset.flat) return;
+    try {
+      this.scene = new Scene(element<HTMLCanvasElement>("stage"), tube);
+    } catch {
+      document.body.dataset.flat = "true";
+      element("flat").hidden = false;
+      if (this.engine) element<HTMLImageElement>("film").src = "film.gif";
+      return;
+    }
+    this.scene.lookAs(this.asked);
+    element<HTMLSelectElement>("wall").value = this.scene.wall;
+  }
+
   /** The film of a run or of a recording, from its begin. */
-  private open({ recorded, rows }: Welcome): void {
+  private open(tube: Welcome): void {
+    const { recorded, rows } = tube;
     if (recorded) {
       this.film = new Recording(recorded.clocks, (number) => this.connection.send({ type: "frame", number }));
-      this.cursor = Math.min(this.cursor ?? 0, recorded.clocks.length - 1);
+      this.cursor = this.asked.jump ? Math.max(0, this.film.until(this.asked.jump)) : Math.min(this.cursor ?? 0, recorded.clocks.length - 1);
       this.played = recorded.clocks[this.cursor];
       element<HTMLInputElement>("time").max = String(Math.max(1, recorded.clocks.length - 1));
     } else {
       this.film = new History();
     }
     this.film.addRows(rows);
+    this.readout.spaceTime = new SpaceTime();
     this.shownFrame = null;
     this.chartsStale = true;
     document.body.dataset.recorded = String(recorded !== null);
-    element("loop-name").textContent = this.isSteady() ? "The bottleneck" : "The loop, as it was driven";
-    if (!recorded) element("loop-name").textContent = "The loop: drive it there and back";
-  }
-
-  /** The way back to the study that the run is of, and to the other runs of its point. */
-  private showWithin({ within }: Welcome): void {
-    element("within").hidden = within === null;
-    if (!within) return;
-    const link = element<HTMLAnchorElement>("to-study");
-    link.textContent = `← ${within.study}`;
-    link.href = `../../../../${sessionStorage.getItem("study") ?? ""}`;
-    const siblings = element<HTMLSelectElement>("siblings");
-    const all = within.siblings.map(({ number, replicate }) => new Option(`${replicate + 1} of ${within.siblings.length}`, String(number)));
-    siblings.replaceChildren(...all);
-    siblings.value = String(within.number);
-    siblings.onchange = () => location.assign(`../${siblings.value}/`);
-  }
-
-  /** Whether a recording has no loop, for nothing was driven. */
-  private isSteady(): boolean {
-    const [first] = this.film.rows;
-    return this.film instanceof Recording && this.film.rows.every((row) => row.amplitude === first.amplitude);
+    element("loop-name").textContent = !recorded ? "The loop" : isSteady(this.film, tube) ? "The bottleneck" : "The loop, as it was driven";
   }
 
   private missing(number: number, message: string): void {
     if (this.film instanceof Recording) this.film.miss(number);
-    this.status(`frame ${number + 1} cannot be shown: ${message}`, true);
+    say(`frame ${number + 1} cannot be shown: ${message}`, true);
   }
 
   private receive(frame: Frame): void {
@@ -141,10 +190,17 @@ class Page {
       this.film.add(frame);
       return;
     }
-    if (!(this.film instanceof History)) return;
+    if (!(this.film instanceof History) || !this.tube) return;
     const epoch = this.film.newest?.epoch;
     this.film.add(frame);
+    this.readout.spaceTime.see(frame, this.tube);
+    if (frame.past) return;
     if (epoch !== undefined && epoch !== frame.epoch) this.cursor = null;
+    if (typeof this.asked.clock === "number") {
+      const index = this.film.at(this.asked.clock);
+      if (index < this.film.count - 1) this.cursor = index;
+      delete this.asked.clock;
+    }
     if (this.cursor === null) this.shownFrame = null;
     element<HTMLInputElement>("time").max = String(Math.max(1, this.film.count - 1));
     element("play").setAttribute("aria-pressed", String(this.playing()));
@@ -163,7 +219,7 @@ class Page {
     return this.cursor ?? this.film.count - 1;
   }
 
-  /** To the end: the newest frame, or the last of a recording. */
+  /** To the newest frame, or the last of a recording. */
   private goLive(): void {
     if (this.film instanceof Recording) {
       this.scrub(this.film.count - 1);
@@ -225,7 +281,7 @@ class Page {
     film.want(this.shown(), this.replaying ? this.apart : 1);
   }
 
-  /** Plays the kept frames of a run on, one for one picture. */
+  /** Plays the kept frames of a run on. */
   private replay(): void {
     if (!this.replaying || this.cursor === null) return;
     this.cursor += 1;
@@ -237,129 +293,117 @@ class Page {
   private tick(now: number): void {
     requestAnimationFrame((next) => this.tick(next));
     const { scene, tube, film } = this;
-    const seconds = Math.min(0.25, (now - this.ticked) / 1000);
+    const took = now - this.ticked;
     this.ticked = now;
-    if (!scene || !tube || film.count === 0) return;
-    if (film instanceof Recording) this.playOn(film, seconds);
+    if (!tube || film.count === 0) return;
+    const begin = performance.now();
+    if (film instanceof Recording) this.playOn(film, Math.min(0.25, took / 1000));
     else this.replay();
     // A recorded frame that has not come leaves the one before in the picture.
     const frame = film.frame(this.shown()) ?? this.shownFrame;
     if (!frame) return;
     if (frame !== this.shownFrame) {
-      if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
-      else if (this.riding) scene.slide(this.ridden(frame, tube));
+      if (scene) {
+        if (this.following && scene.picked >= 0) scene.middle = frame.position[3 * scene.picked + 2];
+        else if (this.riding) scene.slide(tube.wavelength * ridden(frame.period - this.rode));
+        scene.show(frame, FIELDS[this.field]);
+      }
       this.rode = frame.period;
-      scene.show(frame, FIELDS[this.field]);
       this.shownFrame = frame;
     }
-    const colours = ink();
-    scene.draw(colours);
+    const pictures = scene?.pictures;
+    scene?.draw(ink(), took);
     if (this.chartsStale && now - this.chartsDrawn > CHARTS) {
       this.chartsStale = false;
       this.chartsDrawn = now;
-      this.drawCharts(frame, tube, scene);
+      this.showReadout(frame, tube);
     }
+    if (pictures !== scene?.pictures) this.work += 0.1 * (performance.now() - begin - this.work);
   }
 
-  /** How far the wave ran since the frame that was shown before. */
-  private ridden(frame: Frame, tube: Welcome): number {
-    const run = frame.period - this.rode;
-    return Math.abs(run) < 2 ? run * tube.wavelength : 0;
-  }
-
-  private drawCharts(frame: Frame, tube: Welcome, scene: Scene): void {
-    const colours = ink();
-    const { film } = this;
-    const averages = film.averages();
-    drawFlow(this.charts.flow, film, averages, tube, frame.clock, colours);
-    if (!this.isSteady()) drawLoop(this.charts.loop, film, averages, tube, frame.clock, colours);
-    else element("loop-figure").hidden = !drawBottleneck(this.charts.loop, film, frame.clock, colours);
-    drawProfile(this.charts.profile, film, this.shown(), tube, colours);
-    const view = { middle: scene.middle, half: scene.halfShown() / 1.1 };
-    drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[this.field], tube, scene.lightness, view, colours);
-    this.showNumbers(frame, averages, tube, scene);
-  }
-
-  private showNumbers(frame: Frame, averages: number[], tube: Welcome, scene: Scene): void {
-    const at = this.film.rows.findLastIndex((row) => row.clock <= frame.clock + 1e-9);
-    element("ratio").textContent = at >= 0 ? averages[at].toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "") : "–";
-    element("clock").textContent = `${frame.clock.toFixed(2)} T`;
-    const slider = element<HTMLInputElement>("time");
-    slider.value = String(this.shown());
-    slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} periods`);
-    element("live").dataset.live = String(this.cursor === null);
-    element("play").setAttribute("aria-pressed", String(this.playing()));
-    element("onward").hidden = this.cursor === null || this.film instanceof Recording;
-    const speed = element<HTMLSelectElement>("speed");
-    const asked = this.film instanceof Recording ? this.speed : (this.newest() ?? frame).speed;
-    if (speed !== document.activeElement) speed.value = asked === null ? "" : String(asked);
-    element("pace").textContent = frame.pace ? `at most ${written(frame.pace, 2)} T/s` : "";
-    this.sliders.show((this.newest() ?? frame).driven);
-    const facts = factsOfSample(frame);
-    fill(element("numbers"), this.film instanceof Recording ? [...factsOfDrive(frame.driven), ...facts] : facts);
-    fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
-    this.showGrain(frame, tube, scene.picked);
-  }
-
-  private showGrain(frame: Frame, tube: Welcome, grain: number): void {
-    const box = element("grain");
-    box.hidden = grain < 0 || grain >= frame.grains;
-    if (!box.hidden) fill(element("grain-numbers"), factsOfGrain(frame, tube, grain));
-  }
-
-  private status(text: string, trouble: boolean): void {
-    const box = element("status");
-    box.textContent = text;
-    box.hidden = text === "";
-    box.dataset.trouble = String(trouble);
-    if (text && trouble) setTimeout(() => box.textContent === text && (box.hidden = true), 8000);
+  private showReadout(frame: Frame, tube: Welcome): void {
+    const { film, scene, field, chapter } = this;
+    const newest = this.newest();
+    const speed = tube.recorded ? this.speed : (newest ?? frame).speed;
+    const [index, playing, live] = [this.shown(), this.playing(), this.cursor === null];
+    this.readout.show({ frame, index, newest, film, tube, scene, field, playing, live, speed, chapter }, this.ticked);
+    if (FIELDS[field].ofContacts || scene?.contacts) this.showLegend();
   }
 
   private showLegend(): void {
-    showField(FIELDS[this.field], this.scene?.lightness ?? false, this.scene?.marks ?? false);
+    const force = this.scene?.contacts ? this.scene.forces.largest : null;
+    showField(FIELDS[this.field], this.scene?.lightness ?? false, this.scene?.marks ?? false, force);
+  }
+
+  /** Contacts are sent where something is made of them. */
+  private contactsWanted(): void {
+    const shown = (this.scene?.contacts ?? false) || FIELDS[this.field].ofContacts === true;
+    if (this.film instanceof History) this.connection.send({ type: "contacts", shown });
+  }
+
+  /** Something about the looks has changed, which the address keeps. */
+  private looked(): void {
+    this.chartsStale = true;
+    this.address.keep();
+  }
+
+  /** What the chapters of the front page do. */
+  private begin(chapter: Chapter): void {
+    this.chapter = chapter;
+    this.sweep.end();
+    const isWide = this.tube?.control === "strain" && this.tube.waves <= 4;
+    const tube = { jams: isWide ? "" : "wide", remembers: isWide ? "" : "wide", friction: "friction: back flow", begins: "long" }[chapter];
+    if (tube) this.openTube(named(tube));
+    this.goLive();
+    if (chapter === "jams") {
+      this.connection.send({ type: "speed", periods_per_second: 10 });
+      this.connection.send({ type: "steer", parameter: "width", value: 2.5 });
+    }
+    this.sweeps = chapter === "remembers";
+    if (this.sweeps && isWide && this.tube) this.sweep.begin(this.tube);
+    else this.connection.send({ type: "play", playing: true });
+    document.querySelector("header")?.scrollIntoView({ block: "start" });
   }
 
   private redraw(): void {
+    forgetInk();
+    this.looked();
     this.shownFrame = null;
     this.chartsStale = true;
     this.showLegend();
   }
 
   private listen(): void {
-    const fields = element<HTMLSelectElement>("field");
-    for (const [key, field] of Object.entries(FIELDS)) fields.add(new Option(field.name, key));
-    fields.onchange = () => {
-      this.field = fields.value;
-      this.redraw();
-    };
-    const walls = element<HTMLSelectElement>("wall");
-    for (const look of WALLS) walls.add(new Option(look, look));
-    walls.onchange = () => {
-      if (this.scene) this.scene.wall = walls.value as WallLook;
-      this.redraw();
-    };
-    const tick = (id: string, change: (scene: Scene, on: boolean) => void) => {
-      const box = element<HTMLInputElement>(id);
-      box.onchange = () => {
-        if (this.scene) change(this.scene, box.checked);
+    if (this.asked.field && this.asked.field in FIELDS) this.field = this.asked.field;
+    listenToLooks(this.field, {
+      field: (name) => {
+        this.field = name;
+        this.contactsWanted();
         this.redraw();
-      };
-    };
-    tick("marks", (scene, on) => (scene.marks = on));
-    tick("lightness", (scene, on) => (scene.lightness = on));
-    tick("follow", (_, on) => (this.following = on));
-    tick("ride", (_, on) => (this.riding = on));
+      },
+      scene: (change) => {
+        if (this.scene) change(this.scene);
+        this.contactsWanted();
+        this.redraw();
+      },
+      ride: (on) => (this.riding = on),
+      follow: (on) => (this.following = on),
+    });
     element("play").onclick = () => this.play();
     element("back").onclick = () => this.step(-1);
     element("forth").onclick = () => this.step(1);
     element("live").onclick = () => this.goLive();
-    element("home").onclick = () => this.scene?.home();
+    element("home").onclick = () => {
+      this.scene?.home();
+      this.looked();
+    };
     element("save").onclick = () => this.tube?.recorded === null && this.connection.send({ type: "save" });
     element("help").onclick = () => element<HTMLDialogElement>("keys").showModal();
-    element("onward").onclick = () => {
-      this.connection.send({ type: "seek", period: this.film.clock(this.shown()) });
-    };
-    element("again").onclick = () => this.connection.send({ type: "seek", period: 0 });
+    element("onward").onclick = () => void this.goOn(this.film.clock(this.shown()), "Go on from here?", "go on from here");
+    element("again").onclick = () => void this.goOn(0, "Begin anew?", "from the start");
+    element("sweep").onclick = () => (this.sweep.isGoing ? this.sweep.end() : this.tube && this.sweep.begin(this.tube));
+    listenToShare(this.address, () => this.tube?.title ?? "tube");
+    for (const kind of ["png", "svg", "csv"] as const) element(`loop-${kind}`).onclick = () => this.tube && this.shownFrame && giveLoop(kind, this.readout.charts.loop, this.film, this.tube, this.shownFrame);
     element("grain-close").onclick = () => this.pick(-1);
     for (const dialog of document.querySelectorAll("dialog"))
       dialog.onclick = (event) => event.target === dialog && dialog.close();
@@ -372,98 +416,55 @@ class Page {
       else this.connection.send({ type: "speed", periods_per_second });
     };
     listenToLook(() => this.redraw());
-    new ResizeObserver(() => {
+    listenToSizes(() => {
       this.scene?.resize();
       // At once: a canvas of another size is empty.
-      this.scene?.draw(ink());
+      this.scene?.draw(ink(), 0);
       this.chartsStale = true;
-    }).observe(element("stage"));
-    const sizes = new ResizeObserver(() => (this.chartsStale = true));
-    for (const id of ["flow", "loop", "profile", "map"]) sizes.observe(element(id));
+    });
     this.listenToPointers();
-    document.addEventListener("keydown", (event) => this.key(event));
+    listenToKeys({
+      step: (direction) => this.step(direction),
+      slide: (distance) => this.scene?.slide(distance),
+      move: (around, up, nearer) => this.scene?.move(around, up, nearer),
+      release: () => this.pick(-1),
+      done: () => this.looked(),
+    });
     this.showLegend();
+  }
+
+  /** Computes on from another time, after a question: what came later is given up. */
+  private async goOn(period: number, question: string, answer: string): Promise<void> {
+    if (!(await givesUp(period, this.newest()?.clock ?? 0, question, answer))) return;
+    this.sweep.end();
+    this.connection.send({ type: "seek", period });
   }
 
   private pick(grain: number): void {
     if (!this.scene) return;
     this.scene.picked = grain;
     const frame = this.shownFrame;
-    if (this.tube && frame) this.showGrain(frame, this.tube, grain);
+    if (this.tube && frame) showGrain(frame, this.tube, grain);
     this.scene.touch();
     this.chartsStale = true;
   }
 
   private listenToPointers(): void {
-    const stage = element("stage");
-    let down: [number, number] | null = null;
-    stage.addEventListener("pointerdown", (event) => {
-      // A second finger means to come nearer, and picks nothing.
-      down = event.isPrimary ? [event.clientX, event.clientY] : null;
+    listenToPointers({
+      pick: (x, y) => this.scene && this.pick(this.scene.pick(x, y)),
+      moved: () => this.looked(),
+      map: (part) => {
+        if (!this.scene || !this.tube) return;
+        const { heading, length } = this.tube;
+        this.scene.middle = (heading > 0 ? part : 1 - part) * length;
+        this.scene.touch();
+        this.looked();
+      },
+      flow: (part) => {
+        const { flow } = this.readout.charts;
+        this.scrub(this.film.at(flow.x.value(part * flow.canvas.clientWidth)));
+      },
     });
-    stage.addEventListener("pointerup", (event) => {
-      const room = event.pointerType === "touch" ? 10 : 4;
-      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > room || !this.scene) return;
-      const box = stage.getBoundingClientRect();
-      const x = (2 * (event.clientX - box.left)) / box.width - 1;
-      const y = 1 - (2 * (event.clientY - box.top)) / box.height;
-      this.pick(this.scene.pick(x, y));
-    });
-    stage.addEventListener("pointermove", () => (this.chartsStale = true));
-    const dragged = (id: string, move: (part: number) => void) => {
-      const canvas = element(id);
-      const follow = (event: PointerEvent) => {
-        const box = canvas.getBoundingClientRect();
-        move((event.clientX - box.left) / box.width);
-      };
-      canvas.addEventListener("pointerdown", (event) => {
-        canvas.setPointerCapture(event.pointerId);
-        follow(event);
-      });
-      canvas.addEventListener("pointermove", (event) => event.buttons > 0 && follow(event));
-    };
-    dragged("map", (part) => {
-      if (!this.scene || !this.tube) return;
-      const { heading, length } = this.tube;
-      this.scene.middle = (heading > 0 ? part : 1 - part) * length;
-      this.scene.touch();
-      this.chartsStale = true;
-    });
-    dragged("flow", (part) => {
-      const { flow } = this.charts;
-      this.scrub(this.film.at(flow.x.value(part * flow.canvas.clientWidth)));
-    });
-  }
-
-  private key(event: KeyboardEvent): void {
-    const { target } = event;
-    const typing = target instanceof HTMLSelectElement ||
-      (target instanceof HTMLInputElement && (target.type === "number" || target.type === "range"));
-    if (typing || event.ctrlKey || event.metaKey || event.altKey) return;
-    const click = (id: string) => () => element(id).click();
-    const actions: Record<string, () => void> = {
-      " ": () => this.play(),
-      ArrowLeft: () => (event.shiftKey ? this.scene?.slide(-1) : this.step(-1)),
-      ArrowRight: () => (event.shiftKey ? this.scene?.slide(1) : this.step(1)),
-      ArrowUp: () => this.scene?.move(0, -0.08, 1),
-      ArrowDown: () => this.scene?.move(0, 0.08, 1),
-      a: () => this.scene?.move(-0.08, 0, 1),
-      d: () => this.scene?.move(0.08, 0, 1),
-      "+": () => this.scene?.move(0, 0, 0.9),
-      "-": () => this.scene?.move(0, 0, 1 / 0.9),
-      "0": () => this.scene?.home(),
-      l: () => this.goLive(),
-      m: click("marks"),
-      r: click("ride"),
-      s: click("save"),
-      "?": click("help"),
-      Escape: () => this.pick(-1),
-    };
-    const action = actions[event.key];
-    if (!action || (event.key === " " && target instanceof HTMLButtonElement)) return;
-    event.preventDefault();
-    action();
-    this.chartsStale = true;
   }
 
   /** What drives the newest frame. */
@@ -478,15 +479,18 @@ class Page {
       frames: this.film.count,
       pictures: this.scene?.pictures ?? 0,
       drawing: this.scene?.frameTime ?? 0,
-      clock: frame?.clock ?? 0,
-      number: frame?.number ?? null,
-      ratio: frame?.sample?.flow_rate_ratio ?? null,
+      work: this.work,
+      rows: this.film.rows.length,
+      fineness: this.scene?.part ?? 1,
+      playing: this.playing(),
       eye: this.scene?.eye ?? [],
-      step: frame?.step ?? 0,
-      digest: frame ? digest(frame) : 0,
+      ...measuredOf(frame),
     };
   }
 }
+
+/** Wavelengths that the wave ran since the frame before; a jump in time is none. */
+const ridden = (run: number) => (Math.abs(run) < 2 ? run : 0);
 
 declare global {
   interface Window {

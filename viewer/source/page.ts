@@ -40,3 +40,21 @@ export function options(id: string, all: { name: string; label: string }[], chos
   if (!same) select.replaceChildren(...all.map(({ name, label }) => new Option(label, name)));
   select.value = chosen;
 }
+
+/** Whether whoever looks wants no motion. */
+export const isStillAsked = (): boolean => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
+/** Says something over the stage; what is no lasting trouble goes by itself. */
+export function say(text: string, trouble = false, lasting = false): void {
+  const box = element("status");
+  box.textContent = text;
+  box.hidden = text === "";
+  box.dataset.trouble = String(trouble);
+  if (text && trouble && !lasting) setTimeout(() => box.textContent === text && (box.hidden = true), 8000);
+}
+
+/** Follows the sizes of the stage and the charts. */
+export function listenToSizes(changed: () => void): void {
+  const sizes = new ResizeObserver(changed);
+  for (const id of ["stage", "flow", "loop", "profile", "map", "space-time"]) sizes.observe(element(id));
+}

@@ -17,15 +17,18 @@ export function placeOf({ cells, places }: Panel, point: Point): [number, number
   return cell ? [cell.left + 0.5 * cell.width, cell.top + 0.3 * cell.height] : places.get(point);
 }
 
-/** Puts a tip above a place in a panel, or below it where there is no room. */
+/** Puts a tip beside a place in a panel: to its right, or to its left where there is no room, and never over it. */
 export function put(tip: HTMLElement, charts: HTMLElement, panel: Panel, place: [number, number]): void {
   const box = charts.getBoundingClientRect();
   const canvas = panel.chart.canvas.getBoundingClientRect();
   const [x, y] = [canvas.left - box.left + place[0], canvas.top - box.top + place[1]];
-  const left = Math.min(box.width - tip.offsetWidth - 4, Math.max(4, x - 0.5 * tip.offsetWidth));
-  const above = y - tip.offsetHeight - 16;
-  tip.style.left = `${left}px`;
-  tip.style.top = `${above > 0 ? above : y + 20}px`;
+  const [right, left] = [x + 18, x - tip.offsetWidth - 18];
+  const beside = right + tip.offsetWidth < box.width || left > 0;
+  const middle = Math.min(box.width - tip.offsetWidth - 4, Math.max(4, x - 0.5 * tip.offsetWidth));
+  tip.style.left = `${beside ? (right + tip.offsetWidth < box.width ? right : left) : middle}px`;
+  // On a narrow page it is above or below.
+  const top = beside ? y - 0.5 * tip.offsetHeight : y - tip.offsetHeight - 18 > 0 ? y - tip.offsetHeight - 18 : y + 18;
+  tip.style.top = `${Math.max(0, charts.offsetTop + top)}px`;
 }
 
 /** The point of a panel under the pointer, or the nearest within reach of it. */

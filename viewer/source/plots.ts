@@ -1,4 +1,4 @@
-import { type Chart, type Ink } from "./charts";
+import type { Chart, Entry, Ink } from "./charts";
 import { colourAt, inWave, stops, type Field } from "./fields";
 import type { Film } from "./film";
 import type { Frame, Welcome } from "./protocol";
@@ -6,70 +6,54 @@ import type { Frame, Welcome } from "./protocol";
 /** Frames that a profile is averaged over. */
 const AVERAGED = 16;
 const BINS = 24;
+/** Looks at grains that a mean velocity is taken of, at least. */
+const FEWEST = 12;
 
 /** J/Jmax against time, with the time that is shown. */
-export function drawFlow(chart: Chart, film: Film, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
+export function drawFlow(chart: Chart, film: Film, tube: Welcome, clock: number, colours: Ink): void {
   const { rows } = film;
-  const record = tube.record;
+  const { record, newtonian } = tube;
   const recorded = tube.recorded?.clocks;
   // Of a record from before, what lies not too far ahead.
   const ahead = Math.min(record.at(-1)?.[0] ?? 0, Math.max(20, 4 * (rows.at(-1)?.clock ?? 0)));
   const end = Math.max(rows.at(-1)?.clock ?? 0, ahead, recorded?.at(-1) ?? 0);
   const last = recorded ? end : Math.max(end, 2);
-  let [least, most] = [-0.05, 1.05];
-  for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
-  chart.begin([0, last], [least, most], ["time / periods", "J / Jmax"], colours);
+  let [least, most] = [-0.1, 1.05];
+  for (const { average } of rows) [least, most] = [Math.min(least, average), Math.max(most, average)];
+  const legend: Entry[] = [
+    { text: "each sample", colour: colours.line },
+    { text: "mean over the period before", colour: colours.accent },
+  ];
+  if (newtonian.length > 0) legend.push({ text: "Newtonian fluid", colour: colours.faint, dash: [1, 3] });
+  if (record.length > 0) legend.push({ text: "computed before", colour: colours.wall, dash: [4, 3] });
+  chart.begin([0, last], [least, most], ["time / periods T", "J / Jmax"], colours, { legend });
   chart.curve([[0, 0], [last, 0]], colours.faint, 1);
   // Where there are frames, unless everywhere.
   if (recorded && recorded[recorded.length - 1] - recorded[0] < 0.98 * last) chart.curve([[recorded[0], least], [recorded[recorded.length - 1], least]], colours.accent, 5);
   chart.curve(record.map(([x, y]) => [x, y ?? NaN]), colours.wall, 1.5, [4, 3]);
   chart.curve(sparse(rows.map((row) => [row.clock, row.flow_rate_ratio ?? NaN])), colours.line, 1);
-  chart.curve(sparse(rows.map((row, k) => [row.clock, averages[k]])), colours.accent, 2);
+  const fluid = newtonian.length > 0 ? rows.map((row): [number, number] => [row.clock, between(newtonian, row.amplitude)]) : [];
+  chart.curve(sparse(fluid), colours.faint, 1.5, [1, 3]);
+  chart.curve(sparse(rows.map((row) => [row.clock, row.average])), colours.accent, 2);
   chart.upright(clock, colours.text);
-  const at = rows.findLastIndex((row) => row.clock <= clock + 1e-9);
-  if (at >= 0) chart.dot(rows[at].clock, averages[at], 4, colours.accent, colours.back);
+  const at = film.rowAt(clock);
+  if (at >= 0) chart.dot(rows[at].clock, rows[at].average, 4, colours.accent, colours.back);
 }
 
+/** A curve's value at a place. */
+function between(points: [number, number][], x: number): number {
+  const after = points.findIndex(([place]) => place >= x);
+  if (after <= 0) return points[Math.max(after, 0)]?.[1] ?? NaN;
+  const [[x0, y0], [x1, y1]] = [points[after - 1], points[after]];
+  return y0 + ((x - x0) / (x1 - x0)) * (y1 - y0);
+}
+
+/** At most some thousand points; none between two that are so far apart that rows between them were missed. */
 function sparse(points: [number, number][]): [number, number][] {
   const each = Math.ceil(points.length / 3000);
-  return each > 1 ? points.filter((_, index) => index % each === 0) : points;
-}
-
-/** J/Jmax against width or force: the hysteresis loop as it is driven. */
-export function drawLoop(chart: Chart, film: Film, averages: number[], tube: Welcome, clock: number, colours: Ink): void {
-  const rows = film.rows;
-  const range = (tube.control === "strain" ? tube.ranges.width : tube.ranges.force_amplitude) ?? [0, 1];
-  let [least, most] = [-0.05, 1.05];
-  for (const average of averages) [least, most] = [Math.min(least, average), Math.max(most, average)];
-  let [from, to] = [Infinity, -Infinity];
-  for (const { amplitude } of rows) [from, to] = [Math.min(from, amplitude), Math.max(to, amplitude)];
-  const room = Math.max(0.12 * (range[1] - range[0]), 0.15 * (to - from));
-  [from, to] = rows.length ? [from - room, to + room] : range;
-  const name = tube.control === "strain" ? "width w / d" : "force amplitude";
-  chart.begin([from, to], [least, most], [name, "J / Jmax"], colours);
-  const each = Math.ceil(rows.length / 4000);
-  let before = 0;
-  // Which way the parameter went last decides how the piece is drawn: full upwards, dashed downwards.
-  let pieces: [number, number][] = [];
-  let direction = 0;
-  const finish = () => {
-    const colour = direction > 0 ? colours.along : direction < 0 ? colours.against : colours.faint;
-    chart.curve(pieces, colour, 2, direction < 0 ? [5, 3] : []);
-  };
-  for (let k = 0; k < rows.length; k += each) {
-    const step = rows[k].amplitude - rows[before].amplitude;
-    const now = Math.abs(step) < 1e-9 ? direction : Math.sign(step);
-    if (now !== direction) {
-      finish();
-      pieces = pieces.slice(-1);
-      direction = now;
-    }
-    pieces.push([rows[k].amplitude, averages[k]]);
-    before = k;
-  }
-  finish();
-  const at = rows.findLastIndex((row) => row.clock <= clock + 1e-9);
-  if (at >= 0) chart.dot(rows[at].amplitude, averages[at], 5, colours.accent, colours.back);
+  if (each > 1) return points.filter((_, index) => index % each === 0);
+  const far = 1 + 0.003 * (points.at(-1)?.[0] ?? 0);
+  return points.flatMap((point, k): [number, number][] => (k > 0 && point[0] - points[k - 1][0] > far ? [[point[0], NaN], point] : [point]));
 }
 
 /** The bottleneck against time, with the time that is shown; false where it is not known. */
@@ -80,7 +64,7 @@ export function drawBottleneck(chart: Chart, film: Film, clock: number, colours:
   const [least, most] = [known.reduce((a, b) => Math.min(a, b)), known.reduce((a, b) => Math.max(a, b))];
   const room = Math.max(0.15 * (most - least), 0.05);
   const last = points[points.length - 1][0];
-  chart.begin([0, last], [least - room, most + room], ["time / periods", "narrowest place / d"], colours);
+  chart.begin([0, last], [least - room, most + room], ["time / periods T", "narrowest place w / d"], colours);
   chart.curve(sparse(points), colours.accent, 2);
   chart.upright(Math.min(clock, last), colours.text);
   const at = points.findLastIndex(([time]) => time <= clock + 1e-9);
@@ -88,21 +72,29 @@ export function drawBottleneck(chart: Chart, film: Film, clock: number, colours:
   return true;
 }
 
-/** Density and axial velocity in the frame of the wave, under the outline of the tube. */
+/** Volume fraction and axial velocity in the frame of the wave, under the outline of the tube. */
 export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welcome, colours: Ink): void {
   const frames = film.recent(shown, AVERAGED);
   const number = new Float64Array(BINS);
+  const volume = new Float64Array(BINS);
   const velocity = new Float64Array(BINS);
   for (const frame of frames) {
     for (let i = 0; i < frame.grains; i++) {
       const bin = Math.min(BINS - 1, Math.floor(BINS * inWave(frame, tube, frame.position[3 * i + 2])));
       number[bin] += 1;
+      volume[bin] += (Math.PI / 6) * frame.diameter[i] ** 3;
       velocity[bin] += (tube.heading * frame.velocity[3 * i + 2]) / (frame.wave_speed || NaN);
     }
   }
-  const means = Array.from(velocity, (sum, bin) => sum / number[bin]);
+  // A mean over a handful of looks at grains is none.
+  const means = Array.from(velocity, (sum, bin) => (number[bin] >= FEWEST ? sum / number[bin] : NaN));
   const least = Math.min(-0.25, ...means.filter(Number.isFinite));
-  chart.begin([0, 1], [least, 1.3], ["place in the wave (z − ct)/λ", "⟨v⟩/c and density"], colours);
+  const legend = [
+    { text: "mean velocity ⟨v_z⟩/c", colour: colours.accent },
+    { text: "volume fraction φ", colour: colours.text, dash: [2, 3] },
+    { text: "tube", colour: colours.wall },
+  ];
+  chart.begin([0, 1], [least, 1.3], ["place in the wave (z − ct)/λ", ""], colours, { legend });
   const middle = (bin: number) => (bin + 0.5) / BINS;
   // The tube's outline above and below the middle of the chart.
   const radius = outline(film.frame(shown) ?? frames.at(-1), tube);
@@ -120,8 +112,11 @@ export function drawProfile(chart: Chart, film: Film, shown: number, tube: Welco
   context.fillStyle = colours.wall;
   context.fill();
   context.restore();
-  const peak = Math.max(...number, 1);
-  chart.curve(Array.from(number, (count, bin) => [middle(bin), count / peak]), colours.faint, 1.5, [2, 3]);
+  // Of the clear tube, inside the spheres of the wall.
+  const places = radius.length - 1;
+  const clear = (bin: number) => radius[Math.round(middle(bin) * places)] - 0.5 * tube.wall_sphere_diameter;
+  const each = (tube.wavelength / BINS) * tube.waves * frames.length * Math.PI;
+  chart.curve(Array.from(volume, (sum, bin) => [middle(bin), sum / (each * clear(bin) ** 2)]), colours.text, 1.5, [2, 3]);
   chart.curve([[0, 0], [1, 0]], colours.faint, 1);
   chart.curve(means.map((mean, bin) => [middle(bin), mean]), colours.accent, 2);
 }

@@ -14,6 +14,10 @@ export interface Row {
   /** Width or force amplitude. */
   amplitude: number;
   strain_rate: number;
+  /** J/Jmax averaged over the period that ends here; the page works it out. */
+  average: number;
+  /** Friction at this time, as far as the page knows it. */
+  friction: number | null;
 }
 
 export interface Welcome {
@@ -33,6 +37,8 @@ export interface Welcome {
   reach: number;
   unit_period: number;
   ranges: Record<Steered, Range>;
+  /** J/Jmax of a Newtonian fluid by the width. */
+  newtonian: [number, number][];
   driven: Driven;
   record: [number, number | null][];
   rows: Row[];
@@ -66,17 +72,28 @@ export interface Missing {
   message: string;
 }
 
-export type Told = Welcome | Saved | Problem | Missing;
+/** How a run was steered: at which step, which parameter, to which value. */
+export type Turn = [number, Steered, number];
+
+/** What takes a run like this one to the same bits. */
+export interface Course {
+  type: "course";
+  turns: Turn[];
+  step: number;
+}
+
+export type Told = Welcome | Saved | Problem | Missing | Course;
 
 export interface Head {
   /** Number of a recorded frame. */
   number: number | null;
+  /** A frame from before the page came. */
+  past: boolean;
   epoch: number;
   playing: boolean;
   ended: boolean;
   /** Periods a second that were asked for. */
   speed: number | null;
-  pace: number | null;
   step: number;
   time: number;
   clock: number;
@@ -86,7 +103,10 @@ export interface Head {
   wall_spheres: number;
   rings: number;
   turning: boolean;
+  contacts: number;
   driven: Driven;
+  /** Where the sliders lead. */
+  aims: Driven;
   rows: Row[];
   sample: {
     flow_rate: number;
@@ -114,6 +134,8 @@ export interface Frame extends Head {
   wall: Float32Array;
   /** Radii of the rings of one wavelength of a prescribed wall. */
   ringRadius: Float32Array;
+  /** Contacts: grain, partner or -1 for the wall, x y z of the partner, normal force. */
+  touching: Float32Array;
 }
 
 export type Command =
@@ -123,6 +145,9 @@ export type Command =
   | { type: "steer"; parameter: Steered; value: number }
   | { type: "seek"; period: number }
   | { type: "save" }
+  | { type: "course" }
+  | { type: "follow"; turns: Turn[]; step: number }
+  | { type: "contacts"; shown: boolean }
   | { type: "frame"; number: number };
 
 /** Takes a frame apart; its arrays look into the bytes, nothing is copied. */
@@ -145,5 +170,6 @@ export function decode(bytes: ArrayBuffer): Frame {
     spin: take(head.turning ? 3 * head.grains : 0),
     wall: take(3 * head.wall_spheres),
     ringRadius: take(head.rings),
+    touching: take(6 * head.contacts),
   };
 }

@@ -15,12 +15,12 @@ export function extent({ recorded }: Welcome): string {
 /** The sample that was taken last. */
 export function factsOfSample({ sample }: Frame): Facts {
   return [
-    ["bottleneck", sample ? `${written(sample.bottleneck)} d` : "–"],
-    ["contacts a grain", sample ? written(sample.contacts) : "–"],
-    ["granular temperature", sample ? written(sample.granular_temperature) : "–"],
-    ["power of the wall", sample ? written(sample.wall_power) : "–"],
+    ["narrowest place w", sample ? `${written(sample.bottleneck)} d` : "–"],
+    ["contacts of a grain Z", sample ? written(sample.contacts) : "–"],
+    ["granular temperature", sample ? `${written(sample.granular_temperature)} m d²/t²` : "–"],
+    ["power of the wall", sample ? `${written(sample.wall_power)} m d²/t³` : "–"],
     ["escaped grains", sample ? String(sample.escaped) : "–"],
-    ["energy unaccounted", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
+    ["energy unaccounted, part", sample ? written(sample.energy_residual ?? NaN, 2) : "–"],
   ];
 }
 
@@ -31,16 +31,16 @@ export function factsOfGrain(frame: Frame, tube: Welcome, grain: number): Facts 
   const c = frame.wave_speed || NaN;
   const facts: Facts = [
     ["grain", String(grain)],
-    ["diameter", `${written(frame.diameter[grain])} d`],
+    ["diameter dᵢ", `${written(frame.diameter[grain])} d`],
     ["from the axis", `${written(Math.hypot(x, y))} d`],
     ["along the tube", `${written(z, 4)} d`],
-    ["place in the wave", written(inWave(frame, tube, z))],
+    ["place in the wave", `${written(inWave(frame, tube, z))} λ`],
     ["along the wave", `${written((tube.heading * vz) / c)} c`],
     ["speed", `${written(Math.hypot(vx, vy, vz) / c)} c`],
   ];
   if (frame.turning) {
     const spin = frame.spin.subarray(3 * grain, 3 * grain + 3);
-    facts.push(["spin", written(Math.hypot(spin[0], spin[1], spin[2]))]);
+    facts.push(["spin |ω|", `${written(Math.hypot(spin[0], spin[1], spin[2]))} t⁻¹`]);
   }
   return facts;
 }
@@ -53,14 +53,14 @@ export function factsOfDrive(values: Driven): Facts {
   };
   return [
     ...of("width", "width w", " d"),
-    ...of("force_amplitude", "force amplitude f", ""),
-    ...of("strain_rate", "strain rate ε̇", ""),
+    ...of("force_amplitude", "force amplitude f", " m d/t²"),
+    ...of("strain_rate", "strain rate ε̇", " t⁻¹"),
     ...of("friction", "friction μ", ""),
   ];
 }
 
 /** A number that another state would hardly have. */
-export function digest(frame: Frame): number {
+function digest(frame: Frame): number {
   let sum = 0;
   for (const numbers of [frame.position, frame.velocity]) {
     const bits = new Uint32Array(numbers.buffer, numbers.byteOffset, numbers.length);
@@ -68,3 +68,20 @@ export function digest(frame: Frame): number {
   }
   return sum;
 }
+
+/** The state in a sentence, for who does not see the page. */
+export function summaryOf(frame: Frame, ratio: number): string {
+  const { width, force_amplitude } = frame.driven;
+  const drive = width !== null ? `width ${written(width)}` : force_amplitude !== null ? `force ${written(force_amplitude)}` : "";
+  return `${frame.clock.toFixed(1)} periods: flow rate ${written(ratio, 2)} of the largest, ${drive}${frame.playing ? "" : ", at rest"}`;
+}
+
+/** What tests look at of a frame. */
+export const measuredOf = (frame: Frame | null | undefined) => ({
+  clock: frame?.clock ?? 0,
+  number: frame?.number ?? null,
+  ratio: frame?.sample?.flow_rate_ratio ?? null,
+  contacts: frame?.contacts ?? 0,
+  step: frame?.step ?? 0,
+  digest: frame ? digest(frame) : 0,
+});

@@ -67,7 +67,11 @@ const PARAMETERS = [
 ];
 
 /** Labels of keys that are no columns of their own. */
-const KEYS: Record<string, string> = { wave_speed: "wave speed c", kinetic_friction: "friction μ" };
+const KEYS: Record<string, string> = {
+  wave_speed: "wave speed c", kinetic_friction: "friction μ", static_friction: "static friction μ_s",
+  axial: "axial tether of the wall", end: "end of the schedule / T", from: "schedule from", to: "schedule to", form: "form of the schedule",
+  periods: "periods of the run", late_fraction: "late part of the run", transition_threshold: "threshold of J/Jmax",
+};
 
 /** Columns that are asked for most. */
 const QUANTITIES = [
@@ -79,7 +83,8 @@ const QUANTITIES = [
 /** Columns of numbers that are neither. */
 const NEITHER = new Set(["replicate", "seed", "grains", "transition_threshold", "steps"]);
 
-const words = (name: string) => (name.split(".").at(-1) ?? name).replaceAll("_", " ");
+const words = (name: string) =>
+  (name.split(".").at(-1) ?? name).replace(/^transition_time_(\d)0$/, "transition time at J/Jmax = 0.$1").replaceAll("_", " ");
 
 const order = (one: Value, other: Value) =>
   typeof one === "number" && typeof other === "number" ? one - other : String(one).localeCompare(String(other));
@@ -149,6 +154,11 @@ export class Results {
   number(name: string, row: number): number {
     const value = this.columns.get(name)?.[row];
     return typeof value === "number" ? value : NaN;
+  }
+
+  /** Duration of a period of a row's run. */
+  periodOf(row: number): number {
+    return this.number("time", row) / this.number("periods", row);
   }
 
   /** Rows in which all these columns have these values. */

@@ -1,6 +1,7 @@
 import * as three from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import type { Ink } from "./charts";
+import { Bands, ForceScale } from "./bands";
 import { colourAt, type Field, stops } from "./fields";
 import type { Frame, Welcome } from "./protocol";
 import { drawn, Side, Spheres, type Uniforms } from "./spheres";
@@ -9,8 +10,15 @@ export const WALLS = ["cut open", "glass", "closed", "hidden"] as const;
 export type WallLook = (typeof WALLS)[number];
 
 const FIELD_OF_VIEW = 24;
-/** Milliseconds from picture to picture above which pixels are saved. */
+/** Milliseconds that the browser takes for a picture above which pixels are saved, and below which they come back. */
 const SLOW = 55;
+const QUICK = 24;
+/** Pictures that are quick, one after the other, before pixels come back. */
+const PATIENCE = 90;
+/** Part of their size at which grains are drawn among the forces between them. */
+const SHRUNK = 0.32;
+/** Length of the tube and its images in the picture at most, in radii. */
+const LONGEST = 60;
 /** Spheres of the wall in one picture, about: where there would be more, fewer and larger ones stand for them. */
 const WALL_SPHERES = 9000;
 /** Milliseconds after which a picture counts as still. */
@@ -25,6 +33,9 @@ export class Scene {
   marks = false;
   lightness = false;
   picked = -1;
+  /** Whether the forces between grains are drawn. */
+  contacts = false;
+  readonly forces = new ForceScale();
   /** Milliseconds of the last pictures, and how many were drawn. */
   frameTime = 0;
   pictures = 0;
@@ -37,6 +48,7 @@ export class Scene {
   private readonly shared: Uniforms;
   private readonly grainUniforms: Uniforms;
   private readonly wallUniforms: Uniforms;
+  private readonly bands = new Bands();
   private readonly scaleTexture: three.DataTexture;
   private frame: Frame | null = null;
   private stale = true;
@@ -45,16 +57,16 @@ export class Scene {
   private drawnAt = 0;
   private sharp = false;
   private interval = 0;
+  private quick = 0;
+  private wait = PATIENCE;
+  private hasSign = false;
   private values = new Float32Array(0);
 
-  constructor(private readonly canvas: HTMLCanvasElement, private readonly tube: Welcome) {
+  constructor(private readonly canvas: HTMLCanvasElement, private tube: Welcome) {
     this.renderer = new three.WebGLRenderer({ canvas, antialias: false, alpha: false, preserveDrawingBuffer: true });
     this.scaleTexture = new three.DataTexture(new Uint8Array(4 * 256), 256, 1);
     this.scaleTexture.magFilter = this.scaleTexture.minFilter = three.LinearFilter;
     this.shared = {
-      heading: { value: tube.heading },
-      middle: { value: 0 },
-      tubeLength: { value: tube.length },
       reach: { value: tube.radius },
       eye: { value: new three.Vector3() },
       rim: { value: new three.Color(0, 0, 0) },
@@ -68,14 +80,24 @@ export class Scene {
       wallFront: drawn(this.wallSpheres, this.shared, front, true),
       wallAll: drawn(this.wallSpheres, this.shared, this.own(1, Side.All, 0), false),
     };
-    this.scene.add(drawn(this.grains, this.shared, this.grainUniforms, false), ...Object.values(this.meshes));
+    this.scene.add(drawn(this.grains, this.shared, this.grainUniforms, false), ...Object.values(this.meshes), this.bands.mesh);
     this.orbit = new OrbitControls(this.camera, canvas);
     this.orbit.enablePan = false;
     this.orbit.enableDamping = true;
     this.orbit.dampingFactor = 0.12;
     this.orbit.addEventListener("change", () => this.touch());
-    this.middle = 0.5 * Math.min(tube.length, 3 * tube.wavelength);
     this.resize();
+    this.open(tube);
+  }
+
+  /** Another tube, from the first place. */
+  open(tube: Welcome): void {
+    this.tube = tube;
+    this.frame = null;
+    this.picked = -1;
+    this.forces.largest = 0;
+    this.shared.reach.value = tube.radius;
+    this.middle = 0.5 * Math.min(tube.length, 3 * tube.wavelength);
     this.home();
   }
 
@@ -85,21 +107,24 @@ export class Scene {
       kind: { value: kind },
       side: { value: side },
       glass: { value: glass },
+      shrink: { value: 1 },
       marks: { value: 0 },
       picked: { value: -1 },
       plain: { value: stone },
     };
   }
 
-  /** From a little above, with some waves in the picture. */
+  /** From a little above: two waves across, one and a half on a phone, and the tube from top to bottom. */
   home(): void {
-    const shown = Math.min(this.tube.length, (this.canvas.clientWidth < 600 ? 1.2 : 2.0) * this.tube.wavelength);
-    const distance = (0.5 * shown) / (Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect);
-    const least = (2.6 * this.tube.radius) / Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180);
-    this.camera.position.set(-0.42, 0.24, 1).setLength(Math.max(distance, 0.62 * least) + this.tube.radius);
+    const narrow = this.canvas.clientWidth < 600;
+    const shown = (narrow ? 1.25 : 2) * this.tube.wavelength;
+    const slope = Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180);
+    const distance = (0.5 * shown) / (slope * this.camera.aspect);
+    const least = (1.25 * this.tube.radius) / slope;
+    this.camera.position.set(-0.42, 0.24, 1).setLength(Math.max(distance, least) + this.tube.radius);
     this.orbit.target.set(0, 0, 0);
     this.orbit.minDistance = 2.2 * this.tube.radius;
-    this.orbit.maxDistance = 4 * this.tube.length;
+    this.orbit.maxDistance = Math.max(4 * this.tube.length, 8 * this.tube.wavelength);
     this.orbit.update();
     this.touch();
   }
@@ -118,6 +143,24 @@ export class Scene {
   /** From where the tube is looked at. */
   get eye(): number[] {
     return this.camera.position.toArray();
+  }
+
+  set eye(place: number[]) {
+    this.camera.position.set(place[0], place[1], place[2]);
+    this.orbit.update();
+    this.touch();
+  }
+
+  /** Looks as an address says, as far as it does. */
+  lookAs({ wall, eye, middle }: { wall?: string; eye?: number[]; middle?: number }): void {
+    this.wall = WALLS.find((look) => look === wall) ?? this.wall;
+    if (eye) this.eye = eye;
+    this.middle = middle ?? this.middle;
+  }
+
+  /** Part of the full resolution that pictures which follow one another have. */
+  get part(): number {
+    return this.fineness;
   }
 
   slide(distance: number): void {
@@ -141,6 +184,7 @@ export class Scene {
 
   show(frame: Frame, field: Field): void {
     this.frame = frame;
+    this.hasSign = field.diverging;
     const number = frame.grains;
     if (this.values.length !== number) this.values = new Float32Array(number);
     field.values(frame, this.tube, this.values);
@@ -152,27 +196,34 @@ export class Scene {
     this.touch();
   }
 
-  /** Draws, where there is something new. */
-  draw({ text, stageMiddle, stageEdge }: Ink): void {
+  /** Draws, where there is something new; `since` are the milliseconds that the browser took for the picture before. */
+  draw({ text, stageMiddle, stageEdge }: Ink, since: number): void {
     this.orbit.update();
     if (!this.stale) this.sharpen();
     if (!this.stale || !this.frame) return;
     const begin = performance.now();
     // Another size empties the canvas, so it comes before the picture.
-    this.keepUp(begin);
+    this.keepUp(begin, since);
     this.stale = false;
     this.backdrop(stageMiddle, stageEdge);
     (this.shared.rim.value as three.Color).setStyle(text, three.LinearSRGBColorSpace);
-    this.shared.middle.value = this.middle;
     (this.shared.eye.value as three.Vector3).copy(this.camera.position).normalize();
-    this.grainUniforms.marks.value = this.marks ? 1 : 0;
-    this.placeGrains(this.frame);
+    this.grainUniforms.marks.value = this.marks && this.hasSign ? 1 : 0;
+    const shows = this.contacts && this.frame.contacts > 0;
+    this.grainUniforms.shrink.value = shows ? SHRUNK : 1;
+    const images = this.images();
+    this.placeGrains(this.frame, images);
+    this.bands.mesh.visible = shows;
+    if (shows) {
+      this.forces.follow(this.frame);
+      this.bands.place(this.frame, this.forces.largest, this.tube.heading, images);
+    }
     this.meshes.wallBack.visible = this.wall === "cut open";
     this.meshes.wallFront.visible = this.wall === "cut open" || this.wall === "glass";
     this.meshes.wallAll.visible = this.wall === "closed";
     const front = (this.meshes.wallFront.material as three.RawShaderMaterial).uniforms;
     front.side.value = this.wall === "glass" ? Side.All : Side.Front;
-    if (this.wall !== "hidden") this.placeWall(this.frame);
+    if (this.wall !== "hidden") this.placeWall(this.frame, images);
     this.renderer.render(this.scene, this.camera);
     this.pictures += 1;
     this.frameTime += 0.1 * (performance.now() - begin - this.frameTime);
@@ -189,8 +240,8 @@ export class Scene {
     this.sharp = true;
   }
 
-  /** Draws fewer pixels where pictures that follow one another take too long. */
-  private keepUp(now: number): void {
+  /** Draws fewer pixels where the browser is slow with pictures that follow one another, and more again where it is quick. */
+  private keepUp(now: number, took: number): void {
     const since = now - this.drawnAt;
     this.drawnAt = now;
     if (since > STILL) return;
@@ -198,10 +249,20 @@ export class Scene {
       this.sharp = false;
       this.resize();
     }
-    this.interval += 0.2 * (since - this.interval);
-    if (this.interval < SLOW || this.fineness < 0.5) return;
-    this.fineness *= 0.8;
-    this.interval = 0;
+    this.interval += 0.2 * (took - this.interval);
+    this.quick = this.interval < QUICK ? this.quick + 1 : 0;
+    if (this.interval > SLOW && this.fineness >= 0.5) {
+      this.refine(0.8 * this.fineness);
+    } else if (this.quick > this.wait && this.fineness < 1) {
+      this.refine(Math.min(1, this.fineness / 0.8));
+      // The next time it waits longer, so that pictures do not go to and fro.
+      this.wait = Math.min(20 * PATIENCE, 2 * this.wait);
+    }
+  }
+
+  private refine(fineness: number): void {
+    this.fineness = fineness;
+    [this.interval, this.quick] = [0.5 * (SLOW + QUICK), 0];
     this.resize();
   }
 
@@ -233,78 +294,94 @@ export class Scene {
     return away * Math.tan((0.5 * FIELD_OF_VIEW * Math.PI) / 180) * this.camera.aspect * 1.1 + this.tube.radius;
   }
 
-  /** The grains that are in the picture: of a long tube few. */
-  private placeGrains(frame: Frame): void {
-    const { grains, tube, middle } = this;
-    const { heading, length } = tube;
+  /** Half of the length that can be in the picture, of a tube that goes on and on. */
+  private halfSeen(): number {
+    const side = this.camera.position;
+    // Looking along the tube one sees far.
+    const oblique = 1 / Math.max(0.05, 1 - 1.5 * (Math.abs(side.x) / side.length()));
+    return Math.min(oblique * this.halfShown(), LONGEST * this.tube.radius);
+  }
+
+  /** At which places along the picture something at z appears: the tube is periodic. */
+  private images(): (z: number) => number[] {
+    const { heading, length } = this.tube;
+    const { middle } = this;
+    const half = this.halfSeen();
+    return (z) => {
+      const along = heading * (z - middle);
+      const places: number[] = [];
+      for (let k = Math.ceil((-half - along) / length); k <= (half - along) / length; k++) places.push(along + k * length);
+      return places;
+    };
+  }
+
+  /** The grains that are in the picture: of a long tube few, of a short one with their images. */
+  private placeGrains(frame: Frame, images: (z: number) => number[]): void {
+    const { grains, tube } = this;
+    const { heading } = tube;
     this.camera.updateMatrixWorld();
     const projection = new three.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
     const { planes } = new three.Frustum().setFromProjectionMatrix(projection);
     // The near and the far end of the picture leave nothing out that its sides would not.
     const sides = planes.slice(0, 4).map(({ normal, constant }) => [normal.x, normal.y, normal.z, constant]);
-    grains.reserve(frame.grains);
+    grains.reserve(frame.grains * (1 + Math.ceil((2 * this.halfSeen()) / tube.length)));
     const [centre, radius, value] = [grains.centre.array, grains.radius.array, grains.value.array];
     this.grainUniforms.picked.value = -1;
     let number = 0;
     for (let i = 0; i < frame.grains; i++) {
-      const [x, y, z] = [frame.position[3 * i], frame.position[3 * i + 1], frame.position[3 * i + 2]];
-      let along = heading * (z - middle);
-      along -= length * Math.floor(along / length + 0.5);
+      const [x, y] = [frame.position[3 * i], heading * frame.position[3 * i + 1]];
       // With room for the ring round a grain that was picked.
       const room = -0.7 * frame.diameter[i];
-      if (sides.some((side) => side[0] * along + side[1] * x + side[2] * heading * y + side[3] < room)) continue;
-      centre[3 * number] = x;
-      centre[3 * number + 1] = y;
-      centre[3 * number + 2] = z;
-      radius[number] = 0.5 * frame.diameter[i];
-      value[number] = this.values[i];
-      if (i === this.picked) this.grainUniforms.picked.value = number;
-      number += 1;
+      for (const along of images(frame.position[3 * i + 2])) {
+        if (sides.some((side) => side[0] * along + side[1] * x + side[2] * y + side[3] < room)) continue;
+        centre[3 * number] = along;
+        centre[3 * number + 1] = x;
+        centre[3 * number + 2] = y;
+        radius[number] = 0.5 * frame.diameter[i];
+        value[number] = this.values[i];
+        if (i === this.picked) this.grainUniforms.picked.value = number;
+        number += 1;
+      }
     }
     grains.written(number);
   }
 
   /** The wall's spheres that can be in the picture. */
-  private placeWall(frame: Frame): void {
+  private placeWall(frame: Frame, images: (z: number) => number[]): void {
     const { tube, wallSpheres } = this;
+    const { heading } = tube;
     const spacing = tube.wavelength / tube.rings_per_wave;
-    const rings = tube.rings_per_wave * tube.waves;
-    const side = this.camera.position;
-    // Looking along the tube one sees to its end.
-    const oblique = 1 / Math.max(0.05, 1 - 1.5 * (Math.abs(side.x) / side.length()));
-    const half = Math.min(oblique * this.halfShown(), 0.5 * tube.length);
-    const seen = (Math.min(2 * half, tube.length) / spacing) * tube.spheres_per_ring;
+    const half = this.halfSeen();
+    const seen = ((2 * half) / spacing) * tube.spheres_per_ring;
     const each = Math.max(1, Math.ceil(seen / WALL_SPHERES));
     const size = 0.5 * tube.wall_sphere_diameter * Math.sqrt(each);
     let number = 0;
-    const put = (x: number, y: number, z: number) => {
+    const put = (along: number, x: number, y: number) => {
       const { array } = wallSpheres.centre;
-      array[3 * number] = x;
-      array[3 * number + 1] = y;
-      array[3 * number + 2] = z;
+      array[3 * number] = along;
+      array[3 * number + 1] = x;
+      array[3 * number + 2] = heading * y;
       wallSpheres.radius.array[number] = size;
       number += 1;
     };
-    wallSpheres.reserve(tube.spheres_per_ring * rings);
     if (frame.wall_spheres > 0) {
-      wallSpheres.reserve(frame.wall_spheres);
-      for (let i = 0; i < frame.wall_spheres; i += each) {
-        const z = frame.wall[3 * i + 2];
-        const away = z - this.middle - tube.length * Math.round((z - this.middle) / tube.length);
-        if (Math.abs(away) <= half) put(frame.wall[3 * i], frame.wall[3 * i + 1], z);
-      }
+      wallSpheres.reserve(Math.ceil(frame.wall_spheres / each) * (1 + Math.ceil((2 * half) / tube.length)));
+      for (let i = 0; i < frame.wall_spheres; i += each)
+        for (const along of images(frame.wall[3 * i + 2])) put(along, frame.wall[3 * i], frame.wall[3 * i + 1]);
     } else {
       // Some of each ring and some of the rings, the same ones wherever one looks from.
       const round = Math.min(3, each);
       const on = Math.ceil(each / round);
+      const rings = tube.rings_per_wave * tube.waves;
       const first = on * Math.ceil((this.middle - half) / spacing / on);
-      const last = Math.min(first + rings - 1, Math.floor((this.middle + half) / spacing));
+      const last = Math.floor((this.middle + half) / spacing);
+      wallSpheres.reserve(((last - first) / on + 2) * (tube.spheres_per_ring / round + 1));
       for (let unfolded = first; unfolded <= last; unfolded += on) {
         const ring = ((unfolded % rings) + rings) % rings;
         const radius = frame.ringRadius[ring % tube.rings_per_wave];
         for (let place = 0; place < tube.spheres_per_ring; place += round) {
           const angle = ((2 * place + (ring % 2)) * Math.PI) / tube.spheres_per_ring;
-          put(radius * Math.cos(angle), radius * Math.sin(angle), ring * spacing);
+          put(heading * (unfolded * spacing - this.middle), radius * Math.cos(angle), radius * Math.sin(angle));
         }
       }
     }
@@ -316,19 +393,20 @@ export class Scene {
     const frame = this.frame;
     if (!frame) return -1;
     const { origin, direction } = this.ray(x, y);
-    const { heading, length } = this.tube;
+    const { heading } = this.tube;
+    const images = this.images();
     let nearest = Infinity;
     let found = -1;
     const centre = new three.Vector3();
     for (let i = 0; i < frame.grains; i++) {
-      let along = heading * (frame.position[3 * i + 2] - this.middle);
-      along -= length * Math.floor(along / length + 0.5);
-      centre.set(along, frame.position[3 * i], heading * frame.position[3 * i + 1]).sub(origin);
-      const ahead = centre.dot(direction);
-      const room = (0.5 * frame.diameter[i]) ** 2 - centre.lengthSq() + ahead * ahead;
-      if (room < 0 || ahead - Math.sqrt(room) >= nearest) continue;
-      nearest = ahead - Math.sqrt(room);
-      found = i;
+      for (const along of images(frame.position[3 * i + 2])) {
+        centre.set(along, frame.position[3 * i], heading * frame.position[3 * i + 1]).sub(origin);
+        const ahead = centre.dot(direction);
+        const room = (0.5 * frame.diameter[i]) ** 2 - centre.lengthSq() + ahead * ahead;
+        if (room < 0 || ahead < 0 || ahead - Math.sqrt(room) >= nearest) continue;
+        nearest = ahead - Math.sqrt(room);
+        found = i;
+      }
     }
     return found;
   }

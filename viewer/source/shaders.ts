@@ -9,7 +9,7 @@ in vec3 centre;
 in float radius;
 in float value;
 uniform mat4 modelViewMatrix, projectionMatrix;
-uniform float heading, middle, tubeLength, reach;
+uniform float reach, shrink;
 uniform int side, picked;
 uniform vec3 eye;
 out vec3 place;
@@ -20,26 +20,22 @@ flat out float tone;
 flat out int marked;
 
 void main() {
-  // The tube lies from left to right along the wave, and closes far outside of the picture.
-  float along = heading * (centre.z - middle);
-  along -= tubeLength * floor(along / tubeLength + 0.5);
-  vec3 world = vec3(along, centre.x, heading * centre.y);
-  bool front = dot(world.yz, eye.yz) > 0.0;
+  bool front = dot(centre.yz, eye.yz) > 0.0;
   tone = value;
-  size = radius;
+  size = shrink * radius;
   marked = gl_InstanceID == picked ? 1 : 0;
-  shade = smoothstep(-1.0, 0.7, dot(world.yz, normalize(eye.yz + vec2(0.4, 0.0))) / reach);
+  shade = smoothstep(-1.0, 0.7, dot(centre.yz, normalize(eye.yz + vec2(0.4, 0.0))) / reach);
   if ((side == 1 && front) || (side == 2 && !front)) {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
     return;
   }
-  sphere = (modelViewMatrix * vec4(world, 1.0)).xyz;
+  sphere = (modelViewMatrix * vec4(centre, 1.0)).xyz;
   float distance = length(sphere);
   vec3 ahead = sphere / distance;
   vec3 right = normalize(cross(ahead, vec3(0.0, 1.0, 0.0)));
   vec3 up = cross(right, ahead);
   float halo = marked == 1 ? 1.25 : 1.0;
-  float half_side = halo * radius * distance / sqrt(max(distance * distance - radius * radius, 1e-6));
+  float half_side = halo * size * distance / sqrt(max(distance * distance - size * size, 1e-6));
   place = sphere + half_side * (position.x * right + position.y * up);
   gl_Position = projectionMatrix * vec4(place, 1.0);
 }`;
@@ -109,4 +105,36 @@ void main() {
   colour = vec4(pow(lit, vec3(1.0 / 2.2)), clamp(cover, 0.0, 1.0));
   vec4 clip = projectionMatrix * vec4(hit, 1.0);
   gl_FragDepth = 0.5 * clip.z / clip.w + 0.5;
+}`;
+
+/** Contacts as bands between two places, as wide as their force, that face the eye. */
+export const BAND_VERTEX = /* glsl */ `
+precision highp float;
+in vec3 position;
+in vec3 from, to;
+in float force;
+uniform mat4 modelViewMatrix, projectionMatrix;
+out float part;
+out float across;
+
+void main() {
+  vec3 begin = (modelViewMatrix * vec4(from, 1.0)).xyz;
+  vec3 end = (modelViewMatrix * vec4(to, 1.0)).xyz;
+  vec3 middle = mix(begin, end, position.x);
+  vec3 side = normalize(cross(end - begin, middle));
+  part = clamp(force, 0.0, 1.0);
+  across = position.y;
+  gl_Position = projectionMatrix * vec4(middle + position.y * (0.015 + 0.11 * part) * side, 1.0);
+}`;
+
+export const BAND_FRAGMENT = /* glsl */ `
+precision highp float;
+in float part;
+in float across;
+uniform sampler2D scale;
+out vec4 colour;
+
+void main() {
+  vec3 base = texture(scale, vec2(0.04 + 0.92 * part, 0.5)).rgb;
+  colour = vec4(base * (1.0 - 0.45 * across * across), 1.0);
 }`;

@@ -2,17 +2,14 @@ import { element } from "./page";
 import type { Driven, Steered, Welcome } from "./protocol";
 
 const NAMES: Record<Steered, { name: string; digits: number }> = {
-  width: { name: "Width <i>w</i>", digits: 3 },
-  force_amplitude: { name: "Force amplitude <i>f</i>", digits: 5 },
-  strain_rate: { name: "Strain rate <i>ε̇</i>", digits: 4 },
+  width: { name: "Width <i>w</i> / <i>d</i>", digits: 3 },
+  force_amplitude: { name: "Force amplitude <i>f</i> / (m d/t²)", digits: 5 },
+  strain_rate: { name: "Strain rate <i>ε̇</i> / t⁻¹", digits: 5 },
   friction: { name: "Friction <i>μ</i>", digits: 2 },
 };
 
 /** The sliders that steer a run. */
 export class Sliders {
-  /** When each slider was last moved by hand. */
-  private readonly moved = new Map<Steered, number>();
-
   constructor(private readonly steered: (parameter: Steered, value: number) => void) {}
 
   /** The sliders of what this tube can be steered by. */
@@ -39,18 +36,17 @@ export class Sliders {
         const within = Math.min(range[1], Math.max(range[0], value));
         number.value = within.toFixed(digits);
         slider.value = String(within);
-        this.moved.set(key, performance.now());
         this.steered(key, within);
       };
       slider.oninput = () => steer(slider.valueAsNumber);
       number.onchange = () => steer(number.valueAsNumber);
       box.append(label);
     }
-    this.show(tube.driven);
+    this.show(tube.driven, tube.driven);
   }
 
-  /** Where the run is; sliders follow, but for those in a hand. */
-  show(driven: Driven): void {
+  /** Where the run is and where it is led to; sliders follow, but for those in a hand. */
+  show(driven: Driven, aims: Driven): void {
     for (const key of Object.keys(NAMES) as Steered[]) {
       const value = driven[key];
       const slider = document.getElementById(`slider-${key}`) as HTMLInputElement | null;
@@ -59,9 +55,9 @@ export class Sliders {
       // A mark shows where the run is, also beside a slider in a hand.
       const low = Number(slider.min);
       slider.style.setProperty("--now", `${(100 * (value - low)) / (Number(slider.max) - low)}%`);
-      if (performance.now() - (this.moved.get(key) ?? -1e9) < 4000 || number === document.activeElement) continue;
-      slider.value = String(value);
-      number.value = value.toFixed(NAMES[key].digits);
+      const aim = aims[key] ?? value;
+      if (!slider.matches(":active")) slider.value = String(aim);
+      if (number !== document.activeElement) number.value = aim.toFixed(NAMES[key].digits);
     }
   }
 }

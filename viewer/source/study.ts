@@ -1,10 +1,11 @@
-import { keep, read } from "./choice";
+import { type Choice, keep, read, untouched } from "./choice";
+import { firstFamily, firstQuantity, momentOf } from "./first";
 import { Chart, ink, written } from "./charts";
 import { type Curve, curvesOf, drawCurves, extent } from "./curves";
 import { showFigures } from "./figures";
 import { across, drawHeat, type Scale } from "./heat";
 import { showMarks, showScale } from "./legend";
-import { element, fill, isDark, listenToLook, options } from "./page";
+import { element, fill, isDark, listenToLook, options, say } from "./page";
 import { beside, type Panel, placeOf, pointAt, put } from "./panel";
 import { type List, type Parameter, type Point, Results, type Study, type Value } from "./results";
 import { valueOf } from "./words";
@@ -12,11 +13,12 @@ import { valueOf } from "./words";
 /** Milliseconds from one look for new rows to the next, while runs are to come and when none is known to be. */
 const EACH = { growing: 4000, done: 15000 };
 
-/** The page of studies. */
 class StudyPage {
   private list: List = { studies: [], figures: [] };
   private results: Results | null = null;
   private choice = read();
+  /** What was chosen of the studies that were left. */
+  private readonly left = new Map<number, Choice>();
   private panels: Panel[] = [];
   private points: Point[] = [];
   private chosen: Point | null = null;
@@ -53,9 +55,14 @@ class StudyPage {
     }
   }
 
-  /** Another study, with what of the choice it knows. */
+  /** Another study, as it was left or with its own first choice: what is right for one is wrong for the next. */
   private async open(study: number): Promise<void> {
-    this.choice.study = study;
+    const { view } = this.choice;
+    if (study !== this.choice.study) {
+      this.left.set(this.choice.study, this.choice);
+      this.choice = this.left.get(study) ?? { ...untouched(), study };
+      this.choice.view = view;
+    }
     this.results = null;
     this.chosen = null;
     if (this.list.studies.length > 0) await this.refresh();
@@ -68,13 +75,13 @@ class StudyPage {
     try {
       const headers: HeadersInit = known === undefined ? {} : { "If-None-Match": `"${known}"` };
       const answer = await fetch(`study/${study}`, { headers, cache: "no-store" });
-      if (answer.status === 304) return this.say("");
+      if (answer.status === 304) return say("");
       if (!answer.ok) throw new Error(await answer.text());
       if (study !== this.choice.study) return;
       this.take(new Results((await answer.json()) as Study));
-      this.say("");
+      say("");
     } catch (error) {
-      this.say(`no answer: is the program still running? (${error instanceof Error ? error.message : error})`);
+      say(`no answer: is the program still running? (${error instanceof Error ? error.message : error})`);
     }
   }
 
@@ -94,11 +101,13 @@ class StudyPage {
     const drives = ({ name, values }: Parameter) => values.length > 2 && /(^|\.)(width|force_amplitude)$/.test(name);
     const weight = (it: Parameter) => it.values.length + (drives(it) ? 1e6 : 0);
     const most = numbers.toSorted((one, other) => weight(other) - weight(one));
-    if (!has(choice.value, results.quantities)) choice.value = results.quantities.at(0)?.name ?? "";
+    if (!has(choice.value, results.quantities)) {
+      choice.value = firstQuantity(results);
+      choice.logarithmic = choice.value.startsWith("transition_time");
+    }
     if (!has(choice.x, numbers)) choice.x = most.at(0)?.name ?? "";
     const others = results.parameters.filter(({ name }) => name !== choice.x);
-    if (!has(choice.other, others) && choice.other !== "none")
-      choice.other = others.toSorted((one, other) => other.values.length - one.values.length).at(0)?.name ?? "none";
+    if (!has(choice.other, others) && choice.other !== "none") choice.other = firstFamily(results, choice.x);
     if (choice.view === "heat" && choice.other === "none") choice.other = others.at(0)?.name ?? "none";
     if (!results.starts.includes(choice.start)) choice.start = "both";
     // Of what is neither axis, one value at a time; what follows from the others is not asked.
@@ -172,6 +181,9 @@ class StudyPage {
     const parts = rest.map(([state, count]) => `${count} ${states[state] ?? state}`);
     element("facts").textContent = [name, `${results.rows.toLocaleString("en")} runs done`, ...parts].join(" · ");
     element("refresh").hidden = !growing;
+    element("empty").textContent = results.rows > 0
+      ? "No finished run has such a value."
+      : `No run of this study has ended yet. This computes them: peristalsis study run studies/${name}.toml`;
   }
 
   private showChoices(): void {
@@ -303,9 +315,7 @@ class StudyPage {
     this.drawn += 1;
   }
 
-  private curves(): Curve[] {
-    return curvesOf(this.points, this.members(), this.results?.starts ?? [], isDark());
-  }
+  private readonly curves = (): Curve[] => curvesOf(this.points, this.members(), this.results?.starts ?? [], isDark());
 
   private scale(): Scale {
     const values = this.points.map(({ value }) => value);
@@ -378,9 +388,7 @@ class StudyPage {
     );
   }
 
-  private address(run: number): string {
-    return `study/${this.choice.study}/run/${run}/`;
-  }
+  private readonly address = (run: number) => `study/${this.choice.study}/run/${run}/${momentOf(this.results, this.chosen)}`;
 
   private watch(point: Point): void {
     const run = this.results?.typical(point, this.choice.value) ?? null;
@@ -464,11 +472,6 @@ class StudyPage {
       if (this.choice.study === before) this.show();
       else void this.open(this.choice.study);
     });
-  }
-
-  private say(text: string): void {
-    element("status").textContent = text;
-    element("status").hidden = text === "";
   }
 
   /** What tests look at. */

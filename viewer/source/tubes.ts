@@ -1,37 +1,40 @@
 import type { Wanted } from "./connection";
 
 /** Tubes to begin with, where the page computes them itself. */
-const TUBES: { name: string; preset: string; settings: string[] }[] = [
-  { name: "narrow: it jams", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.6"] },
-  { name: "wide: it slips back", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.9"] },
-  { name: "fine lattice", preset: "frictionless-fine", settings: ["tube.waves=4"] },
-  { name: "friction, elastic wall", preset: "frictional", settings: ["tube.waves=2"] },
-  { name: "friction: back flow", preset: "frictional", settings: ["tube.waves=2", "initial.state=rest", "drive.force_amplitude=0.002"] },
+const TUBES: (Wanted & { name: string })[] = [
+  { name: "wide: it slips back", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.9"], speed: 3 },
+  { name: "narrow: it jams", preset: "frictionless", settings: ["tube.waves=4", "drive.width=2.6"], speed: 3 },
+  { name: "fine lattice", preset: "frictionless-fine", settings: ["tube.waves=4"], speed: 3 },
+  { name: "long: where a jam begins", preset: "frictionless", settings: ["tube.waves=12", "drive.width=2.75"], speed: 10 },
+  { name: "friction, soft wall", preset: "frictional", settings: ["tube.waves=2"], speed: 0.3 },
+  {
+    name: "friction: back flow", preset: "frictional",
+    settings: ["tube.waves=2", "initial.state=rest", "drive.force_amplitude=0.002"], speed: 0.3,
+  },
 ];
+
+/** A tube of the choice by its name. */
+export const named = (begin: string): Wanted => TUBES.find(({ name }) => name.startsWith(begin)) ?? TUBES[0];
 
 /** The tube that the address asks for, such as #preset=frictional&set=tube.waves=2; else the first. */
 export function wanted(): Wanted {
   const parts = new URLSearchParams(location.hash.slice(1));
   const preset = parts.get("preset");
-  if (preset) return { preset, settings: parts.getAll("set") };
-  const [{ preset: first, settings }] = TUBES;
-  return { preset: first, settings };
+  if (!preset) return TUBES[0];
+  const asked = { preset, settings: parts.getAll("set") };
+  return TUBES.find((tube) => is(tube, asked)) ?? { ...asked, speed: preset === "frictional" ? 0.3 : 1 };
 }
 
-/** A choice among the tubes; another is another page. */
-export function choice(): HTMLElement {
+const is = (tube: Wanted, other: Wanted) => tube.preset === other.preset && tube.settings.join() === other.settings.join();
+
+/** A choice among the tubes. */
+export function choice(now: Wanted, open: (tube: Wanted) => void): HTMLElement {
   const label = document.createElement("label");
   const select = document.createElement("select");
   select.id = "tube";
-  const { preset, settings } = wanted();
-  const is = (tube: Wanted) => tube.preset === preset && tube.settings.join() === settings.join();
-  for (const tube of TUBES) select.add(new Option(tube.name, String(TUBES.indexOf(tube)), false, is(tube)));
-  if (!TUBES.some(is)) select.add(new Option(preset, "", true, true));
-  select.onchange = () => {
-    const tube = TUBES[Number(select.value)];
-    location.hash = String(new URLSearchParams([["preset", tube.preset], ...tube.settings.map((it) => ["set", it])]));
-    location.reload();
-  };
+  TUBES.forEach((tube, k) => select.add(new Option(tube.name, String(k), false, is(tube, now))));
+  if (!TUBES.some((tube) => is(tube, now))) select.add(new Option(now.preset, "", true, true));
+  select.onchange = () => select.value && open(TUBES[Number(select.value)]);
   label.append("tube ", select);
   return label;
 }

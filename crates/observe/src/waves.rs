@@ -112,6 +112,11 @@ impl WaveByWave {
         (self.samples, self.duration) = (0, 0.0);
     }
 
+    /// Puts other flows of whole periods in place of those so far, which it answers.
+    pub fn replace_flows(&mut self, flows: Vec<WaveFlow>) -> Vec<WaveFlow> {
+        std::mem::replace(&mut self.flows, flows)
+    }
+
     /// Every wave of every whole period so far, period by period.
     pub fn flows(&self) -> &[WaveFlow] {
         &self.flows

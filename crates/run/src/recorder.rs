@@ -31,6 +31,24 @@ pub struct Recorder {
     wall_faults: Vec<WallFault>,
 }
 
+/// The measurements that grow with a run: samples, averages of periods, flows of waves.
+pub(crate) struct Series(Vec<Sample>, Vec<f64>, Vec<WaveFlow>);
+
+/// How long they are.
+pub(crate) type Lengths = [usize; 3];
+
+impl Series {
+    pub(crate) fn lengths(&self) -> Lengths {
+        [self.0.len(), self.1.len(), self.2.len()]
+    }
+
+    pub(crate) fn truncate(&mut self, [samples, averages, flows]: Lengths) {
+        self.0.truncate(samples);
+        self.1.truncate(averages);
+        self.2.truncate(flows);
+    }
+}
+
 impl Recorder {
     /// Begins with a simulation at time 0.
     pub(crate) fn new(configuration: &Configuration, simulation: &Simulation) -> Self {
@@ -112,6 +130,19 @@ impl Recorder {
             detector.push(average).ok()?;
         }
         self.detector.as_mut()?.push(average).ok().map(|_| ())
+    }
+
+    /// Takes the series out, until they are given back.
+    pub(crate) fn take_series(&mut self) -> Series {
+        let (samples, averages) = (&mut self.samples, &mut self.averages);
+        let (samples, averages) = (std::mem::take(samples), std::mem::take(averages));
+        Series(samples, averages, self.waves.replace_flows(Vec::new()))
+    }
+
+    /// Gives the series back.
+    pub(crate) fn give_series(&mut self, Series(samples, averages, flows): Series) {
+        (self.samples, self.averages) = (samples, averages);
+        self.waves.replace_flows(flows);
     }
 
     /// The samples so far.

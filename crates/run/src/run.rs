@@ -1,5 +1,6 @@
 //! A run in progress.
 
+mod mark;
 mod steering;
 
 use std::path::Path;
@@ -17,6 +18,8 @@ use crate::recorder::Recorder;
 use crate::stopping::Stopping;
 use crate::stopwatch::Stopwatch;
 use crate::{PHYSICS_VERSION, RunError};
+
+pub use self::mark::Mark;
 
 /// Layout of [`RunState`] as a checkpoint holds it: raised whenever a field of it changes.
 const STATE_LAYOUT: u32 = 9;

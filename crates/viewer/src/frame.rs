@@ -9,13 +9,14 @@
 //! | 4 N | their diameters |
 //! | 12 N | their angular velocities, where grains turn |
 //! | 12 W or 4 R | centres of the wall's spheres, or radii of the rings of one wavelength where the page knows the rest |
+//! | 24 C | contacts: grain, partner or -1 for the wall, x y z of the partner (the point where the wall is touched), normal force |
 //!
 //! Numbers are 32 bits wide, little-endian, in units of d and t, in the frame of the tube.
 
-use peristalsis_engine::{Bodies, Wall};
+use peristalsis_engine::{Bodies, Touching, Wall};
 #[cfg(feature = "server")]
 use peristalsis_formats::Frame;
-use peristalsis_observe::Sample;
+use peristalsis_observe::{GrainContact, Sample, grain_contacts};
 use peristalsis_physics::wall::Lattice;
 use peristalsis_run::{Run, Warning};
 use serde::Serialize;
@@ -27,6 +28,8 @@ use crate::timeline::{Driven, Row};
 pub(crate) struct Head {
     /// Number of a recorded frame, counted from 0; null where the run is computed.
     pub(crate) number: Option<usize>,
+    /// Whether the run has gone on from here since; such frames come after a welcome, without rows.
+    pub(crate) past: bool,
     /// Grows when the run jumps back, which makes frames after that time void.
     pub(crate) epoch: u64,
     pub(crate) playing: bool,
@@ -34,8 +37,6 @@ pub(crate) struct Head {
     pub(crate) ended: bool,
     /// Speed asked for in periods a second; null is as fast as possible.
     pub(crate) speed: Option<f64>,
-    /// Largest speed of the engine in periods a second; NaN (null) before it is known.
-    pub(crate) pace: f64,
     pub(crate) step: u64,
     pub(crate) time: f64,
     /// Time in periods of the drive's own strain rate.
@@ -47,7 +48,11 @@ pub(crate) struct Head {
     pub(crate) wall_spheres: usize,
     pub(crate) rings: usize,
     pub(crate) turning: bool,
+    /// Number of contacts; 0 where nobody asked for them.
+    pub(crate) contacts: usize,
     pub(crate) driven: Driven,
+    /// Where the sliders lead: the driven values, unless a parameter is on its way.
+    pub(crate) aims: Driven,
     /// The last rows of the time series; clients know by their numbers which they have.
     pub(crate) rows: Vec<Row>,
     /// The last sample.
@@ -84,8 +89,27 @@ impl From<&Sample> for Shown {
     }
 }
 
+/// The contacts of the grains as they stand, six numbers each.
+pub(crate) fn contacts_of(run: &Run) -> Vec<f64> {
+    let bodies = run.simulation().bodies();
+    let of_contact = |contact: GrainContact| {
+        let Touching { first, second, .. } = contact.touching;
+        let (partner, end) = if contact.is_with_wall {
+            (-1.0, contact.point)
+        } else {
+            // Of its images the one that is touched.
+            let centre = bodies.position[first] - contact.touching.separation;
+            (second as f64, centre)
+        };
+        let force = contact.touching.normal_force;
+        [first as f64, partner, end.x, end.y, end.z, force]
+    };
+    let contacts = grain_contacts(run.simulation()).into_iter();
+    contacts.flat_map(of_contact).collect()
+}
+
 /// The frame of a run as it is.
-pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
+pub(crate) fn of_run(head: &Head, run: &Run, contacts: &[f64]) -> Vec<u8> {
     let Bodies {
         grains,
         position,
@@ -111,13 +135,14 @@ pub(crate) fn of_run(head: &Head, run: &Run) -> Vec<u8> {
         let places = (0..head.rings).map(|ring| ring as f64 * spacing);
         places.map(|z| wave.radius(z, wall.cycles())).collect()
     });
-    let arrays: [&[f64]; 6] = [
+    let arrays: [&[f64]; 7] = [
         &flat(of_grains),
         &flat(&velocity[..*grains]),
         &diameter[..*grains],
         &flat(spin),
         &flat(&of_wall),
         &rings,
+        contacts,
     ];
     encode(head, arrays)
 }
@@ -155,6 +180,7 @@ pub(crate) fn of_recording(head: &Head, frame: &Frame, spheres_per_ring: usize) 
         spin.map_or(&[], |it| it.angular_velocity.as_flattened()),
         of_wall.as_flattened(),
         &rings,
+        &[],
     ];
     encode(head, arrays)
 }
@@ -164,7 +190,7 @@ fn flat<Vector: Copy + Into<[f64; 3]>>(vectors: &[Vector]) -> Vec<f64> {
 }
 
 /// Puts a frame together.
-fn encode(head: &Head, arrays: [&[f64]; 6]) -> Vec<u8> {
+fn encode(head: &Head, arrays: [&[f64]; 7]) -> Vec<u8> {
     let mut json = serde_json::to_vec(head).expect("a head holds numbers and words only");
     json.resize(json.len().next_multiple_of(4), b' ');
     let numbers: usize = arrays.iter().map(|array| array.len()).sum();

@@ -13,6 +13,7 @@
 
 #![forbid(unsafe_code)]
 
+mod course;
 mod frame;
 mod message;
 mod page_viewer;

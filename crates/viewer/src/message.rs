@@ -2,8 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::course::Turn;
+
 /// A command of a client.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(tag = "type", rename_all = "snake_case", deny_unknown_fields)]
 pub(crate) enum Command {
     /// Lets the run go on, or stops it.
@@ -32,6 +34,20 @@ pub(crate) enum Command {
     },
     /// Saves the state, from which the command line can go on.
     Save {},
+    /// Asks how the run was steered.
+    Course {},
+    /// Begins anew, and goes on to a step steered like this.
+    Follow {
+        /// In the order of time.
+        turns: Vec<Turn>,
+        /// Where to stop.
+        step: u64,
+    },
+    /// Sends the contacts of the grains with each frame, or leaves them out.
+    Contacts {
+        /// Whether to send them.
+        shown: bool,
+    },
     /// Asks for a frame of a recording.
     Frame {
         /// Which, counted from 0.
@@ -70,6 +86,13 @@ pub(crate) enum Notice {
         /// Time in periods.
         period: f64,
     },
+    /// How the run was steered.
+    Course {
+        /// In the order of time.
+        turns: Vec<Turn>,
+        /// The present step.
+        step: u64,
+    },
     /// A frame of a recording that cannot be read.
     #[cfg(feature = "server")]
     Missing {
@@ -104,11 +127,16 @@ impl Command {
     /// The error, in words.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
         let command: Self = serde_json::from_str(text).map_err(|error| error.to_string())?;
-        let number = match command {
+        let number = match &command {
             Self::Speed { periods_per_second } => periods_per_second.unwrap_or(1.0),
-            Self::Steer { value, .. } => value,
-            Self::Seek { period } => period,
-            Self::Play { .. } | Self::Step {} | Self::Save {} | Self::Frame { .. } => 0.0,
+            Self::Steer { value, .. } => *value,
+            Self::Seek { period } => *period,
+            Self::Follow { turns, .. } if turns.is_sorted_by_key(|turn| turn.step) => turns
+                .iter()
+                .fold(0.0, |least: f64, turn| least.min(turn.value)),
+            Self::Follow { .. } => return Err("turns are not in the order of time".to_owned()),
+            Self::Play { .. } | Self::Step {} | Self::Save {} | Self::Course {} => 0.0,
+            Self::Contacts { .. } | Self::Frame { .. } => 0.0,
         };
         if number.is_finite() && number >= 0.0 {
             Ok(command)
@@ -163,6 +191,8 @@ mod tests {
             r#"{"type":"speed","periods_per_second":-2}"#,
             r#"{"type":"steer","parameter":"seed","value":1}"#,
             r#"{"type":"play","playing":"yes"}"#,
+            r#"{"type":"follow","turns":[[9,"width",2.5],[3,"width",2.6]],"step":12}"#,
+            r#"{"type":"follow","turns":[[9,"width",-2.5]],"step":12}"#,
             r#"{"type":"frame"}"#,
             r#"{"type":"frame","number":-1}"#,
             r#"{"type":"frame","number":1.5}"#,

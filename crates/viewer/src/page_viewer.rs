@@ -40,7 +40,7 @@ impl PageViewer {
     /// Carries out a command in JSON.
     pub fn command(&mut self, text: &str) {
         match (Command::read(text), &mut self.tube) {
-            (Ok(command), Some(tube)) => tube.execute(command),
+            (Ok(command), Some(tube)) => self.notices.extend(tube.execute(command)),
             (Ok(_), None) => {}
             (Err(reason), _) => self.notices.push_back(problem(&reason)),
         }
@@ -59,7 +59,7 @@ impl PageViewer {
 
     /// The bytes of a frame; `None` without a tube.
     pub fn frame(&self) -> Option<Vec<u8>> {
-        self.tube.as_ref().map(Tube::frame)
+        self.tube.as_ref().map(|tube| tube.frame(false))
     }
 
     /// The next notice to the page, in JSON.

@@ -5,6 +5,8 @@ use peristalsis_observe::Sample;
 use peristalsis_run::Run;
 use serde::Serialize;
 
+use crate::message::Steered;
+
 /// Rows that a client gets at first, at most.
 const FIRST_ROWS: usize = 4000;
 
@@ -33,6 +35,15 @@ pub(crate) struct Sliders<T> {
 pub(crate) type Driven = Sliders<f64>;
 
 impl Driven {
+    pub(crate) fn of_mut(&mut self, parameter: Steered) -> &mut Option<f64> {
+        match parameter {
+            Steered::Width => &mut self.width,
+            Steered::ForceAmplitude => &mut self.force_amplitude,
+            Steered::StrainRate => &mut self.strain_rate,
+            Steered::Friction => &mut self.friction,
+        }
+    }
+
     pub(crate) fn of(run: &Run) -> Self {
         Self::by(run.configuration(), |parameter| run.driven(parameter))
     }

@@ -1,13 +1,16 @@
 //! A run that is watched and driven: advances, changes, and says what it looks like.
 
+use std::cell::Cell;
 use std::path::PathBuf;
 
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use peristalsis_configuration::{Configuration, ScheduledParameter};
+use peristalsis_observe::Sample;
 use peristalsis_run::{Run, RunError, RunFolder, Warning};
 
-use crate::frame::{Head, of_run, of_wall};
+use crate::course::{Course, Turn};
+use crate::frame::{Head, contacts_of, of_run, of_wall};
 use crate::message::{self, Command, Notice, Steered};
 use crate::timeline::{Driven, Row, Timeline, thin};
 use crate::welcome::Welcome;
@@ -23,8 +26,8 @@ const RAMP: f64 = 0.25;
 const FASTEST: f64 = 1e6;
 /// Rows of the time series in each frame: a client that missed more sees a gap.
 const ROWS: usize = 256;
-/// States kept to come back to.
-const MARKS: usize = 24;
+/// Samples that a run takes at most while it is watched: some 200 MB.
+const SAMPLES: usize = 200_000_000 / size_of::<Sample>();
 /// Saved states that are looked through for a free name.
 const SAVES: u32 = 9999;
 
@@ -58,7 +61,7 @@ pub(crate) struct Tube {
     labels: Labels,
     /// Seconds since any instant.
     clock: fn() -> f64,
-    /// Notices that no client has got yet.
+    /// Notices to all clients that none has got yet.
     notices: Vec<String>,
     playing: bool,
     ended: bool,
@@ -73,10 +76,13 @@ pub(crate) struct Tube {
     /// Step up to which the run is computed before it stops.
     seeking: Option<u64>,
     epoch: u64,
-    /// Earlier states in the order of time, the first of all at least.
-    marks: Vec<Run>,
-    /// Steps at which the run was steered.
-    steered: Vec<u64>,
+    course: Course,
+    /// Values that the sliders were led to last.
+    aims: [(Steered, Option<f64>); 4],
+    /// Whether frames hold the contacts of the grains.
+    contacts: bool,
+    /// Rows that the page has got; of several clients each may lack others.
+    told: Cell<usize>,
     /// The warnings of the run as they were after so many periods, jumps and changes of the drive.
     warned: ((usize, u64, usize), Vec<Warning>),
 }
@@ -93,10 +99,11 @@ impl Tube {
         Self::new(run, labels, clock)
     }
 
-    pub(crate) fn new(run: Run, labels: Labels, clock: fn() -> f64) -> Self {
+    pub(crate) fn new(mut run: Run, labels: Labels, clock: fn() -> f64) -> Self {
         use Steered::{ForceAmplitude, Friction, StrainRate, Width};
+        let none = [Width, ForceAmplitude, StrainRate, Friction].map(|it| (it, None));
         Self {
-            marks: vec![run.clone()],
+            course: Course::begin(&mut run),
             warned: ((0, 0, 0), run.warnings()),
             run,
             labels,
@@ -107,10 +114,12 @@ impl Tube {
             speed: Some(1.0),
             due: 0.0,
             step_seconds: f64::NAN,
-            wanted: [Width, ForceAmplitude, StrainRate, Friction].map(|it| (it, None)),
+            wanted: none,
             seeking: None,
             epoch: 0,
-            steered: Vec::new(),
+            aims: none,
+            contacts: false,
+            told: Cell::new(0),
         }
     }
 
@@ -134,11 +143,10 @@ impl Tube {
         welcome.to_json()
     }
 
-    /// Carries out a command of a page; an error becomes a notice.
-    pub(crate) fn execute(&mut self, command: Command) {
-        if let Err(error) = self.try_execute(command) {
-            self.tell(&error.to_string());
-        }
+    /// Carries out a command of a page; answers what to tell this page, an error too.
+    pub(crate) fn execute(&mut self, command: Command) -> Option<String> {
+        self.try_execute(command)
+            .unwrap_or_else(|error| Some(message::problem(&error.to_string())))
     }
 
     /// The notices since the last call, in JSON.
@@ -150,11 +158,15 @@ impl Tube {
         self.notices.push(message::problem(problem));
     }
 
-    fn try_execute(&mut self, command: Command) -> Result<(), RunError> {
+    fn try_execute(&mut self, command: Command) -> Result<Option<String>, RunError> {
         match command {
             Command::Play { playing } => {
                 self.playing = playing && !self.ended;
-                self.seeking = None;
+                // What goes on comes to its place first.
+                if !self.playing {
+                    self.seeking = None;
+                    self.course.leave();
+                }
             }
             Command::Speed { periods_per_second } => {
                 self.speed = periods_per_second.map(|speed| speed.min(FASTEST));
@@ -170,16 +182,31 @@ impl Tube {
                 if let Some((_, wanted)) = known {
                     *wanted = Some(value);
                 }
+                if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == parameter) {
+                    *aim = Some(value);
+                }
+                self.course.leave();
                 if !self.playing {
                     self.steer()?;
                 }
             }
             Command::Seek { period } => self.seek(period),
-            Command::Save {} => self.save()?,
-            // Answered to who asked.
+            Command::Save {} => return self.save().map(Some),
+            Command::Course {} => {
+                let turns = self.course.turns().to_vec();
+                let step = self.step();
+                return Ok(Some(Notice::Course { turns, step }.to_json()));
+            }
+            Command::Follow { turns, step } => {
+                self.go_back(0);
+                self.course.follow(&mut self.run, turns);
+                (self.playing, self.seeking) = (false, Some(step));
+            }
+            Command::Contacts { shown } => self.contacts = shown,
+            // Answered by the server.
             Command::Frame { .. } => {}
         }
-        Ok(())
+        Ok(None)
     }
 
     /// Leads parameters that are at rest to the values of their sliders.
@@ -189,25 +216,35 @@ impl Tube {
             let (parameter, Some(value)) = self.wanted[index] else {
                 continue;
             };
-            let scheduled = match parameter {
-                Steered::Width => Some(ScheduledParameter::Width),
-                Steered::ForceAmplitude => Some(ScheduledParameter::ForceAmplitude),
-                Steered::StrainRate => Some(ScheduledParameter::StrainRate),
-                Steered::Friction => None,
-            };
-            let steered = match scheduled {
-                Some(scheduled) if !self.run.is_at_rest(scheduled) => continue,
-                Some(scheduled) => self.run.drive_to(scheduled, value, RAMP),
-                None => self.run.set_friction(value),
-            };
-            self.wanted[index].1 = None;
-            if steered.is_ok() {
-                self.steered.push(self.run.simulation().step());
-                self.mark();
+            if scheduled(parameter).is_some_and(|it| !self.run.is_at_rest(it)) {
+                continue;
             }
+            self.wanted[index].1 = None;
+            let steered = self.lead(parameter, value);
             outcome = outcome.and(steered);
         }
         outcome
+    }
+
+    /// Leads a parameter to a value from the present step on.
+    fn lead(&mut self, parameter: Steered, value: f64) -> Result<(), RunError> {
+        match scheduled(parameter) {
+            Some(scheduled) => self.run.drive_to(scheduled, value, RAMP)?,
+            None => self.run.set_friction(value)?,
+        }
+        self.course.turn(&mut self.run, parameter, value);
+        Ok(())
+    }
+
+    /// Does again what was done at this step, on the way back to where the run had come.
+    fn follow(&mut self) -> Result<(), RunError> {
+        while let Some(Turn {
+            parameter, value, ..
+        }) = self.course.due(&self.run)
+        {
+            self.lead(parameter, value)?;
+        }
+        Ok(())
     }
 
     /// Advances for the time between two frames, or by fewer steps at a given speed.
@@ -216,11 +253,12 @@ impl Tube {
         let most = self.steps_of_a_frame();
         let mut done = 0;
         while done < most && (self.clock)() - begin < FRAME && !self.ended {
-            if let Err(error) = self.steer() {
+            if let Err(error) = self.follow().and_then(|()| self.steer()) {
                 self.tell(&error.to_string());
             }
             // NaN, before a step was timed, becomes one step.
             let patient = (PATIENCE / self.step_seconds).max(1.0) as u64;
+            let patient = self.course.steps_to_next(&self.run, patient);
             let before = self.run.simulation().step();
             let chunk = (self.clock)();
             if let Err(error) = self.run.advance_at_most(patient.min(most - done)) {
@@ -236,12 +274,20 @@ impl Tube {
             } else {
                 0.9 * self.step_seconds + 0.1 * seconds
             };
-            self.mark_now_and_then();
+            self.course.mark_now_and_then(&mut self.run);
+            if self.run.recorder().samples().len() >= SAMPLES {
+                (self.ended, self.playing) = (true, false);
+                let periods = self.clock_now();
+                self.tell(&format!(
+                    "{periods:.0} periods are as many as a watched run keeps: save this state and go on with \
+                     `peristalsis run --resume`, or go back in time"
+                ));
+            }
         }
         let step = self.run.simulation().step();
         self.seeking = self.seeking.filter(|target| step < *target);
         let periods = self.run.recorder().averages().len();
-        let now = (periods, self.epoch, self.steered.len());
+        let now = (periods, self.epoch, self.course.turns().len());
         if self.warned.0 != now {
             self.warned = (now, self.run.warnings());
         }
@@ -265,50 +311,21 @@ impl Tube {
         self.playing = false;
         let time_step = self.run.configuration().run.time_step;
         let mut target = (period * self.unit_period() / time_step).round() as u64;
-        if target < self.run.simulation().step() {
-            let is_known = |mark: &Run| mark.simulation().step() <= target;
-            let index = self.marks.partition_point(is_known).saturating_sub(1);
-            self.marks.truncate(index + 1);
-            let mark = self.marks[index].clone();
-            let reached = mark.simulation().step();
-            target = target.max(reached);
-            // Steering after the kept state is lost with it: the run ends before the first such step.
-            if let Some(&steered) = self.steered.iter().find(|&&step| step > reached) {
-                target = target.min(steered);
-            }
-            self.steered.retain(|&step| step <= reached);
-            self.run = mark;
-            self.ended = false;
-            self.epoch += 1;
-            self.due = 0.0;
-            self.wanted = self.wanted.map(|(parameter, _)| (parameter, None));
+        if target < self.step() {
+            self.go_back(target);
+            target = target.max(self.step());
         }
         self.seeking = Some(target);
     }
 
-    fn mark_now_and_then(&mut self) {
-        let step = self.run.simulation().step();
-        let last = self.marks.last().map_or(0, |it| it.simulation().step());
-        let first = self.marks.first().map_or(0, |it| it.simulation().step());
-        // The longer the run, the further apart.
-        let each = self.run.configuration().run.steps_per_sample;
-        if step >= last + (20 * each).max((step - first) / (MARKS as u64 / 2)) {
-            self.mark();
-        }
-    }
-
-    fn mark(&mut self) {
-        let step = |run: &Run| run.simulation().step();
-        let now = step(&self.run);
-        self.marks.retain(|mark| step(mark) < now);
-        self.marks.push(self.run.clone());
-        if self.marks.len() > MARKS {
-            // Drops the state whose neighbours are nearest to each other.
-            let gaps = self.marks.windows(3).map(|it| step(&it[2]) - step(&it[0]));
-            if let Some((index, _)) = gaps.enumerate().min_by_key(|(_, gap)| *gap) {
-                self.marks.remove(index + 1);
-            }
-        }
+    /// Takes the run back to a mark before a step; what lies up to the step is to be done again.
+    fn go_back(&mut self, target: u64) {
+        self.course.back(&mut self.run, target);
+        self.ended = false;
+        self.epoch += 1;
+        self.due = 0.0;
+        self.wanted = self.wanted.map(|(parameter, _)| (parameter, None));
+        self.aims = self.wanted;
     }
 
     /// The configuration with a duration beyond the present state, so that the saved run can go on.
@@ -327,7 +344,7 @@ impl Tube {
         configuration
     }
 
-    fn save(&mut self) -> Result<(), RunError> {
+    fn save(&self) -> Result<String, RunError> {
         let configuration = self.longer();
         let toml = configuration.to_toml();
         let run = self.run.clone().under(configuration)?;
@@ -354,8 +371,12 @@ impl Tube {
             state,
             period: self.clock_now(),
         };
-        self.notices.push(saved.to_json());
-        Ok(())
+        Ok(saved.to_json())
+    }
+
+    /// Number of steps that the run has taken.
+    pub(crate) fn step(&self) -> u64 {
+        self.run.simulation().step()
     }
 
     fn timeline(&self) -> Timeline<'_> {
@@ -378,19 +399,43 @@ impl Tube {
         samples.map(move |(number, sample)| timeline.row_of(number, sample))
     }
 
-    /// The bytes of a message with the present frame; `frame.rs` describes them.
-    pub(crate) fn frame(&self) -> Vec<u8> {
+    /// The values that sliders show: where a parameter that is on its way is led to.
+    fn aims(&self) -> Driven {
+        let mut aims = Driven::of(&self.run);
+        for ((parameter, aim), (_, wanted)) in self.aims.into_iter().zip(self.wanted) {
+            let is_led =
+                wanted.is_some() || scheduled(parameter).is_some_and(|it| !self.run.is_at_rest(it));
+            let value = aims.of_mut(parameter);
+            *value = value.map(|now| aim.filter(|_| is_led).unwrap_or(now));
+        }
+        aims
+    }
+
+    /// The bytes of a message with the present frame; `frame.rs` describes them. One that is kept for those who come later
+    /// is marked as `past`.
+    pub(crate) fn frame(&self, past: bool) -> Vec<u8> {
         let simulation = self.run.simulation();
         let (bodies, wall) = (simulation.bodies(), simulation.wall());
         let samples = self.run.recorder().samples();
         let (wall_spheres, rings) = of_wall(wall);
+        let contacts = if self.contacts && !past {
+            contacts_of(&self.run)
+        } else {
+            Vec::new()
+        };
+        let recent = samples.len().saturating_sub(ROWS);
+        let first = match self.labels.saves {
+            _ if past => samples.len(),
+            Saves::Page => self.told.replace(samples.len()).min(recent),
+            Saves::Folders { .. } => recent,
+        };
         let head = Head {
             number: None,
+            past,
             epoch: self.epoch,
             playing: self.playing,
             ended: self.ended,
             speed: self.speed,
-            pace: self.run.configuration().run.time_step / (self.step_seconds * self.unit_period()),
             step: simulation.step(),
             time: simulation.time(),
             clock: self.clock_now(),
@@ -400,11 +445,23 @@ impl Tube {
             wall_spheres,
             rings,
             turning: self.run.configuration().contact.friction.is_some(),
+            contacts: contacts.len() / 6,
             driven: Driven::of(&self.run),
-            rows: self.rows(samples.len().saturating_sub(ROWS)).collect(),
+            aims: self.aims(),
+            rows: self.rows(first).collect(),
             sample: samples.last().map(Into::into),
             warnings: self.warned.1.clone(),
         };
-        of_run(&head, &self.run)
+        of_run(&head, &self.run, &contacts)
+    }
+}
+
+/// What of the drive a slider leads; friction is none of it.
+fn scheduled(parameter: Steered) -> Option<ScheduledParameter> {
+    match parameter {
+        Steered::Width => Some(ScheduledParameter::Width),
+        Steered::ForceAmplitude => Some(ScheduledParameter::ForceAmplitude),
+        Steered::StrainRate => Some(ScheduledParameter::StrainRate),
+        Steered::Friction => None,
     }
 }

@@ -2,6 +2,7 @@
 
 use peristalsis_configuration::Control;
 use peristalsis_engine::Wall;
+use peristalsis_physics::newtonian::NewtonianPeristalsis;
 use peristalsis_run::{Configuration, VERSION};
 use serde::Serialize;
 
@@ -30,6 +31,8 @@ pub(crate) struct Welcome {
     /// Duration of a period at the strain rate of the drive.
     unit_period: f64,
     ranges: Ranges,
+    /// J/Jmax of a Newtonian fluid against no pressure by the width \[d\]; empty where the force is prescribed.
+    newtonian: Vec<(f64, f64)>,
     pub(crate) driven: Driven,
     /// The whole time series of a run that was computed before: (time in periods, J/Jmax).
     pub(crate) record: Vec<(f64, f64)>,
@@ -68,10 +71,27 @@ impl Ranges {
         Self {
             width: own.width.map(|width| (narrowest(width), widest)),
             force_amplitude: own.force_amplitude.map(strongest),
-            strain_rate: moving.map(|rate| (0.1 * rate, 4.0 * rate)),
+            strain_rate: moving.map(|rate| (round(0.1 * rate), round(4.0 * rate))),
             friction: own.friction.map(|kinetic| (0.01, kinetic.max(1.0))),
         }
     }
+}
+
+/// A number to ten digits, without the noise of its last bits.
+fn round(number: f64) -> f64 {
+    (1e10 * number).round() / 1e10
+}
+
+/// Flow of a Newtonian fluid in the tube to the centres of its wall spheres, at widths over the range of the slider.
+fn newtonian(ranges: &Ranges, radius: f64) -> Vec<(f64, f64)> {
+    let Some((from, to)) = ranges.width else {
+        return Vec::new();
+    };
+    let widths = (0..=40).map(|place| from + f64::from(place) / 40.0 * (to - from));
+    let flow = |width: f64| NewtonianPeristalsis::from_width(width, radius, 0.0);
+    widths
+        .filter_map(|width| Some((width, flow(width)?.flow_rate_ratio())))
+        .collect()
 }
 
 impl Welcome {
@@ -83,6 +103,7 @@ impl Welcome {
         title: &str,
     ) -> Self {
         let lattice = wall.lattice();
+        let ranges = Ranges::of(configuration);
         let timeline = Timeline(configuration);
         let end = configuration.run.steps() as f64 * configuration.run.time_step;
         Self {
@@ -104,7 +125,8 @@ impl Welcome {
             heading: wall.heading(),
             reach: 2.0 * configuration.tube.radius,
             unit_period: timeline.unit_period(),
-            ranges: Ranges::of(configuration),
+            newtonian: newtonian(&ranges, configuration.tube.radius),
+            ranges,
             driven: timeline.driven(0.0),
             record: Vec::new(),
             rows: Vec::new(),

@@ -138,7 +138,6 @@ fn show(run: StudyRun, saves: PathBuf, subscribers: Subscribers, requests: &Rece
                     recording,
                     title: run.title,
                     within: Some(run.within),
-                    subscribers,
                 };
                 host.work(requests);
             })

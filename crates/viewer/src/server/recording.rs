@@ -114,11 +114,11 @@ impl Recording {
         let sample = self.samples[..taken].last().filter(is_recent);
         let head = Head {
             number: Some(number),
+            past: false,
             epoch: 0,
             playing: false,
             ended: false,
             speed: None,
-            pace: f64::NAN,
             step: frame.step,
             time: frame.time,
             clock,
@@ -128,7 +128,9 @@ impl Recording {
             wall_spheres,
             rings,
             turning: frame.rotation.is_some(),
+            contacts: 0,
             driven: timeline.driven(clock),
+            aims: timeline.driven(clock),
             rows: Vec::new(),
             sample: sample.map(Into::into),
             warnings: self.warnings.clone(),

@@ -3,17 +3,16 @@
 use std::sync::mpsc::Receiver;
 
 use super::recording::Recording;
-use super::session::{Request, Subscribers};
+use super::session::Request;
 use crate::message::problem;
 use crate::within::Within;
 
-/// A recording and its clients, each of which plays it at its own pace.
+/// A recording, which each client plays at its own pace.
 #[derive(Debug)]
 pub(crate) struct RecordingHost {
     pub(crate) recording: Recording,
     pub(crate) title: String,
     pub(crate) within: Option<Within>,
-    pub(crate) subscribers: Subscribers,
 }
 
 impl RecordingHost {
@@ -24,15 +23,15 @@ impl RecordingHost {
                 Request::Welcome(reply) => {
                     let mut welcome = self.recording.welcome(&self.title);
                     welcome.within = self.within.clone();
-                    drop(reply.send(welcome.to_json()));
+                    drop(reply.send((welcome.to_json(), Vec::new())));
                 }
                 Request::Frame(number, reply) => {
                     let frame = self.recording.frame(number);
                     drop(reply.send(frame.map_err(|error| error.to_string())));
                 }
-                Request::Command(_) => {
+                Request::Command(_, reply) => {
                     let message = "this is a recording, which cannot be driven; `peristalsis view --live` computes the run";
-                    self.subscribers.notify(problem(message));
+                    drop(reply.send(Some(problem(message))));
                 }
             }
         }

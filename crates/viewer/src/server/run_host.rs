@@ -15,6 +15,40 @@ use crate::tube::{FRAME, Labels, Tube};
 pub(crate) struct RunHost {
     tube: Tube,
     subscribers: Subscribers,
+    past: Past,
+}
+
+/// Bytes of frames that are kept for pages that come later.
+const ROOM: usize = 32_000_000;
+/// Frames from one that is kept to the next.
+const APART: u64 = 4;
+
+/// Frames of the course that the run has taken, for pages that come later: with every second one, and so on, of what is
+/// longer ago.
+#[derive(Debug, Default)]
+struct Past {
+    frames: Vec<(u64, Arc<Vec<u8>>)>,
+    seen: u64,
+}
+
+impl Past {
+    fn see(&mut self, step: u64, frame: impl FnOnce() -> Vec<u8>) {
+        // What came after this step was left.
+        self.frames.retain(|(known, _)| *known < step);
+        self.seen += 1;
+        if self.seen % APART == 1 {
+            self.frames.push((step, Arc::new(frame())));
+        }
+        let bytes: usize = self.frames.iter().map(|(_, frame)| frame.len()).sum();
+        if bytes > ROOM {
+            let half = self.frames.len() / 2;
+            let mut place = 0;
+            self.frames.retain(|_| {
+                place += 1;
+                place > half || place % 2 == 1
+            });
+        }
+    }
 }
 
 /// Seconds since the program first asked.
@@ -26,7 +60,11 @@ fn seconds() -> f64 {
 impl RunHost {
     pub(crate) fn new(run: Run, labels: Labels, subscribers: Subscribers) -> Self {
         let tube = Tube::new(run, labels, seconds);
-        Self { tube, subscribers }
+        Self {
+            tube,
+            subscribers,
+            past: Past::default(),
+        }
     }
 
     /// Works until all clients and the server are gone.
@@ -60,13 +98,16 @@ impl RunHost {
     /// Answers a request; a client that has left needs no answer.
     fn answer(&mut self, request: Request) {
         match request {
-            Request::Welcome(reply) => drop(reply.send(self.tube.welcome())),
+            Request::Welcome(reply) => {
+                let past = self.past.frames.iter().map(|(_, frame)| Arc::clone(frame));
+                drop(reply.send((self.tube.welcome(), past.collect())));
+            }
             Request::Frame(_, reply) => {
                 let reason = "this run is computed as it is watched; it has no recorded frames";
                 drop(reply.send(Err(reason.to_owned())));
             }
-            Request::Command(command) => {
-                self.tube.execute(command);
+            Request::Command(command, reply) => {
+                drop(reply.send(self.tube.execute(command)));
                 self.publish();
             }
         }
@@ -76,8 +117,9 @@ impl RunHost {
         for notice in self.tube.notices() {
             self.subscribers.notify(notice);
         }
-        self.subscribers
-            .frames
-            .send_replace(Arc::new(self.tube.frame()));
+        let Self { tube, past, .. } = self;
+        past.see(tube.step(), || tube.frame(true));
+        let frame = Arc::new(tube.frame(false));
+        self.subscribers.frames.send_replace(frame);
     }
 }

@@ -19,10 +19,10 @@ const NOTICES: usize = 64;
 /// A request to the thread that owns a run or a recording.
 #[derive(Debug)]
 pub(crate) enum Request {
-    /// Carry out a command.
-    Command(Command),
-    /// The welcome of a new client.
-    Welcome(oneshot::Sender<String>),
+    /// Carry out a command; the answer is a notice to who sent it.
+    Command(Command, oneshot::Sender<Option<String>>),
+    /// The welcome of a new client, and frames from before.
+    Welcome(oneshot::Sender<(String, Vec<Arc<Vec<u8>>>)>),
     /// A frame of a recording by its number; the error says why there is no such frame.
     Frame(usize, oneshot::Sender<Result<Vec<u8>, String>>),
 }
@@ -94,9 +94,9 @@ impl Session {
 pub(crate) fn refuse_all(reason: &str, requests: &Receiver<Request>) {
     while let Ok(request) = requests.recv() {
         match request {
-            Request::Welcome(reply) => drop(reply.send(problem(reason))),
+            Request::Welcome(reply) => drop(reply.send((problem(reason), Vec::new()))),
             Request::Frame(_, reply) => drop(reply.send(Err(reason.to_owned()))),
-            Request::Command(_) => {}
+            Request::Command(_, reply) => drop(reply.send(None)),
         }
     }
 }

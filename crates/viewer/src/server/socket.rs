@@ -18,11 +18,16 @@ pub(crate) async fn serve_client(socket: WebSocket, session: Session) {
     let (mut to, mut from) = socket.split();
     let mut frames = session.subscribers.frames.subscribe();
     let mut notices = session.subscribers.notices.subscribe();
-    let Some(welcome) = welcome(&session).await else {
+    let Some((welcome, past)) = welcome(&session).await else {
         return;
     };
-    if to.send(Message::Text(welcome.into())).await.is_err() {
-        return;
+    let past = past.into_iter();
+    let past = past.map(|frame| Message::Binary(frame.to_vec().into()));
+    for message in std::iter::once(Message::Text(welcome.into())).chain(past) {
+        let sent = tokio::time::timeout(SLOW, to.send(message)).await;
+        if !matches!(sent, Ok(Ok(()))) {
+            return;
+        }
     }
     frames.mark_changed();
     loop {
@@ -66,7 +71,7 @@ pub(crate) async fn serve_client(socket: WebSocket, session: Session) {
     }
 }
 
-async fn welcome(session: &Session) -> Option<String> {
+async fn welcome(session: &Session) -> Option<(String, Vec<Arc<Vec<u8>>>)> {
     let (reply, answer) = oneshot::channel();
     session.request(Request::Welcome(reply)).await?;
     answer.await.ok()
@@ -90,9 +95,11 @@ async fn ask(session: &Session, text: &str) -> Result<Option<Message>, String> {
             }))
         }
         command => {
-            let asked = session.request(Request::Command(command)).await;
+            let (reply, answer) = oneshot::channel();
+            let asked = session.request(Request::Command(command, reply)).await;
             asked.ok_or_else(ended)?;
-            Ok(None)
+            let notice = answer.await.map_err(|_| ended())?;
+            Ok(notice.map(|text| Message::Text(text.into())))
         }
     }
 }

@@ -121,12 +121,11 @@ impl Viewer {
     /// # Errors
     /// As [`Viewer::open`].
     pub fn play(recording: Recording, title: String, port: u16) -> Result<Self, ViewerError> {
-        let session = Session::start(|subscribers, requests| {
+        let session = Session::start(|_, requests| {
             let host = RecordingHost {
                 recording,
                 title,
                 within: None,
-                subscribers,
             };
             host.work(&requests);
         })?;
@@ -376,12 +375,13 @@ async fn live_in_study(
 
 /// Upgrades to a WebSocket, if there is a place for one more client.
 fn talk(shared: &Shared, session: Session, upgrade: Upgrade) -> Response {
+    // Before the question whether it asks for a WebSocket, so that a page can ask why it got none.
+    let Ok(place) = Arc::clone(&shared.clients).try_acquire_owned() else {
+        return busy();
+    };
     let upgrade = match upgrade {
         Ok(upgrade) => upgrade,
         Err(rejection) => return rejection.into_response(),
-    };
-    let Ok(place) = Arc::clone(&shared.clients).try_acquire_owned() else {
-        return busy();
     };
     upgrade
         .max_message_size(MESSAGE_BYTES)
@@ -394,5 +394,7 @@ fn talk(shared: &Shared, session: Session, upgrade: Upgrade) -> Response {
 
 fn busy() -> Response {
     let wait = [(header::RETRY_AFTER, "5")];
-    (StatusCode::SERVICE_UNAVAILABLE, wait).into_response()
+    let reason =
+        format!("{CLIENTS} pages are open, as many as this viewer serves: close one of them");
+    (StatusCode::SERVICE_UNAVAILABLE, wait, reason).into_response()
 }

@@ -152,3 +152,130 @@ fn a_state_beyond_the_end_of_its_run_has_something_to_go_on_with() {
     let (_, run) = RunFolder::open(&served.saves.join("tube-1")).unwrap();
     assert_eq!(run.configuration().run.periods, Some(11.5));
 }
+
+/// VIEWER, critical 3: three drags of a slider lie between the mark and the time that is shown.
+#[test]
+fn going_back_steers_again_as_it_was_steered() {
+    let served = Served::small();
+    let (mut client, _) = served.client();
+    let mut course = |commands: &[(f64, f64)], end: f64| {
+        let mut shown = Vec::new();
+        for &(clock, width) in commands {
+            client.send(&format!(r#"{{"type":"seek","period":{clock}}}"#));
+            shown.push(client.frame_with(|head| head["clock"] == clock));
+            client.send(&format!(
+                r#"{{"type":"steer","parameter":"width","value":{width}}}"#
+            ));
+        }
+        client.send(&format!(r#"{{"type":"seek","period":{end}}}"#));
+        shown.push(client.frame_with(|head| head["clock"] == end));
+        shown
+    };
+    let shown = course(&[(1.0, 2.7), (2.0, 2.65), (2.5, 2.57)], 4.0);
+    let there = course(&[], 3.0);
+    assert_eq!(there[0].head["driven"]["width"], 2.57);
+    // A second way there, and on: the same bits as at first.
+    let again = course(&[], 4.0);
+    assert_eq!(again[0].head["driven"]["width"], 2.57);
+    assert_eq!(again[0].numbers, shown[3].numbers);
+    let between = course(&[], 2.0);
+    assert_eq!(between[0].head["aims"]["width"], 2.65);
+}
+
+/// VIEWER, high 5: where a slider leads is said at once, also while nothing is computed.
+#[test]
+fn a_slider_that_is_moved_while_the_run_rests_shows_where_it_leads() {
+    let served = Served::small();
+    let (mut client, _) = served.client();
+    client.send(r#"{"type":"steer","parameter":"width","value":2.4}"#);
+    let frame = client.frame_with(|head| head["aims"]["width"] == 2.4);
+    assert_eq!(frame.head["driven"]["width"], 2.6);
+}
+
+/// VIEWER, medium 14: only the page that saves is told.
+#[test]
+fn a_save_is_told_to_who_asked() {
+    let served = Served::small();
+    let (mut one, _) = served.client();
+    let (mut other, _) = served.client();
+    one.send(r#"{"type":"save"}"#);
+    assert_eq!(one.notice()["type"], "saved");
+    one.send(r#"{"type":"play","playing":true}"#);
+    let playing = |message: &tokio_tungstenite::tungstenite::Message| {
+        assert!(!message.is_text(), "{message}");
+        message.is_binary()
+    };
+    let seen = std::iter::from_fn(|| other.next()).filter(playing).take(5);
+    assert_eq!(seen.count(), 5);
+}
+
+/// VIEWER, high 8: who comes later can go back as well.
+#[test]
+fn frames_from_before_come_after_the_welcome() {
+    let served = Served::small();
+    let (mut first, _) = served.client();
+    first.send(r#"{"type":"speed","periods_per_second":null}"#);
+    first.send(r#"{"type":"play","playing":true}"#);
+    first.frame_with(|head| head["clock"].as_f64().unwrap() > 3.0);
+    first.send(r#"{"type":"play","playing":false}"#);
+    first.frame_with(|head| head["playing"] == false);
+    let (mut later, welcome) = served.client();
+    assert!(welcome["rows"].as_array().unwrap().len() >= 60);
+    let mut clocks = Vec::new();
+    let newest = later.frame_with(|head| {
+        clocks.push(head["clock"].as_f64().unwrap());
+        head["past"] == false
+    });
+    assert!(clocks.len() >= 2 && clocks[0] == 0.0, "{clocks:?}");
+    assert!(clocks.is_sorted() && newest.head["clock"].as_f64().unwrap() > 3.0);
+}
+
+#[test]
+fn contacts_come_where_they_are_asked_for() {
+    let served = Served::small();
+    let (mut client, _) = served.client();
+    client.send(r#"{"type":"seek","period":2.0}"#);
+    client.frame_with(|head| head["clock"] == 2.0);
+    client.send(r#"{"type":"contacts","shown":true}"#);
+    let frame = client.frame_with(|head| head["contacts"] != 0);
+    let grains = frame.head["grains"].as_u64().unwrap() as usize;
+    let six = frame.numbers[7 * grains + 14..].chunks(6);
+    assert_eq!(six.len() as u64, frame.head["contacts"].as_u64().unwrap());
+    for contact in six {
+        let centre = &frame.numbers[3 * contact[0] as usize..][..3];
+        let away = (0..3)
+            .map(|k| (contact[2 + k] - centre[k]).powi(2))
+            .sum::<f32>()
+            .sqrt();
+        // From the centre of a grain of diameter 1 to that of the next, or to the wall.
+        let most = if contact[1] < 0.0 { 0.5 } else { 1.0 };
+        assert!(
+            away <= most + 1e-5 && away > most - 0.2,
+            "{contact:?}: {away}"
+        );
+    }
+}
+
+/// What a link to a state holds takes another viewer to the same bits.
+#[test]
+fn a_course_takes_another_run_to_the_same_state() {
+    let one = Served::small();
+    let (mut client, _) = one.client();
+    for (clock, width) in [(0.0, 2.7), (1.0, 2.5)] {
+        client.send(&format!(r#"{{"type":"seek","period":{clock}}}"#));
+        client.frame_with(|head| head["clock"] == clock);
+        let steer = format!(r#"{{"type":"steer","parameter":"width","value":{width}}}"#);
+        client.send(&steer);
+    }
+    client.send(r#"{"type":"seek","period":2.0}"#);
+    let there = client.frame_with(|head| head["clock"] == 2.0);
+    client.send(r#"{"type":"course"}"#);
+    let course = client.notice();
+    let follow =
+        serde_json::json!({ "type": "follow", "turns": course["turns"], "step": course["step"] });
+    let other = Served::small();
+    let (mut client, _) = other.client();
+    client.send(&follow.to_string());
+    let here = client.frame_with(|head| head["clock"] == 2.0);
+    assert_eq!(here.numbers, there.numbers);
+}

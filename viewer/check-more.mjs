@@ -1,0 +1,271 @@
+// What new users met, each as a check, and what the page is to do besides; called by check.mjs.
+import assert from "node:assert/strict";
+import { existsSync, readFileSync } from "node:fs";
+import { brotliCompressSync } from "node:zlib";
+
+const AXE = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
+
+export function moreChecks({ serve, open, measured, until, shoot, serveFiles, pixels, desk, phone, WEB }) {
+  /** What axe-core finds in a page as it is. */
+  async function audit(page, state) {
+    await page.evaluate(AXE);
+    const found = await page.evaluate(async () => (await window.axe.run()).violations.map(({ id, nodes }) => `${id}: ${nodes.map((it) => it.html).join(" ").slice(0, 300)}`));
+    assert.deepEqual(found, [], `axe-core finds in ${state}`);
+  }
+
+  const fastest = async (page) => {
+    await page.selectOption("#speed", "");
+    await page.click("#play");
+  };
+
+  async function checkMore(browser) {
+    const { address, pid, end } = await serve("frictionless", "--set", "tube.waves=2");
+    const { page, close } = await open(browser, address, desk);
+    // A slider that is moved while the tube rests stays where it was put.
+    await page.fill("#number-width", "2.4");
+    await page.press("#number-width", "Enter");
+    await page.evaluate(() => document.activeElement.blur());
+    await page.waitForTimeout(4500);
+    await page.mouse.move(400, 300);
+    await page.waitForTimeout(400);
+    assert.equal(await page.inputValue("#number-width"), "2.400");
+    // Dialogs: escape closes, and no key works behind them.
+    await page.click("#help");
+    await page.keyboard.press("m");
+    await page.keyboard.press(" ");
+    assert.equal(await page.isChecked("#marks"), false);
+    await page.keyboard.press("Escape");
+    assert.equal(await page.evaluate(() => document.querySelector("dialog[open]")), null);
+    // Marks are for colours with a sign.
+    const look = () => page.evaluate(() => (document.querySelector("details.more").open = true));
+    await look();
+    await page.selectOption("#field", "place");
+    await page.waitForTimeout(1500);
+    const plain = await pixels(page);
+    await page.check("#marks");
+    await page.waitForTimeout(1500);
+    assert.equal((await pixels(page)).sum, plain.sum, "marks where colour has no sign");
+    await page.selectOption("#field", "axial");
+    for (const box of await page.locator("#sliders input").all())
+      assert(!/\d{9}/.test(await box.getAttribute("min")), "a slider with the noise of a float");
+    // Pixels that were saved come back.
+    const [worst, best] = await page.evaluate(() => {
+      const { scene } = window.viewer;
+      const draw = (took, number) => {
+        for (let k = 0; k < number; k++) scene.keepUp((scene.drawnAt ?? 0) + 30, took);
+        return window.viewer.measured.fineness;
+      };
+      return [draw(200, 60), draw(10, 3000)];
+    });
+    assert(worst < 0.7 && best === 1, `fineness ${worst}, then ${best}`);
+
+    // Memory is bounded at any speed.
+    await fastest(page);
+    await page.waitForTimeout(15000);
+    const resident = Number(/VmRSS:\s+(\d+)/.exec(readFileSync(`/proc/${pid}/status`, "utf8"))[1]) / 1024;
+    assert(resident < 600, `${resident} MB after 15 seconds`);
+    assert((await measured(page)).rows <= 8001);
+    // Forces are drawn, and colours are made of them.
+    const before = await pixels(page);
+    await page.check("#contacts");
+    await until(page, () => window.viewer.measured.contacts > 0);
+    await page.waitForTimeout(1500);
+    assert.notEqual((await pixels(page)).sum, before.sum);
+    await shoot(page, "forces");
+    await page.selectOption("#field", "pressure");
+    await page.waitForTimeout(1500);
+    assert.match(await page.textContent("#bar-to"), /m\/\(d t²\)/);
+    await page.selectOption("#field", "axial");
+    await page.click("#play");
+    await until(page, () => !window.viewer.measured.playing);
+
+    // To begin anew is asked for, and can be refused.
+    const { clock, frames } = await measured(page);
+    await page.click("#again");
+    await page.keyboard.press("Escape");
+    assert.equal((await measured(page)).clock, clock);
+    // A page that is loaded again can go back.
+    await page.reload();
+    await until(page, () => window.viewer?.measured.pictures > 0);
+    assert((await measured(page)).frames > Math.min(5, frames / 20), "reloading lost the way back");
+    // Going on from another time goes on from there, steered as it was.
+    await page.focus("#time");
+    await page.keyboard.press("Home");
+    for (let k = 0; k < 3; k++) await page.keyboard.press("ArrowRight");
+    await until(page, () => document.getElementById("live").dataset.live === "false");
+    await until(page, () => window.viewer.shownFrame === window.viewer.film.frame(3));
+    const shown = await page.evaluate(() => window.viewer.shownFrame.clock);
+    await page.click("#onward");
+    await page.click("#confirm-yes");
+    await until(page, (shown) => Math.abs(window.viewer.measured.clock - shown) < 1e-6, shown);
+    // The loop as files.
+    for (const kind of ["png", "svg", "csv"]) await page.click(`#loop-${kind}`);
+    await until(page, () => [...window.offered.values()].length >= 3);
+    const files = await page.evaluate(async () => Promise.all([...window.offered.values()].map((file) => file.slice(0, 60).text())));
+    assert(files.some((text) => text.startsWith("<svg")) && files.some((text) => text.startsWith("period,width,")), String(files));
+    // The address keeps the looks.
+    await page.selectOption("#field", "total");
+    await until(page, () => location.hash.includes("field=total"));
+    await audit(page, "a run");
+    for (const [button, dialog] of [["#help", "keys"], ["#share", "share-dialog"]]) {
+      await page.click(button);
+      await until(page, (dialog) => document.getElementById(dialog).open, dialog);
+      await audit(page, dialog);
+      await shoot(page, dialog);
+      await page.keyboard.press("Escape");
+    }
+    await close();
+    const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" });
+    await audit(dark, "a run, dark");
+    // A ninth page is told why it gets none.
+    await dark.evaluate(() => {
+      window.others = Array.from({ length: 7 }, () => new WebSocket(new URL("live", location.href).href.replace("http", "ws")));
+      return Promise.all(window.others.map((it) => new Promise((done) => (it.onopen = done))));
+    });
+    const ninth = await dark.context().newPage();
+    await ninth.goto(address);
+    await until(ninth, () => /8 pages are open/.test(document.getElementById("status").textContent));
+    await ninth.close();
+    // A program that has ended is missed.
+    end();
+    await until(dark, () => document.body.dataset.lost === "true" && /has ended/.test(document.getElementById("status").textContent));
+    await dark.context().close();
+    void closeDark;
+  }
+
+  async function checkBare(browser) {
+    const { address, end } = await serve("frictionless", "--set", "tube.waves=2");
+    // Without WebGL the charts go on.
+    const context = await browser.newContext(desk);
+    const page = await context.newPage();
+    await page.addInitScript(() => {
+      const own = HTMLCanvasElement.prototype.getContext;
+      HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+        return kind.startsWith("webgl") ? null : own.call(this, kind, ...rest);
+      };
+    });
+    await page.goto(address);
+    // It plays by itself, for who has not asked for stillness.
+    await until(page, () => window.viewer?.measured.clock > 0.3);
+    assert(await page.isVisible("#flat"));
+    await shoot(page, "no-webgl");
+    await context.close();
+    const silent = await browser.newContext({ ...desk, javaScriptEnabled: false });
+    const text = await silent.newPage();
+    await text.goto(address);
+    assert.match(await text.innerText("noscript"), /does not run/);
+    await silent.close();
+    end();
+  }
+
+  async function checkStudies(browser) {
+    const results = new URL("../validation/results", import.meta.url).pathname;
+    const { address, end } = await serve(results);
+    const { page, close } = await open(browser, address, desk, () => window.study?.measured.places.length > 0);
+    const names = await page.locator("#study option").allTextContents();
+    const choose = async (begin) => {
+      const at = names.findIndex((name) => name.startsWith(`${begin} (`));
+      const drawn = await page.evaluate(() => window.study.measured.drawn);
+      await page.selectOption("#study", String(at));
+      await until(page, (drawn) => window.study.measured.drawn > drawn && window.study.measured.places.length > 0, drawn);
+      return page.evaluate(() => ({ ...window.study.measured, other: document.getElementById("other").value, value: document.getElementById("value").value }));
+    };
+    // What is right for one study is not taken to the next.
+    await choose("elastic-yielding");
+    const radius = await choose("radius");
+    assert.notEqual(radius.other, "none");
+    assert(radius.curves > 2, `${radius.curves} curves of four radii`);
+    // Axes that say the same make no families of one point.
+    for (const tied of ["back-flow", "sweep-up"]) {
+      const study = await choose(tied);
+      assert(study.points / study.curves > 1.5, `${tied}: ${study.points} points in ${study.curves} curves`);
+    }
+    assert.equal((await choose("divergence-coarse")).value, "transition_time");
+    const { places } = await choose("branches-coarse");
+    for (const place of [places[0], places[Math.floor(places.length / 2)]]) {
+      await page.mouse.move(...place);
+      await until(page, () => !document.getElementById("tip").hidden);
+      const { x, y, width, height } = await page.locator("#tip").boundingBox();
+      assert(place[0] < x || place[0] > x + width || place[1] < y || place[1] > y + height, "the tip covers its point");
+    }
+    await audit(page, "a study");
+    for (const name of names) {
+      await choose(name.split(" (")[0]);
+      await shoot(page, `studies-${name.split(" (")[0]}`);
+    }
+    await close();
+    const { page: dark, close: closeDark } = await open(browser, address, { ...desk, colorScheme: "dark" }, () => window.study?.measured.places.length > 0);
+    await audit(dark, "a study, dark");
+    await closeDark();
+    end();
+  }
+
+  async function checkFront(browser) {
+    if (!existsSync(new URL("engine.wasm", WEB))) {
+      console.log("skipped: the front page ('just web' makes it)");
+      return;
+    }
+    const files = ["index.html", "viewer.css", "viewer.js", "worker.js", "engine.wasm"];
+    const size = files.reduce((sum, name) => sum + brotliCompressSync(readFileSync(new URL(name, WEB))).length, 0);
+    console.log(`the front page: ${(size / 1000).toFixed(0)} kB compressed`);
+    assert(size < 900e3, `${size} bytes`);
+    const { address, end } = await serveFiles();
+    // It moves by itself, but for who asks for stillness.
+    const { page, close } = await open(browser, address, { ...desk, reducedMotion: "no-preference" });
+    await until(page, () => window.viewer.measured.playing && window.viewer.measured.clock > 0.2);
+    await shoot(page, "front");
+    await audit(page, "the front page");
+    assert.equal(await page.locator(".chapter").count(), 4);
+    await page.click("[data-chapter=jams]");
+    await until(page, () => window.viewer.driven?.width < 2.51);
+    await until(page, () => /jams at w = 2\.\d/.test(document.querySelector(".chapter.now .said").textContent));
+    await shoot(page, "front-jams");
+    await page.click("[data-chapter=remembers]");
+    await until(page, () => document.getElementById("sweep").ariaPressed === "true");
+    await page.click("#sweep");
+    await until(page, () => !window.viewer.measured.playing);
+    // A link takes another visitor to the same bits.
+    await page.click("#share");
+    await until(page, () => document.getElementById("share-dialog").open);
+    const link = await page.inputValue("#link");
+    const { step, digest } = await measured(page);
+    const small = /src="([^"]+)"/.exec(await page.inputValue("#embed"))[1];
+    await page.keyboard.press("Escape");
+    const { page: other, close: closeOther } = await open(browser, link, desk);
+    await until(other, (step) => window.viewer.measured.step === step, step);
+    assert.equal((await measured(other)).digest, digest);
+    await closeOther();
+    await page.click("[data-chapter=friction]");
+    await until(page, () => document.getElementById("title").textContent === "frictional" && window.viewer.measured.playing);
+    assert.equal(await page.inputValue("#speed"), "0.3");
+    await page.click("[data-chapter=begins]");
+    await until(page, () => !document.getElementById("space-time-figure").hidden && window.viewer.measured.clock > 5);
+    await shoot(page, "front-begins");
+    await close();
+    const { page: embedded, close: closeEmbedded } = await open(browser, small, { viewport: { width: 720, height: 420 } });
+    assert(await embedded.isVisible("#slider-width") && !(await embedded.isVisible("#flow")));
+    await shoot(embedded, "embedded");
+    await closeEmbedded();
+    for (const [name, options] of [["dark", { ...desk, colorScheme: "dark" }], ["phone", phone], ["tablet", { viewport: { width: 820, height: 1180 } }]]) {
+      const { page: one, close: closeOne } = await open(browser, address, options);
+      assert(!(await one.evaluate(() => document.documentElement.scrollWidth > innerWidth)), `${name}: the front page is too wide`);
+      await audit(one, `the front page, ${name}`);
+      await shoot(one, `front-${name}`);
+      if (name === "phone") {
+        const [stage, slider] = [await one.locator("#stage").boundingBox(), await one.locator("#slider-width").boundingBox()];
+        assert(slider.y - stage.y - stage.height < 200, "the slider is far below the tube");
+      }
+      await closeOne();
+    }
+    const silent = await browser.newContext({ ...desk, javaScriptEnabled: false });
+    const text = await silent.newPage();
+    await text.goto(address);
+    assert.match(await text.innerText("body"), /A wave runs along a tube/);
+    assert(await text.isVisible("footer noscript img"));
+    await shoot(text, "front-no-script");
+    await silent.close();
+    end();
+  }
+
+  return { more: checkMore, bare: checkBare, studies: checkStudies, front: checkFront };
+}

@@ -1,0 +1,31 @@
+import { FIELDS } from "./fields";
+import { element } from "./page";
+import { type Scene, WALLS, type WallLook } from "./scene";
+
+/** What is done when the looks are changed. */
+export interface Looks {
+  field(name: string): void;
+  scene(change: (scene: Scene) => void): void;
+  ride(on: boolean): void;
+  follow(on: boolean): void;
+}
+
+/** The choices of colours, wall and marks. */
+export function listenToLooks(field: string, looks: Looks): void {
+  const fields = element<HTMLSelectElement>("field");
+  for (const [key, { name }] of Object.entries(FIELDS)) fields.add(new Option(name, key));
+  fields.value = field;
+  fields.onchange = () => looks.field(fields.value);
+  const walls = element<HTMLSelectElement>("wall");
+  for (const look of WALLS) walls.add(new Option(look, look));
+  walls.onchange = () => looks.scene((scene) => (scene.wall = walls.value as WallLook));
+  const tick = (id: string, change: (on: boolean) => void) => {
+    const box = element<HTMLInputElement>(id);
+    box.onchange = () => change(box.checked);
+  };
+  tick("contacts", (on) => looks.scene((scene) => (scene.contacts = on)));
+  tick("marks", (on) => looks.scene((scene) => (scene.marks = on)));
+  tick("lightness", (on) => looks.scene((scene) => (scene.lightness = on)));
+  tick("ride", looks.ride);
+  tick("follow", looks.follow);
+}

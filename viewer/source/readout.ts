@@ -1,0 +1,126 @@
+import { Chart, ink, written } from "./charts";
+import { FIELDS } from "./fields";
+import type { Film } from "./film";
+import { acrossOf, drawLoop, thresholds, wordsOf } from "./loop";
+import { element, fill } from "./page";
+import { drawBottleneck, drawFlow, drawMap, drawProfile } from "./plots";
+import type { Frame, Welcome } from "./protocol";
+import { factsOfDrive, factsOfGrain, factsOfSample, summaryOf } from "./readings";
+import type { Scene } from "./scene";
+import type { Sliders } from "./sliders";
+import { FEWEST_WAVES, SpaceTime } from "./space-time";
+import { type Chapter, tell } from "./story";
+
+/** Milliseconds between two summaries for who does not see the page. */
+const SUMMARIES = 5000;
+
+/** What the page shows at an instant. */
+export interface Shown {
+  frame: Frame;
+  /** Number of the frame. */
+  index: number;
+  /** The last frame that was computed; none of a recording. */
+  newest: Frame | undefined;
+  film: Film;
+  tube: Welcome;
+  scene: Scene | null;
+  field: string;
+  playing: boolean;
+  /** Whether the newest frame is shown. */
+  live: boolean;
+  /** Periods a second that were asked for. */
+  speed: number | null;
+  chapter: Chapter | null;
+}
+
+/** The charts and numbers beside the tube. */
+export class Readout {
+  readonly charts = {
+    flow: new Chart(element<HTMLCanvasElement>("flow")),
+    loop: new Chart(element<HTMLCanvasElement>("loop")),
+    profile: new Chart(element<HTMLCanvasElement>("profile")),
+    spaceTime: new Chart(element<HTMLCanvasElement>("space-time")),
+  };
+  spaceTime = new SpaceTime();
+  /** When the summary was told, and when and from which time the pace was measured. */
+  private summarised = -SUMMARIES;
+  private measuredFrom: [number, number] = [0, 0];
+
+  constructor(private readonly sliders: Sliders) {}
+
+  show(shown: Shown, now: number): void {
+    const { frame, film, tube, scene, index } = shown;
+    const colours = ink();
+    const { charts } = this;
+    drawFlow(charts.flow, film, tube, frame.clock, colours);
+    if (!isSteady(film, tube)) this.showLoop(shown);
+    else element("loop-figure").hidden = !drawBottleneck(charts.loop, film, frame.clock, colours);
+    drawProfile(charts.profile, film, index, tube, colours);
+    const isLong = tube.waves >= FEWEST_WAVES && !tube.recorded;
+    element("space-time-figure").hidden = !isLong;
+    const lightness = scene?.lightness ?? false;
+    if (isLong) this.spaceTime.draw(charts.spaceTime, tube, lightness, colours);
+    const view = scene ? { middle: scene.middle, half: scene.halfShown() / 1.1 } : { middle: 0, half: tube.length };
+    drawMap(element<HTMLCanvasElement>("map"), frame, FIELDS[shown.field], tube, lightness, view, colours);
+    this.showNumbers(shown, now);
+  }
+
+  private showLoop({ film, tube, frame, chapter }: Shown): void {
+    drawLoop(this.charts.loop, film, tube, frame, ink());
+    const across = acrossOf(tube, frame);
+    const found = wordsOf(thresholds(film.rows, across), across);
+    element("found").textContent = found;
+    if (chapter === "jams" || chapter === "remembers") tell(found);
+  }
+
+  private showNumbers({ frame, index, newest, film, tube, scene, playing, live, speed, chapter }: Shown, now: number): void {
+    const ratio = film.rows[film.rowAt(frame.clock)]?.average ?? NaN;
+    element("ratio").textContent = Number.isNaN(ratio) ? "–" : ratio.toFixed(3).replace(/^-(?=.*[1-9])/, "−").replace("-", "");
+    if (chapter === "friction" && frame.clock > 1) tell(ratio < -0.01 ? "The grains flow against the wave." : `J/Jmax = ${written(ratio, 2)}`);
+    if (chapter === "begins") tell(this.spaceTime.words());
+    element("clock").textContent = `${frame.clock.toFixed(2)} T`;
+    const slider = element<HTMLInputElement>("time");
+    slider.value = String(index);
+    slider.setAttribute("aria-valuetext", `${frame.clock.toFixed(2)} periods`);
+    element("live").dataset.live = String(live);
+    element("play").setAttribute("aria-pressed", String(playing));
+    element("onward").hidden = live || tube.recorded !== null;
+    const select = element<HTMLSelectElement>("speed");
+    if (select !== document.activeElement) select.value = speed === null ? "" : String(speed);
+    this.showPace(newest, speed, now);
+    const driven = newest ?? frame;
+    this.sliders.show(driven.driven, driven.aims);
+    const facts = factsOfSample(frame);
+    fill(element("numbers"), tube.recorded ? [...factsOfDrive(frame.driven), ...facts] : facts);
+    fill(element("warnings"), frame.warnings.map(({ key, message }) => [key, message]));
+    showGrain(frame, tube, scene?.picked ?? -1);
+    if (now - this.summarised > SUMMARIES) {
+      this.summarised = now;
+      element("summary").textContent = summaryOf(frame, ratio);
+    }
+  }
+
+  /** How fast it really goes, where that is not what was asked for. */
+  private showPace(newest: Frame | undefined, asked: number | null, now: number): void {
+    const [since, clock] = this.measuredFrom;
+    if (now - since < 1000) return;
+    const reached = newest?.clock ?? 0;
+    const pace = ((reached - clock) / (now - since)) * 1000;
+    this.measuredFrom = [now, reached];
+    const tells = newest?.playing && since > 0 && pace > 0 && (asked === null || pace < 0.8 * asked);
+    element("pace").textContent = tells ? `now ${written(pace, 2)} T/s` : "";
+  }
+}
+
+/** Whether a recording has no loop, for nothing was driven. */
+export function isSteady({ rows }: Film, tube: Welcome): boolean {
+  const [first] = rows;
+  return tube.recorded !== null && rows.every((row) => row.amplitude === first.amplitude);
+}
+
+/** The numbers of the grain that was picked. */
+export function showGrain(frame: Frame, tube: Welcome, grain: number): void {
+  const box = element("grain");
+  box.hidden = grain < 0 || grain >= frame.grains;
+  if (!box.hidden) fill(element("grain-numbers"), factsOfGrain(frame, tube, grain));
+}
