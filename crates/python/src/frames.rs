@@ -151,7 +151,7 @@ pub(crate) fn render<'py>(
 }
 
 fn still(run: &peristalsis_run::Run, look: Look) -> Result<Drawing, RunError> {
-    let frame = FrameSource::now(run, look.field == Field::Pressure);
+    let frame = FrameSource::now(run, look.needs_contacts());
     let samples = [frame];
     PictureScene::new(run, look, &samples)?.draw(&samples[0])
 }

@@ -18,7 +18,7 @@ fn look(width: u32) -> Look {
 
 /// The bare picture of a run as it is.
 fn picture(run: &Run, look: Look) -> Picture {
-    let frame = FrameSource::now(run, look.field == Field::Pressure);
+    let frame = FrameSource::now(run, look.needs_contacts());
     let scene = PictureScene::new(run, look, std::slice::from_ref(&frame)).unwrap();
     scene.picture(&frame).unwrap()
 }
@@ -191,6 +191,33 @@ fn every_field_colours_the_grains_of_a_run_that_has_it() {
         ..look(200)
     };
     assert!(refusal(&smooth, turning).contains("do not rotate"));
+}
+
+#[test]
+fn contacts_are_drawn_between_smaller_grains() {
+    let mut run = jammed("forward");
+    (0..40).for_each(|_| run.advance().unwrap());
+    let plain = picture(&run, look(600));
+    let contacts = true;
+    let forces = picture(
+        &run,
+        Look {
+            contacts,
+            ..look(600)
+        },
+    );
+    // Grains of a jam are red; forces are warm and bright, or violet where they are weak.
+    let bright = |picture: &Picture| {
+        let pixels = picture.pixels().chunks_exact(3);
+        pixels
+            .filter(|it| it[0] > 200 && it[1] > 110 && i32::from(it[0]) > i32::from(it[2]) + 60)
+            .count()
+    };
+    assert!(
+        bright(&forces) > bright(&plain) + 50,
+        "{} pixels of forces",
+        bright(&forces)
+    );
 }
 
 #[test]

@@ -233,6 +233,9 @@ impl Tube {
             None => self.run.set_friction(value)?,
         }
         self.course.turn(&mut self.run, parameter, value);
+        if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == parameter) {
+            *aim = Some(value);
+        }
         Ok(())
     }
 
@@ -284,8 +287,12 @@ impl Tube {
                 ));
             }
         }
-        let step = self.run.simulation().step();
-        self.seeking = self.seeking.filter(|target| step < *target);
+        if self.seeking.is_some_and(|target| self.step() >= target) {
+            self.seeking = None;
+            if let Err(error) = self.follow() {
+                self.tell(&error.to_string());
+            }
+        }
         let periods = self.run.recorder().averages().len();
         let now = (periods, self.epoch, self.course.turns().len());
         if self.warned.0 != now {
@@ -326,6 +333,11 @@ impl Tube {
         self.due = 0.0;
         self.wanted = self.wanted.map(|(parameter, _)| (parameter, None));
         self.aims = self.wanted;
+        for turn in self.course.turns() {
+            if let Some((_, aim)) = self.aims.iter_mut().find(|(it, _)| *it == turn.parameter) {
+                *aim = Some(turn.value);
+            }
+        }
     }
 
     /// The configuration with a duration beyond the present state, so that the saved run can go on.

@@ -89,6 +89,8 @@ pub struct Look {
     pub paper: Paper,
     /// What is written on it.
     pub writing: Writing,
+    /// Whether the contacts are drawn, as thick as their normal force, between grains that are drawn smaller.
+    pub contacts: bool,
 }
 
 impl Default for Look {
@@ -103,11 +105,17 @@ impl Default for Look {
             width: 2400,
             paper: Paper::Light,
             writing: Writing::Full,
+            contacts: false,
         }
     }
 }
 
 impl Look {
+    /// Whether frames have to hold the contacts.
+    pub fn needs_contacts(&self) -> bool {
+        self.contacts || self.field == Field::Pressure
+    }
+
     /// Refuses what shows nothing of a tube of a length \[d\].
     fn check(&self, length: f64) -> Result<(), RunError> {
         if !WIDTHS.contains(&self.width) {

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use peristalsis_formats::Frame;
+use peristalsis_formats::trajectory::FrameContact;
 use peristalsis_render::{Colour, Finish, Sphere};
 
 use super::caption::cycles;
@@ -10,7 +11,72 @@ use super::{Aspect, Eye, PictureScene, Place, SECTION, WallLook};
 /// Colour of the wall.
 const STONE: [u8; 3] = [207, 202, 193];
 
+/// Part of their size at which grains are drawn among the forces between them.
+const SHRUNK: f64 = 0.32;
+/// Part of the contacts whose force lies within the colours.
+const COVERED: f64 = 0.97;
+/// Normal forces from weak to strong, as in the viewer.
+const FORCES: [[f64; 3]; 5] = [
+    [70.0, 60.0, 110.0],
+    [150.0, 50.0, 120.0],
+    [225.0, 80.0, 60.0],
+    [255.0, 170.0, 50.0],
+    [255.0, 250.0, 190.0],
+];
+
+/// The colour of a force, from 0 to 1 of the largest.
+fn force_colour(part: f64) -> Colour {
+    let place = part.clamp(0.0, 1.0) * (FORCES.len() - 1) as f64;
+    let below = (place as usize).min(FORCES.len() - 2);
+    let mix = place - below as f64;
+    let [red, green, blue] = std::array::from_fn(|k| {
+        (FORCES[below][k] + mix * (FORCES[below + 1][k] - FORCES[below][k])).round() as u8
+    });
+    Colour::srgb(red, green, blue)
+}
+
 impl PictureScene {
+    /// The contacts of the grains as rods of spheres, as thick as their normal force.
+    fn rods(&self, frame: &Frame) -> Vec<Sphere> {
+        let repels = |contact: &&FrameContact| {
+            contact.normal_force > 0.0 && contact.spheres[0] < frame.grains
+        };
+        let contacts: Vec<&FrameContact> = frame.contacts.iter().filter(repels).collect();
+        let mut forces: Vec<f64> = contacts.iter().map(|it| it.normal_force).collect();
+        forces.sort_unstable_by(f64::total_cmp);
+        let Some(&largest) = forces.get((COVERED * forces.len().saturating_sub(1) as f64) as usize)
+        else {
+            return Vec::new();
+        };
+        let length = self.wall.length();
+        let shift = self.shift(cycles(frame));
+        let mut rods = Vec::new();
+        for contact in contacts {
+            let [first, second] = contact.spheres;
+            let [x, y, z] = frame.position[first];
+            let begin = DVec3::new(x, y, (z - shift).rem_euclid(length));
+            if self.look.aspect == Aspect::Side && begin.z > self.shown {
+                continue;
+            }
+            // To the centre of a grain, or to where the wall is touched.
+            let separation = DVec3::from_array(contact.separation);
+            let way = match second < frame.grains {
+                true => -separation,
+                false => -0.5 * frame.diameter[first] * separation.normalize(),
+            };
+            let part = (contact.normal_force / largest).min(1.0);
+            let radius = 0.02 + 0.11 * part;
+            let pieces = (way.length() / (0.4 * radius)).ceil();
+            rods.extend((0..=pieces as u32).map(|piece| Sphere {
+                centre: begin + f64::from(piece) / pieces * way,
+                radius,
+                colour: force_colour(part),
+                finish: Finish::Opaque,
+            }));
+        }
+        rods
+    }
+
     /// What z of a picture is less than z of the tube \[d\], up to whole lengths.
     pub(super) fn shift(&self, cycles: f64) -> f64 {
         let middle = 0.5 * self.wall.length();
@@ -27,7 +93,7 @@ impl PictureScene {
     pub(super) fn spheres(&self, frame: &Frame, values: &[f64]) -> Vec<Sphere> {
         let length = self.wall.length();
         let shift = self.shift(cycles(frame));
-        let shown = match self.look.aspect {
+        let places = match self.look.aspect {
             Aspect::Side => 0.0..self.shown,
             Aspect::Section(_) => {
                 let half = 0.5 * SECTION * self.wall.sphere_diameter();
@@ -39,10 +105,11 @@ impl PictureScene {
         let [red, green, blue] = STONE;
         let stone = Colour::srgb(red, green, blue);
         let spheres = frame.position.iter().zip(&frame.diameter).enumerate();
-        spheres
+        let size = if self.look.contacts { SHRUNK } else { 1.0 };
+        let mut shown: Vec<Sphere> = spheres
             .filter_map(|(index, (&[x, y, z], diameter))| {
                 let centre = DVec3::new(x, y, (z - shift).rem_euclid(length));
-                if !shown.contains(&centre.z) {
+                if !places.contains(&centre.z) {
                     return None;
                 }
                 let (colour, finish) = if index < frame.grains {
@@ -52,14 +119,19 @@ impl PictureScene {
                     let is_before = centre.dot(towards_eye) > 0.0;
                     (stone, self.wall_finish(is_before)?)
                 };
+                let part = if index < frame.grains { size } else { 1.0 };
                 Some(Sphere {
                     centre,
-                    radius: 0.5 * diameter,
+                    radius: 0.5 * part * diameter,
                     colour,
                     finish,
                 })
             })
-            .collect()
+            .collect();
+        if self.look.contacts {
+            shown.extend(self.rods(frame));
+        }
+        shown
     }
 
     /// How a sphere of the wall looks; not at all where it is taken away.

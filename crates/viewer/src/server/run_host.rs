@@ -29,14 +29,19 @@ const APART: u64 = 4;
 struct Past {
     frames: Vec<(u64, Arc<Vec<u8>>)>,
     seen: u64,
+    last: Option<u64>,
 }
 
 impl Past {
     fn see(&mut self, step: u64, frame: impl FnOnce() -> Vec<u8>) {
         // What came after this step was left.
-        self.frames.retain(|(known, _)| *known < step);
+        self.frames.retain(|(known, _)| *known <= step);
+        if self.last == Some(step) {
+            return;
+        }
+        self.last = Some(step);
         self.seen += 1;
-        if self.seen % APART == 1 {
+        if self.seen % APART == 1 && self.frames.last().is_none_or(|(known, _)| *known < step) {
             self.frames.push((step, Arc::new(frame())));
         }
         let bytes: usize = self.frames.iter().map(|(_, frame)| frame.len()).sum();

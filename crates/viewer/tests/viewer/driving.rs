@@ -221,11 +221,12 @@ fn frames_from_before_come_after_the_welcome() {
     first.frame_with(|head| head["playing"] == false);
     let (mut later, welcome) = served.client();
     assert!(welcome["rows"].as_array().unwrap().len() >= 60);
-    let mut clocks = Vec::new();
+    let seen = std::cell::RefCell::new(Vec::new());
     let newest = later.frame_with(|head| {
-        clocks.push(head["clock"].as_f64().unwrap());
+        seen.borrow_mut().push(head["clock"].as_f64().unwrap());
         head["past"] == false
     });
+    let clocks = seen.into_inner();
     assert!(clocks.len() >= 2 && clocks[0] == 0.0, "{clocks:?}");
     assert!(clocks.is_sorted() && newest.head["clock"].as_f64().unwrap() > 3.0);
 }
@@ -250,7 +251,7 @@ fn contacts_come_where_they_are_asked_for() {
         // From the centre of a grain of diameter 1 to that of the next, or to the wall.
         let most = if contact[1] < 0.0 { 0.5 } else { 1.0 };
         assert!(
-            away <= most + 1e-5 && away > most - 0.2,
+            away <= most + 1e-5 && away > 0.2 * most,
             "{contact:?}: {away}"
         );
     }

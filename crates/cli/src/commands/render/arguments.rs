@@ -65,6 +65,9 @@ pub(crate) struct RenderArguments {
     /// Where a section is, as a phase (z - c t)/lambda: it moves with the wave.
     #[arg(long, value_name = "PHASE", allow_negative_numbers = true)]
     pub(crate) phase: Option<f64>,
+    /// Draw the contacts, as thick as their normal force, between smaller grains; not of a trajectory, which has no forces.
+    #[arg(long)]
+    pub(crate) contacts: bool,
     /// Wavelengths that a side view shows at most.
     #[arg(long, value_name = "N", default_value_t = 2.0)]
     pub(crate) waves: f64,
@@ -140,6 +143,7 @@ impl RenderArguments {
                 true => Writing::None,
                 false => Writing::Full,
             },
+            contacts: self.contacts,
         }
     }
 }

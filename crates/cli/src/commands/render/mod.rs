@@ -8,9 +8,8 @@ use std::time::Instant;
 
 use peristalsis_formats::atomic::{self, Pending};
 use peristalsis_run::{
-    Drawing, Field, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, PictureScene, Run,
-    RunError, RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window,
-    space_time,
+    Drawing, FilmFormat, FilmPlan, Frame, FrameSource, Look, Picture, PictureScene, Run, RunError,
+    RunFolder, Span, TrajectoryFormat, TrajectoryPlan, TrajectoryRequest, Window, space_time,
 };
 use serde_json::json;
 
@@ -146,19 +145,19 @@ fn check(arguments: &RenderArguments, format: Format) -> Result<(), Failure> {
 }
 
 /// The trajectory that is asked for or, where that is left open, lies in the run's folder.
-fn trajectory(arguments: &RenderArguments, field: Field) -> Result<Option<PathBuf>, Failure> {
+fn trajectory(arguments: &RenderArguments, look: Look) -> Result<Option<PathBuf>, Failure> {
     let path = match (&arguments.trajectory, arguments.from) {
         (Some(path), _) => path.clone(),
         (None, Some(Origin::Trajectory)) => FrameSource::in_folder(&arguments.folder)?,
-        (None, None) if field != Field::Pressure => {
+        (None, None) if !look.needs_contacts() => {
             return Ok(FrameSource::in_folder(&arguments.folder).ok());
         }
         (None, _) => return Ok(None),
     };
-    if field == Field::Pressure {
+    if look.needs_contacts() {
         return Err(Failure::usage(
             "a GSD trajectory holds no forces of contacts, of which pressure is made",
-            "take --from state or --from start, or another field",
+            "take --from state or --from start, another field, or no --contacts",
         ));
     }
     Ok(Some(path))
@@ -171,7 +170,7 @@ fn still(
     look: Look,
     stop: &Stop,
 ) -> Result<Option<Drawing>, Failure> {
-    let with_contacts = look.field == Field::Pressure;
+    let with_contacts = look.needs_contacts();
     // Where nothing is said the picture is of the saved state.
     let is_of_state = matches!(arguments.from, Some(Origin::State))
         || (arguments.from.is_none() && arguments.trajectory.is_none() && arguments.at.is_none());
@@ -185,7 +184,7 @@ fn still(
         let frame = FrameSource::now(&run, with_contacts);
         return Ok(Some(draw(&run, look, &[frame])?));
     }
-    if let Some(path) = trajectory(arguments, look.field)? {
+    if let Some(path) = trajectory(arguments, look)? {
         let frames = FrameSource::nearest(&path, arguments.at)?;
         return Ok(Some(draw(&run, look, &frames)?));
     }
@@ -226,10 +225,10 @@ fn request(every: Option<Span>, window: Window) -> TrajectoryRequest {
 }
 
 /// Where a film's frames come from.
-fn frames(arguments: &RenderArguments, run: Run, field: Field) -> Result<FrameSource, Failure> {
-    let with_contacts = field == Field::Pressure;
+fn frames(arguments: &RenderArguments, run: Run, look: Look) -> Result<FrameSource, Failure> {
+    let with_contacts = look.needs_contacts();
     let window = arguments.window.unwrap_or_default();
-    if let Some(path) = trajectory(arguments, field)? {
+    if let Some(path) = trajectory(arguments, look)? {
         return Ok(FrameSource::of_file(&path, arguments.every, window)?);
     }
     let has_periods = run.configuration().drive.period().is_some();
@@ -258,7 +257,7 @@ fn make_film(
     let start = Instant::now();
     format.available().map_err(RunError::from)?;
     let drawn = run.clone();
-    let mut source = frames(arguments, run, look.field)?;
+    let mut source = frames(arguments, run, look)?;
     let lost = source.lost_frames();
     if lost > 0 {
         say(&format!(
