@@ -76,7 +76,13 @@ fn entry(path: &Path) -> Value {
         }
     };
     let summary = std::fs::read_to_string(path.join("summary.json")).ok();
-    let summary: Option<Value> = summary.and_then(|text| serde_json::from_str(&text).ok());
+    let summary: Option<Value> = match summary.map(|text| serde_json::from_str(&text)) {
+        Some(Err(error)) => {
+            let message = format!("summary.json: {error}");
+            return json!({ "folder": folder, "status": "unreadable", "message": message });
+        }
+        read => read.and_then(Result::ok),
+    };
     let of = |key: &str| summary.as_ref().map_or(Value::Null, |all| all[key].clone());
     let warnings = of("warnings").as_array().map(Vec::len);
     let (drive, amplitude) = amplitude(&configuration);

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, cast
 
+from ._core import Configuration
 from ._simulation import Simulation
 
 if TYPE_CHECKING:
@@ -20,7 +21,8 @@ def run(config: Mapping[str, Any]) -> RunSummary:
     Parameters
     ----------
     config : mapping
-        ``preset`` (a name) or ``file`` (a path), and keywords or dotted keys as of `Simulation.preset`.
+        ``preset`` (a name) or ``file`` (a path), and keywords, dotted keys or sections as of `Simulation.preset`; or a
+        `Configuration`.
 
     Returns
     -------
@@ -41,11 +43,16 @@ def run(config: Mapping[str, Any]) -> RunSummary:
     >>> summary["seed"], summary["config"]["waves"]
     (3, 2)
     """
+    if isinstance(config, Configuration):
+        simulation = Simulation(config)
+        simulation.run()
+        return cast("RunSummary", {"config": config.to_dict(), **simulation.summary()})
     settings = dict(config)
     preset, file = settings.pop("preset", None), settings.pop("file", None)
     if (preset is None) == (file is None):
         raise TypeError("a configuration to run names a preset or a file")
-    dotted = {key: settings.pop(key) for key in list(settings) if "." in key}
+    sections = {key for key, value in settings.items() if isinstance(value, Mapping) and key != "schedule"}
+    dotted = {key: settings.pop(key) for key in list(settings) if "." in key or key in sections}
     if file is None:
         simulation = Simulation.preset(preset, dotted, **settings)
     else:

@@ -268,6 +268,8 @@ class Simulation(Made):
             raise ConfigurationError(f"{parameter} cannot be led; {', '.join(CHANGEABLE)} can")
         self._drive(parameter)
         levels = whole("levels", levels, 1)
+        if levels == 1 and start != stop:
+            raise ValueError(f"one level cannot lead from {start} to {stop}: levels is 2 at least")
         if not 0 <= settle < 1:
             raise ValueError(f"settle = {settle} is no part of a level: from 0 to below 1")
         if not periods >= 2 * levels:

@@ -418,3 +418,17 @@ def test_everything_is_read_while_it_runs(tight: Simulation) -> None:
         tight.contacts()
     thread.join()
     assert np.isfinite(worst).all()
+
+
+def test_run_takes_a_configuration_sections_and_keywords() -> None:
+    made = peristalsis.Configuration("frictionless", waves=2, periods=1)
+    sections = {"preset": "frictionless", "tube": {"waves": 2}, "periods": 1}
+    keywords = {"preset": "frictionless", "waves": 2, "run.periods": 1}
+    ratios = {peristalsis.run(config)["flow_rate_ratio"] for config in (made, sections, keywords)}
+    assert len(ratios) == 1
+
+
+def test_one_level_leads_nowhere() -> None:
+    sim = peristalsis.Simulation.preset("frictionless-fine", waves=2)
+    with pytest.raises(ValueError, match="levels is 2 at least"):
+        sim.ramp("width", 2.4, 2.6, periods=8, levels=1)

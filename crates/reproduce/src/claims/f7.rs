@@ -78,6 +78,7 @@ fn part(
     let mut why = rates_in_words(one);
     // By the scatter of the points alone, and by their errors.
     let mut linearity = [line.and_then(|line| line.linearity), None];
+    let mut slopes = [line.and_then(has_the_slope), None];
     if let Ok(curve) = fit_parabola(&rate, &width, &error) {
         let weighted = slope(&curve.line);
         let (chi_squared, freedom) = (curve.line.chi_squared, curve.line.degrees_of_freedom);
@@ -89,6 +90,7 @@ fn part(
             SLOPE,
         );
         linearity[1] = Some(curve.linearity);
+        slopes[1] = agrees(&weighted, SLOPE);
         let [scatter, errors] = linearity.map(|one| cell_of(one, probability));
         let bend = curve.quadratic;
         draft.compared("curvature", values!(wall, scatter, errors), bend, 0.0);
@@ -99,7 +101,9 @@ fn part(
     let bends = |one: f64| one < BY_CHANCE;
     let is_straight = linearity.iter().all(Option::is_some);
     let is_straight = is_straight.then(|| !linearity.into_iter().flatten().all(bends));
-    let holds = all_hold(&[is_straight, line.and_then(has_the_slope)]);
+    // One slope that agrees beside one that does not says nothing.
+    let has_the_slope = slopes[0].filter(|_| slopes[0] == slopes[1]);
+    let holds = all_hold(&[is_straight, has_the_slope]);
     let slope = line.map(|line| line.line.slope);
     let determination = cell_of(line, |line| number(line.determination, 3));
     let words = PROSE.text("number", values!(slope = cell(slope), determination));

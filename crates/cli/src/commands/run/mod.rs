@@ -187,12 +187,8 @@ fn go_on_in(
 ) -> Result<(RunFolder, Run), Failure> {
     let folder = RunFolder::named(path).claim()?;
     let run = folder.run()?;
-    let length = run.configuration().run.samples;
     let run = lasting(arguments, run, path, stop)?;
     stop.keep_results();
-    if run.configuration().run.samples != length || arguments.configuration.duration.is_some() {
-        folder.change_length(&run)?;
-    }
     Ok((folder, run))
 }
 

@@ -195,9 +195,6 @@ fn replica(
             finished: Ok(()),
         });
     }
-    if !is_as_asked || arguments.configuration.duration.is_some() {
-        folder.change_length(&run)?;
-    }
     compute_with(arguments, &mut run, free)?;
     let work = Work::begin(arguments, folder, run)?;
     let total = work.run.configuration().run.samples as f64;

@@ -52,6 +52,10 @@ impl Work {
             folder.save_state(&run)?;
         }
         let trajectory = open_trajectory(arguments, folder.path(), &mut run)?;
+        // Not before: a trajectory that cannot go on leaves the run as it is.
+        if arguments.resume.is_some() && arguments.configuration.length().is_some() {
+            folder.change_length(&run)?;
+        }
         let written = match arguments.csv {
             true => Written::WithCsv,
             false => Written::Standard,

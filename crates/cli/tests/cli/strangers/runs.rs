@@ -88,6 +88,22 @@ fn a_file_of_the_user_that_a_run_would_write_over_is_refused() {
     }
 }
 
+#[test]
+fn a_resume_that_is_refused_changes_nothing() {
+    let place = Place::new();
+    place.does("run SMALL --out one --trajectory gsd");
+    let frames = place.path("one/trajectory.gsd");
+    let whole = std::fs::read(&frames).unwrap();
+    std::fs::write(&frames, &whole[..whole.len() / 2]).unwrap();
+    let kept = || {
+        ["config.toml", "state.checkpoint", "summary.json"]
+            .map(|name| std::fs::read(place.path("one").join(name)).unwrap())
+    };
+    let before = kept();
+    place.refuses("run --resume one --periods 9", &["trajectory.gsd"]);
+    assert!(kept() == before);
+}
+
 /// COMMAND-LINE, medium 3 and 10.
 #[cfg(unix)]
 #[test]
@@ -335,6 +351,9 @@ fn runs_are_listed_with_what_came_out() {
     assert_eq!(runs[2]["grains"], 20);
     assert_eq!(runs[0]["seed"], 2);
     place.refuses("runs nowhere", &["nowhere", "folders of runs"]);
+    place.write("runs/frictionless-1/summary.json", "{ \"status\": ");
+    let damaged = place.does("runs --json").json();
+    assert_eq!(damaged[2]["status"], "unreadable");
 }
 
 /// COMMAND-LINE, wanted: `run --seeds` with the scatter shown.
