@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use parking_lot::Mutex;
 use peristalsis_command::choice::{self, value_of};
 use peristalsis_run::{
-    Aspect, Drawing, Field, FrameFile, FrameFormat, FrameSource, Look, PictureScene, Place,
-    RunError, Writing, space_time,
+    Aspect, Drawing, FrameFile, FrameFormat, FrameSource, Look, PictureScene, Place, RunError,
+    Writing, space_time,
 };
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
