@@ -9,6 +9,11 @@ use crate::{Place, read_json, send};
 pub(crate) const LONG: &str =
     "run --preset frictionless-fine drive.width=2.6 drive.strain_rate=0.1 run.periods=150";
 
+/// The same of half a minute, for who does not wait for its end.
+pub(crate) fn longer() -> String {
+    LONG.replace("periods=150", "periods=5000")
+}
+
 /// Starts a run, sends it a signal after its first line of progress, and answers exit code and standard error.
 fn interrupted(place: &Place, line: &str, signal: &str) -> (Option<i32>, String) {
     stopped_by(place.start(line), &[signal])
@@ -88,7 +93,7 @@ fn an_interrupted_run_goes_on_to_the_same_bits() {
 fn a_terminated_run_ends_as_well_and_so_does_one_whose_batch_system_warns_it() {
     for (signal, expected) in [("TERM", 143), ("USR1", 138)] {
         let place = Place::new();
-        let (code, said) = interrupted(&place, &format!("{LONG} --out stopped"), signal);
+        let (code, said) = interrupted(&place, &format!("{} --out stopped", longer()), signal);
         assert_eq!(code, Some(expected), "{said}");
         assert!(said.contains("stopped after"), "{said}");
         assert_eq!(

@@ -142,14 +142,14 @@ fn a_disk_that_fills_with_frames_within_the_first_minute_leaves_a_state_and_a_tr
 #[cfg(unix)]
 #[test]
 fn signals_that_come_twice_at_once_and_a_lost_connection_end_a_run_with_its_state() {
-    use crate::signals::{LONG, stopped_by};
+    use crate::signals::{longer, stopped_by};
     for (signals, expected) in [
         (["TERM", "TERM"], 143),
         (["INT", "TERM"], 143),
         (["HUP", "HUP"], 129),
     ] {
         let place = Place::new();
-        let child = place.start(&format!("{LONG} --out stopped"));
+        let child = place.start(&format!("{} --out stopped", longer()));
         let (code, said) = stopped_by(child, &signals);
         assert!(
             code == Some(expected) || code == Some(130),
