@@ -7,8 +7,8 @@ use rayon::ThreadPool;
 use crate::error::EngineError;
 use crate::parameters::Kernel;
 
-/// Moving spheres that a thread must have to itself to pay: some 0.1 ms of work a step, in which threads meet three times.
-const SPHERES_OF_A_THREAD: usize = 3000;
+/// Moving spheres that a thread must have to itself to pay: some ms of work a step, as measured with two (BENCHMARKS.md).
+const SPHERES_OF_A_THREAD: usize = 20_000;
 
 /// How many threads pay for so many moving spheres where so many processors are free; the reference kernel has one.
 pub fn threads_that_pay(kernel: Kernel, spheres: usize, processors: usize) -> usize {
